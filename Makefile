@@ -26,7 +26,7 @@ help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 14
 
 study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
-	$(BIN)/python -m crawler2d study $(ARGS)
+	$(BIN)/python -m research seizure $(ARGS)
 
 # Two at a time, in this order: where one needs but one core, compiles or waits for another build, the other takes the rest.
 test: ## all tests (Rust, Python, documentation) and all checks
@@ -102,13 +102,13 @@ map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
 	$(BIN)/python -m tests.walls.map
 
 notebooks: $(VENV)/.built ## run the notebooks of studies/ and keep their outputs, some minutes
-	$(BIN)/python -m tests.reports.notebooks $(ARGS)
+	$(BIN)/python -m tests.research.notebooks $(ARGS)
 
 paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; an hour or two, Ctrl-C loses nothing
-	$(BIN)/python -m crawler2d paper $(ARGS)
+	$(BIN)/python -m research paper $(ARGS)
 
 paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Table 2, a quarter of an hour; Ctrl-C loses nothing
-	$(BIN)/python -m crawler2d paper-chart $(ARGS)
+	$(BIN)/python -m research chart $(ARGS)
 
 picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
 	$(BIN)/python docs/readme_picture.py

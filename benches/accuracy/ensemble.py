@@ -9,8 +9,8 @@ from typing import NamedTuple
 from benches.accuracy.cells import Cell, Setting
 from crawler2d._core import Passed
 from crawler2d.errors import ScenarioError
-from crawler2d.results.row import Row as SweepRow
-from crawler2d.runs.threads import thread_count
+from crawler2d.results.record import Row as SweepRow
+from crawler2d.runs.progress import thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted
 from crawler2d.sweeps.plan import Planner, plan_runs
 from crawler2d.variation.draws import Variation

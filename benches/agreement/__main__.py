@@ -18,7 +18,7 @@ from benches.agreement.study import study, study_table
 from benches.agreement.table import parts
 from benches.agreement.third import ask, read_third
 from benches.engines.telling import tell
-from crawler2d.reports.markdown import spliced
+from research.markdown import spliced
 
 _PAGE = Path(__file__).parents[2] / "docs" / "studies" / "agreement.md"
 

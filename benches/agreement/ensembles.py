@@ -12,8 +12,8 @@ from benches.agreement.passing import counts, who_gets_over
 from benches.agreement.study import STUDY, at_height, read_cells
 from benches.engines.telling import tell
 from crawler2d.parameters.settings import Solver, Start
-from crawler2d.reports.markdown import markdown_table
 from crawler2d.sweeps.statistics import newcombe_paired
+from research.markdown import markdown_table
 
 __all__ = ["ENSEMBLES", "ensembles", "ensembles_table"]
 

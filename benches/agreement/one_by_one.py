@@ -13,7 +13,7 @@ from benches.agreement.study import STUDY, at_height, read_cells
 from benches.agreement.third import in_chipmunk
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["ONE_BY_ONE", "one_by_one", "one_by_one_table"]
 

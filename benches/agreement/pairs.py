@@ -12,7 +12,7 @@ from benches.agreement.drawing import drawn
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Solver
-from crawler2d.results.balance import Balance
+from crawler2d.results.findings import Balance
 from crawler2d.runs.run import Run
 
 __all__ = ["RESULTS", "finer", "read", "run"]

@@ -13,7 +13,7 @@ from benches.agreement.passing import counts, who_gets_over
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Solver
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["PINCHED", "pinched", "pinched_table"]
 

@@ -11,10 +11,10 @@ import numpy as np
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import Track
-from crawler2d.reports.markdown import markdown_table
-from crawler2d.reports.models import study_models
-from crawler2d.reports.sweeps import FULL
 from crawler2d.sweeps.statistics import newcombe_paired
+from research.markdown import markdown_table
+from research.models import study_models
+from research.sweeps import FULL
 
 __all__ = ["STUDY", "at_height", "read_cells", "study", "study_table"]
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from benches.agreement.drawing import MODELS
-from crawler2d.reports.markdown import markdown_table
 from crawler2d.sweeps.statistics import wilson
+from research.markdown import markdown_table
 
 __all__ = ["parts"]
 

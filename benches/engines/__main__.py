@@ -22,7 +22,7 @@ from benches.engines.running import RESULTS, processes, run
 from benches.engines.scan import scanned
 from benches.engines.table import parts
 from benches.engines.telling import tell
-from crawler2d.reports.markdown import spliced
+from research.markdown import spliced
 
 _PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
 _QUICK = Path("out") / "engines"  # a look, from nothing

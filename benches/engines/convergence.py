@@ -16,7 +16,7 @@ from benches.engines.driving import driven
 from benches.engines.engine import Engine
 from benches.engines.predict import read
 from benches.engines.telling import tell
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["FINER", "JAM", "LADDERS", "USUAL", "converge", "table"]
 

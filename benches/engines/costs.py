@@ -11,7 +11,7 @@ from benches.engines.driving import driven
 from benches.engines.engines import ENGINES, engine_of
 from benches.engines.own import has_rapier, simulated
 from benches.engines.telling import tell
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["measure", "table"]
 

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from benches.engines.ground import TurnedBox
 from benches.engines.solid import Solid
-from crawler2d.models.poses import Pose
+from crawler2d.model_tree import Pose
 
 __all__ = ["Engine", "Scene", "World"]
 

@@ -14,7 +14,7 @@ import pybullet
 
 from benches.engines.engine import Scene
 from benches.engines.ground import TurnedBox
-from crawler2d.models.poses import Pose
+from crawler2d.model_tree import Pose
 
 __all__ = ["FINE", "PYBULLET", "Bullet", "Setting"]
 

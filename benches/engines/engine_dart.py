@@ -14,7 +14,7 @@ import numpy as np
 
 from benches.engines.engine import Scene
 from benches.models.engine_dart import fixed_box, gauss_seidel
-from crawler2d.models.poses import Pose
+from crawler2d.model_tree import Pose
 
 __all__ = ["FINE", "GZ", "Dart", "Setting"]
 

@@ -10,7 +10,7 @@ import numpy as np
 import pymunk
 
 from benches.engines.engine import Scene
-from crawler2d.models.poses import Array, Pose
+from crawler2d.model_tree import Array, Pose
 
 __all__ = ["Pymunk"]
 

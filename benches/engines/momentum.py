@@ -13,7 +13,7 @@ from benches.engines.driving import driven
 from benches.engines.engines import engine_of
 from benches.engines.own import simulated
 from benches.engines.telling import tell
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["SPEEDS", "speed_up", "table"]
 

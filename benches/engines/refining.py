@@ -20,7 +20,7 @@ from benches.engines.running import results_of
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Solver
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["refine", "table"]
 

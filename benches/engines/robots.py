@@ -14,9 +14,8 @@ from crawler2d.parameters.track import (
     LineOfWheels,
     Track,
 )
-from crawler2d.presets.robots.absolem import absolem
 from crawler2d.presets.robots.engineer import engineer
-from crawler2d.presets.robots.marv import marv
+from crawler2d.presets.robots.subt import absolem, marv
 
 __all__ = ["DRIVES", "MODELS", "ROBOTS", "motorized", "robot_of"]
 

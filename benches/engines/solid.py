@@ -10,15 +10,13 @@ import numpy as np
 
 from benches.models.files import cleaned
 from benches.models.ode_child import plain_body
-from crawler2d.models.poses import Array
-from crawler2d.models.tree import Shape, Tree
+from crawler2d.model_tree import Array, Shape, Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat
-from crawler2d.writing.across import across_of
+from crawler2d.writing.carriers import across_of
+from crawler2d.writing.formats import URDF, document, urdf_of
 from crawler2d.writing.model import model_of
-from crawler2d.writing.urdf import URDF, urdf_of
-from crawler2d.writing.xml import document
 
 __all__ = ["Solid", "Wheel", "solid_of"]
 

@@ -15,7 +15,7 @@ from benches.engines.engines import ENGINES, holds
 from benches.engines.predict import hash_of, read
 from benches.engines.robots import MODELS
 from benches.engines.running import results_of
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["load", "parts"]
 

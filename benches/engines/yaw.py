@@ -19,10 +19,10 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive, SeizureCriteria, Start
 from crawler2d.parameters.terrain import Barrier, Step, Terrain
 from crawler2d.parameters.track import CircumferentialWheels, LineOfWheels, Track
-from crawler2d.reports.markdown import markdown_table
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.runs.batch import simulate_many
 from crawler2d.sweeps.statistics import wilson
+from research.markdown import markdown_table
 
 if TYPE_CHECKING:
     from benches.engines.engine_bullet import Bullet

@@ -15,7 +15,7 @@ from benches.models.cases import CASES, STARTS
 from benches.models.predict import PREDICTIONS, predicted
 from benches.models.running import ENGINES, FILES, RESULTS, engine_of, run
 from benches.models.table import table
-from crawler2d.reports.markdown import spliced
+from research.markdown import spliced
 
 _PAGE = Path(__file__).parents[2] / "docs" / "studies" / "engines.md"
 

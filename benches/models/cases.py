@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.runs import scenario_of
+from crawler2d.audits.subject import standard_obstacles
 from crawler2d.errors import ScenarioWarning
-from crawler2d.parameters.gaits import Hold
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, Start
+from crawler2d.parameters.settings import Drive, Hold, Start
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading, read_robot
 

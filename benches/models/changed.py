@@ -10,13 +10,12 @@ import numpy as np
 
 from benches.models.cases import Case
 from benches.models.files import ModelFile, of_reading
-from crawler2d.models.tree import Link, Shape, Tree
+from crawler2d.model_tree import Link, Shape, Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.patching.patch import patched
 from crawler2d.reading.reading import Reading, read_robot
-from crawler2d.reading.rounds import below
-from crawler2d.writing.urdf import urdf_of
-from crawler2d.writing.xml import document
+from crawler2d.reading.wheels import below
+from crawler2d.writing.formats import document, urdf_of
 
 __all__ = ["VARIANTS", "balanced", "on_axles", "patch", "variant"]
 

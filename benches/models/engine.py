@@ -7,7 +7,7 @@ from typing import Protocol
 
 from benches.models.files import ModelFile
 from benches.models.ground import Box
-from crawler2d.models.poses import Pose
+from crawler2d.model_tree import Pose
 
 __all__ = ["Engine", "Scene", "Touch", "World", "check"]
 

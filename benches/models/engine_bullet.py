@@ -10,7 +10,7 @@ import pybullet
 
 from benches.models.engine import Scene, Touch, check
 from benches.models.ground import Box
-from crawler2d.models.poses import Pose
+from crawler2d.model_tree import Pose
 
 __all__ = ["Bullet"]
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from benches.models.engine import Scene, Touch, check
 from benches.models.lumps import lumps
 from benches.models.ode_child import VERSION, Child, Setting, require
-from crawler2d.models.poses import Pose
+from crawler2d.model_tree import Pose
 
 __all__ = ["Ode"]
 

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benches.models.cases import Case
-from crawler2d.models.tree import Tree
+from crawler2d.model_tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.reading.reading import Reading, read_robot
-from crawler2d.writing.urdf import urdf_of
-from crawler2d.writing.xml import document
+from crawler2d.writing.formats import document, urdf_of
 
 __all__ = ["ModelFile", "cleaned", "exported", "of_reading", "public"]
 

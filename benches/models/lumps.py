@@ -10,9 +10,8 @@ import numpy as np
 
 from benches.models.files import ModelFile
 from benches.models.ode_child import plain_body
-from crawler2d.models.poses import Pose, from_quaternion
-from crawler2d.models.tree import Joint, Link
-from crawler2d.reading.rounds import below
+from crawler2d.model_tree import Joint, Link, Pose, from_quaternion
+from crawler2d.reading.wheels import below
 
 __all__ = ["lumps"]
 

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from crawler2d.models.poses import Pose
-from crawler2d.models.tree import Link, Shape
+from crawler2d.model_tree import Link, Pose, Shape
 
 __all__ = [
     "FINE",

@@ -12,7 +12,7 @@ from typing import Any
 from benches.models.cases import CASES
 from benches.models.predict import PREDICTIONS
 from benches.models.running import FILES
-from crawler2d.reports.markdown import markdown_table
+from research.markdown import markdown_table
 
 __all__ = ["agreement", "counts", "rows", "summary", "table"]
 

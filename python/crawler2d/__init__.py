@@ -28,10 +28,9 @@ from crawler2d.errors import (
 )
 from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.flippers import Flippers
-from crawler2d.parameters.gaits import Climb, Hold
 from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
+from crawler2d.parameters.settings import Climb, Drive, Hold, SeizureCriteria, Solver, Start
 from crawler2d.parameters.track import (
     BeltTrack,
     CircumferentialWheels,
@@ -48,8 +47,7 @@ from crawler2d.presets import robots, samples, terrains, unknowns
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
-from crawler2d.runs.batch import simulate, simulate_many
-from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.runs.batch import BatchInterrupted, simulate, simulate_many
 from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
 from crawler2d.variation import variability
@@ -59,14 +57,12 @@ if TYPE_CHECKING:
     from crawler2d import studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
-    from crawler2d.sweeps.compare import compare
-    from crawler2d.sweeps.damage import check_store
     from crawler2d.sweeps.rates import rate
     from crawler2d.sweeps.sequential import Until, sequential
     from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
-    from crawler2d.sweeps.store import join_stores
-    from crawler2d.sweeps.sweep import sweep
-    from crawler2d.sweeps.table import table
+    from crawler2d.sweeps.store import check_store, join_stores
+    from crawler2d.sweeps.sweep import compare, sweep
+    from crawler2d.sweeps.tabulate import table
 
 __all__ = [
     "PI",
@@ -148,15 +144,15 @@ _WHEN_NAMED = {
     "read_robot": "crawler2d.reading.reading",
     "studies": "crawler2d.studies",
     "Until": "crawler2d.sweeps.sequential",
-    "check_store": "crawler2d.sweeps.damage",
-    "compare": "crawler2d.sweeps.compare",
+    "check_store": "crawler2d.sweeps.store",
+    "compare": "crawler2d.sweeps.sweep",
     "join_stores": "crawler2d.sweeps.store",
     "newcombe": "crawler2d.sweeps.statistics",
     "newcombe_paired": "crawler2d.sweeps.statistics",
     "rate": "crawler2d.sweeps.rates",
     "sequential": "crawler2d.sweeps.sequential",
     "sweep": "crawler2d.sweeps.sweep",
-    "table": "crawler2d.sweeps.table",
+    "table": "crawler2d.sweeps.tabulate",
     "wilson": "crawler2d.sweeps.statistics",
 }
 

@@ -8,6 +8,8 @@ not be swallowed by ``except Exception``. It is defined with the runs, which it 
 from __future__ import annotations
 
 import reprlib
+import sys
+import warnings
 from collections.abc import Iterable
 from typing import Any
 
@@ -23,8 +25,8 @@ __all__ = [
     "StoreError",
     "own_error",
     "raise_first",
+    "warn",
 ]
-
 
 # The core cuts values at the same length. A whole number of more bits exceeds every float.
 _LONGEST_TEXT = 80
@@ -238,3 +240,20 @@ def raise_first(results: Iterable[object]) -> None:
     for result in results:
         if isinstance(result, Crawler2dError):
             raise result
+
+
+_PACKAGE = __name__.partition(".")[0]
+
+
+def warn(path: str, value: object, reason: str) -> None:
+    """Issue one doubt as a warning; called by the core, too.
+
+    Parameters
+    ----------
+    path, value, reason
+        See `ScenarioWarning`.
+    """
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == _PACKAGE:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(ScenarioWarning(path, value, reason), stacklevel=level)

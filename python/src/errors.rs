@@ -71,7 +71,7 @@ pub(crate) fn warn<'a>(
     let mut seen = HashSet::new();
     for doubt in doubts {
         if seen.insert(&doubt.path) {
-            let warn = py.import("crawler2d._doubts")?.getattr("warn")?;
+            let warn = py.import("crawler2d.errors")?.getattr("warn")?;
             warn.call1((&doubt.path, doubt.value, &doubt.reason))?;
         }
     }

@@ -133,7 +133,7 @@ def test_garbage_in_the_environment_is_refused(
 
 
 def test_the_environment_limits_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    from crawler2d.runs.threads import thread_count  # noqa: PLC0415
+    from crawler2d.runs.progress import thread_count  # noqa: PLC0415
 
     monkeypatch.setenv("CRAWLER2D_THREADS", " 2 ")
     assert thread_count(8) == 2

@@ -10,10 +10,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.parameters.track import Track
-from crawler2d.results.balance import Balance, Pull
+from crawler2d.results.findings import Balance, Pull
 from crawler2d.runs import cross_check
-from crawler2d.runs.agreement import STUDY, agreement_of
-from crawler2d.runs.cross_check import CrossCheck, cross_checked
+from crawler2d.runs.cross_check import STUDY, CrossCheck, agreement_of, cross_checked
 from tests.shared import ROBOT, refused
 
 STEP = c2d.terrains.step

@@ -39,7 +39,7 @@ assert rooms <= set(sys.modules)
 
 SHADOWED = """
 import crawler2d.presets.robots.engineer
-import crawler2d.sweeps.compare
+import crawler2d.sweeps.sweep
 import crawler2d.sweeps.sweep
 assert callable(crawler2d.compare)
 assert callable(crawler2d.sweep)

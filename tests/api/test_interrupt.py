@@ -72,7 +72,7 @@ except KeyboardInterrupt:
 BRANCH = """
 import time
 import crawler2d as c2d
-from crawler2d.runs.trials import trial_at
+from crawler2d.runs.branch import trial_at
 
 robot = c2d.robots.engineer(flippers=None)
 solver = c2d.Solver(time_step=1e-3)

@@ -7,7 +7,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.results.glossary import MECHANISMS, OUTCOMES, TRIALS
+from crawler2d.results.outcome import MECHANISMS, OUTCOMES, TRIALS
 
 
 @pytest.mark.parametrize(

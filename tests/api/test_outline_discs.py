@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.parameters.paths import read_path
+from crawler2d.parameters.fields import read_path
 from crawler2d.parameters.scenario import Scenario
 from tests.shared import ROBOT, TRAPEZOID, VARIANTS, refusal, refused
 

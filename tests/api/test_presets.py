@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.parameters.paths import read_path
+from crawler2d.parameters.fields import read_path
 from crawler2d.parameters.scenario import Scenario
 
 

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.linted import linted
-from crawler2d.audits.obstacles import standard_obstacles
-from crawler2d.parameters.plain import to_plain
+from crawler2d.audits.subject import standard_obstacles
+from crawler2d.audits.text import linted
+from crawler2d.parameters.fields import to_plain
 from crawler2d.patching.patch import patched
 from tests.shared import refused
 

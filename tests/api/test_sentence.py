@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.common.table import Table
+from crawler2d.common.arrays import Table
 from crawler2d.results.findings import Intrusion, Tried
 
 CONTACTS = {

@@ -11,8 +11,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
-from crawler2d.parameters import gaits, terrain, track
-from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters import settings as gaits
+from crawler2d.parameters import terrain, track
+from crawler2d.parameters.fields import Parameters
 from tests.shared import VARIANTS
 
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.results.findings import Tried
-from crawler2d.runs.trials import EscapeForce
+from crawler2d.runs.branch import EscapeForce
 from tests.shared import GEAR, ROBOT, refused
 
 SEIZING = c2d.Scenario(ROBOT.with_track(c2d.LineOfWheels(4)), c2d.terrains.step(0.10), duration=6.0)

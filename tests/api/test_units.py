@@ -17,7 +17,7 @@ from crawler2d.parameters import (
     terrain,
     track,
 )
-from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.fields import Parameters
 
 
 def test_every_metric_has_a_unit(run: c2d.Run) -> None:

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.assumptions import Assumed, assumptions
+from crawler2d.audits.sampling import Assumed, assumptions
 from crawler2d.audits.words import conclusion
-from crawler2d.variation.ranges import Ranges
+from crawler2d.variation.distributions import Ranges
 
 ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
 STEP = {"step of 75 mm": c2d.terrains.step(0.075)}

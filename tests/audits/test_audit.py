@@ -12,16 +12,12 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.audits import words
-from crawler2d.audits.beside import belt_of
+from crawler2d.audits.audited import names_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
-from crawler2d.audits.live import Live
-from crawler2d.audits.names import names_of
-from crawler2d.audits.obstacles import standard_obstacles
-from crawler2d.audits.plain import plain_of
-from crawler2d.audits.population import unknown_of_file
-from crawler2d.audits.runs import raised, scenario_of
-from crawler2d.audits.share import share_of
-from crawler2d.audits.verdicts import least_samples
+from crawler2d.audits.runs import Live, belt_of, raised, scenario_of
+from crawler2d.audits.subject import standard_obstacles, unknown_of_file
+from crawler2d.audits.text import plain_of
+from crawler2d.audits.verdicts import least_samples, share_of
 from crawler2d.audits.words import repair_sentence, wheels_a_side, worst
 from crawler2d.errors import LimitError
 from crawler2d.sweeps.statistics import wilson

@@ -10,10 +10,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.audits.baseline import against, entry_of, read_baseline, write_baseline
-from crawler2d.audits.finding import Finding
 from crawler2d.audits.issues import Check, checked
-from crawler2d.audits.share import Share
-from crawler2d.audits.verdicts import Verdict
+from crawler2d.audits.lint import Finding
+from crawler2d.audits.verdicts import Share, Verdict
 from crawler2d.sweeps.statistics import wilson
 from tests.shared import refused
 

@@ -10,11 +10,9 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.finding import RULES, Finding
-from crawler2d.audits.issues import Check, checked
-from crawler2d.audits.junit import junit_of
-from crawler2d.audits.linted import linted
-from crawler2d.audits.sarif import sarif_of
+from crawler2d.audits.issues import Check, checked, junit_of, sarif_of
+from crawler2d.audits.lint import RULES, Finding
+from crawler2d.audits.text import linted
 from tests.audits.seizing import seizing_file
 from tests.reading.carts import FILES
 from tests.walls.rooms import ROOT

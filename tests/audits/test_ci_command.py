@@ -15,7 +15,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.__main__ import main
-from crawler2d.reports import audit as command
+from crawler2d.commands import audit as command
 from tests.audits.seizing import seizing_file, told
 from tests.walls.rooms import ROOT
 

@@ -20,9 +20,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.__main__ import main
-from crawler2d.audits.call import OPTIONS, Call, as_options, command_of
-from crawler2d.audits.plain import plain_of
-from crawler2d.reports import audit as command
+from crawler2d.audits.audited import OPTIONS, Call, as_options, command_of
+from crawler2d.audits.text import plain_of
+from crawler2d.commands import audit as command
 from tests.audits.seizing import told
 from tests.reading.carts import FILES, WHEELS, pair, urdf
 

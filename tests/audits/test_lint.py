@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.finding import SEVERITIES, Finding
-from crawler2d.audits.lint import lint
+from crawler2d.audits.lint import SEVERITIES, Finding, lint
 from tests.reading.carts import FILES, TENSOR, WHEEL_TENSOR, WHEELS, pair, quietly, read, urdf
 
 ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))

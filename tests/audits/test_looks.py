@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crawler2d.audits.looks import looks
+from crawler2d.audits.sampling import looks
 from crawler2d.audits.verdicts import BELT, OWN, Verdict, is_certain, verdicts_of
 from crawler2d.sweeps.statistics import wilson
 

@@ -17,10 +17,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.audits import words
-from crawler2d.audits.page import audit_page
-from crawler2d.audits.page.drawn import pockets_drawn, robot_drawn
-from crawler2d.audits.page.replayed import replayed
-from crawler2d.audits.pockets import pockets
+from crawler2d.audits.candidates import pockets
+from crawler2d.audits.page import audit_page, replayed
+from crawler2d.audits.page.parts import pockets_drawn, robot_drawn
 from crawler2d.audits.repairs import Repair
 from crawler2d.pictures.page.recording import recording
 from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
@@ -364,7 +363,7 @@ def test_a_repair_that_breaks_a_rule_with_the_draws_leaves_the_robot_alone(
     repair = dataclasses.replace(found.repairs[0], robot=broken)
     repaired = found.repaired._replace(repairs=(repair,))
     # It breaks the rule without the draws, too, and cannot be drawn.
-    monkeypatch.setattr("crawler2d.audits.page.found.robot_drawn", lambda *_, **__: "")
+    monkeypatch.setattr("crawler2d.audits.page.parts.robot_drawn", lambda *_, **__: "")
     page = Page(dataclasses.replace(found, repaired=repaired).to_html())
     assert any("no result: " in text and "track.count" in text for _, text in page.all("p"))
     assert len(list(page.all("canvas"))) == len(page.data("runs-0")) == 1
@@ -375,7 +374,7 @@ def test_the_page_has_the_records_of_its_runs_thinned(
 ) -> None:
     ((_, runs, _),) = replayed(of_file)
     assert file_page.data("runs-0") == [json.loads(json.dumps(recording(run))) for run in runs]
-    monkeypatch.setattr("crawler2d.audits.page.report._MOST", 30)
+    monkeypatch.setattr("crawler2d.audits.page._MOST", 30)
     for thinned, run in zip(Page(of_file.to_html()).data("runs-0"), runs, strict=True):
         assert thinned["samples"] == run.time.size > 31
         assert thinned["frames"]["count"] <= 31

@@ -110,7 +110,7 @@ def test_wheels_that_do_not_help_are_not_written(helped: c2d.Audit) -> None:
 def test_a_file_that_does_not_seize_is_not_changed(
     tmp_path: Path, capsys: Any, monkeypatch: Any
 ) -> None:
-    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
+    from crawler2d.commands import audit as command  # noqa: PLC0415 - to replace what it calls
 
     path, new = tmp_path / "robot.urdf", tmp_path / "new.urdf"
     STRONG.with_track(c2d.LineOfWheels(5, wheel_radius=0.0608)).to_urdf(path, friction=0.9)
@@ -125,7 +125,7 @@ def test_a_file_that_does_not_seize_is_not_changed(
 def test_the_command_writes_the_changed_file(
     audited: c2d.Audit, capsys: Any, monkeypatch: Any, tmp_path: Path
 ) -> None:
-    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
+    from crawler2d.commands import audit as command  # noqa: PLC0415 - to replace what it calls
 
     monkeypatch.setattr(command, "audit", lambda *_, **__: audited)
     path = tmp_path / "new"
@@ -145,7 +145,7 @@ def test_the_command_writes_the_changed_file(
 def test_belts_of_urdf_are_written_as_sdf_beside_it(
     capsys: Any, monkeypatch: Any, tmp_path: Path
 ) -> None:
-    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
+    from crawler2d.commands import audit as command  # noqa: PLC0415 - to replace what it calls
 
     source, path = tmp_path / "robot.urdf", tmp_path / "new.urdf"
     STRONG.to_urdf(source, friction=0.9)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import crawler2d as c2d
-from crawler2d.audits.pockets import pocket_between, pockets
+from crawler2d.audits.candidates import pocket_between, pockets
 
 
 @pytest.mark.parametrize(("radius", "apart"), [(0.089, 0.5 / 7.0), (0.1, 0.12), (0.1, 0.199)])

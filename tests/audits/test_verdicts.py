@@ -9,12 +9,13 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.audits.candidates import Candidate
 from crawler2d.audits.repairs import LEVEL, judged
-from crawler2d.audits.share import Share, share_of
 from crawler2d.audits.verdicts import (
     BELT,
     OWN,
+    Share,
     Verdict,
     cleared_beside,
+    share_of,
     verdict_word,
     verdicts_of,
 )

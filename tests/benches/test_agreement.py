@@ -10,7 +10,7 @@ import crawler2d as c2d
 from benches.agreement import pairs, pinched, study
 from benches.agreement.drawing import MODELS, drawn
 from benches.agreement.table import parts
-from crawler2d.reports.sweeps import FULL
+from research.sweeps import FULL
 
 
 def test_every_model_is_drawn_and_rapier_holds_it() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 import crawler2d as c2d
-from crawler2d.common.ends import Disc, ends_of
+from crawler2d.common.bodies import Disc, ends_of
 from crawler2d.parameters.track import OpenTrack, Track
 
 TINY = 1e-20

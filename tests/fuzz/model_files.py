@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import crawler2d as c2d
-from crawler2d.common.ends import Disc
+from crawler2d.common.bodies import Disc
 from crawler2d.parameters.track import Track
 from tests.reading import carts, mesh_files
 from tests.reading.odd_files import ODD

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import crawler2d as c2d
-from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.fields import Parameters
 from crawler2d.parameters.scenario import Scenario
 from tests.fuzz import texts as fuzz_texts
 

@@ -23,7 +23,7 @@ from typing import Any, Self
 
 import pytest
 
-from crawler2d.reading.limits import serve
+from crawler2d.reading.child import serve
 
 PATIENCE = 30  # [s] Of the clock, as the reader has it.
 ROOT = Path(__file__).parents[2]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.common.table import Table
+from crawler2d.common.arrays import Table
 from crawler2d.parameters.scenario import Scenario
 from tests.fuzz.account import SEED, Account, cases, interrupted
 from tests.fuzz.drawn_robots import Draw

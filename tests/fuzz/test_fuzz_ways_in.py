@@ -10,7 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.errors import ArgumentError
-from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.fields import Parameters
 from crawler2d.parameters.scenario import Scenario
 from tests.fuzz import texts as fuzz_texts
 from tests.fuzz.account import SEED, Account, cases

@@ -12,8 +12,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.patching.patch import _left, _summary, patched
-from crawler2d.writing.document import Document
-from crawler2d.writing.spans import spans_of
+from crawler2d.writing.document import Document, spans_of
 from tests.reading.carts import FILES, ROBOTS, WHEELS, pair, quietly, urdf
 
 CARTS = ("cart.sdf", "cart.urdf", "cart.xml")

@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.units import unit_of
-from crawler2d.parameters.plain import to_plain
+from crawler2d.parameters.fields import to_plain
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import Track
 

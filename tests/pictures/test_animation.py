@@ -14,7 +14,7 @@ from matplotlib import pyplot as plt
 from PIL import Image
 
 import crawler2d as c2d
-from crawler2d.pictures import film as filming
+from crawler2d.pictures import animation as filming
 from crawler2d.pictures.animation import Film
 from crawler2d.pictures.scenes import scene_of
 from tests.shared import ROBOT, refused

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.parameters import gaits, settings, terrain
+from crawler2d.parameters import settings, terrain
+from crawler2d.parameters import settings as gaits
 from tests.shared import ROBOT, TRAPEZOID, VARIANTS
 
 HOSTILE = "</td><script>alert(1)</script> & \" ' \u2028 \ud800"

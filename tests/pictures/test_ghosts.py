@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.pictures.ghosts import ghost_lines, ghosts
-from crawler2d.pictures.scenes import scene_of
+from crawler2d.pictures.scenes import ghost_lines, ghosts, scene_of
 from tests.shared import GEAR, ROBOT, with_flippers
 
 WHEELS = c2d.LineOfWheels(4)

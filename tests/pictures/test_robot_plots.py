@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt
 from matplotlib.text import Text
 
 import crawler2d as c2d
-from crawler2d.drawings.plane import closed, placed, relative
+from crawler2d.drawings.scene import closed, placed, relative
 from crawler2d.parameters.track import Track
 from tests.shared import GEAR, ROBOT, TRAPEZOID, VARIANTS, refused
 

@@ -10,8 +10,8 @@ from matplotlib import pyplot as plt
 from matplotlib.collections import PolyCollection
 
 import crawler2d as c2d
+from crawler2d.common.arrays import Table
 from crawler2d.common.bodies import BodyKind
-from crawler2d.common.table import Table
 from crawler2d.drawings.scene import Scene
 from crawler2d.parameters.track import Track
 from crawler2d.pictures.scenes import scene_of

@@ -15,9 +15,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.drawings.plane import inset
-from crawler2d.pictures.page.packed import packed
-from crawler2d.pictures.page.recording import MOST_FRAMES
+from crawler2d.drawings.scene import inset
+from crawler2d.pictures.page.recording import MOST_FRAMES, packed
 from tests.pictures.reading import unpacked
 from tests.shared import GEAR, ROBOT, VARIANTS
 

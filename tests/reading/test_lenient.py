@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.formats import tree_of
-from crawler2d.reading.how import How
-from crawler2d.reading.plausible import refuse_unread
+from crawler2d.reading.options import How
+from crawler2d.reading.reading import tree_of
+from crawler2d.reading.surfaces import refuse_unread
 from tests.reading.carts import (
     FILES,
     SIDES,

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from crawler2d.reading.packages import VARIABLES
+from crawler2d.reading.files import VARIABLES
 from tests.reading.carts import WHEELS, XACRO, collision, left_out, read, refused, urdf
 
 pytestmark = pytest.mark.usefixtures("standing_children")

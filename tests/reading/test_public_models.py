@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.fields import Parameters
 from tests.reading.carts import ROBOTS, quietly
 from tests.robots import robot_files
 from tests.robots.robot_files import together

@@ -12,11 +12,10 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.files import Files
-from crawler2d.reading.packages import VARIABLES
-from crawler2d.reading.parsing import parsed
-from crawler2d.reading.telling import Doubt
-from crawler2d.reading.xacro import expanded
+from crawler2d.reading.elements import parsed
+from crawler2d.reading.files import VARIABLES, Files
+from crawler2d.reading.log import Doubt
+from crawler2d.reading.urdf import expanded
 from tests.reading.carts import WHEELS, XACRO, collision, read, refused, urdf
 from tests.robots.tree_keys import Key, keys
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.studies.along import range_of
-from crawler2d.studies.indices import Indices, bounds, estimate, points
+from crawler2d.studies.boundary import range_of
+from crawler2d.studies.sensitivity import Indices, bounds, estimate, points
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
 from tests.shared import ROBOT, refused

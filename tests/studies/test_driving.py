@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.studies.limits import FRICTION, TORQUE, UNCHANGED, limits
+from crawler2d.studies.driving import FRICTION, TORQUE, UNCHANGED, limits
 from crawler2d.sweeps.axes import COLUMNS
 from crawler2d.sweeps.store import stored_rows
 from tests.shared import ROBOT

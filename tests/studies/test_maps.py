@@ -9,7 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.studies.campaign import Tally, counting, is_cleared
-from crawler2d.studies.refined import Grid
+from crawler2d.studies.maps import Grid
 from crawler2d.sweeps.statistics import Interval
 from tests.shared import ROBOT, refused
 

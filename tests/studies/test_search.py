@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.results.row import Row
+from crawler2d.results.record import Row
 from crawler2d.studies.campaign import Tally
-from crawler2d.studies.halving import Candidate, Fresh, halve, ranked
+from crawler2d.studies.candidates import Candidate, Fresh, halve, ranked
 from crawler2d.sweeps.plan import Planner
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation

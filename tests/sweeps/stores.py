@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import crawler2d as c2d
-from crawler2d.results.row import Row
-from crawler2d.sweeps.sealed import COLUMNS, sealed
+from crawler2d.results.record import Row
+from crawler2d.sweeps.database import COLUMNS, sealed
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
 

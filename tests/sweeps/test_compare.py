@@ -8,10 +8,9 @@ import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.sweeps.compare import compare
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
-from crawler2d.sweeps.sweep import sweep
+from crawler2d.sweeps.sweep import compare, sweep
 from crawler2d.variation.distributions import uniform
 from tests.shared import ROBOT
 

@@ -11,7 +11,7 @@ import crawler2d as c2d
 from crawler2d._core import Passed
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
-from crawler2d.studies.multiplied import multiplied
+from crawler2d.studies.campaign import multiplied
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
 from crawler2d.variation.distributions import (
     Levels,

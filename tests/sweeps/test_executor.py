@@ -16,7 +16,8 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
-from crawler2d.sweeps import chunk, collect
+from crawler2d.sweeps import collect
+from crawler2d.sweeps import collect as chunk
 from crawler2d.sweeps.store import stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
 

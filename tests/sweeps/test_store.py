@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
-from crawler2d.results.row import diagnosis_json, read_diagnosis
+from crawler2d.results.record import diagnosis_json, read_diagnosis
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
 from tests.sweeps.stores import as_version_1, change, opened

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
-from crawler2d.results.row import Row
+from crawler2d.results.record import Row
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.kills import is_killed
 from tests.sweeps.stores import TRIALS, read, sound, told

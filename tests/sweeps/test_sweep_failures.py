@@ -12,7 +12,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.results.row import Row
+from crawler2d.results.record import Row
 from crawler2d.sweeps.collect import Collector
 from crawler2d.variation.distributions import scaled, uniform
 from tests.shared import ROBOT

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
-from crawler2d.variation.ranges import Ranges
+from crawler2d.variation.distributions import Ranges
 from tests.sweeps.small import BASE, BRIEF, quiet, refusal
 
 PRESETS: dict[str, Callable[[], c2d.Robot]] = {

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.parameters.plain import to_plain
+from crawler2d.parameters.fields import to_plain
 from tests.fuzz.drawn_robots import Draw, drawn_robot
 from tests.shared import refused, with_flippers
 

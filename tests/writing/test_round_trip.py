@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.common.ends import ends_of
+from crawler2d.common.bodies import ends_of
 from tests.reading.carts import quietly
 from tests.writing.drawn import drawn, drawn_on_discs
 

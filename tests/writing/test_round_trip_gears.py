@@ -13,7 +13,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.writing.carriers import carriers_of
-from crawler2d.writing.gears import grousers_of
+from crawler2d.writing.shapes import grousers_of
 from tests.writing.drawn import drawn_on_gears
 from tests.writing.test_round_trip import differences, frame_of, read_again
 

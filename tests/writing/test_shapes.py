@@ -10,12 +10,10 @@ import pytest
 import crawler2d as c2d
 from crawler2d import _core
 from crawler2d.drawings.scene import Scene, at_start, on_chassis
-from crawler2d.models.tree import Shape, Tree
-from crawler2d.writing.across import across_of
-from crawler2d.writing.held import Format
-from crawler2d.writing.mjcf import MJCF
+from crawler2d.model_tree import Shape, Tree
+from crawler2d.writing.carriers import Format, across_of
+from crawler2d.writing.formats import MJCF, SDF
 from crawler2d.writing.model import model_of
-from crawler2d.writing.sdf import SDF
 from tests.shared import GEAR
 from tests.writing.drawn import drawn
 

@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.models.tree import Joint, Link, Shape, Tree
-from crawler2d.reading.formats import tree_of as tree_in
-from crawler2d.reading.how import How
-from crawler2d.writing.mjcf import MJCF
-from crawler2d.writing.sdf import SDF
-from crawler2d.writing.urdf import URDF
+from crawler2d.model_tree import Joint, Link, Shape, Tree
+from crawler2d.reading.options import How
+from crawler2d.reading.reading import tree_of as tree_in
+from crawler2d.writing.formats import MJCF, SDF, URDF
 from tests.writing.test_checkers import BELTED, WHEELED
 from tests.writing.test_engines import TAPERED
 from tests.writing.test_round_trip import written

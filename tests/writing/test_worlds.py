@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.models.poses import from_rpy
+from crawler2d.model_tree import from_rpy
 from crawler2d.parameters.scenario import Scenario
 from tests.shared import refused, with_flippers
 

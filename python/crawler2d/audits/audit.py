@@ -10,39 +10,36 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
-from crawler2d._doubts import warn
-from crawler2d.audits.assumptions import Assumed, assumptions, seizure_under
-from crawler2d.audits.audited import Audited, Begun
-from crawler2d.audits.beside import belt_of
-from crawler2d.audits.call import Call
+from crawler2d.audits.audited import Audited, Begun, Call
+from crawler2d.audits.candidates import pockets
 from crawler2d.audits.lint import lint
-from crawler2d.audits.live import Counted, live_of
-from crawler2d.audits.looks import likely_first, verdict_on
-from crawler2d.audits.obstacles import read_obstacles, standard_obstacles
 from crawler2d.audits.patches import best_change, change_of, diffs_of
-from crawler2d.audits.pockets import pockets
-from crawler2d.audits.population import (
+from crawler2d.audits.repairs import Repair, repaired
+from crawler2d.audits.runs import TRIED, Counted, Runs, belt_of, live_of, scenario_of
+from crawler2d.audits.sampling import Assumed, assumptions, likely_first, seizure_under, verdict_on
+from crawler2d.audits.subject import (
+    HowToRead,
+    check_size,
+    read_obstacles,
+    standard_obstacles,
+    subject_of,
     unknown_of,
     unknown_of_file,
     vary_of,
     without_friction,
 )
-from crawler2d.audits.repairs import Repair, repaired
-from crawler2d.audits.runs import TRIED, Runs, scenario_of
-from crawler2d.audits.subject import HowToRead, check_size, subject_of
 from crawler2d.audits.text import head_of, lint_of, rest_of, row_of, text_of
 from crawler2d.audits.verdicts import BELT, OWN, Verdict
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
-from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.errors import ScenarioError, ScenarioWarning, warn
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading
-from crawler2d.runs.progress import Progress
-from crawler2d.runs.threads import thread_count
-from crawler2d.variation.ranges import Ranges
+from crawler2d.runs.progress import Progress, thread_count
+from crawler2d.variation.distributions import Ranges
 
 if TYPE_CHECKING:
     import xarray

@@ -23,13 +23,12 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d import _core
-from crawler2d.audits.finding import SEVERITIES
 from crawler2d.audits.issues import SEIZES, Check, Issue, repository_of
-from crawler2d.audits.share import Share
-from crawler2d.audits.verdicts import Verdict
+from crawler2d.audits.lint import SEVERITIES
+from crawler2d.audits.verdicts import Share, Verdict
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.plain import to_plain
-from crawler2d.reading.telling import named
+from crawler2d.parameters.fields import to_plain
+from crawler2d.reading.log import named
 
 __all__ = ["against", "entry_of", "read_baseline", "write_baseline"]
 

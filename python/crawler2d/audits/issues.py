@@ -1,24 +1,40 @@
-"""What is wrong with a model, in one form for the reports that other programs read."""
+"""What is wrong with a model, as JUnit XML and SARIF for other programs."""
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
+from urllib.parse import quote
+from xml.etree import ElementTree
 
+from crawler2d import _core
 from crawler2d.audits import words
-from crawler2d.audits.names import names_of
+from crawler2d.audits.audited import names_of
+from crawler2d.audits.lint import RULES
 from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
-    from crawler2d.audits.finding import Finding
+    from crawler2d.audits.lint import Finding
     from crawler2d.audits.verdicts import Verdict
     from crawler2d.parameters.robot import Robot
     from crawler2d.reading.reading import Reading
 
-__all__ = ["SEIZES", "UNREAD", "Check", "Found", "Issue", "checked", "repository_of", "unread"]
+__all__ = [
+    "SEIZES",
+    "UNREAD",
+    "Check",
+    "Found",
+    "Issue",
+    "checked",
+    "junit_of",
+    "repository_of",
+    "sarif_of",
+    "unread",
+]
 
 SEIZES = "seizes"
 """The rule that an obstacle breaks on which a robot seizes; the others are those of lint."""
@@ -156,3 +172,173 @@ def _lines_of(names: list[str], reading: Reading | None) -> tuple[int, ...]:
 def _has_own_lines(reading: Reading) -> bool:
     """Whether lines are those of the file itself, and not of what it expands to."""
     return reading.tree.file == reading.path.name
+
+
+XML = ElementTree.Element
+
+_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def junit_of(checks: Sequence[Check]) -> str:
+    """Write a test suite for each file: a test case for each obstacle, and for each broken rule.
+
+    An obstacle fails if the robot seizes on it, a rule if it is broken with an error; what else is
+    found is in the ``system-out`` of its case. With a baseline only what is new fails, and what is
+    not is skipped.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        One for each file.
+
+    Returns
+    -------
+    str
+        The text of the file.
+    """
+    root = _element("testsuites", name="crawler2d audit")
+    root.extend(_suite(check) for check in checks)
+    _count(root, root.iter("testcase"), "tests", "failures", "errors")
+    ElementTree.indent(root)
+    body = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{body}\n'
+
+
+def _suite(check: Check) -> XML:
+    name = check.path.as_posix()
+    suite = _element("testsuite", name=name)
+    for verdict in () if check.found is None else check.found.verdicts:
+        issues = [issue for issue in check.issues if issue.obstacle == verdict.obstacle]
+        said = ": ".join(filter(None, [verdict.obstacle, verdict.word]))
+        clears = f"clears {words.share(verdict.cleared)}, seizes {words.share(verdict.seized)}"
+        belt = f"belt clears {words.percent(verdict.belt_cleared.rate)}"
+        suite.append(
+            _case(check, f"{SEIZES}: {verdict.obstacle}", issues, f"{said}; {clears}, {belt}")
+        )
+    of_lint = [issue for issue in check.issues if not issue.obstacle]
+    for rule in dict.fromkeys(issue.rule for issue in of_lint):
+        broken = [issue for issue in of_lint if issue.rule == rule]
+        said = "\n".join(f"{issue.severity}: {_placed(issue, name)}" for issue in broken)
+        suite.append(_case(check, f"lint: {rule}", broken, said))
+    _count(suite, suite.iter("testcase"), "tests", "failures", "errors", "skipped")
+    return suite
+
+
+def _case(check: Check, name: str, issues: Iterable[Issue], said: str) -> XML:
+    """Return a test case, which fails or is skipped if one of its issues is severe."""
+    case = _element("testcase", name=name, classname=check.path.as_posix())
+    severe = [issue for issue in issues if issue.severity != "note"]
+    failing = [issue for issue in severe if check.fails(issue)]
+    known = [issue for issue in severe if check.known and issue in check.known]
+    if failing:
+        failure = _element("failure", type=failing[0].rule, message=failing[0].text)
+        failure.text = _legal("\n".join(_placed(each, check.path.as_posix()) for each in failing))
+        case.append(failure)
+    elif known:
+        case.append(_element("skipped", message=f"in the baseline: {known[0].text}"))
+    out = _element("system-out")
+    out.text = _legal(said)
+    case.append(out)
+    return case
+
+
+def _placed(issue: Issue, name: str) -> str:
+    """Write an issue after file and line, as compilers do."""
+    line = f":{issue.lines[0]}" if issue.lines else ""
+    return f"{name}{line}: {issue.text}"
+
+
+def _count(element: XML, cases: Iterator[XML], *names: str) -> None:
+    each = list(cases)
+    counts = {
+        "tests": len(each),
+        "failures": sum(case.find("failure") is not None for case in each),
+        "errors": 0,  # a file that cannot be read is a failure, too
+        "skipped": sum(case.find("skipped") is not None for case in each),
+    }
+    for name in names:
+        element.set(name, str(counts[name]))
+
+
+def _element(tag: str, **attributes: str) -> XML:
+    return ElementTree.Element(tag, {name: _legal(text) for name, text in attributes.items()})
+
+
+def _legal(text: str) -> str:
+    """Replace what XML cannot hold, as names of files may have it."""
+    return _NOT_IN_XML.sub("\ufffd", text)
+
+
+_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+_RULES = {
+    SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.",
+    UNREAD: "The file can be read, and its robot simulated.",
+    **RULES,
+}
+_ROOT = "%SRCROOT%"
+
+
+def sarif_of(checks: Sequence[Check]) -> str:
+    """Write all issues of some files as one run.
+
+    Files are named as in their repository, or, outside of any, in the folder that is current. A
+    seizure is at the line of the first wheel between which it is jammed, with the other one as a
+    related place; lint at its first line. What a xacro file expands to has no lines of the file.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        One for each file. With a baseline each result says whether it is new.
+
+    Returns
+    -------
+    str
+        The text of the file.
+    """
+    names = list(_RULES)
+    rules = [
+        {"id": _id(name), "name": name, "shortDescription": {"text": text}}
+        for name, text in _RULES.items()
+    ]
+    version = str(_core.build_info()["version"])
+    driver = {"name": "crawler2d", "semanticVersion": version, "rules": rules}
+    results = [_result(issue, check, names) for check in checks for issue in check.issues]
+    run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
+    text = json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2)
+    return f"{text}\n"
+
+
+def _id(rule: str) -> str:
+    return rule.replace(" ", "-")
+
+
+def _result(issue: Issue, check: Check, rules: list[str]) -> dict[str, Any]:
+    first, *others = issue.lines or (0,)
+    result: dict[str, Any] = {
+        "ruleId": _id(issue.rule),
+        "ruleIndex": rules.index(issue.rule),
+        "level": issue.severity,
+        "message": {"text": issue.text},
+        "locations": [_location(check.path, first)],
+    }
+    if others:
+        result["relatedLocations"] = [_location(check.path, line) for line in others]
+    if check.known is not None:
+        result["baselineState"] = "unchanged" if issue in check.known else "new"
+    return result
+
+
+def _location(path: Path, line: int) -> dict[str, Any]:
+    place: dict[str, Any] = {"artifactLocation": _artifact(path)}
+    if line:
+        place["region"] = {"startLine": line}
+    return {"physicalLocation": place}
+
+
+def _artifact(path: Path) -> dict[str, str]:
+    """Name a file by its way from the root of its repository, which is what scanners resolve."""
+    whole = path.resolve()
+    root = repository_of(path) or Path.cwd()
+    if not whole.is_relative_to(root):
+        return {"uri": whole.as_uri()}
+    return {"uri": quote(whole.relative_to(root).as_posix()), "uriBaseId": _ROOT}

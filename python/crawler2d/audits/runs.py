@@ -1,24 +1,32 @@
-"""The runs behind an audit: robots over an obstacle, of which more and more are made."""
+"""The runs behind an audit, of the model and of the same robot on belts, and their progress."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 import numpy as np
 
-from crawler2d.parameters.gaits import Climb
+from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, Start
+from crawler2d.parameters.settings import Climb, Drive, Start
 from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.track import (
+    BeltTrack,
+    ClosedTrack,
+    GrouserBeltTrack,
+    HybridWheels,
+    LineOfWheels,
+)
 from crawler2d.runs.progress import Progress
-from crawler2d.sweeps.axes import Axis
-from crawler2d.sweeps.labels import Label
+from crawler2d.sweeps.axes import Axis, Label
 from crawler2d.sweeps.tabulate import Tabulation
 from crawler2d.variation.distributions import Levels
 
@@ -26,7 +34,156 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["TRIED", "Course", "Runs", "column", "raised", "scenario_of"]
+__all__ = [
+    "TRIED",
+    "Belt",
+    "Counted",
+    "Course",
+    "Live",
+    "Runs",
+    "belt_of",
+    "column",
+    "live_of",
+    "raised",
+    "scenario_of",
+]
+
+
+class Live:
+    """Prints the parts of an audit as they come, and on a terminal counts runs in a line below.
+
+    Parameters
+    ----------
+    out : text stream
+        Where the parts go. Runs are counted on the standard error, if that is a terminal.
+    spell : callable
+        How the parts are spelt.
+    """
+
+    def __init__(self, out: TextIO, spell: Callable[[str], str] = str) -> None:
+        self._out, self._spell = out, spell
+        self._begin = time.monotonic()
+
+    def tell(self, text: str) -> None:
+        """Print a part."""
+        self._write("\r\x1b[K")
+        print(self._spell(text), file=self._out, flush=True)
+
+    def __call__(self, done: int, total: int) -> None:
+        """Count runs."""
+        passed = time.monotonic() - self._begin
+        self._write(f"\r\x1b[K{done} of at most {total} runs, {passed:.0f} s\r")
+
+    def _write(self, text: str) -> None:
+        if sys.stderr.isatty():
+            sys.stderr.write(text)
+            sys.stderr.flush()
+
+
+class Counted:
+    """Counts the runs of an audit over all of its batches.
+
+    Parameters
+    ----------
+    show : Progress, optional
+        Given the number of finished runs, and of all that may be needed.
+    total : int
+        That number.
+    """
+
+    def __init__(self, show: Progress | None, total: int) -> None:
+        self._show, self._total, self._done = show, total, 0
+
+    def part(self) -> Progress | None:
+        """Return what counts the next batch."""
+        before = self._done
+
+        def show(done: int, _: int) -> None:
+            self._done = before + done
+            self._total = max(self._total, self._done)
+            if self._show is not None:
+                self._show(self._done, self._total)
+
+        return show
+
+
+def live_of(progress: object) -> tuple[Callable[[str], None], Progress | None]:
+    """Read the argument `progress` of `audit`: what tells the parts, and what counts the runs.
+
+    Raises
+    ------
+    ScenarioError
+        If it is neither True, False, None nor a callable.
+    """
+    if progress is True:
+        progress = Live(sys.stderr)
+    if isinstance(progress, Live):
+        return progress.tell, progress
+    if progress is None or progress is False:
+        return lambda _: None, None
+    if not callable(progress):
+        raise ScenarioError("progress", progress, "must be True, False or a callable")
+    return lambda _: None, progress
+
+
+class Belt(NamedTuple):
+    """A robot on belts.
+
+    Parameters
+    ----------
+    robot : Robot
+        The same robot, on belts.
+    reason : str
+        Which belts, and why.
+    """
+
+    robot: Robot
+    reason: str
+
+
+def belt_of(robot: Robot) -> Belt:
+    """Put belts in the place of a robot's tracks.
+
+    They follow the outlines of chassis and flippers, `BeltTrack`, wherever these are the model's
+    own. Where wheels are placed one by one, or stand for no track, no outline tells where a belt
+    would run; then it is taut round the model's own wheels, `ClosedTrack`.
+
+    Parameters
+    ----------
+    robot : Robot
+        Any robot.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> belt = belt_of(c2d.robots.engineer(track=c2d.LineOfWheels(4), flippers=None))
+    >>> belt.robot.track, belt.reason
+    (BeltTrack(), 'BeltTrack, along the outline')
+    >>> belt_of(c2d.robots.marv(track="public")).reason
+    'ClosedTrack, round the wheels that there are: no track runs between those of the chassis'
+    """
+    arms = robot.flippers
+    tracks = [robot.track] if arms is None else [robot.track, arms.track or robot.track]
+    if all(isinstance(each, BeltTrack | GrouserBeltTrack | ClosedTrack) for each in tracks):
+        return Belt(robot, "the robot itself, which is on belts")
+    if isinstance(robot.track, LineOfWheels) and not robot.track.as_track:
+        why = "no track runs between those of the chassis"
+    elif any(isinstance(each, HybridWheels) for each in tracks):
+        why = "some are placed one by one, which no outline follows"
+    else:
+        belted = robot.with_track(BeltTrack())
+        if arms is not None:
+            belted = replace(belted, flippers=replace(arms, track=BeltTrack()))
+            return Belt(belted, "BeltTrack, along the outlines of chassis and flippers")
+        return Belt(belted, "BeltTrack, along the outline")
+    closed = robot.track
+    if isinstance(closed, ClosedTrack):
+        return Belt(robot, "the robot itself, whose track is closed")
+    return Belt(
+        robot.with_track(ClosedTrack(closed)),
+        f"ClosedTrack, round the wheels that there are: {why}",
+    )
+
 
 TRIED = ("torque x 2", "friction x 2")
 """What is tried at every stop, besides the closed track of jammed robots."""

@@ -1,21 +1,268 @@
-"""What is audited: a robot, or a model file with its friction on floors that may be."""
+"""What is audited: a robot or model file, its unknowns, and standard obstacles for its size."""
 
 from __future__ import annotations
 
+import math
 import os
 import warnings
 from collections.abc import Collection, Mapping
-from typing import Literal, NamedTuple, TypedDict
+from dataclasses import replace
+from typing import Any, Literal, NamedTuple, TypedDict
 
-from crawler2d.audits.lint_robot import of_robot
-from crawler2d.audits.population import FLOORS
+from crawler2d.audits.lint import robot_findings
 from crawler2d.errors import ScenarioError, ScenarioWarning
-from crawler2d.parameters.robot import Robot
-from crawler2d.reading.friction import Engine
-from crawler2d.reading.meshes import MeshRule
+from crawler2d.parameters.robot import Robot, TrackOutline
+from crawler2d.parameters.settings import Drive
+from crawler2d.parameters.terrain import (
+    Barrier,
+    DiagonalBarrier,
+    Gap,
+    Lane,
+    RandomStepfield,
+    Ridge,
+    Stairs,
+    Step,
+    Terrain,
+)
+from crawler2d.presets.unknowns import of_ground, of_robot
+from crawler2d.reading.options import Engine
 from crawler2d.reading.reading import Reading, read_robot
+from crawler2d.reading.shapes import MeshRule
+from crawler2d.variation.distributions import Distribution, Levels, Ranges, scaled, shifted, uniform
+from crawler2d.variation.variability import of_contact, of_field, of_start
 
-__all__ = ["HowToRead", "Subject", "check_size", "subject_of"]
+__all__ = [
+    "FLOORS",
+    "SPEEDS",
+    "HowToRead",
+    "Subject",
+    "check_size",
+    "read_obstacles",
+    "standard_obstacles",
+    "subject_of",
+    "unknown_of",
+    "vary_of",
+]
+
+_STEPS = (0.5, 0.8, 1.1)  # radii
+_HIGH = 1.5  # radii: too high for a belt without flippers whose centre of mass is not low
+_KNIVES = (0.4, 0.8)
+
+
+def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
+    """Return the standard obstacles of a robot, by what they are.
+
+    Every length is a multiple of R, the height of the front axle above the lowest point of the
+    outline, which is the radius of equal ends, or of L, the axle distance:
+
+    - steps of 0.5, 0.8 and 1.1 R, with flippers also of 1.5 R;
+    - a kerb, 0.8 R high, whose edge is rounded by 0.3 R;
+    - a barrier, 0.8 R high and R thick, and the same at a yaw of 30 degrees;
+    - knife edges of 0.4 and 0.8 R, 0.1 R thick, which fit between wheels;
+    - ridges, 0.8 R high with an edge of 60 degrees and 0.5 R with one of 120;
+    - three stairs of 0.8 R on 2 R, a slope of 22 degrees, which a friction of 0.5 still holds;
+    - a gap of 0.3 L, which a belt bridges with its centre of mass anywhere in the middle third;
+    - a random step field, eight posts of 1.5 R long with four levels of 0.25 R, of which every run
+      has its own.
+
+    The highest are about as high as a closed track of these proportions climbs (a rigid belt with
+    its centre of mass in the middle, at axle height, climbs 1.3 to 1.7 R), so that where wheels
+    stop, a belt has a chance. The clearance of the belly sets none of them: the lower run of a belt
+    covers the belly, and over a thin obstacle it is the belt that bears.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    friction : float
+        [-] Of all of them.
+
+    Returns
+    -------
+    dict of str to terrain
+        By what it is, with its measures in mm.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> found = standard_obstacles(c2d.robots.engineer(flippers=None), friction=0.8)
+    >>> len(found), list(found)[:3], found["knife edge 51 mm"].thickness
+    (13, ['step 32 mm', 'step 51 mm', 'step 70 mm'], 0.0064)
+    """
+    radius, axles = _front_axle_height(robot.outline), robot.outline.axle_distance
+    heights = _STEPS if robot.flippers is None else (*_STEPS, _HIGH)
+    high = 0.8 * radius
+    found: dict[str, Lane | DiagonalBarrier | RandomStepfield] = {
+        f"step {_mm(part * radius)}": Step(part * radius) for part in heights
+    }
+    found[f"rounded kerb {_mm(high)}"] = Step(high, edge_radius=0.3 * radius)
+    found[f"barrier {_mm(high)}"] = Barrier(high, radius)
+    found[f"diagonal barrier {_mm(high)}"] = DiagonalBarrier(
+        math.radians(30.0), height=high, thickness=radius
+    )
+    for part in _KNIVES:
+        found[f"knife edge {_mm(part * radius)}"] = Barrier(part * radius, 0.1 * radius)
+    found[f"sharp ridge {_mm(high)}"] = Ridge(high, math.radians(60.0))
+    found[f"blunt ridge {_mm(0.5 * radius)}"] = Ridge(0.5 * radius, math.radians(120.0))
+    found[f"stairs of {_mm(high)}"] = Stairs(count=3, rise=high, run=2.0 * radius)
+    found[f"gap {_mm(0.3 * axles)}"] = Gap(0.3 * axles, depth=2.0 * radius)
+    found["step field"] = RandomStepfield(posts=8, post=1.5 * radius, rise=0.25 * radius)
+    return {name: replace(ground, friction=friction) for name, ground in found.items()}
+
+
+def read_obstacles(obstacles: object) -> dict[str, Terrain]:
+    """Read the argument `obstacles`: a mapping from labels to terrains.
+
+    Raises
+    ------
+    ScenarioError
+        If it is none, or empty.
+    """
+    if not isinstance(obstacles, Mapping) or not obstacles:
+        raise ScenarioError("obstacles", obstacles, "must be a mapping from labels to terrains")
+    for label, ground in obstacles.items():
+        if not isinstance(label, str):
+            raise ScenarioError("obstacles", label, "must have strings as labels")
+        if not isinstance(ground, Terrain):
+            raise ScenarioError(f"obstacles[{label!r}]", ground, "must be a terrain")
+    return dict(obstacles)
+
+
+def _front_axle_height(outline: TrackOutline) -> float:
+    """[m] Return how high an edge is that meets the front end at its axle: belts climb about that.
+
+    The radius of the front end says less: an idler that is raised is small.
+    """
+    _, (_, y, _) = outline.ends
+    return y - min(y - radius for _, y, radius in outline.discs)
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.0f} mm"
+
+
+FLOORS = (0.5, 1.0)
+"""[-] Coefficients of the floor's own surface between which a floor that nobody named may lie."""
+
+_FRICTION = "terrain.friction"
+_MOST_FROM_FLOORS = 0.05
+"""[-] Floors that move the friction by less than that share do not decide it."""
+
+_ROUNDED = 0.1
+"""[-] By which share a friction or a torque that is written down may be off."""
+
+
+SPEEDS = (0.1, 1.0 / 3.0, 1.0)
+"""[-] Shares of the speed of an audit: what a fast robot jumps over, a slow one may not."""
+
+_TIMES = tuple((1.0 / part + 2.0) / 3.0 for part in SPEEDS)
+"""[-] Times the longest time: at the slowest speed enough to drive six lengths of the robot. It is
+less than the speed asks for, because what rattles until the end costs most."""
+
+_SIZE = 0.05
+"""[-] By which share an obstacle may be larger or smaller than its measures say."""
+
+
+def vary_of(drive: Drive | None = None) -> Ranges:
+    """Return what differs from run to run by default.
+
+    Start, contact and step field; the height, rise, radius or width of the obstacle; and the speed,
+    a tenth, a third and all of it in turn, with the longer time the slower, unless a schedule says
+    how fast to drive.
+    """
+    found = of_start() | of_contact() | of_field() | _of_size()
+    return found if drive is not None and drive.schedule else found | _of_speed()
+
+
+def _of_speed() -> Ranges:
+    speeds = {
+        "drive.speed": Levels(SPEEDS, spread=0.02),
+        "duration": Levels(_TIMES, along="drive.speed"),
+    }
+    said = {
+        "drive.speed": "a tenth, a third and all of it in turn, each within 2 %",
+        "duration": "4, 5/3 and 1 times: the slowest has time for six of its lengths",
+    }
+    return Ranges(speeds, said, speeds)
+
+
+def _of_size() -> Ranges:
+    sizes = [f"terrain.{name}" for name in ("height", "rise", "radius", "width")]
+    within = scaled(1.0 - _SIZE, 1.0 + _SIZE)
+    source = "whether a robot gets over must not hang on a millimetre"
+    return Ranges(dict.fromkeys(sizes, within), dict.fromkeys(sizes, source), sizes)
+
+
+def unknown_of(robot: Robot, *, with_friction: bool) -> Ranges:
+    """Return what is not known of a robot that was not read from a file.
+
+    Parameters
+    ----------
+    robot : Robot
+        A preset, whose ranges rest on its sources, or any other robot.
+    with_friction : bool
+        Whether the floor is not known either.
+    """
+    found = of_robot(robot)
+    return found | of_ground() if with_friction else found
+
+
+def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> Ranges:
+    """Return what is not known of a robot that was read from a file.
+
+    What the file states has a narrow range: a tenth of torque and friction, 2 % of the axle
+    distance for the centre of mass, a twentieth of the radius for the belly. An estimate has a wide
+    one, that of `unknowns.of_robot` for robots that are no presets. Of the floor a model of a robot
+    says nothing: unless it is given, it has a coefficient of its own between 0.5 and 1, which the
+    rule of the engine combines with that of the tracks.
+
+    Parameters
+    ----------
+    reading : Reading
+        What was read.
+    floors : mapping of float to float, optional
+        The friction with the floor of each of `FLOORS`; None: that of the floor is given.
+    """
+    ranges: dict[str, tuple[Distribution, str]] = {}
+    at = reading.sources["robot.center_of_mass"]
+    slack = "2 % of the axle distance for what is mounted or left off"
+    for axis in (0, 1):
+        place = shifted(-0.02, 0.02, of="robot.outline.axle_distance")
+        ranges[f"robot.center_of_mass[{axis}]"] = place, f"{at}; {slack}"
+    torque = reading.sources["robot.drivetrain.max_torque"]
+    if torque.startswith("estimate"):
+        ranges["robot.drivetrain.max_torque"] = scaled(0.5, 2.0), f"{torque}; half to twice"
+    else:
+        part = scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
+        ranges["robot.drivetrain.max_torque"] = part, f"{torque}; a tenth"
+    if reading.robot.belly is not None:
+        source = f"{reading.sources['robot.belly']}; a twentieth of the radius"
+        height = shifted(-0.05, 0.05, of="robot.outline.front_radius")
+        ranges["robot.belly[*][1]"] = height, source
+    if floors is None or _spread(floors) <= _MOST_FROM_FLOORS * reading.friction:
+        part = scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
+        ranges[_FRICTION] = part, f"{reading.sources['friction']}; a tenth"
+    else:
+        low, high = min(floors.values()), max(floors.values())
+        source = (
+            f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no file of a robot states, combined"
+            f" by the rule of {reading.engine} with {reading.sources['friction']}"
+        )
+        ranges[_FRICTION] = uniform(low, high), source
+    return Ranges(
+        {path: distribution for path, (distribution, _) in ranges.items()},
+        {path: source for path, (_, source) in ranges.items()},
+    )
+
+
+def without_friction(ranges: Ranges) -> Ranges:
+    """Leave the friction of the floor out: terrains of a user's own keep theirs."""
+    kept: dict[str, Any] = {path: each for path, each in ranges.items() if path != _FRICTION}
+    return Ranges(kept, {path: ranges.sources[path] for path in kept if path in ranges.sources})
+
+
+def _spread(floors: Mapping[float, float]) -> float:
+    return max(floors.values()) - min(floors.values())
 
 
 class HowToRead(TypedDict, total=False):
@@ -89,7 +336,7 @@ def check_size(read: Reading) -> None:
     ScenarioError
         If it has a size that no tracked robot has, and was read without a `scale`.
     """
-    found = next((each for each in of_robot(read.robot) if each.rule == "size"), None)
+    found = next((each for each in robot_findings(read.robot) if each.rule == "size"), None)
     if found is None or "scale" in read.how.given:
         return
     where = read.sources["robot.outline.axle_distance"]

@@ -1,22 +1,41 @@
-"""An audit in words: the short form that its command prints."""
+"""An audit as text for its command, and as plain data for JSON."""
 
 from __future__ import annotations
 
+import dataclasses
+import math
+import os
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Unpack
 
 from crawler2d.audits import words
-from crawler2d.variation.ranges import Ranges
+from crawler2d.audits.candidates import Pocket, pockets
+from crawler2d.audits.lint import Finding, lint
+from crawler2d.audits.subject import HowToRead, subject_of
+from crawler2d.audits.verdicts import Verdict
+from crawler2d.audits.words import made
+from crawler2d.parameters.fields import to_plain
+from crawler2d.parameters.robot import Robot
+from crawler2d.reading.reading import Reading
+from crawler2d.variation.distributions import Ranges
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited, Begun
-    from crawler2d.audits.finding import Finding
-    from crawler2d.audits.pockets import Pocket
     from crawler2d.audits.repairs import Repaired
-    from crawler2d.audits.verdicts import Verdict
 
-__all__ = ["head_of", "lint_of", "rest_of", "row_of", "text_of", "text_of_lint"]
+__all__ = [
+    "Linted",
+    "head_of",
+    "lint_of",
+    "linted",
+    "plain_of",
+    "rest_of",
+    "row_of",
+    "text_of",
+    "text_of_lint",
+]
 
 _WIDTH = 100
 
@@ -152,3 +171,124 @@ def _wrapped(text: str, indent: int = 2) -> list[str]:
         break_long_words=False,
         break_on_hyphens=False,
     )
+
+
+def plain_of(audit: Audited) -> dict[str, Any]:
+    """Return lint, pockets, verdicts and repairs; what is infinite or unknown is None."""
+    read = audit.reading
+    plain: dict[str, Any] = _finite(
+        {
+            "robot": to_plain(audit.robot),
+            "file": None if read is None else read.tree.file,
+            "engine": None if read is None else read.engine,
+            "friction": None if read is None else read.friction,
+            "sources": None if read is None else dict(read.sources),
+            "vary": audit.table.attrs["vary"],
+            "unknown": audit.table.attrs["unknown"],
+            "runs": made(audit.table),
+            "belt": audit.belt.reason,
+            "lint": [dataclasses.asdict(each) for each in audit.lint],
+            "pockets": [dataclasses.asdict(each) for each in audit.pockets],
+            "obstacles": {name: to_plain(each) for name, each in audit.obstacles.items()},
+            "verdicts": [dataclasses.asdict(each) for each in audit.verdicts],
+            "assumed": [
+                {
+                    **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},
+                    "drawn": {path: str(range_) for path, range_ in each.drawn.items()},
+                    "holds": each.holds,
+                }
+                for each in audit.assumed
+            ],
+            "repairs": [
+                {
+                    **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},
+                    "robot": to_plain(each.robot),
+                    "cleared": {k: dataclasses.asdict(v) for k, v in each.cleared.items()},
+                    "seized": {k: dataclasses.asdict(v) for k, v in each.seized.items()},
+                    "seized_at": {
+                        k: {speed: dataclasses.asdict(v) for speed, v in own.items()}
+                        for k, own in each.seized_at.items()
+                    },
+                    "cleared_beside": {
+                        k: dataclasses.asdict(v) for k, v in each.cleared_beside.items()
+                    },
+                }
+                for each in audit.repairs
+            ],
+            "seizes": audit.seizes,
+        }
+    )
+    return plain
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _finite(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Linted:
+    """What lint found; the fields are those of `Audit`.
+
+    Parameters
+    ----------
+    robot : Robot
+        What was looked at.
+    reading : Reading, optional
+        What was read, if it was a file.
+    lint : tuple of Finding
+        What is hardly meant in the model, errors first.
+    pockets : tuple of Pocket
+        What is open between its wheels: a screen, no verdict.
+    verdicts : tuple of Verdict
+        None: nothing was simulated.
+    """
+
+    robot: Robot
+    reading: Reading | None
+    lint: tuple[Finding, ...]
+    pockets: tuple[Pocket, ...]
+    verdicts: tuple[Verdict, ...] = ()
+
+    @property
+    def in_words(self) -> str:
+        """The short form, as ``python -m crawler2d audit --lint`` prints it."""
+        title = self.robot.in_words if self.reading is None else self.reading.in_words
+        return text_of_lint(title, self.lint, self.pockets)
+
+    def __repr__(self) -> str:
+        """Write the short form."""
+        return self.in_words
+
+
+def linted(robot: Robot | Reading | str | os.PathLike[str], **reading: Unpack[HowToRead]) -> Linted:
+    """Look for what is hardly meant in a model, and measure its pockets, without a run.
+
+    What only the simulator doubts is not found.
+
+    Parameters
+    ----------
+    robot : Robot, Reading or path
+        As for `audit`.
+    **reading
+        For a path: the keywords of `read_robot`.
+
+    Raises
+    ------
+    ScenarioError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> found = linted(c2d.robots.marv(track="public"))
+    >>> [each.rule for each in found.lint], len(found.pockets)
+    (['no track'], 15)
+    """
+    own, read, _ = subject_of(robot, reading)
+    return Linted(robot=own, reading=read, lint=lint(own, read), pockets=pockets(own))

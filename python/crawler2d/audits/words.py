@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.audits.names import names_of
+from crawler2d.audits.audited import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import CircumferentialWheels, HybridWheels, LineOfWheels
-from crawler2d.results.row import NO_RESULT
+from crawler2d.results.record import NO_RESULT
 from crawler2d.variation.distributions import (
     Distribution,
     Levels,
@@ -28,11 +28,10 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from crawler2d.audits.assumptions import Assumed
     from crawler2d.audits.audited import Audited, Begun
     from crawler2d.audits.repairs import Repair, Repaired
-    from crawler2d.audits.share import Share
-    from crawler2d.audits.verdicts import Verdict
+    from crawler2d.audits.sampling import Assumed
+    from crawler2d.audits.verdicts import Share, Verdict
     from crawler2d.results.record import Record
 
 __all__ = [

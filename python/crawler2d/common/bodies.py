@@ -1,22 +1,77 @@
-"""The bodies of a robot: what they are, how they look and where they are."""
+"""The bodies of a robot: kinds, looks and poses; the end axles of a track."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.frozen import read_only
-from crawler2d.common.table import Table
+from crawler2d.common.arrays import Table, read_only
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
-__all__ = ["TRACED", "BodyKind", "Lane", "bodies_of", "moved"]
+__all__ = [
+    "TRACED",
+    "BodyKind",
+    "Disc",
+    "Lane",
+    "bodies_of",
+    "discs_in",
+    "ends_of",
+    "is_short",
+    "moved",
+    "two_discs",
+]
+
+Disc = tuple[float, float, float]
+"""[m] Centre (x, y) in the chassis frame, and radius."""
+
+
+def ends_of(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
+    """Find the rearmost and the foremost disc; of two that reach equally far the higher one.
+
+    Examples
+    --------
+    >>> ends_of([(0.3, 0.1, 0.04), (-0.2, 0.0, 0.06), (0.2, 0.0, 0.06)])
+    ((-0.2, 0.0, 0.06), (0.3, 0.1, 0.04))
+    """
+    if is_short(discs):
+        return discs[0], discs[1]  # also where one would enclose the other, which is refused
+    rear = max(discs, key=lambda disc: (disc[2] - disc[0], disc[1]))
+    front = max(discs, key=lambda disc: (disc[2] + disc[0], disc[1]))
+    return rear, front
+
+
+def two_discs(axle_distance: float, rear: float, front: float) -> tuple[Disc, Disc]:
+    """Make two discs of their distance and radii [m], the chassis frame midway between them."""
+    half = 0.5 * axle_distance
+    return (-half, 0.0, rear), (half, 0.0, front)
+
+
+def discs_in(outline: Mapping[str, Any]) -> Sequence[Disc]:
+    """Read the discs of an outline in JSON."""
+    if "discs" in outline:
+        return [(x, y, radius) for x, y, radius in outline["discs"]]
+    distance, rear, front = (
+        outline[name] for name in ("axle_distance", "rear_radius", "front_radius")
+    )
+    return two_discs(distance, rear, front)
+
+
+def is_short(discs: Sequence[Disc]) -> bool:
+    """Whether these are two discs, the rear one first, with the chassis frame midway between them.
+
+    Their distance and radii say it all then.
+    """
+    if len(discs) != 2:
+        return False
+    (rear, rear_y, _), (front, front_y, _) = discs
+    return rear < 0.0 and front == -rear and rear_y == 0.0 and front_y == 0.0
+
 
 TRACED = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
 """Columns of a run that the poses of all bodies follow from."""

@@ -1,4 +1,4 @@
-"""What is drawn of a robot on its ground: outlines, in the order of drawing, and their poses."""
+"""What is drawn of a robot on its ground: outlines in order, poses, extents and colours."""
 
 from __future__ import annotations
 
@@ -12,12 +12,77 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.common.bodies import TRACED, BodyKind, Lane, moved
-from crawler2d.drawings.plane import closed, placed, relative
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Carrier", "Circuit", "Look", "Scene", "at_start", "on_chassis"]
+__all__ = [
+    "BLACK",
+    "BLUE",
+    "GRAY",
+    "GREEN",
+    "GROUND",
+    "ORANGE",
+    "PURPLE",
+    "RED",
+    "SKY",
+    "SLIVER",
+    "VIOLET",
+    "Carrier",
+    "Circuit",
+    "Look",
+    "Scene",
+    "at_start",
+    "closed",
+    "course",
+    "inset",
+    "on_chassis",
+    "placed",
+    "relative",
+    "robot_box",
+]
+
+BLACK, ORANGE, SKY, GREEN = "#222222", "#E69F00", "#56B4E9", "#009E73"
+BLUE, RED, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
+# Dark enough for a thin line on what is filled with it.
+VIOLET = "#A3327B"
+GRAY, GROUND = "#AAAAAA", "#D9D2C5"
+
+
+SLIVER = 2e-5
+"""[m] Lines that coincide enclose slivers by rounding; anything shallower is not an intrusion."""
+
+
+def placed(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Points of a frame, shape (..., 2), moved by the poses of that frame, shape (..., 3)."""
+    (x, y), (left, up, angle) = np.moveaxis(points, -1, 0), np.moveaxis(poses, -1, 0)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.stack([left + cosine * x - sine * y, up + sine * x + cosine * y], axis=-1)
+
+
+def relative(poses: NDArray[np.float64], frames: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m, m, rad] Poses at n samples, shape (n, 3), relative to frames with these poses."""
+    (x, y), angle = (poses - frames).T[:2], frames[:, 2]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x, poses[:, 2] - angle])
+
+
+def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] A polygon as a line that ends where it began."""
+    return np.vstack([polygon, polygon[:1]])
+
+
+def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
+    """[m] A closed convex line, counter-clockwise, offset inwards by a depth."""
+    way = np.roll(belt, -1, axis=0) - belt
+    belt = belt[np.hypot(*way.T) > 1e-9]  # drops coincident corners
+    way = np.roll(belt, -1, axis=0) - belt
+    inwards = np.column_stack([-way[:, 1], way[:, 0]])
+    inwards /= np.hypot(*way.T)[:, None]
+    inwards = inwards + np.roll(inwards, 1, axis=0)
+    line: NDArray[np.float64] = belt + depth * inwards / np.hypot(*inwards.T)[:, None]
+    return line
+
 
 _MARGIN = 0.05  # [m] round the extent
 
@@ -235,3 +300,26 @@ def on_chassis(columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[
     shoes = relative(columns["shoe_poses"][0], frame)[None]
     still = {name: np.zeros_like(columns[name]) for name in ("position", "chassis_angle")}
     return {**columns, **still, "shoe_poses": shoes}
+
+
+# Of the width of the view: room round what is shown, and above it.
+_ROUND, _ABOVE = 0.03, 0.05
+
+
+def robot_box(scene: Scene) -> tuple[float, float, float, float]:
+    """[m] Left, right, bottom and top of what is seen of the robot at the first sample."""
+    points = np.concatenate([scene.outline(body, 0) for body, _ in scene.parts()])
+    (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return left, right, bottom, top
+
+
+def course(scene: Scene) -> tuple[float, float, float, float]:
+    """[m] The same of the robot and of the ground that it has to cross to be past the goal."""
+    left, right, bottom, top = robot_box(scene)
+    length = right - left
+    left, right = min(left, scene.goal - length), max(right, scene.goal + length)
+    ground = scene.heights(left, right)
+    width = right - left
+    bottom, top = min(bottom, float(ground.min())), max(top, float(ground.max()))
+    margin = _ROUND * width
+    return left - margin, right + margin, bottom - margin, top + _ABOVE * width

@@ -1,19 +1,111 @@
-"""A scene as inline SVG: small, and without any other package."""
+"""Scenes as inline SVG, and the cards that show robots and scenarios in a notebook."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import html
+import json
+import warnings
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.drawings.palette import GRAY, GREEN, GROUND
-from crawler2d.drawings.scene import Look
-from crawler2d.drawings.sheet import Sheet
+from crawler2d.common.bodies import discs_in, ends_of, is_short
+from crawler2d.drawings.scene import GRAY, GREEN, GROUND, Look, Scene, at_start, course, robot_box
+from crawler2d.drawings.views import robot_alone
 
 if TYPE_CHECKING:
-    from crawler2d.drawings.scene import Scene
+    from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["draw_robot_on", "svg"]
+__all__ = ["Sheet", "draw_robot_on", "escaped", "robot_card", "scenario_card", "svg", "table"]
+
+
+def escaped(text: str) -> str:
+    """Make any text harmless in HTML and valid in UTF-8."""
+    return html.escape(text.encode("utf-8", "replace").decode())
+
+
+def table(rows: Iterable[tuple[str, str]]) -> str:
+    """Write names with their values, one below the other; nothing if there are none."""
+    written = "".join(
+        f"<tr><th>{escaped(name)}</th><td>{escaped(value)}</td></tr>" for name, value in rows
+    )
+    return f"<table><tbody>{written}</tbody></table>" if written else ""
+
+
+class Sheet:
+    """A part of the plane, as large as fits into a width and a height.
+
+    Parameters
+    ----------
+    extent : tuple of 4 floats
+        [m] Left, right, bottom and top.
+    width, height : float
+        [px] The most that it may have.
+
+    Examples
+    --------
+    >>> sheet = Sheet((0.0, 2.0, -0.5, 0.5), width=100.0, height=100.0)
+    >>> sheet.line([(0.0, 0.0), (1.0, 0.0), (1.0, 0.5)], 'fill="none"', is_closed=False)
+    >>> sheet.svg()
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100" height="50" viewBox="0 0 100.0 50.0"\
+ role="img"><path d="M0 25l50 0l0 -25" fill="none"/></svg>'
+    """
+
+    def __init__(
+        self, extent: tuple[float, float, float, float], width: float, height: float
+    ) -> None:
+        left, right, bottom, top = extent
+        self.extent = extent
+        self.scale = min(width / (right - left), height / (top - bottom))
+        self._size = self.scale * (right - left), self.scale * (top - bottom)
+        self._drawn: list[str] = []
+
+    def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
+        """[px] Return where points are, shape (..., 2), from the upper left corner."""
+        left, _, _, top = self.extent
+        moved: NDArray[np.float64] = self.scale * (np.asarray(points) - (left, top)) * (1.0, -1.0)
+        return moved
+
+    def line(self, points: ArrayLike, look: str, *, is_closed: bool = True) -> None:
+        """Draw a line through points [m]; `look` are attributes of SVG."""
+        self._drawn.append(f'<path d="{_steps(self.pixels(points))}{"Z" * is_closed}" {look}/>')
+
+    def circle(self, center: ArrayLike, radius: float, look: str) -> None:
+        """Draw a circle [m]."""
+        x, y = self.pixels(center)
+        self._drawn.append(
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{self.scale * radius:.1f}" {look}/>'
+        )
+
+    def cross(self, place: ArrayLike, look: str) -> None:
+        """Mark a point [m] by a cross."""
+        x, y = self.pixels(place)
+        self._drawn.append(f'<path d="M{x - 4:.1f} {y:.1f}h8m-4 -4v8" {look}/>')
+
+    def label(self, place: ArrayLike, text: str, look: str) -> None:
+        """Write a text, its baseline at a point [m]."""
+        x, y = self.pixels(place)
+        self._drawn.append(f'<text x="{x:.1f}" y="{y:.1f}" {look}>{escaped(text)}</text>')
+
+    def svg(self, title: str = "") -> str:
+        """Return one element; `title` says what it shows to those who cannot see it."""
+        width, height = self._size
+        named = f' aria-label="{escaped(title)}"' if title else ""
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}"'
+            f' viewBox="0 0 {width:.1f} {height:.1f}" role="img"{named}>'
+            f"{''.join(self._drawn)}</svg>"
+        )
+
+
+def _steps(pixels: NDArray[np.float64]) -> str:
+    """Write a line as moves in tenths of a pixel; corners that fall together are left out."""
+    corners = np.round(pixels, 1)
+    moves = np.round(np.diff(corners, axis=0), 1)
+    steps = "".join(f"l{x:g} {y:g}" for x, y in moves if x or y)
+    return f"M{corners[0, 0]:g} {corners[0, 1]:g}{steps}"
+
 
 # [px] Largest drawing.
 _WIDTH, _HEIGHT = 360.0, 220.0
@@ -72,3 +164,96 @@ def draw_robot_on(sheet: Sheet, scene: Scene) -> None:
         else:
             sheet.circle(scene.poses[0, body, :2], radius, _LOOKS[look])
     sheet.cross(scene.center_of_mass[0], _LOOKS[Look.LINE])
+
+
+def robot_card(text: str, title: str) -> str:
+    """Show the robot of a scenario in JSON, in the frame of its chassis.
+
+    Parameters
+    ----------
+    text : str
+        A scenario with the robot on level ground.
+    title : str
+        What to write over it.
+
+    Returns
+    -------
+    str
+        HTML.
+
+    Raises
+    ------
+    ScenarioError
+        If the robot breaks a rule.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a look at something is no call to be warned of
+        scene = robot_alone(text)
+    left, right, bottom, top = robot_box(scene)
+    margin = 0.02 * (right - left)
+    extent = (left - margin, right + margin, bottom - margin, top + margin)
+    return _card(title, svg(scene, extent, ground=False), _robot_rows(json.loads(text)["robot"]))
+
+
+def scenario_card(text: str, title: str, terrain: str) -> str:
+    """Show a scenario in JSON, the robot at its start; `terrain` says in words what its ground is.
+
+    The rest is as for `robot_card`.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        scene = Scene(text, at_start(text))
+    plain = json.loads(text)
+    gait = plain["drive"]["gait"]
+    rows = [
+        ("terrain", terrain),
+        ("friction", _listed({lane["friction"] for lane in _grounds(plain["terrain"])})),
+        ("speed", f"{plain['drive']['speed']:.4g} m/s"),
+        *([("gait", gait["kind"])] if gait else []),
+        ("goal", f"x = {scene.goal:.4g} m"),
+        ("duration", f"at most {plain['duration']:.4g} s"),
+        ("mass", f"{plain['robot']['mass']:.4g} kg"),
+    ]
+    return _card(title, svg(scene, course(scene), ground=True), rows)
+
+
+def _card(title: str, drawing: str, rows: list[tuple[str, str]]) -> str:
+    return (
+        f"<div><p><strong>{escaped(title)}</strong></p>"
+        '<div style="display: flex; flex-wrap: wrap; align-items: center; gap: 1.5em">'
+        f"{drawing}{table(rows)}</div></div>"
+    )
+
+
+def _robot_rows(robot: dict[str, Any]) -> list[tuple[str, str]]:
+    outline, drivetrain, flippers = robot["outline"], robot["drivetrain"], robot["flippers"]
+    x, y = robot["center_of_mass"]
+    discs = discs_in(outline)
+    (rear, _, _), (front, _, _) = ends_of(discs)
+    origin = "midway between the axles" if is_short(discs) else "the origin of the discs"
+    rows = [
+        ("mass", f"{robot['mass']:.4g} kg, of which tracks {robot['track_mass']:.3g} kg"),
+        ("centre of mass", f"({x:.3f}, {y:.3f}) m from {origin}"),
+        ("moment of inertia", f"{robot['moment_of_inertia']:.3g} kg m²"),
+        ("axle distance", f"{front - rear:.4g} m"),
+        ("radius", f"{_listed({radius for _, _, radius in discs})} m"),
+    ]
+    if outline["grouser_height"] > 0.0:
+        height, pitch = outline["grouser_height"], outline["grouser_pitch"]
+        rows.append(("grousers", f"{height:.3g} m high, {pitch:.3g} m apart"))
+    if flippers:
+        ends = {"both": "at both ends"}.get(flippers["ends"], f"at the {flippers['ends']}")
+        rows.append(("flippers", f"{flippers['length']:.3g} m long, {ends}"))
+    rows.append(("speed", f"up to {drivetrain['max_speed']:.3g} m/s"))
+    rows.append(("torque", f"up to {drivetrain['max_torque']:.3g} N m a sprocket"))
+    return rows
+
+
+def _grounds(terrain: dict[str, Any]) -> list[dict[str, Any]]:
+    """List what has a friction of its own: the terrain, or its lanes."""
+    lanes = [terrain.get(name) for name in ("left", "right")]
+    return [lane for lane in lanes if lane] or [terrain]
+
+
+def _listed(values: set[float]) -> str:
+    return " and ".join(f"{value:.4g}" for value in sorted(values))

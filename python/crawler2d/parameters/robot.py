@@ -8,16 +8,14 @@ from dataclasses import KW_ONLY, dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from crawler2d import _core
-from crawler2d.common.arrays import frozen_rows, real_number
-from crawler2d.common.ends import Disc, ends_of, is_short, two_discs
+from crawler2d.common.arrays import Table, frozen_rows, real_number
+from crawler2d.common.bodies import Disc, ends_of, is_short, two_discs
 from crawler2d.common.keywords import takes_keywords
-from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.drivetrain import Drivetrain
+from crawler2d.parameters.fields import Parameters
 from crawler2d.parameters.flippers import Flippers
-from crawler2d.parameters.form import Form
-from crawler2d.parameters.plain import Parameters
-from crawler2d.parameters.settings import Drive, Solver
+from crawler2d.parameters.settings import Drive, Form, Solver
 from crawler2d.parameters.terrain import Points, Terrain
 from crawler2d.parameters.track import BeltTrack, Track
 
@@ -379,7 +377,7 @@ class Robot(Parameters):
         >>> ax.get_title(loc="left")
         'engineer: 4 round wheels in a line'
         """
-        from crawler2d.drawings.robot_view import draw_robot  # noqa: PLC0415 - optional
+        from crawler2d.drawings.views import draw_robot  # noqa: PLC0415 - optional
 
         return draw_robot(self._alone(), self.in_words, ax)
 
@@ -593,7 +591,7 @@ class Robot(Parameters):
         >>> c2d.read_robot(path).robot.mass == robot.mass
         True
         """
-        from crawler2d.writing.world import written_world  # noqa: PLC0415 - as above
+        from crawler2d.writing.export import written_world  # noqa: PLC0415 - as above
 
         if not isinstance(terrain, Terrain):
             raise ScenarioError("terrain", terrain, "must be a terrain")
@@ -617,7 +615,7 @@ class Robot(Parameters):
 
     def _repr_html_(self) -> str | None:
         """Show side view and main figures in a notebook; a broken robot is shown as text."""
-        from crawler2d.drawings.card import robot_card  # noqa: PLC0415 - costs nothing until used
+        from crawler2d.drawings.svg import robot_card  # noqa: PLC0415 - costs nothing until used
 
         try:
             return robot_card(self._alone(), self.in_words)

@@ -9,13 +9,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
-from crawler2d._doubts import warn
 from crawler2d.common.keywords import takes_keywords
-from crawler2d.errors import ScenarioError
-from crawler2d.parameters.form import Form
-from crawler2d.parameters.paths import replace_path
-from crawler2d.parameters.plain import from_plain
+from crawler2d.errors import ScenarioError, warn
+from crawler2d.parameters.fields import from_plain, replace_path
 from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.settings import Form
 from crawler2d.parameters.terrain import Terrain
 
 if TYPE_CHECKING:
@@ -186,7 +184,7 @@ class Scenario(Form):
         >>> ax.get_title(loc="left")
         'engineer: smooth belt; ground: step'
         """
-        from crawler2d.drawings.scenario_view import draw_scenario  # noqa: PLC0415 - optional
+        from crawler2d.drawings.views import draw_scenario  # noqa: PLC0415 - optional
 
         return draw_scenario(self.to_json(), self._in_words(), ax)
 
@@ -195,7 +193,7 @@ class Scenario(Form):
 
     def _repr_html_(self) -> str | None:
         """Show start and ground in a notebook; a broken scenario is shown as text."""
-        from crawler2d.drawings.card import scenario_card  # noqa: PLC0415 - costs nothing until used
+        from crawler2d.drawings.svg import scenario_card  # noqa: PLC0415 - costs nothing until used
 
         try:
             terrain = textwrap.shorten(repr(self.terrain), _LONGEST)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar, Literal
 
-from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.fields import Parameters
 
 __all__ = [
     "BeltTrack",

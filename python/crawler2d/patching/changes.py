@@ -12,17 +12,15 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Array, Pose
-from crawler2d.models.tree import Joint, Shape
+from crawler2d.model_tree import Array, Joint, Pose, Shape
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Flat
 from crawler2d.reading.reading import Reading
-from crawler2d.reading.rounds import below
+from crawler2d.reading.wheels import below
 from crawler2d.writing.carriers import Carrier, Wheel, carriers_of
-from crawler2d.writing.gears import gear_shapes, grousers_of
-from crawler2d.writing.solids import Solids
+from crawler2d.writing.shapes import Solids, gear_shapes, grousers_of
 
 __all__ = ["Change", "changes_of"]
 

@@ -14,17 +14,20 @@ from typing import NoReturn
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.models.tree import Tree
+from crawler2d.model_tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.patching.changes import Change, changes_of
-from crawler2d.patching.copies import copied, items_about, names_of
-from crawler2d.patching.mjcf import change_mjcf
-from crawler2d.patching.sdf import change_sdf
-from crawler2d.patching.urdf import change_urdf
+from crawler2d.patching.places import (
+    change_mjcf,
+    change_sdf,
+    change_urdf,
+    copied,
+    items_about,
+    names_of,
+)
 from crawler2d.reading.reading import Reading, read_text
 from crawler2d.reading.tracks import FIT
-from crawler2d.writing.document import Document
-from crawler2d.writing.spans import Span
+from crawler2d.writing.document import Document, Span
 
 __all__ = ["Patch", "labelled", "patched"]
 

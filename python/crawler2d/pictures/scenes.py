@@ -1,20 +1,48 @@
-"""The scene of a run: its robot and ground as they are drawn, at its samples or in between."""
+"""The scene of a run at any time, with contact forces, ground in the track, ends of trials."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.bodies import TRACED
-from crawler2d.drawings.scene import Scene
+from crawler2d.common.bodies import TRACED, moved
+from crawler2d.common.extras import extra
+from crawler2d.drawings.scene import (
+    BLUE,
+    RED,
+    SLIVER,
+    VIOLET,
+    Scene,
+    closed,
+    inset,
+    placed,
+    relative,
+)
+from crawler2d.results.diagnosis import told
+from crawler2d.results.outcome import TRIALS
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from crawler2d.drawings.scene import Carrier
+    from crawler2d.results.findings import Tried
     from crawler2d.results.record import Record
 
-__all__ = ["scene_of"]
+__all__ = [
+    "Envelopes",
+    "Ghost",
+    "draw_edges",
+    "draw_forces",
+    "draw_slip",
+    "ghost_lines",
+    "ghosts",
+    "scene_of",
+    "usual_size",
+]
 
 
 def scene_of(run: Record, times: NDArray[np.float64] | None = None) -> Scene:
@@ -42,3 +70,265 @@ def _between(
     for number, each in enumerate(values.T):
         found[:, number] = np.interp(times, time, each)
     return found.reshape(times.size, *column.shape[1:])
+
+
+# Arrow length of a contact force equal to the weight, as a share of the axle distance; larger
+# forces, as of a wedged robot, shrink the scale so that the largest gets this length.
+_FORCE_LENGTH = 0.6
+# The same for slip velocities, with the commanded speed in place of the weight.
+_SPEED_LENGTH = 0.22
+# These start this far below the surface, as a share of the axle distance, where they hide nothing.
+_BELOW = 0.03
+# Arrows below this share of the longest would be mere dots, and are left out.
+_SHORTEST = 0.02
+# Percentile that sets the scale for a whole run: an impact lasts one sample, and at its scale all
+# other arrows would be unreadable.
+_USUAL = 98.0
+
+
+def usual_size(sizes: NDArray[np.float64], typical: float) -> float:
+    """Choose the size that all arrows of a run are scaled by, at least a typical one."""
+    return max(typical, float(np.percentile(sizes, _USUAL))) if sizes.size else typical
+
+
+def draw_forces(
+    run: Record,
+    sample: int,
+    ax: Axes,
+    most: float | None = None,
+    *,
+    color: str = RED,
+    where: str = "",
+) -> list[Any]:
+    """Draw the contact forces on the robot.
+
+    Parameters
+    ----------
+    run : Run
+        A run with history.
+    sample : int
+        Which one.
+    ax : Axes
+        Where to draw.
+    most : float, optional
+        [N] Force of the longest arrow, also of larger ones; None takes the largest, but at least
+        the weight.
+    color : str
+        Of the arrows.
+    where : str
+        What the legend adds to tell them from others.
+
+    Returns
+    -------
+    list of Artist
+        The arrows, if there are any.
+    """
+    robot, contacts = run.scenario.robot, run.contacts
+    now, places, normal, tangent = _contacts(run, sample)
+    force = contacts["normal_force"][now, None] * normal
+    force = force + contacts["friction_force"][now, None] * tangent
+    if most is None:
+        most = _largest(force, robot.mass * run.scenario.gravity)
+    length = _FORCE_LENGTH * robot.outline.axle_distance
+    label = f"contact force{where}, up to {{:.0f}} N"
+    return _draw(ax, places, force, (most, length), color=color, label=label)
+
+
+def draw_slip(run: Record, sample: int, ax: Axes) -> list[Any]:
+    """Draw the slip velocities of the robot's surface; see `draw_forces`."""
+    distance = run.scenario.robot.outline.axle_distance
+    now, places, normal, tangent = _contacts(run, sample)
+    below = places - _BELOW * distance * normal
+    speed = run.contacts["surface_speed"][now, None] * tangent
+    scale = (_largest(speed, abs(run.scenario.drive.speed)), _SPEED_LENGTH * distance)
+    return _draw(ax, below, speed, scale, color=BLUE, label="slip velocity, up to {:.2f} m/s")
+
+
+def _contacts(run: Record, sample: int) -> tuple[NDArray[Any], ...]:
+    """Find the rows of the contacts of a sample, their places [m], normals and tangents."""
+    contacts = run.contacts
+    now = np.flatnonzero(contacts["time"] == run.time[sample])
+    places = np.column_stack([contacts["x"][now], contacts["y"][now]])
+    normal = np.column_stack([contacts["normal_x"][now], contacts["normal_y"][now]])
+    return now, places, normal, np.column_stack([normal[:, 1], -normal[:, 0]])
+
+
+def _largest(vectors: NDArray[np.float64], typical: float) -> float:
+    return max(typical, float(np.hypot(*vectors.T).max(initial=0.0)))
+
+
+def _draw(
+    ax: Axes,
+    places: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    scale: tuple[float, float],
+    *,
+    color: str,
+    label: str,
+) -> list[Any]:
+    """Draw arrows from the places; `scale` is the largest size and its length [m]."""
+    sizes, (most, length) = np.hypot(*vectors.T), scale
+    drawn = sizes > _SHORTEST * most
+    if not drawn.any():
+        return []
+    lengths = length / np.maximum(most, sizes[drawn])
+    return [
+        ax.quiver(
+            *places[drawn].T,
+            *(lengths[:, None] * vectors[drawn]).T,
+            color=color,
+            angles="xy",
+            scale_units="xy",
+            scale=1.0,
+            width=0.004,
+            label=label.format(sizes.max()),
+            zorder=4,
+        )
+    ]
+
+
+class Envelopes:
+    """The envelopes of wheels, and the ground inside them, at one sample at a time.
+
+    Parameters
+    ----------
+    run : Run
+        Whose criteria say how deep ground has to be inside.
+    scene : Scene
+        Its robot and where it is.
+    ax : Axes
+        Where to draw.
+    """
+
+    def __init__(self, run: Record, scene: Scene, ax: Axes) -> None:
+        patches = extra("matplotlib.patches", "plot")
+        depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
+        label: str | None = "envelope (taut belt round the wheels)"
+        bottom = min(float(profile[:, 1].min()) for _, profile in scene.lanes) - 1.0
+        self._drawn: list[tuple[Carrier, NDArray[np.float64], Any, Any]] = []
+        for carrier in scene.carriers:
+            if carrier.closed:
+                continue
+            look: Any = {"color": VIOLET, "linestyle": "--", "linewidth": 0.9, "zorder": 2.5}
+            (line,) = ax.plot([], [], label=label, **look)
+            label = None  # once is enough
+            inner = inset(carrier.envelope, depth)
+            clip = patches.Polygon(inner, transform=ax.transData)
+            fill: Any = {"color": VIOLET, "alpha": 0.5, "linewidth": 0.0, "zorder": 2.6}
+            for _, profile in scene.lanes:
+                x, y = profile.T
+                ax.fill_between(x, y, bottom, **fill).set_clip_path(clip)
+            self._drawn.append((carrier, inner, line, clip))
+
+    def show(self, sample: int) -> None:
+        """Move them to a sample."""
+        for carrier, inner, line, clip in self._drawn:
+            pose = carrier.poses[sample]
+            line.set_data(*placed(closed(carrier.envelope), pose).T)
+            clip.set_xy(placed(inner, pose))
+
+
+def draw_edges(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
+    """Mark the edges inside the track at one sample."""
+    events, time = run.events, run.time[sample]
+    inside = events["kind"] == "intrusion"
+    inside &= (events["start"] <= time) & (time <= events["end"])
+    rows = np.flatnonzero(inside)
+    if not rows.size:
+        return
+    ids, lanes = run.edges["id"], run.edges["lane"]
+    edges = [
+        np.flatnonzero((ids == events["edge"][row]) & (lanes == events["lane"][row]))[0]
+        for row in rows
+    ]
+    most_loaded = rows[events["force"][rows].argmax()]
+    depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
+    label = f"edge inside the envelope: {1e3 * depth:.1f} mm"
+    # In a chain the edge is between two shoes, not between wheels.
+    if one != other and not scene.kinds[one].is_in_chain:
+        label += f", between wheels {one} and {other}"
+    ax.plot(
+        run.edges["x"][edges],
+        run.edges["y"][edges],
+        linestyle="none",
+        marker="D",
+        markersize=6,
+        markerfacecolor="white",
+        markeredgecolor=VIOLET,
+        label=label,
+        zorder=5,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ghost:
+    """The robot at the end of a trial.
+
+    Parameters
+    ----------
+    change, said, meaning : str
+        What was changed; the same and what came of it; what that change is.
+    freed : bool
+        Whether it freed the robot.
+    from_the_start : bool
+        Whether the robot drove from the start of its run, not from the stop.
+    is_belt : bool
+        Whether a belt ran round its bodies.
+    frames : ndarray, shape (k, 3)
+        [m, m, rad] Poses of its carriers, the chassis first.
+    """
+
+    change: str
+    said: str
+    meaning: str
+    freed: bool
+    from_the_start: bool
+    is_belt: bool
+    frames: NDArray[np.float64]
+
+
+def ghosts(run: Record) -> list[Ghost]:
+    """Collect the trials of a run that changed something."""
+    why = run.diagnosis
+    if why is None:
+        return []
+    said = {tried: text for tried in why.trials if (text := told(why, tried))}
+    return [
+        Ghost(
+            change=text.partition(":")[0],
+            said=text,
+            meaning=TRIALS[tried.name],
+            freed=tried.freed,
+            from_the_start=tried.is_from_the_start,
+            is_belt=tried.name.startswith(("closed", "belt")),
+            frames=frames,
+        )
+        for (tried, text), frames in zip(said.items(), _frames(run, list(said)), strict=True)
+    ]
+
+
+def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
+    """[m] Yield the closed outlines of a ghost: its bodies but shoes, and a belt round them."""
+    for carrier, frame in zip(scene.carriers, ghost.frames, strict=True):
+        if (ghost.is_belt and not carrier.closed) or any(map(scene.is_shoe, carrier.bodies)):
+            yield placed(closed(carrier.envelope), frame)
+        for row in carrier.bodies:
+            if not scene.is_shoe(row):
+                (pose,) = relative(scene.poses[-1:, row], carrier.poses[-1:])
+                outline = placed(closed(scene.bodies["outline"][row]), pose)
+                yield placed(outline, frame)
+
+
+def _frames(run: Record, trials: list[Tried]) -> NDArray[np.float64]:
+    """[m, m, rad] Poses of the carriers at the ends of n trials, shape (n, k, 3)."""
+    chassis = np.array([(*tried.position, tried.chassis_angle) for tried in trials]).reshape(-1, 3)
+    # What runs round the carriers moves none of them.
+    last = {name: getattr(run, name)[-1:] for name in ("drive_positions", "shoe_poses")}
+    columns = {
+        "position": chassis[:, :2],
+        "chassis_angle": chassis[:, 2],
+        "flipper_angles": np.array([tried.flipper_angles for tried in trials]),
+        **{name: np.repeat(values, len(trials), axis=0) for name, values in last.items()},
+    }
+    arms = moved(run.scenario.to_json(), columns)["arms"]
+    return np.concatenate([chassis[:, None], arms], axis=1)

@@ -1,29 +1,37 @@
-"""The side view of a run: ground, robot, contacts, and the ground inside the track."""
+"""The side view of a run, in one engine or two, and its history over time."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.drawings.canvas import Canvas
-from crawler2d.drawings.outlines import Outlines, draw_goal, draw_ground
-from crawler2d.drawings.palette import BLUE, GREEN, ORANGE, PURPLE, SKY
-from crawler2d.pictures.arrows import draw_forces, draw_slip
-from crawler2d.pictures.ghosts import ghost_lines, ghosts
-from crawler2d.pictures.inside import Envelopes, draw_edges
-from crawler2d.pictures.scenes import scene_of
+from crawler2d.common.extras import extra
+from crawler2d.drawings.canvas import Canvas, checked_axes, set_title
+from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
+from crawler2d.drawings.views import Outlines, draw_goal, draw_ground
+from crawler2d.errors import ScenarioError
+from crawler2d.pictures.scenes import (
+    Envelopes,
+    draw_edges,
+    draw_forces,
+    draw_slip,
+    ghost_lines,
+    ghosts,
+    scene_of,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from crawler2d.drawings.scene import Scene
-    from crawler2d.pictures.ghosts import Ghost
+    from crawler2d.pictures.scenes import Ghost
     from crawler2d.results.record import Record
 
-__all__ = ["plot_run"]
+__all__ = ["plot_both", "plot_history", "plot_run"]
 
 # Of the ends of trials.
 _GHOSTS = (SKY, ORANGE, GREEN, PURPLE, "#7F7F7F")
@@ -92,3 +100,79 @@ def _drawing_times(run: Record) -> NDArray[np.float64]:
     samples = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
     samples[-1] = run.time.size - 1
     return run.time[samples]
+
+
+def plot_both(
+    runs: tuple[Record, Record],
+    names: tuple[str, str],
+    parted_at: float | None,
+    ax: Axes | None,
+    caption: str,
+) -> Axes:
+    """Draw both robots where they ended, with their paths; see `CrossCheck.plot`.
+
+    The first is drawn in full, the second by its outlines in a colour; of stops the forces, too.
+    """
+    first, second = (scene_of(run) for run in runs)
+    extents = np.array([scene.extent() for scene in (first, second)])
+    left, bottom = extents[:, [0, 2]].min(axis=0)
+    right, top = extents[:, [1, 3]].max(axis=0)
+    canvas = Canvas(ax, (left, right, bottom, top))
+    ax = canvas.ax
+    draw_ground(first.lanes, bottom, ax)
+    Outlines(first, ax).show(runs[0].time.size - 1)
+    label: str | None = f"robot in {names[1]}"
+    for body, _ in second.parts(hidden=False):
+        line = second.outline(body, runs[1].time.size - 1)
+        look: Any = {"color": ORANGE, "linewidth": 1.0, "linestyle": "--", "zorder": 2.5}
+        ax.plot(*line.T, label=label, **look)
+        label = None  # once is enough
+    looks = ((BLUE, RED, "-"), (ORANGE, PURPLE, "--"))
+    for run, name, (color, arrows, style) in zip(runs, names, looks, strict=True):
+        look = {"color": color, "linestyle": style, "linewidth": 1.2, "zorder": 3}
+        ax.plot(*run.position.T, label=f"path in {name}", **look)
+        if run.diagnosis is not None:
+            draw_forces(run, run.time.size - 1, ax, color=arrows, where=f" in {name}")
+    if parted_at is not None:
+        where = runs[0].position[np.searchsorted(runs[0].time, parted_at)]
+        look = {"marker": "o", "color": BLACK, "linestyle": "none", "markersize": 5, "zorder": 3.5}
+        ax.plot(*where[:, None], label=f"1 mm apart, {parted_at:.2f} s", **look)
+    if left < first.goal < right:
+        draw_goal(first.goal, ax)
+    return canvas.caption(runs[0].subject, caption)
+
+
+def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, Axes]:
+    """Draw a run over time; see `Run.plot_history`."""
+    time = run.time  # without a history this says so, before there is a figure
+    if axes is None:
+        pyplot = extra("matplotlib.pyplot", "plot")
+        _, axes = pyplot.subplots(3, sharex=True, figsize=(8.0, 5.6), layout="constrained")
+    angle, speed, force = _three(axes)
+    angle.plot(time, np.degrees(run.chassis_angle), color=BLUE)
+    angle.set_ylabel("chassis\nangle [deg]")
+    speed.plot(time, run.commanded_speed, color=BLACK, linestyle="--", label="commanded")
+    speed.plot(time, run.track_speed, color=BLUE, label="track")
+    speed.plot(time, run.velocity[:, 0], color=ORANGE, label="chassis, along x")
+    speed.set_ylabel("speed [m/s]")
+    force.plot(time, run.drive_force, color=RED)
+    force.set(ylabel="drive\nforce [N]", xlabel="time [s]")
+    stopped = run.events["kind"] == "stop"
+    stops = np.column_stack([run.events["start"], run.events["end"]])[stopped]
+    for ax in (angle, speed, force):
+        ax.grid(alpha=0.3)
+        ax.margins(x=0.0)
+        for number, (start, end) in enumerate(stops):
+            look: Any = {"color": ORANGE, "alpha": 0.15, "linewidth": 0.0}
+            ax.axvspan(start, end, label=None if number else "stopped", **look)
+    speed.margins(y=0.25)  # room for the legend
+    speed.legend(loc="best", fontsize="small", ncols=4)
+    set_title(angle, run.title)
+    return angle, speed, force
+
+
+def _three(axes: Sequence[Axes]) -> tuple[Axes, Axes, Axes]:
+    if not isinstance(axes, (tuple, list, np.ndarray)) or len(axes) != 3:
+        raise ScenarioError("axes", axes, "must be three Axes")
+    angle, speed, force = (checked_axes(ax, f"axes[{row}]") for row, ax in enumerate(axes))
+    return angle, speed, force

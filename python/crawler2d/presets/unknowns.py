@@ -11,23 +11,127 @@ they may be, and has a rate of its own.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import SegmentalTrack
-from crawler2d.presets.robots.ranges import (
-    BELLY,
-    GENERAL,
-    OF_ARMS,
-    RANGES,
-    ROTOR,
-    ROTOR_OF_ARM,
-    RUN_UP,
-    Range,
+from crawler2d.variation.distributions import (
+    Distribution,
+    LogUniform,
+    Ranges,
+    scaled,
+    shifted,
+    uniform,
 )
-from crawler2d.variation.distributions import LogUniform, uniform
-from crawler2d.variation.ranges import Ranges
 
-__all__ = ["of_blows", "of_ground", "of_robot"]
+__all__ = [
+    "BELLY",
+    "GENERAL",
+    "OF_ARMS",
+    "RANGES",
+    "ROTOR",
+    "ROTOR_OF_ARM",
+    "RUN_UP",
+    "Range",
+    "of_blows",
+    "of_ground",
+    "of_robot",
+]
+
+Range = tuple[Distribution, str]
+
+# [s] In which its rated torque brings a bare rotor up to no-load speed. Gears do not change it, and
+# it differs less than the inertias of motors of one power: of 38 types by maxon and Faulhaber, 20
+# to 330 W, eight in ten lie in this range, slotted rotors low, flat ones high. The rated torque is
+# that whose copper loss heats the winding to its limit, 14 % above the makers' own in seven motors;
+# k_t, R, inertia, speed and thermal resistances are those of ekrimsk/MGDB (17337fa2). Five geared
+# joints of the KUKA youBot have 0.03 to 0.06 s.
+RUN_UP = (0.016, 0.1)
+
+_X, _Y = "robot.center_of_mass[0]", "robot.center_of_mass[1]"
+_MASS, _TORQUE = "robot.mass", "robot.drivetrain.max_torque"
+
+BELLY = "robot.belly[*][1]"
+ROTOR, ROTOR_OF_ARM = "robot.drivetrain.rotor_inertia", "robot.flippers.rotor_inertia"
+_ARMS = "robot.flippers.torque_limit"
+OF_ARMS = (_ARMS, ROTOR_OF_ARM)
+"""Paths that a robot without flippers does not have."""
+
+_OF_FILE = "the sum over the links of its file; 10 mm for what is mounted or left off"
+_MOTORS = "the preset's is an estimate: half to twice"
+_BY_ROUGH = "0.016 to 0.1 s times rated torque squared over power, both from ROUGH"
+
+GENERAL: Mapping[str, Range] = {
+    _X: (shifted(-0.1, 0.1, of="robot.outline.axle_distance"), "a tenth of the axle distance"),
+    _Y: (shifted(-0.05, 0.05, of="robot.outline.axle_distance"), "a twentieth of it"),
+    _TORQUE: (scaled(0.5, 2.0), "half to twice"),
+    BELLY: (shifted(-0.1, 0.1, of="robot.outline.front_radius"), "a tenth of the radius"),
+}
+"""Of a robot that is no preset: general estimates."""
+
+RANGES: Mapping[str, Mapping[str, Range]] = {
+    "engineer": {
+        _X: (
+            shifted(-0.04, 0.04),
+            "the preset's is an estimate; its arm of 8.85 kg (eng.xacro) moves the whole by 40 mm"
+            " as it reaches 96 mm either way",
+        ),
+        _Y: (
+            shifted(-0.02, 0.02),
+            "the preset's is an estimate; the arm raised or lowered by 48 mm moves the whole so",
+        ),
+        _TORQUE: (scaled(0.5, 2.0), _MOTORS),
+        BELLY: (
+            shifted(-0.014, 0.010),
+            "the preset's is an estimate: 20 to 44 mm above level ground",
+        ),
+        ROTOR: (
+            LogUniform(0.0036, 0.078),
+            "0.016 s times torque over sprocket speed at the declared 1.39 m/s, to 0.1 s times that"
+            " at the measured 0.4 m/s (paper, Table 1)",
+        ),
+        ROTOR_OF_ARM: (
+            LogUniform(0.24, 6.0),
+            "0.016 to 0.1 s times torque over rate, which are estimates: half to twice",
+        ),
+    },
+    "absolem": {
+        _MASS: (scaled(0.967, 1.034), "published twice: 38.7 kg (SubT) and 40 kg (ROUGH)"),
+        _X: (shifted(-0.01, 0.01), _OF_FILE),
+        _Y: (shifted(-0.01, 0.01), _OF_FILE),
+        _TORQUE: (scaled(0.5, 2.0), "an estimate, or 30 N m rated (ROUGH): half to twice"),
+        _ARMS: (scaled(0.66, 1.5), "published twice: 20 N m (SubT) and 30 N m rated (ROUGH)"),
+        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        ROTOR: (LogUniform(0.069, 0.43), _BY_ROUGH),
+        ROTOR_OF_ARM: (
+            LogUniform(0.069, 2.5),
+            "0.016 s times torque squared over power (ROUGH), to 0.1 s times torque over rate"
+            " (SubT)",
+        ),
+    },
+    "marv": {
+        _MASS: (scaled(0.862, 1.16), "published twice: 60.4 kg (SubT) and 70 kg (ROUGH)"),
+        _X: (shifted(-0.01, 0.01), _OF_FILE),
+        _Y: (
+            shifted(-0.01, 0.03),
+            f"{_OF_FILE}, and up to 30 mm higher, if the 9.6 kg"
+            " that ROUGH has more are 0.2 m above the rest",
+        ),
+        _TORQUE: (scaled(0.5, 2.0), "an estimate, or 50 N m rated (ROUGH): half to twice"),
+        _ARMS: (scaled(0.66, 1.5), "published twice: 120 N m (SubT) and 180 N m rated (ROUGH)"),
+        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        ROTOR: (LogUniform(0.10, 0.63), f"{_BY_ROUGH}; of two motors"),
+        ROTOR_OF_ARM: (LogUniform(2.6, 16.0), _BY_ROUGH),
+    },
+    "gz_tracked_vehicle": {
+        _X: (shifted(-0.01, 0.01), _OF_FILE),
+        _Y: (shifted(-0.01, 0.01), _OF_FILE),
+        _TORQUE: (scaled(0.5, 2.0), _MOTORS),
+        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+    },
+}
+"""Of the presets, by name."""
 
 
 def of_blows(robot: Robot) -> Ranges:

@@ -2,34 +2,251 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Pose
-from crawler2d.models.tree import Tree
-from crawler2d.parameters.robot import Robot
+from crawler2d.model_tree import Array, Link, Pose, Shape, Tree
+from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
-from crawler2d.reading.arms import AtEnd, arm_pairs
-from crawler2d.reading.axles import bent_round, frame_of, outline_of
-from crawler2d.reading.belly import belly_of
-from crawler2d.reading.belts import beyond_belt
 from crawler2d.reading.drive import drivetrain_of
-from crawler2d.reading.flippers import arms_at, flippers_of
-from crawler2d.reading.friction import combined
-from crawler2d.reading.masses import circulating, summed
-from crawler2d.reading.parts import Runner, RunningGear
-from crawler2d.reading.running_gear import running_gear_of
-from crawler2d.reading.sides import Pair, centers, is_belted, middle_of, paired
-from crawler2d.reading.silhouettes import silhouette
-from crawler2d.reading.sources import estimate, lines
+from crawler2d.reading.flippers import ArmPair, AtEnd, arm_pairs, arms_at, flippers_of
+from crawler2d.reading.log import Telling, estimate, lines, named, place_of
+from crawler2d.reading.options import combined
+from crawler2d.reading.running_gear import (
+    Pair,
+    SideView,
+    centers,
+    is_belted,
+    middle_of,
+    paired,
+    running_gear_of,
+    side_view,
+)
 from crawler2d.reading.surfaces import surfaces_of
-from crawler2d.reading.telling import Telling, named, place_of
-from crawler2d.reading.tracks import Base, wheels_of
-from crawler2d.reading.view import SideView, side_view
+from crawler2d.reading.tracks import (
+    Base,
+    belt_round,
+    beyond_belt,
+    ends_among,
+    hull,
+    silhouette,
+    wheels_of,
+)
+from crawler2d.reading.wheels import Runner, RunningGear
 
-__all__ = ["Assembly", "assembled"]
+__all__ = [
+    "Assembly",
+    "Sum",
+    "assembled",
+    "belly_of",
+    "bent_round",
+    "circulating",
+    "frame_of",
+    "outline_of",
+    "summed",
+]
+
+_LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorter.
+
+
+def bent_round(
+    told: Telling,
+    pairs: list[Pair],
+    arms: list[ArmPair],
+    castors: list[Runner],
+    *,
+    is_belt: bool,
+) -> list[Pair]:
+    """Return what the outline is the hull of, from the rear to the front; note its lines.
+
+    The two outermost wheels, or the drums that a belt bends round; without either, the roots of
+    flippers; of a robot with one wheel a side, that and its castors.
+
+    Raises
+    ------
+    ScenarioError
+        If there is nothing to stand on at one end, or something reaches out of a belt.
+    """
+    if is_belt:
+        bent = belt_round(pairs, at=told.at)
+    elif len(pairs) == 1 and castors:
+        # One wheel a side is no track: the robot stands on it and on what it trails.
+        bent = sorted([*pairs, *map(_alone, castors)], key=lambda pair: pair.x)
+        reason = "is no track: its outline is drawn round it and the free wheels in the middle"
+        told.doubts.append(("robot.outline", "one wheel a side", reason))
+    elif pairs:
+        bent = [pairs[0], pairs[-1]]
+    else:
+        # Nothing runs between the flippers: the robot stands on their roots.
+        order = sorted(arms, key=lambda arm: float(arm.pivot[0]))
+        if len(order) < 2:
+            rule = "must have wheels on the chassis, or flippers at both ends"
+            raise ScenarioError(str(told.at), "flippers at one end", rule)
+        bent = [order[0].pairs[0], order[-1].pairs[0]]
+        text = "the chassis has no wheels: it stands on the roots of its flippers"
+        told.notes.append(text)
+        told.note("robot.track", estimate(f"{text}, which are no track"))
+    runners = [runner for pair in bent for runner in pair.both]
+    places = [place_of(runner) for runner in runners]
+    if len(bent) > 2:
+        sizes = [runner.shape.size_at for runner in runners]
+        told.note("robot.outline.discs", lines([*places, *sizes]))
+    else:
+        told.note("robot.outline.axle_distance", lines(places))
+        for name, pair in zip(("rear_radius", "front_radius"), bent, strict=True):
+            told.note(f"robot.outline.{name}", lines([r.shape.size_at for r in pair.both]))
+    if pairs:
+        of_all = [s.size_at for pair in pairs for runner in pair.both for s in runner.surfaces]
+        told.note("robot.track", lines(of_all, "sizes"))
+    return bent
+
+
+def _alone(castor: Runner) -> Pair:
+    return Pair(left=(castor,), right=(castor,), x=castor.x, y=castor.y, radius=castor.radius)
+
+
+def frame_of(told: Telling, bent: list[Pair], tolerance: float) -> tuple[Base, Pair]:
+    """Return the chassis frame, and what is on the rear end axle.
+
+    Raises
+    ------
+    ScenarioError
+        If there is no distance between the two.
+    """
+    rear, front = bent if len(bent) == 2 else ends_among(bent)
+    base = Base(
+        rear=np.array([rear.x, rear.y]),
+        front=np.array([front.x, front.y]),
+        is_level=len(bent) > 2,
+    )
+    if base.length <= tolerance:
+        rule = "must have two wheels or drums on each side"
+        raise ScenarioError(str(told.at), base.length, rule)
+    return base, rear
+
+
+def outline_of(told: Telling, base: Base, bent: list[Pair]) -> TrackOutline:
+    """Return the outline, without grousers, which no format has."""
+    for name in ("grouser_height", "grouser_pitch", "grouser_thickness"):
+        told.note(f"robot.outline.{name}", estimate("the file has no grousers"))
+    radii = [pair.radius for pair in bent]
+    grousers = {
+        "grouser_height": 0.0,
+        "grouser_pitch": 0.75 * min(radii),
+        "grouser_thickness": 0.0,
+    }
+    if len(bent) == 2:
+        rear, front = radii
+        outline = TrackOutline(
+            axle_distance=base.length, front_radius=front, rear_radius=rear, **grousers
+        )
+    else:
+        places = base.of(centers(bent))
+        outline = TrackOutline(discs=np.column_stack([places, radii]), **grousers)
+    length = outline.axle_distance
+    whole = length + outline.rear_radius + outline.front_radius
+    if whole > _LARGEST:
+        power = math.ceil(math.log10(whole / _LARGEST))
+        reason = (
+            f"is usually at most {_LARGEST:g} m with the wheels: is the file in metres?"
+            f" scale={10.0**-power:g} reads it so much smaller"
+        )
+        told.doubts.append(("robot.outline.axle_distance", length, reason))
+    return outline
+
+
+Corners = tuple[tuple[float, float], ...]
+
+
+def belly_of(shapes: list[tuple[Link, Shape]], view: SideView, base: Base) -> Corners | None:
+    """Return the belly in the chassis frame, counter-clockwise; None if there is none."""
+    if not shapes:
+        return None
+    flat = [base.of(silhouette(shape, view)) for _, shape in shapes]
+    corners = hull(np.concatenate(flat))
+    if len(corners) < 3:
+        return None
+    return tuple((float(x), float(y)) for x, y in corners)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sum:
+    """Several links as one, in the chassis frame.
+
+    Parameters
+    ----------
+    mass : float
+        [kg] Their mass.
+    center : tuple of float, shape (2,)
+        [m] Their centre of mass.
+    inertia : float
+        [kg m^2] About that.
+    """
+
+    mass: float
+    center: tuple[float, float]
+    inertia: float
+
+
+def summed(tree: Tree, view: SideView, base: Base, arms: Iterable[tuple[AtEnd, float]]) -> Sum:
+    """Sum all links, with the flippers turned to angle 0, as the figures of a robot have them.
+
+    Parameters
+    ----------
+    tree : Tree
+        The model.
+    view : SideView
+        Its side view.
+    base : Base
+        Its chassis frame.
+    arms : iterable of (AtEnd, float)
+        The flippers, and 1 at the front or -1 at the rear.
+
+    Returns
+    -------
+    Sum
+        Of the whole robot.
+    """
+    mass = np.array([link.mass for link in tree.links])
+    places = base.of(view.of(np.array([link.center for link in tree.links]))[:, :2])
+    number = {link.name: index for index, link in enumerate(tree.links)}
+    for end, sign in arms:
+        for arm in end.pair.arms:
+            pivot = base.of(arm.pivot[None, :2])[0]
+            turn = _rotation(-sign * end.angle)
+            for link in arm.links:
+                index = number[link.name]
+                places[index] = pivot + turn @ (places[index] - pivot)
+    whole = float(mass.sum())
+    center = mass @ places / whole if whole > 0.0 else np.zeros(2)
+    own = sum(view.about_left(link.inertia) for link in tree.links)
+    swung = float(mass @ ((places - center) ** 2).sum(axis=1))
+    return Sum(mass=whole, center=(float(center[0]), float(center[1])), inertia=own + swung)
+
+
+def _rotation(angle: float) -> Array:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]])
+
+
+def circulating(pairs: list[Pair]) -> tuple[float, bool]:
+    """[kg] Return the mass that turns with the wheels: moment of inertia by radius squared.
+
+    No body within a wheel's radius has more than its mass there, so no wheel counts for more; the
+    second value says whether one would have.
+    """
+    total, is_excessive = 0.0, False
+    for pair in pairs:
+        for wheel in pair.both:
+            own = wheel.inertia / wheel.radius**2
+            is_excessive |= own > wheel.mass * (1.0 + 1e-6)
+            total += min(own, wheel.mass)
+    return total, is_excessive
+
 
 _SHOWN = 4  # names of links in a doubt
 _LEAST_MOVING = 0.001  # [kg] The least that a robot can have.

@@ -1,28 +1,267 @@
-"""Speed and torque: from the limits of joints and plugins, or estimates where there are none."""
+"""Speed and torque of the drive: from limits of joints, by the laws of engines, or estimated."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-from crawler2d.models.tree import Joint, Tree
-from crawler2d.models.where import Where
+from crawler2d.model_tree import Joint, Tree, Where
 from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
-from crawler2d.reading.actuators import (
-    ACTUATORS,
-    FASTEST,
-    resistance,
-    rotor_inertia,
-    tell_ignored,
-    tell_lost,
-)
-from crawler2d.reading.plugins import wheel_torques
-from crawler2d.reading.sides import Pair
-from crawler2d.reading.sources import estimate, lines
-from crawler2d.reading.telling import Telling
+from crawler2d.reading.joints import wheel_torques
+from crawler2d.reading.log import Telling, estimate, lines, named
+from crawler2d.reading.running_gear import Pair
 
-__all__ = ["drivetrain_of"]
+__all__ = [
+    "ACTUATORS",
+    "FASTEST",
+    "Actuator",
+    "drivetrain_of",
+    "resistance",
+    "rotor_inertia",
+    "tell_ignored",
+    "tell_lost",
+]
+
+FASTEST = 100.0
+"""[rad/s] and [m/s] Larger limits of speed are meant as none."""
+
+_ALIKE = 0.01
+"""[-] By how much rotors may differ, as a share of the largest: files round them."""
+
+_LARGE = 0.1
+"""[-] Of a torque: a loss of less lies within what is not known of a torque that a file states."""
+
+_UNITS = {
+    "effort": "N m",
+    "velocity": "rad/s",
+    "damping": "N m s/rad",
+    "friction": "N m",
+    "armature": "kg m^2",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Actuator:
+    """How an engine drives a joint that is told a speed.
+
+    Parameters
+    ----------
+    name : str
+        Of the engine.
+    command : str
+        What a commanded speed of a wheel is.
+    surface : str
+        What a commanded speed of a belt is, whose surface is moved; empty if it moves none.
+    basis : str
+        What that rests on: whether it was run or read.
+    has_gain : bool
+        Whether the gain of a servo in the file is that of the motor.
+    ignored : mapping of str to str
+        The figures of a joint that play no part, each with the reason: "effort", "velocity",
+        "damping", "friction", "armature".
+    """
+
+    name: str
+    command: str
+    surface: str
+    basis: str
+    has_gain: bool = False
+    ignored: Mapping[str, str] = field(default_factory=dict)
+
+    def in_words(self, *, is_belt: bool) -> str:
+        """Say what its motors do."""
+        if is_belt and not self.surface:
+            return f"{self.name} moves no surface of a belt"
+        if is_belt:
+            return f"belts in {self.name}: {self.surface}"
+        return f"motors in {self.name}: {self.command} ({self.basis})"
+
+
+_WITHIN_A_STEP = "the commanded speed within one step, as far as the torque limit allows"
+
+ACTUATORS: dict[str, Actuator] = {
+    # gz-physics, dartsim/src: JointFeatures.cc makes a joint with a velocity command a SERVO of
+    # DART, a constraint on its rate bounded by the effort limit; SDFFeatures.cc hands over effort,
+    # velocity, damping and friction, each of which changed a run. SDFormat has no armature. The
+    # header of gz-sim's TrackController: "Only velocity control is supported".
+    "gz": Actuator(
+        name="gz-sim",
+        command=_WITHIN_A_STEP,
+        surface="the commanded speed at any load, as contact surface motion (read in its source)",
+        basis="run in DART 6.20 by itself",
+        ignored={"armature": "SDF and DART have no rotor inertia"},
+    ),
+    # gazebo/physics: a velocity command is ODE's joint motor, dParamVel with dParamFMax. fmax is
+    # the torque of the plugin that drives, or the effort limit with gazebo_ros_control.
+    # Joint::CheckAndTruncateForce keeps the velocity limit for commanded forces only, and
+    # SetParam("friction") is the same motor at rest. SimpleTrackedVehiclePlugin moves surfaces.
+    "classic": Actuator(
+        name="Gazebo Classic",
+        command=_WITHIN_A_STEP,
+        surface="the commanded speed at any load, as contact surface motion (read in its source)",
+        basis="read in its source, not run",
+        ignored={
+            "velocity": "it holds for commanded forces only",
+            "friction": "the motor of a commanded speed takes its place",
+            "armature": "SDF and ODE have no rotor inertia",
+        },
+    ),
+    # btMultiBodyJointMotor with the gains of VELOCITY_CONTROL, 0 for the position and 1 for the
+    # velocity. The effort limit, the velocity limit and the friction of a URDF changed no run;
+    # damping did; nor did the armature of MJCF.
+    "bullet": Actuator(
+        name="PyBullet",
+        command=_WITHIN_A_STEP,
+        surface="",
+        basis="run in PyBullet 3.2.7",
+        ignored={
+            "effort": "only the argument force= limits a motor, which else has 100,000 N m",
+            "velocity": "every joint has a limit of 100 rad/s instead",
+            "friction": "it is loaded, and used nowhere",
+            "armature": "it is not loaded",
+        },
+    ),
+    # MuJoCo's XML reference, actuator/velocity, joint/armature, joint/frictionloss. xml_urdf.cc
+    # takes effort as actuatorfrcrange: "no maxvel in MuJoCo".
+    "mujoco": Actuator(
+        name="MuJoCo",
+        command="a torque of kv times the error of the speed, within forcerange",
+        surface="the commanded speed at any load, as surfacevel of the geom (run in MuJoCo 4.0)",
+        basis="run in MuJoCo 4.0",
+        has_gain=True,
+        ignored={
+            "velocity": "MuJoCo has no limit of a joint's speed: ctrlrange limits the command"
+        },
+    ),
+    # UrdfImporter.cpp of isaac-sim/urdf-importer-extension: effort is physics:maxForce, velocity
+    # physxJoint:maxJointVelocity; a velocity target has stiffness 0 and as damping the strength
+    # that the import is given. friction becomes physxJoint:jointFriction. PhysX's documentation,
+    # PxArticulationDrive and PhysxJointAxisAPI: an implicit PD controller, armature.
+    "isaac": Actuator(
+        name="Isaac Sim",
+        command="a torque of the drive's damping times the error of the speed, within maxForce;"
+        " the import sets the damping, and here the speed is held",
+        surface="",
+        basis="read in its importer and its documentation, not run",
+        ignored={
+            "damping": "the strength of the drive, which the import sets, takes its place",
+            "friction": "PhysX takes it as a coefficient of the load on the joint",
+        },
+    ),
+}
+"""The laws by engine."""
+
+
+def rotor_inertia(
+    told: Telling,
+    path: str,
+    shares: Sequence[float],
+    joints: Sequence[Joint],
+    *,
+    engine: str,
+    at: Where,
+) -> float:
+    """[kg m^2] Return the rotor inertia of one side as the engine has it, and tell its source.
+
+    Parameters
+    ----------
+    told : Telling
+        Takes source and doubts.
+    path : str
+        Of the figure.
+    shares : sequence of float
+        [kg m^2] What both sides state, or all wheels with motors of their own: their mean counts.
+    joints : sequence of Joint
+        What states it.
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
+        The engine.
+    at : Where
+        Line of the model, for a file that states none.
+    """
+    stating = [joint for joint in joints if joint.armature > 0.0]
+    if not stating:
+        told.note(path, f"{at}: none")
+        return 0.0
+    places = lines([joint.dynamics_at for joint in stating], "sum of one side")
+    if "armature" in ACTUATORS[engine].ignored:
+        told.note(path, f"{places}: none in {ACTUATORS[engine].name}")
+        return 0.0
+    told.note(path, places)
+    if max(shares) - min(shares) > _ALIKE * max(shares):
+        value = f"{min(shares):.4g} to {max(shares):.4g} kg m^2"
+        told.doubts.append((path, value, "differs from motor to motor: the mean is used"))
+    return sum(shares) / len(shares)
+
+
+def tell_ignored(told: Telling, joints: Sequence[Joint], *, engine: str, is_mjcf: bool) -> None:
+    """Doubt the figures of joints that the engine ignores, each once.
+
+    Parameters
+    ----------
+    told : Telling
+        Takes the doubts.
+    joints : sequence of Joint
+        Those of all wheels, or of all flippers.
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
+        The engine.
+    is_mjcf : bool
+        Whether the file is MJCF, whose speeds are limits of commands, which all engines keep.
+    """
+    actuator = ACTUATORS[engine]
+    for name, reason in actuator.ignored.items():
+        stating = [joint for joint in joints if _states(joint, name)]
+        if stating and not (is_mjcf and name == "velocity"):
+            first = stating[0]
+            where = getattr(first, f"{name}_at", first.dynamics_at)
+            path = f"{where}: {name}[{named([joint.name for joint in stating])}]"
+            value = f"{getattr(first, name):.4g} {_UNITS[name]}"
+            told.doubts.append((path, value, f"plays no part in {actuator.name}: {reason}"))
+
+
+def tell_lost(
+    told: Telling, joints: Sequence[Joint], lost: float, limit: float, *, engine: str
+) -> None:
+    """Tell of a torque that damping and friction take at full speed: no motor here has them.
+
+    Parameters
+    ----------
+    told : Telling
+        Takes a doubt if it is more than a tenth of the limit, or else a note.
+    joints : sequence of Joint
+        Of the motors.
+    lost, limit : float
+        [N m] What one side loses, and what it has.
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
+        The engine.
+    """
+    if not lost > 0.0:
+        return
+    first = next(joint for joint in joints if _states(joint, "damping", "friction"))
+    path, name = f"{first.dynamics_at}: joint[{first.name}]", ACTUATORS[engine].name
+    part = f"{lost:.3g} of {limit:.3g} N m of a side"
+    if lost > _LARGE * limit:
+        reason = f"takes a part of the torque by damping and friction in {name}, and none here"
+        told.doubts.append((path, part, reason))
+    else:
+        told.notes.append(f"{path}: damping and friction take {part} in {name}, and none here")
+
+
+def resistance(joint: Joint, rate: float, engine: str) -> float:
+    """[N m] Return the torque that damping and friction take at a rate [rad/s], in an engine."""
+    ignored = ACTUATORS[engine].ignored
+    damping = 0.0 if "damping" in ignored else joint.damping * rate
+    return damping + (0.0 if "friction" in ignored else joint.friction)
+
+
+def _states(joint: Joint, *names: str) -> bool:
+    values = [getattr(joint, name) or 0.0 for name in names]
+    return any(
+        0.0 < value <= (FASTEST if name == "velocity" else math.inf)
+        for name, value in zip(names, values, strict=True)
+    )
+
 
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
 WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple

@@ -16,8 +16,8 @@ from xml.parsers import expat
 import numpy as np
 
 from crawler2d.common.extras import extra
-from crawler2d.models.poses import Array
-from crawler2d.reading.limits import no_more_files, serve
+from crawler2d.model_tree import Array
+from crawler2d.reading.child import no_more_files, serve
 
 # What trimesh and pycollada take if it is there, but corners do not need: pictures, and scipy, the
 # import of which takes longest. lxml is not the parser that refuses document types below.

@@ -9,14 +9,22 @@ from typing import Any
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Pose, from_quaternion, unit
-from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree, Unread
-from crawler2d.models.where import Where
+from crawler2d.model_tree import (
+    Friction,
+    Joint,
+    Link,
+    Pose,
+    Shape,
+    Tree,
+    Unread,
+    Where,
+    from_quaternion,
+    unit,
+)
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
-from crawler2d.reading.meshes import MOST_CORNERS, Meshes
-from crawler2d.reading.order import checked
-from crawler2d.reading.shapes import collisions, ellipsoid
+from crawler2d.reading.joints import checked
+from crawler2d.reading.shapes import MOST_CORNERS, Meshes, collisions, ellipsoid
 
 __all__ = ["read_mjcf"]
 

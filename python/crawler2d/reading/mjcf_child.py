@@ -11,8 +11,8 @@ from typing import Any
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.child import no_more_files, serve
 from crawler2d.reading.files import LARGEST_TOGETHER, Files, why
-from crawler2d.reading.limits import no_more_files, serve
 
 # MuJoCo numbers the kinds of joints and shapes; what is not here is refused by its number.
 _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}

@@ -1,23 +1,310 @@
-"""What of a model is wheel, track, flipper or chassis, and what a side view cannot hold."""
+"""What of a model is wheel, track, flipper or chassis in its side view, left and right as one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Array
-from crawler2d.models.tree import Joint, Link, Shape, Tree
-from crawler2d.reading.grousers import grousers_on
-from crawler2d.reading.parts import Arm, Runner, RunningGear
-from crawler2d.reading.rounds import below, is_parallel, radius_about
+from crawler2d.model_tree import Array, Joint, Link, Shape, Tree, Where
 from crawler2d.reading.surfaces import Surfaces
-from crawler2d.reading.view import SideView
-from crawler2d.reading.wheels import wheel_of
+from crawler2d.reading.wheels import (
+    PARALLEL,
+    Arm,
+    Runner,
+    RunningGear,
+    below,
+    grousers_on,
+    is_parallel,
+    radius_about,
+    wheel_of,
+)
 
-__all__ = ["running_gear_of"]
+__all__ = [
+    "Pair",
+    "SideView",
+    "centers",
+    "is_belted",
+    "middle_of",
+    "paired",
+    "running_gear_of",
+    "side_view",
+]
+
+_MOST = 400  # wheels of one track, on both sides: any two are compared
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Pair:
+    """A wheel or drum on the left, and the one at the same place on the right.
+
+    Parameters
+    ----------
+    left, right : tuple of Runner
+        One of each, or more where several stand side by side.
+    x, y, radius : float
+        [m] Mean of both, forward and up.
+    """
+
+    left: tuple[Runner, ...]
+    right: tuple[Runner, ...]
+    x: float
+    y: float
+    radius: float
+
+    @property
+    def both(self) -> tuple[Runner, ...]:
+        """All of them."""
+        return self.left + self.right
+
+
+def centers(pairs: Iterable[Pair]) -> Array:
+    """[m] Return where pairs stand in side view, shape (n, 2)."""
+    return np.array([[pair.x, pair.y] for pair in pairs])
+
+
+def is_belted(runners: list[Runner], path: str) -> bool:
+    """Whether a belt runs round them: drums, and no more wheels among them than sprockets.
+
+    Raises
+    ------
+    ScenarioError
+        If more of them turn than are fixed.
+    """
+    turning = sum(runner.joint is not None for runner in runners)
+    if 0 < len(runners) - turning < turning:
+        rule = "must be wheels, or drums of a moved belt and at most one sprocket for each"
+        raise ScenarioError(path, f"{turning} wheels and {len(runners) - turning} drums", rule)
+    return turning < len(runners)
+
+
+def middle_of(runners: Iterable[Runner]) -> float:
+    """[m] Return where the middle plane lies: halfway between the outermost wheels."""
+    across = [runner.z for runner in runners]
+    return 0.5 * (min(across) + max(across)) if across else 0.0
+
+
+def paired(runners: list[Runner], *, middle: float, tolerance: float, at: Where) -> list[Pair]:
+    """Pair what is on the left with what is on the right.
+
+    Parameters
+    ----------
+    runners : list of Runner
+        Of one carrier.
+    middle : float
+        [m] Where the middle plane lies.
+    tolerance : float
+        [m] By how much places and radii of a pair may differ in side view; across, by any.
+    at : Where
+        Line of the model, for errors.
+
+    Returns
+    -------
+    list of Pair
+        From the rear to the front.
+
+    Raises
+    ------
+    ScenarioError
+        If a wheel has no partner, or stands in the middle.
+    """
+    if len(runners) > _MOST:
+        raise ScenarioError(str(at), len(runners), f"must have at most {_MOST} wheels a carrier")
+    for runner in runners:
+        if abs(runner.z - middle) <= tolerance:
+            _refuse(runner, "in the middle", "must stand on the left or on the right")
+    order = sorted(runners, key=lambda runner: (runner.x, runner.y, runner.radius))
+    left = [runner for runner in order if runner.z > middle]
+    right = [runner for runner in order if runner.z <= middle]
+    pairs: list[Pair] = []
+    for runner in left:
+        partner = next((other for other in right if _same(runner, other, tolerance)), None)
+        if partner is None:
+            _refuse(runner, _runner_text(runner), _rule("right", tolerance))
+        right.remove(partner)
+        beside = next((p for p in pairs if _same(runner, p.left[0], tolerance)), None)
+        if beside is not None:  # a double wheel is one wheel in side view
+            pairs.remove(beside)
+        pairs.append(
+            Pair(
+                left=(runner, *(beside.left if beside else ())),
+                right=(partner, *(beside.right if beside else ())),
+                x=0.5 * (runner.x + partner.x),
+                y=0.5 * (runner.y + partner.y),
+                radius=0.5 * (runner.radius + partner.radius),
+            )
+        )
+    for runner in right:
+        _refuse(runner, _runner_text(runner), _rule("left", tolerance))
+    return pairs
+
+
+def _same(first: Runner, second: Runner, tolerance: float) -> bool:
+    return (
+        abs(first.x - second.x) <= tolerance
+        and abs(first.y - second.y) <= tolerance
+        and abs(first.radius - second.radius) <= tolerance
+    )
+
+
+def _rule(side: str, tolerance: float) -> str:
+    within = f"within {1e3 * tolerance:g} mm: tolerance= may say more"
+    return f"must have a partner on the {side}, in side view {within}"
+
+
+def _runner_text(runner: Runner) -> str:
+    return f"radius {runner.radius:.4g} m at x = {runner.x:.4g} m, y = {runner.y:.4g} m"
+
+
+def _refuse(runner: Runner, value: str, rule: str) -> NoReturn:
+    raise ScenarioError(f"{runner.shape.at}: wheel[{runner.name}]", value, rule)
+
+
+_UP = np.array([0.0, 0.0, 1.0])
+# [rad] An axis so close to one of the model's is meant to be it: files have 3.1415 for pi.
+_SNAP = 0.01
+_FORWARDS = {
+    f"{sign}{name}": (1.0 if sign == "+" else -1.0) * np.eye(3)[axis]
+    for sign in "+-"
+    for axis, name in enumerate("xy")
+}
+_FRONT, _REAR = re.compile(r"front|fore"), re.compile(r"rear|back|hind")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class SideView:
+    """Turns points of the model into x forward, y up and z to the left.
+
+    Parameters
+    ----------
+    forward, left : ndarray, shape (3,)
+        Directions in the frame of the model, whose z axis is up.
+    reason : str
+        By which rule they were found.
+    """
+
+    forward: Array
+    left: Array
+    reason: str
+
+    @property
+    def up(self) -> Array:
+        """Direction up in the frame of the model."""
+        return _UP
+
+    def of(self, point: Array) -> Array:
+        """[m] Return forward, up and left of a point, shape (3,), or of several, shape (n, 3)."""
+        turned: Array = np.asarray(point) @ np.stack([self.forward, _UP, self.left], axis=1)
+        return turned
+
+    def about_left(self, tensor: Array) -> float:
+        """[kg m^2] Return the moment of inertia about the lateral axis."""
+        return float(self.left @ tensor @ self.left)
+
+
+def side_view(tree: Tree, surfaces: Surfaces, forward: str | None) -> SideView:
+    """Find the lateral axis from what turns, and the forward sign from the names.
+
+    Parameters
+    ----------
+    tree : Tree
+        The model.
+    surfaces : Surfaces
+        Those that move.
+    forward : {"+x", "-x", "+y", "-y"}, optional
+        The direction that is forward; None finds it.
+
+    Returns
+    -------
+    SideView
+        With the rule by which it was found.
+
+    Raises
+    ------
+    ScenarioError
+        If nothing turns, what turns has no common lateral axis, or forward cannot be told.
+    """
+    lateral = _lateral(tree, surfaces)
+    ahead = np.cross(lateral, _UP)
+    if forward is not None:
+        if forward not in _FORWARDS:
+            rule = f"must be one of {', '.join(_FORWARDS)}, or None"
+            raise ScenarioError("forward", forward, rule)
+        if not is_parallel(_FORWARDS[forward], ahead):
+            rule = f"must be across the axes of the wheels, which point along {_axis_text(lateral)}"
+            raise ScenarioError("forward", forward, rule)
+        sign, reason = float(np.sign(_FORWARDS[forward] @ ahead)), "forward was given"
+    elif named := _named_ahead(tree, ahead):
+        sign, reason = named
+    elif is_parallel(ahead, np.array([1.0, 0.0, 0.0])):
+        sign, reason = float(np.sign(ahead[0])), "by convention, x is forward"
+    else:
+        rule = 'must be given, as "+y" or "-y": no name has front or rear'
+        raise ScenarioError("forward", forward, rule)
+    ahead = sign * ahead
+    return SideView(forward=ahead, left=np.cross(_UP, ahead), reason=reason)
+
+
+def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
+    """Return the direction of the most axes of wheels and of the drums of tracks, horizontal."""
+    hanging = below(tree)
+    axes = [j.axis for j in tree.joints.values() if wheel_of(tree, j, hanging)]
+    axes += [
+        shape.axis
+        for link in tree.links
+        for shape in link.shapes
+        if shape.kind in ("cylinder", "capsule") and shape in surfaces.moved
+    ]
+    if not axes:
+        rule = (
+            "must have wheels, which are round collision shapes on joints that turn without limit,"
+            " bare or with equal grousers evenly round them, or tracks that a plugin moves or"
+            " tracks= names"
+        )
+        kinds = [shape.kind for link in tree.links for shape in link.shapes]
+        count = sum(kind in ("cylinder", "capsule", "sphere") for kind in kinds)
+        got = f"{count} round shapes, none of them such" if count else "no round shape"
+        raise ScenarioError(str(tree.at), got, rule)
+    rows = np.array(axes)
+    alike = np.abs(rows @ rows.T) >= math.cos(PARALLEL)
+    most = rows[alike[alike.sum(axis=0).argmax()]]
+    # Of each axis its outer product, which has no sign: the mean of those has their direction.
+    lateral: Array = np.linalg.eigh(most.T @ most)[1][:, -1]
+    for axis in np.eye(3):
+        if np.linalg.norm(np.cross(lateral, axis)) <= _SNAP:
+            lateral = axis
+    if abs(lateral @ _UP) > _SNAP:
+        got = _axis_text(lateral)
+        raise ScenarioError(str(tree.at), got, "must have wheels with horizontal axes")
+    flat: Array = lateral - (lateral @ _UP) * _UP
+    flat /= np.linalg.norm(flat)
+    return flat
+
+
+def _named_ahead(tree: Tree, ahead: Array) -> tuple[float, str] | None:
+    """Return on which side the links called front are; None if that is not clear."""
+    along: dict[bool, list[float]] = {True: [], False: []}
+    for link in tree.links:
+        name = link.name.lower()
+        is_front, is_rear = bool(_FRONT.search(name)), bool(_REAR.search(name))
+        if is_front != is_rear:
+            along[is_front].append(float(link.pose.place @ ahead))
+    if not along[True] or not along[False]:
+        return None
+    difference = float(np.mean(along[True]) - np.mean(along[False]))
+    if abs(difference) < 1e-6:  # [m] they are in the same place
+        return None
+    return float(np.sign(difference)), "links called front are ahead of those called rear"
+
+
+def _axis_text(axis: Array) -> str:
+    return f"({', '.join(f'{round(part, 3) + 0.0:g}' for part in axis)})"
+
 
 # [m] What lies this little behind its pivot does not lie behind it.
 _BEHIND = 0.005

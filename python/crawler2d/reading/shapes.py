@@ -1,20 +1,142 @@
-"""Collision shapes that SDF and URDF write in the same words."""
+"""Collision shapes as SDF and URDF write them, and meshes as the hulls of their corners."""
 
 from __future__ import annotations
 
+import base64
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from pathlib import PurePath
+from typing import Literal
 
 import numpy as np
 
-from crawler2d.models.poses import Array, Pose
-from crawler2d.models.tree import Friction, Shape, Unread
+from crawler2d.errors import ScenarioError
+from crawler2d.model_tree import Array, Friction, Pose, Shape, Unread
+from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
-from crawler2d.reading.meshes import Meshes
-from crawler2d.reading.telling import Doubt
+from crawler2d.reading.files import LARGEST_TOGETHER, Files, why
+from crawler2d.reading.log import Doubt
 
-__all__ = ["collisions", "ellipsoid", "inertia", "shape_of", "solid"]
+__all__ = [
+    "MOST_CORNERS",
+    "MeshRule",
+    "Meshes",
+    "collisions",
+    "ellipsoid",
+    "inertia",
+    "shape_of",
+    "solid",
+]
+
+MeshRule = Literal["refuse", "hull", "leave_out"]
+
+MOST_CORNERS = 300_000
+"""Of all meshes of a model, each corner of a mesh once."""
+
+_KINDS = ("dae", "glb", "gltf", "obj", "stl")
+_FARTHEST = 1e6  # [m] as for any number of a model file
+
+
+@dataclass(slots=True, kw_only=True)
+class Meshes:
+    """What is done with the meshes of one model.
+
+    Parameters
+    ----------
+    rule : {"refuse", "hull", "leave_out"}
+        As in `read_robot`.
+    files : Files
+        The files of the model.
+    doubts : list of Doubt
+        Where shapes that are left out are noted.
+    """
+
+    rule: MeshRule
+    files: Files
+    doubts: list[Doubt] = field(default_factory=list)
+    _found: dict[str, Array | str] = field(default_factory=dict)
+
+    def find(self, named: dict[str, Element]) -> None:
+        """Read meshes, all at once: the child process has its limits for all of them.
+
+        Parameters
+        ----------
+        named : dict of str to Element
+            By the name of a mesh the first element that names it.
+
+        Raises
+        ------
+        ImportError
+            If a mesh is there, and trimesh is missing.
+        """
+        if self.rule != "hull":
+            return
+        data: dict[str, bytes] = {}
+        for name, element in named.items():
+            if PurePath(name).suffix[1:].lower() not in _KINDS:
+                self._found[name] = f"must be a mesh of a kind that is known: {', '.join(_KINDS)}"
+                continue
+            try:
+                data[name] = self.files.read(name, at=element.at, most=LARGEST_TOGETHER)
+            except ScenarioError as error:
+                self._found[name] = why(error)
+        if data:
+            self._found |= zip(data, self._asked(data), strict=True)
+
+    def _asked(self, data: dict[str, bytes]) -> list[Array | str]:
+        """Return the corners of meshes in their own frames, or why there are none."""
+        meshes = [
+            {
+                "kind": PurePath(name).suffix[1:].lower(),
+                "data": base64.b64encode(each).decode(),
+            }
+            for name, each in data.items()
+        ]
+        question = {"meshes": meshes, "most": MOST_CORNERS}
+        try:
+            answer = answered(
+                "crawler2d.reading.mesh_child",
+                question,
+                file="all meshes together",
+                folder=self.files.folder,
+            )
+        except ScenarioError as error:
+            return [f"{error.path} {error.rule}"] * len(data)
+        return [
+            each.get("reason")
+            or np.frombuffer(base64.b64decode(each["points"]), dtype=np.float64).reshape(-1, 3)
+            for each in answer["meshes"]
+        ]
+
+    def hull(self, shape: Shape, element: Element, name: str, scale: list[float]) -> Shape | Unread:
+        """Return the shape with the corners of its mesh, or what was left out and why."""
+        if (part := element.only("submesh/name")) is not None:
+            return self.missing(element, name, f"only a part of it, {part.text}, is meant")
+        found = self._found.get(name, "")
+        if isinstance(found, str):
+            return self.missing(element, name, found)
+        with np.errstate(over="ignore", invalid="ignore"):  # of what is left out below
+            points = found * np.array(scale)
+        if not len(points):
+            return self.left_out(element, name, "must be a mesh with corners")
+        if not (np.abs(points) <= _FARTHEST).all():
+            reason = f"must have corners that are finite and at most {_FARTHEST:g} m away"
+            return self.left_out(element, name, reason)
+        return replace(shape, kind="hull", points=shape.pose.at(points))
+
+    def missing(self, element: Element, name: str, reason: str) -> Unread:
+        """Leave a mesh out for a reason, or by rule; refuse it by rule."""
+        if self.rule == "refuse":
+            rule = 'must be no mesh: mesh="hull" takes its hull, mesh="leave_out" leaves it out'
+            element.refuse(name, rule)
+        return self.left_out(element, name, reason if self.rule == "hull" else "a mesh")
+
+    def left_out(self, element: Element, what: str, reason: str) -> Unread:
+        """Note that a collision shape is left out."""
+        self.doubts.append((element.at, what, f"is left out: {reason}"))
+        return Unread(name=what, reason=reason, at=element.where)
+
 
 _AXES = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
 

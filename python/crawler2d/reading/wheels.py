@@ -1,12 +1,371 @@
-"""What turns on a joint is a wheel: round about it, or round with grousers."""
+"""What can carry a robot: wheels on joints that turn, round or with grousers, and other parts."""
 
 from __future__ import annotations
 
-from crawler2d.models.tree import Joint, Link, Shape, Tree
-from crawler2d.reading.grousers import grousers_on
-from crawler2d.reading.rounds import radius_about
+import math
+from dataclasses import dataclass, field
 
-__all__ = ["wheel_of"]
+import numpy as np
+
+from crawler2d.model_tree import Array, Joint, Link, Shape, Tree
+
+__all__ = [
+    "ALIKE",
+    "PARALLEL",
+    "Arm",
+    "Grousers",
+    "Runner",
+    "RunningGear",
+    "below",
+    "corners_of",
+    "farthest",
+    "grousers_on",
+    "is_parallel",
+    "plane_across",
+    "radius_about",
+    "wheel_of",
+]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Grousers:
+    """The grousers of a gear wheel.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    radius : float
+        [m] Of their tips about the axle.
+    height, tip_thickness, base_thickness : float
+        [m] As in `GearWheel`.
+    direction : ndarray, shape (3,)
+        Of one of them from the axle.
+    shapes : tuple of Shape
+        All of them.
+    """
+
+    count: int
+    radius: float
+    height: float
+    tip_thickness: float
+    base_thickness: float
+    direction: Array
+    shapes: tuple[Shape, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Runner:
+    """A wheel, or a drum of a track.
+
+    Parameters
+    ----------
+    name : str
+        Of its link, and of its shape if that is one of several.
+    x, y, z : float
+        [m] Its middle: forward, up and to the left.
+    radius : float
+        [m] Its radius, to the tips of grousers if it has such.
+    link : Link
+        What it is part of.
+    shape : Shape
+        Its own shape, the largest if there are several.
+    joint : Joint, optional
+        On which it turns; None for a drum, which is fixed while a plugin moves its surface.
+    mass : float
+        [kg] Of what turns; 0 for a drum.
+    inertia : float
+        [kg m^2] Of that, about its axis.
+    grousers : Grousers, optional
+        Those of a gear wheel.
+    """
+
+    name: str
+    x: float
+    y: float
+    z: float
+    radius: float
+    link: Link
+    shape: Shape
+    joint: Joint | None = None
+    mass: float = 0.0
+    inertia: float = 0.0
+    grousers: Grousers | None = None
+
+    @property
+    def surfaces(self) -> tuple[Shape, ...]:
+        """Its own shape and its grousers."""
+        return (self.shape, *(self.grousers.shapes if self.grousers else ()))
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Arm:
+    """What turns about the pivot of a flipper.
+
+    Parameters
+    ----------
+    joint : Joint
+        The pivot.
+    pivot : ndarray, shape (3,)
+        [m] In the side view.
+    links : tuple of Link
+        Everything that turns with it.
+    runners : tuple of Runner
+        Its wheels or drums.
+    shapes : tuple of (Link, Shape)
+        What is neither wheel nor drum.
+    """
+
+    joint: Joint
+    pivot: Array
+    links: tuple[Link, ...]
+    runners: tuple[Runner, ...]
+    shapes: tuple[tuple[Link, Shape], ...]
+
+
+@dataclass(slots=True, eq=False)
+class RunningGear:
+    """The running gear of a model.
+
+    Parameters
+    ----------
+    runners : list of Runner
+        Wheels and drums of the chassis.
+    bars : list of (Link, Shape)
+        Shapes on it whose surface is moved, and which are no drums.
+    arms : list of Arm
+        The flippers.
+    shapes : list of (Link, Shape)
+        What the chassis has besides, fixed to it.
+    moving : list of (Joint, Link, Shape)
+        Shapes of other moving parts, such as a lidar or a manipulator.
+    passive : set of str
+        Names of wheels that nothing drives, while something drives others.
+    """
+
+    runners: list[Runner] = field(default_factory=list)
+    bars: list[tuple[Link, Shape]] = field(default_factory=list)
+    arms: list[Arm] = field(default_factory=list)
+    shapes: list[tuple[Link, Shape]] = field(default_factory=list)
+    moving: list[tuple[Joint, Link, Shape]] = field(default_factory=list)
+    passive: set[str] = field(default_factory=set)
+
+    def without_castors(self, middle: float, tolerance: float) -> list[Runner]:
+        """Take out the wheels in the middle that nothing drives, which become skids."""
+        castors = [
+            wheel
+            for wheel in self.runners
+            if wheel.name in self.passive and abs(wheel.z - middle) <= tolerance
+        ]
+        self.runners = [wheel for wheel in self.runners if wheel not in castors]
+        self.shapes += [(castor.link, castor.shape) for castor in castors]
+        return castors
+
+
+def corners_of(shape: Shape) -> Array:
+    """[m] Return the corners of a box or hull in the frame of the model, shape (n, 3)."""
+    if shape.kind == "hull":
+        return shape.points
+    signs = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
+    return shape.pose.at(signs * shape.size)
+
+
+def farthest(shape: Shape, point: Array) -> float:
+    """[m] Return how far a shape reaches from a point, or a little more."""
+    if shape.kind in ("box", "hull"):
+        return float(np.linalg.norm(corners_of(shape) - point, axis=1).max())
+    own = math.hypot(shape.radius, 0.5 * shape.length)
+    own += shape.radius if shape.kind == "capsule" else 0.0
+    return float(np.linalg.norm(shape.pose.place - point)) + own
+
+
+PARALLEL = 0.05
+"""[rad] Axes within this angle count as parallel: files have 3.1415 for pi, and toe-in."""
+
+# A wheel sits on its axis, but for the rounding of files: a share of its radius.
+_OFF_AXIS = 0.02
+# The hull of a mesh counts as round if its silhouette nowhere falls short by more than this share.
+_OUT_OF_ROUND = 0.05
+_DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
+
+
+def below(tree: Tree) -> dict[str, list[str]]:
+    """Return the links that hang on each link, itself first."""
+    found: dict[str, list[str]] = {link.name: [link.name] for link in tree.links}
+    for link in reversed(tree.links):  # children before their parents
+        joint = tree.joints.get(link.name)
+        if joint is not None:
+            found[joint.parent].extend(found[link.name])
+    return found
+
+
+def is_parallel(first: Array, second: Array) -> bool:
+    """Whether two directions lie along one line."""
+    return bool(np.linalg.norm(np.cross(first, second)) <= math.sin(PARALLEL))
+
+
+def radius_about(shape: Shape, point: Array, axis: Array) -> float | None:
+    """[m] Return the radius of a shape that is round about an axis; None if it is not."""
+    if shape.kind == "hull":
+        return _radius_of_hull(shape, point, axis)
+    if shape.kind not in ("cylinder", "capsule", "sphere"):
+        return None
+    if shape.kind != "sphere" and not is_parallel(shape.axis, axis):
+        return None
+    offset = float(np.linalg.norm(np.cross(shape.pose.place - point, axis)))
+    return shape.radius if offset <= _OFF_AXIS * shape.radius else None
+
+
+def plane_across(axis: Array) -> Array:
+    """Return two directions at right angles to an axis and to each other, shape (3, 2)."""
+    seed = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    first = np.cross(axis, seed)
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(axis, first)], axis=1)
+
+
+def _radius_of_hull(shape: Shape, point: Array, axis: Array) -> float | None:
+    flat = (shape.points - point) @ plane_across(axis)
+    reach = (flat @ np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])).max(axis=0)
+    largest = float(reach.max())
+    return largest if reach.min() >= (1.0 - _OUT_OF_ROUND) * largest > 0.0 else None
+
+
+ALIKE = 2e-3
+"""[-] By how much grousers may differ, as a share of the radius: files round to 0.1 mm."""
+
+_SHARP = 1e-5
+"""[-] Corners nearer than this share of the distance from the axle are one: those of a prism on its
+two sides, which MuJoCo keeps as float32."""
+
+_MOST_CORNERS = 64  # A prism has eight; the mesh of one may name each for every facet.
+_COUNT = range(3, 201)  # grousers that a gear wheel can have
+
+
+def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
+    """Return the grousers of a wheel; None if its shapes are none such.
+
+    Each is a box or a prism across whose section has a straight tip and two flanks, alike on both
+    sides of the line from the axle through its middle, and which reaches down into the wheel.
+
+    Parameters
+    ----------
+    shapes : list of Shape
+        What turns.
+    joint : Joint
+        On which it turns.
+
+    Returns
+    -------
+    Grousers or None
+        Their figures, each a mean of all.
+    """
+    radii = [radius_about(shape, joint.place, joint.axis) for shape in shapes]
+    root = max((radius for radius in radii if radius is not None), default=0.0)
+    others = [shape for shape, radius in zip(shapes, radii, strict=True) if radius is None]
+    if root <= 0.0 or len(others) not in _COUNT:
+        return None
+    plane = plane_across(joint.axis)
+    found = [_grouser(shape, joint, plane, root) for shape in others]
+    rows = np.array([row for row in found if row is not None])
+    if len(rows) < len(others):
+        return None
+    tip, base, radius, angles = rows.T
+    tolerance = ALIKE * float(radius.max())
+    slots, off = _spaced(angles)
+    if max(np.ptp(each) for each in (tip, base, radius, radius * off)) > tolerance:
+        return None
+    if sorted(slots) != list(range(len(others))):
+        return None
+    first = float(angles[0] + np.mean(off))
+    return Grousers(
+        count=len(others),
+        radius=float(radius.mean()),
+        height=float(radius.mean()) - root,
+        tip_thickness=float(tip.mean()),
+        base_thickness=max(float(tip.mean()), float(base.mean())),
+        direction=plane @ (math.cos(first), math.sin(first)),
+        shapes=tuple(others),
+    )
+
+
+def _spaced(angles: Array) -> tuple[list[int], Array]:
+    """Return which of evenly spaced places is nearest to each angle, and how far off that is [rad].
+
+    The first place is the first angle.
+    """
+    count, step = len(angles), 2.0 * math.pi / len(angles)
+    away = (angles - angles[0]) / step
+    slots = np.round(away)
+    return [int(slot) % count for slot in slots], (away - slots) * step
+
+
+def _grouser(
+    shape: Shape, joint: Joint, plane: Array, root: float
+) -> tuple[float, float, float, float] | None:
+    """Return thickness at tip and root, radius of the tip [m] and direction [rad] of a grouser."""
+    corners = _section(shape, joint, plane)
+    if corners is None:
+        return None
+    tolerance = ALIKE * root
+    (third, fourth, *tip), distances = _by_distance(corners)
+    out = tip[0] + tip[1]
+    length = math.hypot(*out)
+    if distances[2] <= root + tolerance or length <= tolerance:
+        return None
+    out /= length
+    side = np.array([-out[1], out[0]])
+    # Half of the section: away from the axle and to the side, tip first.
+    half_tip = np.array([0.5 * length, 0.5 * abs(float((tip[0] - tip[1]) @ side))])
+    half_base = np.array([float((third + fourth) @ out), abs(float((third - fourth) @ side))]) / 2.0
+    lopsided = abs(float((third + fourth) @ side))
+    if max(distances[3] - distances[2], lopsided, distances[1] - root) > tolerance:
+        return None
+    base = _at_root(half_tip, half_base, root)
+    if base < half_tip[1] - tolerance:
+        return None
+    angle = math.atan2(out[1], out[0])
+    return 2.0 * float(half_tip[1]), 2.0 * base, float(distances[2:].mean()), angle
+
+
+def _by_distance(corners: Array) -> tuple[Array, Array]:
+    """Return corners and their distances [m] from the axle, the nearest first."""
+    distances = np.hypot(*corners.T)
+    order = np.argsort(distances, kind="stable")
+    return corners[order], distances[order]
+
+
+def _at_root(tip: Array, base: Array, root: float) -> float:
+    """[m] Return how far to the side a flank from tip to base meets the root circle."""
+    along = base - tip
+    square, half, beyond = along @ along, tip @ along, tip @ tip - root**2
+    under = half**2 - square * beyond
+    share = 1.0 if under < 0.0 else min(1.0, (-half - math.sqrt(under)) / square)
+    return float(tip[1] + share * along[1])
+
+
+def _section(shape: Shape, joint: Joint, plane: Array) -> Array | None:
+    """[m] Return the corners of a shape about the axle, shape (4, 2); None if it has others."""
+    if shape.kind == "box":
+        along = np.abs(shape.pose.turn.T @ joint.axis)
+        across = int(along.argmax())
+        if along[across] < math.cos(PARALLEL):
+            return None
+        half = [0.5 * shape.size[k] * shape.pose.turn[:, k] for k in range(3) if k != across]
+        points = [shape.pose.place + i * half[0] + j * half[1] for i in (-1, 1) for j in (-1, 1)]
+        corners: Array = (np.array(points) - joint.place) @ plane
+        return corners
+    if shape.kind != "hull" or len(shape.points) > _MOST_CORNERS:
+        return None
+    flat = (shape.points - joint.place) @ plane
+    near = _SHARP * float(np.abs(flat).max(initial=0.0))
+    found: list[Array] = []
+    for point in flat:
+        if all(math.hypot(*(point - other)) > near for other in found):
+            found.append(point)
+        if len(found) > 4:
+            return None
+    return np.array(found) if len(found) == 4 else None
 
 
 def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tuple[Link, Shape]]:

@@ -1,4 +1,4 @@
-"""Why a robot stopped: what is seen, what was tried, and the figures behind them."""
+"""Why a robot stopped: what is seen, what was tried, and the sentence that says so."""
 
 from __future__ import annotations
 
@@ -6,12 +6,307 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from crawler2d.common.table import Table
+import numpy as np
+
+from crawler2d.common.arrays import Table
+from crawler2d.common.bodies import BodyKind
 from crawler2d.results.findings import Findings, Intrusion, Mechanism, Tried
 from crawler2d.results.outcome import Outcome
-from crawler2d.results.sentence import sentence
 
-__all__ = ["Diagnosis"]
+__all__ = ["Diagnosis", "body_name", "in_words", "sentence", "told"]
+
+_NAMES = {
+    BodyKind.BELT: "the belt",
+    BodyKind.SKID: "the skid",
+    BodyKind.BELLY: "the belly",
+    BodyKind.GROUSER: "a grouser",
+    BodyKind.SHOE: "a shoe",
+    BodyKind.GUIDE: "the guide",
+    BodyKind.SPROCKET: "the sprocket",
+    BodyKind.IDLER: "the idler",
+    BodyKind.ROAD_WHEEL: "a road wheel",
+    BodyKind.ROLLER: "a return roller",
+}
+"""Names of the bodies that are not wheels."""
+_LEAST_SHARE = 0.02
+"""Smaller shares are not worth telling."""
+_LEAST_DEPTH = 5e-4
+"""[m] Smaller depths round to 0 mm."""
+_LEAST_SLIP = 5e-3
+"""[m/s] Slower slip is not worth telling."""
+_CHANGED = {
+    "closed track": "closed track",
+    "closed track, clear of the ground": "closed track, set down clear of the ground",
+    "closed smooth track": "smooth closed track",
+    "closed track, from the start": "closed track from the start",
+    "belt": "belt along its outline",
+    "belt, from the start": "belt from the start",
+    "one motor": "one motor for all wheels",
+    "torque x 2": "twice the torque",
+    "torque x 10": "ten times the torque",
+    "friction x 2": "twice the friction",
+    "no belly": "without its belly",
+    "flippers level": "flippers level",
+}
+"""What a trial changes, in words; the controls change nothing."""
+_ENDS = {
+    Outcome.CLEARED: "clears",
+    Outcome.TIPPED_OVER: "tips over",
+    Outcome.LEFT_TERRAIN: "leaves the ground",
+    Outcome.DETRACKED: "throws its track",
+    Outcome.TIMED_OUT: "is still moving",
+    Outcome.SEIZED: "seizes",
+    Outcome.CYCLING: "goes to and fro",
+    Outcome.HUNG_UP: "hangs on its belly",
+    Outcome.STALLED: "is stalled",
+    Outcome.SLIPPING: "slips",
+}
+"""How a trial ends; of a stop what is seen of it."""
+_HELD = {
+    "interlocked": ", with the flank of a grouser against it",
+    "pinched": ", closing the gap around it",
+}
+"""What the mechanism adds to the bodies that bear on the ground inside."""
+
+
+def sentence(found: Findings) -> str:
+    """Say what was found about a stop, then what was tried.
+
+    Each clause states one fact; what follows from the outcome or from another clause is left out.
+    """
+    d = found
+    tellers = (_inside, _on_it, _belly, _drives, _progress, _balance)
+    said = "; ".join(clause for clause in (tell(d) for tell in tellers) if clause)
+    facts = f"{_head(d)}: {said}" if said else _head(d)
+    if d.passing:
+        return f"{facts}. {_goes_on(d)}"
+    tried = "; ".join(filter(None, (told(d, each) for each in d.trials)))
+    return f"{facts}. Tried: {tried}{_beyond_belts(d)}" if tried else facts
+
+
+def told(d: Findings, tried: Tried) -> str:
+    """Say what was changed in a trial and what came of it; nothing of a control."""
+    return f"{_CHANGED[tried.name]}: {_came(d, tried)}" if tried.name in _CHANGED else ""
+
+
+def _head(d: Findings) -> str:
+    if d.passing:
+        return f"in passing, {_word(d.symptom)}"
+    where = _where(d.intrusion) if d.outcome == Outcome.SEIZED and d.intrusion else ""
+    on_end = d.outcome == Outcome.HUNG_UP and d.belly_side in ("tail", "nose")
+    return f"{_word(d.outcome)}{where}" + (f" on the {d.belly_side} of its hull" if on_end else "")
+
+
+def _word(outcome: Outcome) -> str:
+    return str(outcome).replace("_", " ")
+
+
+def _goes_on(d: Findings) -> str:
+    """Say which control left a passing stop."""
+    left = next(tried for tried in d.trials if tried.freed)
+    by_itself = left.name == "unchanged"
+    how = "It goes on by itself" if by_itself else "With its track built anew it goes on"
+    return f"{how}: {_came(d, left)}"
+
+
+def _beyond_belts(d: Findings) -> str:
+    """Say so if no belt that was tried from the start came to the stop, or none got past it."""
+    starts = [tried for tried in d.trials if tried.is_from_the_start]
+    if not starts or any(map(_is_past, starts)):
+        return ""
+    return f". No belt {'got past here' if d.reached_by_belt else 'came this far'} from the start"
+
+
+def _is_past(tried: Tried) -> bool:
+    """Whether a belt got past the stop, be it to tip over farther on."""
+    is_lost = tried.outcome in (Outcome.TIPPED_OVER, Outcome.LEFT_TERRAIN)
+    return tried.freed or (is_lost and tried.distance > 0.0)
+
+
+def _came(d: Findings, tried: Tried) -> str:
+    """Say what came of a trial of a stop."""
+    end = _end(d, tried)
+    if tried.freed:
+        said = f"{'past here' if tried.is_from_the_start else 'free'} after {tried.time:.1f} s"
+        if tried.outcome != Outcome.TIMED_OUT:
+            said += f", then {end}"
+    elif tried.is_from_the_start:
+        said = f"{end} {_how_far(tried) or 'here'}"
+    elif tried.outcome == Outcome.TIMED_OUT:
+        said = "still moving, but not free"
+    else:
+        is_placed = tried.distance < 0.0 or _is_jammed_elsewhere(d, tried)
+        further = "" if is_placed else _how_far(tried)
+        said = f"{end} {further}" if further else end
+    if tried.starts > 1:
+        said += f" ({tried.freeing} of {tried.starts} times free)"
+    return said
+
+
+def _how_far(tried: Tried) -> str:
+    """Say how far ahead of the stop a trial came, or how far it fell short of it."""
+    if abs(tried.distance) < _LEAST_DEPTH:
+        return ""
+    which = "further on" if tried.distance > 0.0 else "short of here"
+    return f"{1e3 * abs(tried.distance):.0f} mm {which}"
+
+
+def _end(d: Findings, tried: Tried) -> str:
+    if not tried.jammed:
+        return in_words(tried.outcome)
+    jam = tried.intrusion
+    if jam is None:
+        return "is jammed"
+    if _is_jammed_elsewhere(d, tried):
+        return f"is jammed{_where(jam)}, in {_track(jam)} at x = {jam.x:z.3f} m, y = {jam.y:z.3f} m"
+    again = d.intrusion is not None and sorted(jam.bodies) == sorted(d.intrusion.bodies)
+    return "is jammed again" if again else f"is jammed again,{_where(jam)}"
+
+
+def _is_jammed_elsewhere(d: Findings, tried: Tried) -> bool:
+    """Whether a trial ended in a jam at another edge, or in another track, than the stop."""
+    was, jam = d.intrusion, tried.intrusion
+    if not tried.jammed or jam is None:
+        return False
+    here = (jam.side, jam.carrier, jam.edge)
+    return not d.jammed or was is None or here != (was.side, was.carrier, was.edge)
+
+
+def _inside(d: Findings) -> str:
+    """Say what ground is inside the track, and where, unless the head says that."""
+    piece = d.intrusion
+    if piece is None:
+        return ""
+    where = "" if d.outcome == Outcome.SEIZED and not d.passing else _where(piece)
+    roots = ""
+    if _has_grousers(piece) and piece.bodies[0] != piece.bodies[1]:
+        is_past = piece.root_depth > _LEAST_DEPTH
+        how_far = f"{1e3 * piece.root_depth:.0f} mm past" if is_past else "not as far as"
+        roots = f" ({how_far} the grouser roots)"
+    place = f"the ground at x = {piece.x:z.3f} m, y = {piece.y:z.3f} m"
+    return f"{place} stands {1e3 * piece.depth:.0f} mm inside {_track(piece)}{roots}{where}"
+
+
+def _has_grousers(piece: Intrusion) -> bool:
+    return piece.depth - piece.root_depth > _LEAST_DEPTH
+
+
+def _track(piece: Intrusion) -> str:
+    side = "" if piece.side == "both" else f"{piece.side} "
+    if piece.carrier == "chassis":
+        return f"the {side}track"
+    return f"the track of the {side}{piece.carrier}"
+
+
+def _where(piece: Intrusion) -> str:
+    """Say between which bodies a piece of ground is."""
+    rear, front = sorted(piece.bodies)
+    kind = BodyKind(piece.body_kinds[0])
+    if rear != front and kind.is_in_chain:
+        return f" under the shoes between {' and '.join(_in_chain(piece))}"
+    if rear != front:
+        return f" between wheels {rear} and {front}"
+    if kind.is_in_chain:
+        return " between two shoes"
+    name = _NAMES.get(kind, f"wheel {rear}")
+    return f" between two grousers of {name}" if _has_grousers(piece) else f" at {name}"
+
+
+def _in_chain(piece: Intrusion) -> list[str]:
+    """Name the wheels that the chain runs on, on either side of an intrusion."""
+    names = [_NAMES[BodyKind(kind)] for kind in piece.body_kinds]
+    return [names[0], "the next"] if names[0] == names[1] else names
+
+
+def _on_it(d: Findings) -> str:
+    """Say what bears on the ground inside the track, most loaded first."""
+    contacts = d.contacts
+    rows = np.flatnonzero(contacts["in_pocket"])
+    bodies = contacts["body"][rows]
+    forces = {int(body): 0.0 for body in bodies}
+    sliding = dict(forces)
+    for body, force, slides in zip(
+        bodies, contacts["normal_force"][rows], contacts["slides"][rows], strict=True
+    ):
+        forces[int(body)] += float(force)
+        sliding[int(body)] += float(force) * bool(slides)
+    told = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
+    told = [body for body in told if forces[body] >= _LEAST_SHARE * sum(forces.values())]
+    names = [body_name(d, body) for body in told]
+    if len(names) == 2 and names[0] == names[1]:
+        names[1] = "another"
+    slides = [sliding[body] > 0.5 * forces[body] for body in told]
+    does = ["slides on it under a load of" if slide else "bears on it with" for slide in slides]
+    newtons = [f"{forces[body]:.0f} N" for body in told]
+    if not told:
+        return ""
+    said = f"{names[0]} {does[0]} {newtons[0]}"
+    if len(told) == 2 and does[0] != does[1]:
+        said += f" and {names[1]} {does[1]} {newtons[1]}"
+    elif len(told) == 2:
+        said += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
+    return said + _HELD.get(str(d.mechanism), "")
+
+
+def in_words(outcome: Outcome) -> str:
+    """Say how a trial ends, in the present tense."""
+    return _ENDS[outcome]
+
+
+def body_name(d: Findings, body: int) -> str:
+    """Name a body that bears in a stop."""
+    kinds = d.contacts["body_kind"][d.contacts["body"] == body]
+    kind = BodyKind(kinds[0]) if len(kinds) else BodyKind.WHEEL
+    return _NAMES.get(kind, f"wheel {body}")
+
+
+def _belly(d: Findings) -> str:
+    if d.belly_share < _LEAST_SHARE:
+        return ""
+    side = d.belly_side
+    what = f"the {side}" if side in ("tail", "nose") else "the belly"
+    said = f"{what} carries {_percent(d.belly_share)} of the supporting force"
+    on_it = d.contacts["body_kind"] == BodyKind.BELLY
+    if d.outcome != Outcome.HUNG_UP or not on_it.any():
+        return said
+    force = d.contacts["normal_force"][on_it]
+    x, y = (np.average(d.contacts[name][on_it], weights=force) for name in ("x", "y"))
+    return f"{said} at x = {x:z.3f} m, y = {y:z.3f} m"
+
+
+def _drives(d: Findings) -> str:
+    """Say what motors and surfaces do, unless the ground inside the track implies it."""
+    if d.stalled_share > 0.0:
+        of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
+        return f"{of}the motors are at their torque limit"
+    if d.symptom == Outcome.CYCLING:
+        return "it moves to and fro"
+    track = d.contacts["body_kind"] != BodyKind.BELLY
+    forces = d.contacts["normal_force"][track]
+    if d.outcome != Outcome.SLIPPING or forces.sum() == 0.0:
+        return ""
+    slip = float(np.average(np.abs(d.contacts["surface_speed"][track]), weights=forces))
+    return f"the track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
+
+
+def _progress(d: Findings) -> str:
+    if d.progress < _LEAST_SHARE:
+        return ""
+    return f"it still creeps at {_percent(d.progress)} of the commanded speed"
+
+
+def _balance(d: Findings) -> str:
+    """Say so if the forces do not balance."""
+    if d.certified:
+        return ""
+    if d.imbalance is None:
+        return "the balance of forces could not be computed"
+    residual = f"the smallest residual is {100 * d.imbalance:.2g} % of the weight"
+    return f"no contact forces balance it: {residual}"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -1,13 +1,61 @@
-"""How a run ended."""
+"""How a run ended, and the words of a diagnosis with their meanings."""
 
 from __future__ import annotations
 
 from enum import StrEnum
 
 from crawler2d import _core
-from crawler2d.results.glossary import OUTCOMES, listed
 
-__all__ = ["Outcome"]
+__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "listed"]
+
+OUTCOMES = {
+    "detracked": "a chain of shoes came off its guide or its wheels",
+    "tipped_over": "the chassis tilted by more than criteria.tip_over_angle",
+    "left_terrain": "an end axle went beyond the end of the described ground",
+    "cleared": "the robot is past the goal",
+    "seized": "stopped with ground jammed in a track; closed, that track gets free",
+    "cycling": "stopped, moving to and fro by more than criteria.cycling_distance",
+    "hung_up": "stopped with criteria.belly_load of the load or more on the belly",
+    "stalled": "stopped with at least half of the motors on the ground at their torque limit",
+    "slipping": "stopped while the track slips",
+    "timed_out": "the time was over while the robot was moving, or in a passing stop",
+}
+"""How a run can end; if several apply, the first."""
+
+MECHANISMS = {
+    "fouled": "the guide or the wheels that a chain of shoes runs on rest on it",
+    "pinched": "the gap between two shoes of a chain closes on it",
+    "interlocked": "the motors are at their torque limit, a grouser's flank is against it",
+    "blocked": "the motors are at their torque limit",
+    "straddled": "two bodies of the track bear on it",
+    "undercut": "one body bears on it and slides at its friction limit",
+}
+"""How the most loaded ground inside a track is held; the first that applies."""
+
+TRIALS = {
+    "unchanged": "the run goes on: a control",
+    "rebuilt": "its own track is built anew in this pose: a control of what follows",
+    "closed track": "a belt round the bodies of each track, with grousers if the model has some",
+    "closed track, clear of the ground": (
+        "the same belt, at rest in the nearest pose in which no ground is inside it"
+    ),
+    "closed smooth track": "a belt without grousers round the bodies of each track",
+    "belt": "a belt along the outlines of chassis and flippers, wherever the model has its bodies",
+    "belt, from the start": "the same where the run began",
+    "closed track, from the start": "the closed track where the run began",
+    "one motor": "one motor for each track in place of one for each wheel",
+    "torque x 2": "twice the torque limit",
+    "torque x 10": "ten times the torque limit",
+    "friction x 2": "twice the friction",
+    "no belly": "the belly is taken off",
+    "flippers level": "the flippers turn to angle 0",
+}
+"""What is changed at a stop, one thing at a time."""
+
+
+def listed(words: dict[str, str]) -> str:
+    """List words and their meanings for the end of a docstring."""
+    return "\n".join(f"- {word}: {meaning}" for word, meaning in words.items())
 
 
 class Outcome(StrEnum):

@@ -9,8 +9,8 @@ from typing import Any
 
 from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.diagnosis import in_words
 from crawler2d.results.outcome import Outcome
-from crawler2d.results.sentence import in_words
 
 __all__ = ["TipOver", "tip_over_of"]
 

@@ -1,4 +1,4 @@
-"""Simulate one scenario, or many on several threads."""
+"""Simulate one scenario, or many on several threads; what a batch had finished at Ctrl-C."""
 
 from __future__ import annotations
 
@@ -8,19 +8,41 @@ from typing import Any, Literal
 from crawler2d import _core
 from crawler2d.common.keywords import refuse_unknown, takes_keywords
 from crawler2d.errors import RunUnfinished, ScenarioError, own_error, raise_first
-from crawler2d.parameters.paths import known_paths
-from crawler2d.parameters.plain import field_hints
+from crawler2d.parameters.fields import field_hints, known_paths
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
-from crawler2d.runs.interrupted import BatchInterrupted
-from crawler2d.runs.progress import Progress, reporter
-from crawler2d.runs.recording import Recording, recording
+from crawler2d.runs.branch import Recording, Trials, recording, trial_names
+from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
-from crawler2d.runs.threads import thread_count
-from crawler2d.runs.trials import Trials, trial_names
 
-__all__ = ["simulate", "simulate_many", "simulate_passed"]
+__all__ = ["BatchInterrupted", "simulate", "simulate_many", "simulate_passed"]
+
+
+class BatchInterrupted(KeyboardInterrupt):
+    """Ctrl-C ended a batch early.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        One per scenario, in order. An unfinished run has a `RunUnfinished` as its `error`.
+    store : str
+        The file that keeps the finished runs; "" if there is none.
+    """
+
+    runs: list[Run]
+    store: str
+
+    def __init__(self, runs: Sequence[Run], store: str = "") -> None:
+        super().__init__(list(runs), store)
+        self.runs = list(runs)
+        self.store = store
+
+    def __str__(self) -> str:
+        """Say how many runs were finished."""
+        finished = sum(not isinstance(run.error, RunUnfinished) for run in self.runs)
+        kept = f"{self.store} keeps them" if self.store else ".runs holds them"
+        return f"interrupted after {finished} of {len(self.runs)} runs; {kept}"
 
 
 def simulate(

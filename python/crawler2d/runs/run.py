@@ -11,19 +11,20 @@ from crawler2d.errors import ScenarioError
 from crawler2d.results.record import Record
 from crawler2d.results.tip_over import TipOver, tip_over_of
 from crawler2d.runs import branch as branching
-from crawler2d.runs.cross_check import CrossCheck, cross_checked
-from crawler2d.runs.progress import Progress, Reporter, reporter
-from crawler2d.runs.recording import Recording, recording
-from crawler2d.runs.trials import (
+from crawler2d.runs.branch import (
     EscapeForce,
+    Recording,
     Trial,
     escape_force_at,
+    recording,
     run_of_trial,
     trial_at,
     trial_names,
     trials_at,
     variant_tried_at,
 )
+from crawler2d.runs.cross_check import CrossCheck, cross_checked
+from crawler2d.runs.progress import Progress, Reporter, reporter
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -533,7 +534,7 @@ class Run(Record):
         AttributeError
             If the run was recorded with ``record="summary"``.
         """
-        from crawler2d.pictures.history import plot_history  # noqa: PLC0415 - optional
+        from crawler2d.pictures.side_view import plot_history  # noqa: PLC0415 - optional
 
         return plot_history(self, axes)
 

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number
-from crawler2d.common.frozen import read_only
+from crawler2d.common.arrays import Table, read_only, real_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
-from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.diagnosis import Diagnosis

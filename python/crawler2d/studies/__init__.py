@@ -24,13 +24,11 @@ attribute `settings` counts the cells that were tried.
 """
 
 from crawler2d.studies.boundary import critical
-from crawler2d.studies.computing import real_time_factor
-from crawler2d.studies.crossing import success
 from crawler2d.studies.decides import what_decides
 from crawler2d.studies.driving import acceleration, braking_distance, max_speed
 from crawler2d.studies.maps import seizure_map
-from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope
-from crawler2d.studies.riding import odometry, ride
+from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope, success
+from crawler2d.studies.riding import odometry, real_time_factor, ride
 from crawler2d.studies.search import search
 
 __all__ = [

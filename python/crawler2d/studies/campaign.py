@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -15,16 +15,15 @@ from crawler2d.common.arrays import whole_number
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.outcome import Outcome
-from crawler2d.results.row import Row
-from crawler2d.runs.interrupted import BatchInterrupted
-from crawler2d.runs.progress import Progress, Reporter, reporter
-from crawler2d.runs.threads import thread_count
-from crawler2d.runs.trials import Trials, trial_names
-from crawler2d.studies.multiplied import multiplied
+from crawler2d.results.record import Row
+from crawler2d.runs.batch import BatchInterrupted
+from crawler2d.runs.branch import Trials, trial_names
+from crawler2d.runs.progress import Progress, Reporter, reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
 from crawler2d.sweeps.plan import Planner, World
 from crawler2d.sweeps.sequential import Until, sequential
 from crawler2d.sweeps.statistics import Interval
+from crawler2d.variation.distributions import Distribution, Levels
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
@@ -40,7 +39,69 @@ __all__ = [
     "campaign",
     "counting",
     "is_cleared",
+    "multiplied",
 ]
+
+
+def multiplied(planner: Planner, factors: Mapping[str, float]) -> Planner:
+    """Multiply what is drawn of some fields: the same numbers give values times a factor.
+
+    Parameters
+    ----------
+    planner : Planner
+        Of the draws as they are.
+    factors : mapping of str to float
+        [-] By path of a field whose own value in the scenario has this factor already.
+
+    Returns
+    -------
+    Planner
+        The same if there are no factors.
+    """
+    if not factors:
+        return planner
+    return replace(
+        planner,
+        variation=_of(planner.variation, factors),
+        unknowns=_of(planner.unknowns, factors),
+    )
+
+
+def _of(variation: Variation, factors: Mapping[str, float]) -> Variation:
+    found = {
+        path: _Multiplied(each, factors[path])
+        # Levels are of the field's own value, which has the factor already.
+        if path in factors and not isinstance(each, Levels)
+        else each
+        for path, each in variation.distributions.items()
+    }
+    return replace(variation, distributions=found)
+
+
+@dataclass(frozen=True, slots=True)
+class _Multiplied:
+    """A distribution times a factor, which the field's own value holds already."""
+
+    of: Distribution
+    factor: float
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it gives whole numbers."""
+        return self.of.is_whole
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value; else it replaces that."""
+        return self.of.is_relative
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
+        """Map numbers from 0 to 1 to values."""
+        return self.factor * self.of.values(numbers, own / self.factor)
+
+    def on(self, scenario: Scenario) -> Distribution:
+        """Return this distribution with every length that it takes from a scenario."""
+        return replace(self, of=self.of.on(scenario))
 
 
 class Sampling(TypedDict, total=False):

@@ -1,25 +1,254 @@
-"""How fast a model drives, how fast it gets there, how soon it stops, and what limits that."""
+"""How fast a model drives, accelerates and brakes, and what limits that: runs with one doubled."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from crawler2d.common.arrays import real_number
 from crawler2d.common.keywords import takes_keywords
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.fields import read_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies.campaign import Sampling
-from crawler2d.studies.limited import Asked, Figure, limited
-from crawler2d.studies.limits import Change
-from crawler2d.studies.models import Models
-from crawler2d.studies.steady import Halt, RunUp
+from crawler2d.studies.campaign import Sampling, campaign
+from crawler2d.studies.steady import Halt, RunUp, drive, on_plane
+from crawler2d.studies.tables import Dims, Measure, Models, measured_of, read_models
+from crawler2d.variation.distributions import Ranges
+from crawler2d.variation.variability import of_contact, of_start
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from crawler2d.sweeps.found import Found
 
-__all__ = ["acceleration", "braking_distance", "max_speed"]
+__all__ = [
+    "FRICTION",
+    "TORQUE",
+    "UNCHANGED",
+    "Asked",
+    "Change",
+    "Figure",
+    "acceleration",
+    "braking_distance",
+    "limited",
+    "limits",
+    "max_speed",
+]
+
+_FACTOR = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What is doubled.
+
+    Attributes
+    ----------
+    name : str
+        Of the limit, such as "torque".
+    paths : tuple of str
+        The numbers that are doubled.
+    meaning : str
+        What it is, for the reader of a table.
+    """
+
+    name: str
+    paths: tuple[str, ...] = ()
+    meaning: str = ""
+
+    @property
+    def label(self) -> str:
+        """Such as "torque x 2"."""
+        return f"{self.name} x {_FACTOR:g}" if self.paths else self.name
+
+    @property
+    def factors(self) -> Mapping[str, float]:
+        """[-] By path, for `Cell`."""
+        return dict.fromkeys(self.paths, _FACTOR)
+
+    def of(self, scenario: Scenario) -> Scenario:
+        """Double these numbers of a scenario."""
+        return scenario.replace({p: _FACTOR * read_path(scenario, p) for p in self.paths})
+
+
+UNCHANGED = Change("unchanged")
+TORQUE = Change("torque", ("robot.drivetrain.max_torque",), "robot.drivetrain.max_torque, an input")
+FRICTION = Change("friction", ("terrain.friction",), "terrain.friction, an input")
+
+
+def limits(
+    values: NDArray[np.float64],
+    changes: tuple[Change, ...],
+    *,
+    share: float,
+    least: float,
+    falls: bool = False,
+) -> NDArray[np.str_]:
+    """Name what limits a figure: what improves it when it is doubled, by more than chance does.
+
+    Parameters
+    ----------
+    values : ndarray, shape (m, n, s, r)
+        Of m models, n changes, s samples and r repeats; nan where there is no figure.
+    changes : tuple of n Change
+        The first is that nothing is changed.
+    share : float
+        [-] Share of the unchanged median by which a change must move it, at least.
+    least : float
+        In units of the figure, the same; less is no figure.
+    falls : bool
+        Whether lower is better, as of a braking distance.
+
+    Returns
+    -------
+    ndarray of str, shape (m, s)
+        Such as "torque", "command and friction", or "none of these". A change counts if the median
+        over the repeats improves by more than these, and by more than the repeats without a change
+        lie apart; where these have no figure, if there is one with the change.
+    """
+    medians = np.median(values, axis=-1)
+    before = medians[:, :1]
+    apart = np.ptp(values[:, :1], axis=-1)
+    gain = (before - medians) if falls else (medians - before)
+    needed = np.maximum(np.maximum(share * np.abs(before), apart), least)
+    counts = np.where(np.isnan(before), np.isfinite(medians), gain > needed)
+    names = np.array([change.name for change in changes])
+    found = np.empty((values.shape[0], values.shape[2]), object)
+    for model, sample in np.ndindex(found.shape):
+        own = names[1:][counts[model, 1:, sample]]
+        found[model, sample] = " and ".join(own) or "none of these"
+    return found.astype(str)
+
+
+_SHARE = 0.02
+"""[-] A change that moves a figure by less is no limit of it."""
+_OWN = ("drive.speed", "drive.schedule", "duration", "goal")
+"""What these studies set themselves."""
+_COMMANDED = (*_OWN, "robot.drivetrain.max_speed")
+"""What may not be drawn: commanded is the largest speed."""
+_PARTS = ("run-up", "one window", "two windows", "stop", "rest")
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One figure of driving.
+
+    Attributes
+    ----------
+    study, name, units, long_name : str
+        Names of study and column, unit, and what it is in words.
+    command : Change
+        Which inputs are its command.
+    least : float
+        [units] A change below this is none.
+    values : callable
+        Takes a finished run-up, and a stop from there if it `halts`; gives the figure, shape
+        (samples, repeats).
+    halts : bool
+        Whether the robot stops; then less is better.
+    """
+
+    study: str
+    name: str
+    units: str
+    long_name: str
+    command: Change
+    least: float
+    values: Callable[[RunUp, Halt | None], NDArray[np.float64]]
+    halts: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is asked of a study: models, commanded speed [m/s] and number of repeats."""
+
+    models: Models | None
+    speed: float | None
+    repeats: int
+
+
+def limited(figure: Figure, scenario: Scenario, asked: Asked, how: Sampling) -> Found:
+    """Drive every model as it is and with each change, and arrange what came of it."""
+    if not isinstance(scenario, Scenario):
+        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    given = None if asked.speed is None else real_number(asked.speed, "speed")
+    if given is not None and not given > 0.0:
+        raise ScenarioError("speed", given, "must be above 0")
+    fields = read_models(scenario, asked.models)
+    for label, own in fields.items():
+        _refuse_own(own, f"models[{label!r}]")
+    changes = (UNCHANGED, figure.command, TORQUE, FRICTION)
+    with campaign(on_plane(scenario, given), _sampling(how), repeats=asked.repeats) as study:
+        run_ups = [
+            RunUp(
+                (f"model={label}", f"change={change.label}"),
+                change.of(on_plane(scenario.replace(own), given)),
+                change.factors,
+            )
+            for label, own in fields.items()
+            for change in changes
+        ]
+        drive(study, run_ups)
+        halts = [Halt(each) if figure.halts else None for each in run_ups]
+        drive(study, [halt for halt in halts if halt is not None])
+        driven = list(zip(run_ups, halts, strict=True))
+        shape = (len(fields), len(changes), -1, study.until.most)
+        values = np.array([figure.values(*both) for both in driven]).reshape(shape)
+        speeds = np.array([run_up.speed for run_up in run_ups]).reshape(shape)
+        measures = {
+            figure.name: Measure(("model",), values[:, 0], figure.units, figure.long_name),
+            f"{figure.name}_with": Measure(
+                ("model", "change"), values, figure.units, f"{figure.long_name} with each change"
+            ),
+        }
+        if figure.name != "speed":
+            measures["speed"] = Measure(("model",), speeds[:, 0], "m/s", "steady speed")
+        dims: Dims = {
+            "model": (list(fields), {}),
+            "change": ([each.label for each in changes], {"long_name": "what is doubled"}),
+            "part": (_PARTS[: 3 + 2 * figure.halts], {"long_name": "how far a run goes"}),
+        }
+        tallies = [part for both in driven for course in both if course for part in course.tallies]
+        found = measured_of(study, figure.study, tallies, dims, measures)
+    limit = limits(values, changes, share=_SHARE, least=figure.least, falls=figure.halts)
+    ended = np.array([(halt or run_up).ended for run_up, halt in driven])
+    one, every = found[figure.name], found[f"{figure.name}_with"]
+    meanings = {change.name: change.meaning for change in changes[1:]}
+    told = {"long_name": "what limits it, found by doubling each", "share": _SHARE, **meanings}
+    how_ended = {"long_name": "how most of the longest runs ended"}
+    return found.assign(
+        limit=(one.dims, limit.reshape(one.shape), told),
+        ended=(every.dims, ended.reshape(every.shape), how_ended),
+    )
+
+
+def _refuse_own(given: object, place: str) -> None:
+    """Refuse fields that the study sets itself."""
+    for path in given if isinstance(given, Mapping) else ():
+        if path in _OWN:
+            rule = f"must not have {path}, which the study sets; a speed is given by speed="
+            raise ScenarioError(place, path, rule)
+
+
+def _sampling(how: Sampling) -> Sampling:
+    """Take what the study commands out of what is drawn, or refuse it."""
+    drawn = how.get("vary")
+    vary = of_start() | of_contact() if drawn is None else drawn
+    if isinstance(vary, Ranges):
+        gone = [path for path in _COMMANDED if path in vary.gives_way]
+        kept = {path: each for path, each in vary.items() if path not in gone}
+        vary = Ranges(kept, vary.sources, vary.gives_way.difference(gone))
+    for name, given in (("vary", vary), ("unknown", how.get("unknown"))):
+        drawn_too = given if isinstance(given, Mapping) else {}
+        for path in _COMMANDED:
+            if path in drawn_too:
+                rule = "must not draw what the study commands: give models for other speeds"
+                raise ScenarioError(f"{name}[{path!r}]", drawn_too[path], rule)
+    return {**how, "vary": vary}
+
 
 _STANDS = 1e-3
 """[m/s] A robot that is slower stands."""

@@ -15,11 +15,10 @@ from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.studies.campaign import Campaign, Sampling, Tally, campaign
-from crawler2d.studies.halving import Candidate, Fresh, halve, ranked
-from crawler2d.studies.judged import Confirmation, judged
-from crawler2d.studies.models import Models
-from crawler2d.sweeps.compare import variants
-from crawler2d.sweeps.labels import Label, labelled
+from crawler2d.studies.candidates import Candidate, Confirmation, Fresh, halve, judged, ranked
+from crawler2d.studies.tables import Models
+from crawler2d.sweeps.axes import Label, labelled
+from crawler2d.sweeps.sweep import variants
 from crawler2d.variation.draws import Variation
 from crawler2d.variation.variability import of_contact, of_field, of_start
 

@@ -14,7 +14,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat, Points, Ramp
 from crawler2d.results.outcome import Outcome
-from crawler2d.results.row import Row
+from crawler2d.results.record import Row
 from crawler2d.studies.campaign import Campaign, Cell, Tally
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The runs of a study as a data set: rates or measures by cell, and every run behind them."""
+"""The models that a study compares, and its runs as a data set: rates or measures by cell."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.labelled import build_attributes
 from crawler2d.sweeps.axes import field_attributes, short_names
-from crawler2d.sweeps.dataset import Column, dataset_of, row_columns
 from crawler2d.sweeps.rates import banded
+from crawler2d.sweeps.sweep import Variant, variants
+from crawler2d.sweeps.tabulate import Column, dataset_of, row_columns
 
 if TYPE_CHECKING:
     import xarray
@@ -22,7 +24,18 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
     from crawler2d.sweeps.statistics import Interval
 
-__all__ = ["Dims", "Measure", "found_of", "measured_of", "summary"]
+__all__ = ["Dims", "Measure", "Models", "found_of", "measured_of", "read_models", "summary"]
+
+Models = Mapping[Any, Variant] | Sequence[Variant]
+"""By label, or objects that label themselves; see `compare`."""
+
+
+def read_models(scenario: Scenario, models: Models | None) -> dict[Any, Mapping[str, Any]]:
+    """Return the fields that each model replaces, by label; None is the scenario's own track."""
+    if models is None:
+        return {scenario.robot.track.in_words: {}}
+    return variants(models)
+
 
 Dims = Mapping[str, tuple[Sequence[Any], Mapping[str, str]]]
 """Labels and attributes of each dimension of the cells of a study."""

@@ -1,10 +1,12 @@
-"""The axes of a sweep: which fields take which values, and the names of the dimensions."""
+"""The axes and columns of a table: fields with their values, labels, and what stops add."""
 
 from __future__ import annotations
 
+import dataclasses
+import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,14 +15,189 @@ import numpy as np
 from crawler2d.common.arrays import frozen_scalar
 from crawler2d.common.units import METRICS, unit_of
 from crawler2d.errors import ScenarioError
-from crawler2d.results.glossary import TRIALS
-from crawler2d.sweeps.labels import Label, labelled
-from crawler2d.sweeps.stops import stop_columns
+from crawler2d.parameters.fields import Parameters
+from crawler2d.results.outcome import TRIALS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["COLUMNS", "Axis", "coordinates", "field_attributes", "read_axes", "short_names"]
+    from crawler2d.results.diagnosis import Diagnosis
+    from crawler2d.results.findings import Tried
+
+__all__ = [
+    "COLUMNS",
+    "Axis",
+    "Label",
+    "coordinates",
+    "field_attributes",
+    "labelled",
+    "read_axes",
+    "short_name",
+    "short_names",
+    "stop_columns",
+]
+
+Label = str | int | float
+
+# Longer labels make tables hard to read.
+_LONGEST = 60
+
+
+def labelled(values: object, place: str) -> dict[Label, Any]:
+    """Read the values of an axis: a mapping from labels, or a sequence that labels itself.
+
+    Parameters
+    ----------
+    values : mapping or iterable
+        What the user gave.
+    place : str
+        The argument that holds them, for messages.
+
+    Returns
+    -------
+    dict
+        Values by label, in order. The labels are all numbers, or all strings.
+
+    Raises
+    ------
+    ScenarioError
+        If there are no values, or a label is missing or not unique.
+    """
+    given = _given(values, place)
+    if not given:
+        raise ScenarioError(place, values, "must have at least one value")
+    if not all(isinstance(label, (int, float)) for _, label, _ in given):
+        given = [(where, str(label), value) for where, label, value in given]
+    found: dict[Label, Any] = {}
+    for where, label, value in given:
+        if label in found:
+            rule = f"must have unique labels, not {label} twice: give a mapping from labels"
+            raise ScenarioError(where, value, rule)
+        found[label] = value
+    return found
+
+
+def _given(values: object, place: str) -> list[tuple[str, Label, Any]]:
+    """List the place of each value, its label, and the value."""
+    if isinstance(values, Mapping):
+        return [(f"{place}[{key!r}]", _key(key, place), value) for key, value in values.items()]
+    # A set has no order, and a string is a single value.
+    if not isinstance(values, Iterable) or isinstance(values, (str, bytes, set, frozenset)):
+        rule = "must be a sequence of values, or a mapping from labels to values"
+        raise ScenarioError(place, values, rule)
+    if isinstance(values, np.ndarray) and values.ndim == 0:
+        raise ScenarioError(place, values, "must have one dimension")
+    listed = list(values)
+    places = [f"{place}[{index}]" for index in range(len(listed))]
+    return [(where, _label(v, where), v) for where, v in zip(places, listed, strict=True)]
+
+
+def _key(key: object, place: str) -> Label:
+    label = frozen_scalar(key, whole=True)
+    if type(label) not in (str, int, float):
+        raise ScenarioError(place, key, "must have strings or numbers as labels")
+    return label  # type: ignore[no-any-return]
+
+
+def _label(value: object, where: str) -> Label:
+    value = frozen_scalar(value, whole=True)
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return value
+    label = _text(value)
+    if len(label) > _LONGEST:
+        rule = "must have a short label: give a mapping from labels to values"
+        raise ScenarioError(where, value, rule)
+    return label
+
+
+def _text(value: Any) -> str:
+    """Write a value as the call that makes it, without defaults."""
+    value = frozen_scalar(value, whole=True)
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (tuple, list)):
+        return f"({', '.join(map(_text, value))})"
+    if not isinstance(value, Parameters):
+        return str(value)
+    shown = []
+    for field in dataclasses.fields(value):  # type: ignore[arg-type]
+        inner = getattr(value, field.name)
+        if inner != field.default and _counts(value, field):
+            text = _text(inner)
+            shown.append(f"{field.name}={text}" if field.kw_only else text)
+    return f"{type(value).__name__}({', '.join(shown)})"
+
+
+def _counts(value: Any, field: dataclasses.Field[Any]) -> bool:
+    """Whether the value would be another one with the default of a field."""
+    is_required = field.default is dataclasses.MISSING
+    return is_required or dataclasses.replace(value, **{field.name: field.default}) != value
+
+
+Column = tuple[type, str, list[Any]]
+
+
+_NEEDED = (
+    *("closed track", "closed track, clear of the ground", "belt"),
+    *("belt, from the start", "closed track, from the start"),
+)
+"""Trials of every jam."""
+
+
+def short_name(trial: str) -> str:
+    """Name a trial as in the names of its columns.
+
+    Examples
+    --------
+    >>> short_name("closed track, clear of the ground"), short_name("torque x 2")
+    ('closed_track_clear_of_the_ground', 'torque_x2')
+    """
+    return trial.replace(" x ", "_x").replace(", ", "_").replace(" ", "_")
+
+
+def stop_columns(why: Sequence[Diagnosis | None], asked: Sequence[str] = ()) -> dict[str, Column]:
+    """Kind, unit and values of each column, by name; for runs that did not stop they are empty.
+
+    Trials that were asked for, and those of every jam, have three columns each, named after them.
+    """
+
+    def of(name: str, empty: Any) -> list[Any]:
+        return [empty if d is None else getattr(d, name) for d in why]
+
+    def of_edge(name: str, empty: Any) -> list[Any]:
+        pieces = [None if d is None else d.intrusion for d in why]
+        return [empty if piece is None else getattr(piece, name) for piece in pieces]
+
+    columns: dict[str, Column] = {
+        "symptom": (str, "", [str(each) for each in of("symptom", "")]),
+        "passing": (bool, "", of("passing", False)),
+        "mechanism": (str, "", [str(each or "") for each in of("mechanism", "")]),
+        "jammed": (bool, "", of("jammed", False)),
+        "belly_side": (str, "", of("belly_side", "")),
+        "stop_x": (float, "m", [math.nan if d is None else d.position[0] for d in why]),
+        "stop_angle": (float, "rad", of("chassis_angle", math.nan)),
+        "stop_edge": (int, "", of_edge("edge", -1)),
+        "stop_side": (str, "", [str(each) for each in of_edge("side", "")]),
+        "stop_carrier": (str, "", [str(each) for each in of_edge("carrier", "")]),
+        "stop_bodies": (str, "", [_pair(each) for each in of_edge("bodies", ())]),
+    }
+    for name in (each for each in TRIALS if each in asked or each in _NEEDED):
+        made = [_made(d, name) for d in why]
+        short = short_name(name)
+        columns[f"tried_{short}"] = (bool, "", [t is not None for t in made])
+        columns[f"freed_by_{short}"] = (bool, "", [t is not None and t.freed for t in made])
+        columns[f"then_{short}"] = (str, "", ["" if t is None else str(t.outcome) for t in made])
+    return columns
+
+
+def _made(why: Diagnosis | None, name: str) -> Tried | None:
+    trials = () if why is None else why.trials
+    return next((tried for tried in trials if tried.name == name), None)
+
+
+def _pair(bodies: tuple[int, ...]) -> str:
+    return "-".join(map(str, sorted(bodies)))
+
 
 COLUMNS = (
     *(

@@ -1,4 +1,4 @@
-"""From checked scenarios to rows: those of a store are read, the others simulated and kept."""
+"""From checked scenarios to rows: read from a store, or simulated, here or by a worker."""
 
 from __future__ import annotations
 
@@ -17,14 +17,38 @@ from crawler2d.errors import (
     StoreError,
 )
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.results.row import Row
+from crawler2d.results.record import Row
 from crawler2d.runs.run import Run
-from crawler2d.sweeps.chunk import simulate_chunk
 from crawler2d.sweeps.database import Place
 from crawler2d.sweeps.plan import Checked
 from crawler2d.sweeps.store import Store
 
-__all__ = ["Batch", "Collector", "RowsInterrupted", "runs_of"]
+__all__ = ["Batch", "Collector", "RowsInterrupted", "runs_of", "simulate_chunk"]
+
+
+def simulate_chunk(
+    texts: Sequence[str], trials: Sequence[str], build: str
+) -> list[dict[str, Any] | None]:
+    """Simulate a few valid scenarios on one thread; None is a run that was interrupted.
+
+    Raises
+    ------
+    InternalError
+        If the worker has another build of the core, whose bits may differ.
+    """
+    own = str(_core.build_info()["build_id"])
+    if own != build:
+        raise InternalError(f"a worker has another build of crawler2d ({own}, not {build})")
+    results: list[dict[str, Any] | None] = [None] * len(texts)
+
+    def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
+        for place, result in finished:
+            results[place] = result
+
+    passed = [_core.Passed(text) for text in texts]
+    _core.simulate_many(passed, 1, 0.01, "row", list(trials), take)
+    return results
+
 
 # Runs that a task of an executor has: milliseconds to seconds of work, little to send.
 _CHUNK = 25

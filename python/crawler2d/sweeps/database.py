@@ -1,28 +1,222 @@
-"""The SQLite file of a store: made whole or not at all, read anywhere."""
+"""The SQLite file of a store: one writer, every row with a checksum, made whole or not at all."""
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
+import json
+import math
 import os
 import sqlite3
+import sys
+import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from crawler2d.errors import ScenarioError, StoreError
-from crawler2d.sweeps.lock import Lock
-from crawler2d.sweeps.sealed import COLUMNS, Kept, OtherBuild, sealed, unsealed
+from crawler2d._core import build_info
+from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, StoreError
+from crawler2d.results.outcome import Outcome
+from crawler2d.results.record import NO_RESULT, Row, diagnosis_json, read_diagnosis
 
 __all__ = [
+    "COLUMNS",
     "INSERT",
+    "Kept",
+    "Lock",
+    "OtherBuild",
     "Place",
     "damage_of",
     "place_of",
     "read_row",
+    "sealed",
     "to_read",
     "to_write",
     "told",
+    "unsealed",
+    "values_of",
 ]
+
+COLUMNS = (
+    "identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, checksum"
+)
+"""In the order of the values of `values_of`."""
+
+Kept = tuple[Row, str, tuple[str, ...]]
+"""A run, its build and its trials."""
+
+_OUTCOMES = frozenset({*map(str, Outcome), *NO_RESULT})
+# What a run ends with every time, so that it is kept; nothing else is made of a name in a file.
+_ERRORS: dict[str, type[Crawler2dError]] = {"SimulationDiverged": SimulationDiverged}
+# What reading a text raises that is no such row.
+_UNREADABLE = (AttributeError, LookupError, RecursionError, TypeError, ValueError)
+
+
+def values_of(row: Row, build: str, trials: str) -> tuple[Any, ...]:
+    """Return the values of a row, in the order of `COLUMNS`."""
+    figures = {name: None if math.isnan(value) else value for name, value in row.metrics.items()}
+    return sealed(
+        (
+            row.identity,
+            build,
+            trials,
+            row.outcome,
+            json.dumps(figures, separators=(",", ":")),
+            None if row.diagnosis is None else diagnosis_json(row.diagnosis),
+            None if math.isnan(row.wall_time) else row.wall_time,
+            None if row.error is None else json.dumps([type(row.error).__name__, *row.error.args]),
+            row.scenario,
+        )
+    )
+
+
+def sealed(values: Sequence[Any]) -> tuple[Any, ...]:
+    """Append their checksum to the values of a row."""
+    # JSON keeps apart where a value ends and of which type it is; what it does not know, such as
+    # the bytes of a damaged column, is in no sound row.
+    text = json.dumps(values, default=repr)
+    return (*values, hashlib.sha256(text.encode()).hexdigest())
+
+
+class OtherBuild(ValueError):
+    """A row is as it was written, by another build, but this one cannot read it."""
+
+
+def unsealed(values: Sequence[Any]) -> Kept:
+    """Return the run in a row, its build and its trials.
+
+    Raises
+    ------
+    OtherBuild
+        If it has outcomes or diagnoses of another build, which this one does not know.
+    ValueError
+        If the row is not as it was written; it says why.
+    """
+    if sealed(values[:-1]) != tuple(values):
+        raise ValueError("its checksum is another")
+    identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, _ = values
+    # What is stored is the canonical text, so this holds for every build.
+    if hashlib.sha256(str(scenario).encode()).hexdigest() != identity:
+        raise ValueError("its scenario does not hash to its identity")
+    try:
+        if outcome not in _OUTCOMES or (error is None) == (outcome in NO_RESULT):
+            with_error = "without" if error is None else "with"
+            raise ValueError(f"{str(outcome)[:40]!r} is no outcome {with_error} an error")
+        row = Row(
+            identity,
+            scenario,
+            outcome,
+            {name: _number(value) for name, value in json.loads(metrics).items()},
+            None if diagnosis is None else read_diagnosis(diagnosis),
+            _number(wall_time),
+            None if error is None else _error(*json.loads(error)),
+        )
+        row.why()
+        return row, str(build), tuple(map(str, json.loads(trials)))
+    except _UNREADABLE as fault:
+        kind = ValueError if build == build_info()["build_id"] else OtherBuild
+        raise kind(f"it cannot be read ({type(fault).__name__}: {fault})") from fault
+
+
+def _number(value: float | None) -> float:
+    if value is None:
+        return math.nan
+    if type(value) not in {float, int}:
+        raise TypeError(f"{value!r} is no number")
+    return value
+
+
+def _error(name: str, *arguments: Any) -> Crawler2dError:
+    return _ERRORS[name](*arguments)
+
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+
+# Beyond the end of every file, and of what SQLite locks of it.
+_BYTE = 2**62
+
+# What this process has locked: the system's locks keep out other processes alone.
+_locked: set[tuple[int, int]] = set()
+_guard = threading.Lock()
+
+
+class Lock:
+    """Keeps every other writer out of a file, by whatever name it finds the file.
+
+    It ends with this process, however that ends. Nothing lies beside the file that could be
+    removed. Readers, and SQLite itself, do not notice.
+
+    Parameters
+    ----------
+    file : Path
+        It is made, empty, if it does not exist.
+
+    Raises
+    ------
+    BlockingIOError
+        If there is another writer.
+    OSError
+        If the file cannot be made or written.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        with _guard:
+            # Not even opened: to close it again would undo what SQLite has locked in this process.
+            if file.exists() and _key(file.stat()) in _locked:
+                raise BlockingIOError
+            self._descriptor = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
+            try:
+                if sys.platform == "win32":
+                    os.lseek(self._descriptor, _BYTE, os.SEEK_SET)
+                    msvcrt.locking(self._descriptor, msvcrt.LK_NBLCK, 1)
+                self.keep()
+            except BaseException:
+                os.close(self._descriptor)
+                raise
+            self._key = _key(os.fstat(self._descriptor))
+            _locked.add(self._key)
+
+    def keep(self) -> None:
+        """Lock the byte again; nothing happens if it is.
+
+        Where a lock belongs to the process, whatever unlocks or closes the file undoes it: SQLite
+        whenever it reads or writes without a log, another part of the program that copies it.
+
+        Raises
+        ------
+        BlockingIOError
+            If there is another writer by now.
+        """
+        if sys.platform != "win32":
+            try:
+                fcntl.lockf(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, _BYTE)
+            except PermissionError as error:  # so some systems call it
+                raise BlockingIOError from error
+
+    def is_there(self) -> bool:
+        """Whether the file is still where it was."""
+        try:
+            return _key(self._file.stat()) == self._key
+        except OSError:
+            return False
+
+    def close(self) -> None:
+        """Let others write."""
+        with _guard:
+            if self._descriptor >= 0:
+                _locked.remove(self._key)
+                os.close(self._descriptor)
+                self._descriptor = -1
+
+
+def _key(status: os.stat_result) -> tuple[int, int]:
+    return status.st_dev, status.st_ino
+
 
 # "c2ds": what tells the file from those of other programs.
 _APPLICATION = 0x63326473

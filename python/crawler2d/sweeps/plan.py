@@ -12,7 +12,7 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.paths import excluded, read_path
+from crawler2d.parameters.fields import excluded, read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.variation.draws import Drawn, Variation
 

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d._doubts import warn
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, warn
 from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.statistics import clustered
 

@@ -1,8 +1,9 @@
-"""From the arguments of a sweep to its table: plan the runs, collect their rows, arrange them."""
+"""From runs to an xarray data set: of a sweep by cell, or of a batch or store one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
@@ -12,25 +13,131 @@ import numpy as np
 from crawler2d._core import Passed
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
+from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.results.row import Row
-from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.results.record import Row
+from crawler2d.runs.batch import BatchInterrupted
+from crawler2d.runs.branch import Trials, trial_names, yes_or_no
 from crawler2d.runs.labelled import build_attributes
-from crawler2d.runs.progress import Progress, reporter
-from crawler2d.runs.recording import yes_or_no
-from crawler2d.runs.threads import thread_count
-from crawler2d.runs.trials import Trials, trial_names
-from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names
+from crawler2d.runs.progress import Progress, reporter, thread_count
+from crawler2d.runs.run import Run
+from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names, stop_columns
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
-from crawler2d.sweeps.dataset import Column, dataset_of, row_columns
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
+from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
     import xarray
+    from numpy.typing import NDArray
 
-__all__ = ["OnError", "Tabulation", "tabulate"]
+__all__ = ["Column", "OnError", "Tabulation", "dataset_of", "row_columns", "table", "tabulate"]
+
+Column = tuple["NDArray[Any]", dict[str, str]]
+"""Values of all runs, shape (n,), and attributes."""
+
+
+def row_columns(
+    rows: Sequence[Row | None], *, trials: Sequence[str], with_times: bool
+) -> dict[str, Column]:
+    """Write rows as columns by name; a row that is None, a run that was not made, is empty.
+
+    Every value depends on its own run only, so that tables can be joined.
+    """
+    columns: dict[str, Column] = {}
+    columns["outcome"] = (np.array(["" if row is None else row.outcome for row in rows], str), {})
+    why = [None if row is None else row.why() for row in rows]
+    for name, (kind, unit, values) in stop_columns(why, trials).items():
+        columns[name] = (np.array(values, kind), {"units": unit} if unit else {})
+    for name in next((row.metrics for row in rows if row is not None and row.metrics), {}):
+        figures = [math.nan if row is None else row.metrics.get(name, math.nan) for row in rows]
+        columns[name] = (np.array(figures, float), {"units": METRICS.get(name, "")})
+    if with_times:
+        times = [math.nan if row is None else row.wall_time for row in rows]
+        columns["wall_time"] = (np.array(times, float), {"units": "s"})
+    # Python strings: in a NumPy array of strings, each would take the space of the longest.
+    texts = {
+        "error": ["" if row is None else str(row.error or "") for row in rows],
+        "identity": ["" if row is None else row.identity for row in rows],
+        "scenario": ["" if row is None else row.scenario for row in rows],
+    }
+    return columns | {name: (np.array(values, object), {}) for name, values in texts.items()}
+
+
+def dataset_of(
+    columns: Mapping[str, Column], dims: Mapping[str, int], coordinates: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Give columns their dimensions, the last of which changes fastest."""
+    xr = extra("xarray", "analysis")
+    names, shape = list(dims), list(dims.values())
+    variables = {
+        name: (names, values.reshape(shape), attributes)
+        for name, (values, attributes) in columns.items()
+    }
+    dataset: xarray.Dataset = xr.Dataset(variables, coords=coordinates)
+    for key, variable in dataset.variables.items():
+        variable.attrs.setdefault("long_name", str(key).replace("_", " "))
+    return dataset
+
+
+def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
+    """Arrange runs in a table, one row each.
+
+    Parameters
+    ----------
+    runs : iterable of Run, str or path-like
+        What `simulate_many` returned, or the `runs` of a `BatchInterrupted`; or the path of a
+        store, also while a sweep writes into it.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dimension `run`, and the columns of `sweep`. A run that was not finished is `failed`,
+        and `error` says so. Of a store, `build` and `trials` say what computed a run, and what was
+        to be tried.
+
+    Raises
+    ------
+    ScenarioError
+        If something is no Run.
+    StoreError
+        If the path is that of no store, or it is damaged.
+    ImportError
+        If xarray is missing; the message names the extra to install.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03))
+    >>> runs = c2d.simulate_many([base, base.replace({"terrain.height": 0.2})], record="summary")
+    >>> found = c2d.table(runs)
+    >>> found.outcome.values.tolist(), dict(found.sizes)
+    (['cleared', 'tipped_over'], {'run': 2})
+    >>> c2d.rate(found, dim="run")["rate"].item()
+    0.5
+    """
+    extra("xarray", "analysis")
+    made_by: dict[str, list[str]] = {}
+    if isinstance(runs, (str, PathLike)):
+        stored = list(stored_rows(runs))
+        rows = [row for row, _, _ in stored]
+        tried = [trial for _, _, trials in stored for trial in trials]
+        made_by["build"] = [build for _, build, _ in stored]
+        made_by["trials"] = [", ".join(trials) for _, _, trials in stored]
+    else:
+        rows, tried = [], []
+        for index, run in enumerate(runs):
+            if not isinstance(run, Run):
+                raise ScenarioError(f"runs[{index}]", run, "must be a Run")
+            rows.append(Row.of_record(run))
+            if run.diagnosis is not None:
+                tried += [trial.name for trial in run.diagnosis.trials]
+    columns = row_columns(rows, trials=tuple(dict.fromkeys(tried)), with_times=True)
+    columns |= {name: (np.array(texts, object), {}) for name, texts in made_by.items()}
+    found = dataset_of(columns, {"run": len(rows)}, {"run": np.arange(len(rows))})
+    return found.assign_attrs(build_attributes())
+
 
 OnError = Literal["raise", "record"]
 

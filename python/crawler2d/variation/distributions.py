@@ -1,8 +1,9 @@
-"""Distributions of one number: they map numbers from 0 to 1 to values, about the field's own."""
+"""Distributions of one number, and ranges of fields by path with where each range comes from."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -11,7 +12,7 @@ import numpy as np
 from crawler2d.common.arrays import frozen_scalar, real_number
 from crawler2d.common.keywords import TakesKeywords
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.paths import read_path
+from crawler2d.parameters.fields import read_path
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,6 +24,7 @@ __all__ = [
     "Frozen",
     "Levels",
     "LogUniform",
+    "Ranges",
     "Scaled",
     "Shifted",
     "Uniform",
@@ -397,3 +399,86 @@ def _in_order(bounds: _Bounded | UniformInt) -> None:
 def _between(low: float, high: float, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
     # Rounding could exceed the upper bound.
     return np.minimum(low + (high - low) * numbers, high)
+
+
+class Ranges(Mapping[str, Distribution]):
+    """What varies, or is not known: a distribution for each path, and its source.
+
+    It takes the place of a plain mapping in `vary` and `unknown`. Two are joined with ``|``, also
+    with a plain mapping; of equal paths the right one counts.
+
+    Parameters
+    ----------
+    distributions : mapping of str to distribution
+        By path.
+    sources : mapping of str to str, optional
+        Where each range comes from, by path.
+    gives_way : collection of str
+        Paths that are left out where they are swept, and where the scenario has none; a draw that
+        breaks a rule is dropped, and the run keeps its own value.
+
+    Examples
+    --------
+    >>> from crawler2d.variation.distributions import shifted, uniform
+    >>> found = Ranges({"terrain.friction": uniform(0.5, 1.0)}, {"terrain.friction": "a guess"})
+    >>> list(found | {"robot.mass": shifted(-1.0, 1.0)})
+    ['terrain.friction', 'robot.mass']
+    """
+
+    def __init__(
+        self,
+        distributions: Mapping[str, Any],
+        sources: Mapping[str, str] | None = None,
+        gives_way: Collection[str] = (),
+    ) -> None:
+        self._distributions = {
+            path: read_distribution(given, f"[{path!r}]") for path, given in distributions.items()
+        }
+        self.sources = dict(sources or {})
+        self.gives_way = frozenset(gives_way)
+
+    def __getitem__(self, path: str) -> Distribution:
+        """Return the distribution of a path."""
+        return self._distributions[path]
+
+    def __iter__(self) -> Iterator[str]:
+        """Go through the paths in order."""
+        return iter(self._distributions)
+
+    def __len__(self) -> int:
+        """Count the paths."""
+        return len(self._distributions)
+
+    def __or__(self, other: object) -> Ranges:
+        """Join with more, which count where both have a path."""
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        return _joined(self, other)
+
+    def __ror__(self, other: object) -> Ranges:
+        """Join with what stands before, whose paths these replace."""
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        return _joined(other, self)
+
+    def __repr__(self) -> str:
+        """Show a line for each path: its distribution, and where that comes from."""
+        lines = [
+            f"  {path}: {distribution}" + _indented(self.sources.get(path))
+            for path, distribution in self.items()
+        ]
+        return "\n".join(["Ranges", *lines])
+
+
+def _indented(source: str | None) -> str:
+    return "" if source is None else f"\n      {source}"
+
+
+def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> Ranges:
+    sources = {**getattr(first, "sources", {})}
+    for path in second:
+        sources.pop(path, None)
+    sources.update(getattr(second, "sources", {}))
+    kept: frozenset[str] = getattr(first, "gives_way", frozenset())
+    added: frozenset[str] = getattr(second, "gives_way", frozenset())
+    return Ranges({**first, **second}, sources, (kept - set(second)) | added)

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.paths import expand_path, is_whole, json_pointer, read_path
+from crawler2d.parameters.fields import expand_path, is_whole, json_pointer, read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
-from crawler2d.variation.distributions import Distribution, Levels, read_distribution
-from crawler2d.variation.ranges import Ranges
+from crawler2d.variation.distributions import Distribution, Levels, Ranges, read_distribution
 from crawler2d.variation.variability import of_contact, of_start
 
 if TYPE_CHECKING:

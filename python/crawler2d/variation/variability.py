@@ -17,8 +17,7 @@ Ranges
 
 from __future__ import annotations
 
-from crawler2d.variation.distributions import scaled, shifted, uniform_int
-from crawler2d.variation.ranges import Ranges
+from crawler2d.variation.distributions import Ranges, scaled, shifted, uniform_int
 
 __all__ = ["of_contact", "of_field", "of_start"]
 

@@ -1,21 +1,159 @@
-"""What runs on chassis and flippers, in side view: wheels one by one, or the discs of a belt."""
+"""What runs on chassis and flippers in side view: masses, widths, and what a format refuses."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
 from crawler2d import _core
+from crawler2d.common.arrays import real_number
 from crawler2d.common.bodies import BodyKind
-from crawler2d.drawings.plane import placed
-from crawler2d.drawings.scene import Scene, at_start, on_chassis
-from crawler2d.models.poses import Array
-from crawler2d.writing.inertia import Part, rest
+from crawler2d.drawings.scene import Scene, at_start, on_chassis, placed
+from crawler2d.errors import ScenarioError
+from crawler2d.model_tree import Array
 
-__all__ = ["Carrier", "Wheel", "carriers_of", "left_of", "track_of"]
+__all__ = [
+    "Across",
+    "Carrier",
+    "Format",
+    "Part",
+    "Wheel",
+    "across_of",
+    "carriers_of",
+    "left_of",
+    "refuse_tapering",
+    "refuse_unheld",
+    "rest",
+    "tensor",
+    "track_of",
+]
+
+# Of the gauge, and of the track: those of Absolem's public model are 97 mm wide at a gauge of
+# 397 mm, and those of its flippers half as wide, against the outside of the tracks.
+_TRACK = 0.25
+_FLIPPER = 0.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Across:
+    """Widths and lateral places.
+
+    Parameters
+    ----------
+    gauge : float
+        [m] Lateral distance between the middles of the tracks.
+    track_width, chassis_width, flipper_width : float
+        [m] Their widths.
+    """
+
+    gauge: float
+    track_width: float
+    chassis_width: float
+    flipper_width: float
+
+    @property
+    def flippers(self) -> float:
+        """[m] Lateral place of the left flippers: outside, against the track."""
+        return 0.5 * (self.gauge + self.track_width + self.flipper_width)
+
+
+def across_of(gauge: float, track_width: float | None, chassis_width: float | None) -> Across:
+    """Return the widths that are given, and estimates for the others.
+
+    Raises
+    ------
+    ScenarioError
+        If a width is not a number above 0, or the tracks would meet in the middle.
+    """
+    track = _TRACK * gauge if track_width is None else real_number(track_width, "track_width")
+    if not 0.0 < track < gauge:
+        rule = f"must be above 0 and less than robot.gauge = {gauge:g} m"
+        raise ScenarioError("track_width", track, rule)
+    chassis = gauge - track
+    if chassis_width is not None:
+        chassis = real_number(chassis_width, "chassis_width")
+    if not 0.0 < chassis <= 100.0:
+        raise ScenarioError("chassis_width", chassis, "must be above 0 and at most 100 m")
+    return Across(
+        gauge=gauge,
+        track_width=track,
+        chassis_width=chassis,
+        flipper_width=_FLIPPER * track,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Part:
+    """A body in the chassis frame of the side view.
+
+    Parameters
+    ----------
+    mass : float
+        [kg] Its mass.
+    center : ndarray, shape (2,)
+        [m] Its centre of mass.
+    inertia : float
+        [kg m^2] About that.
+    """
+
+    mass: float
+    center: Array
+    inertia: float
+
+
+def rest(whole: Part, parts: Iterable[Part]) -> Part | None:
+    """Return what is left of a whole without its parts; None if no body can be that.
+
+    Examples
+    --------
+    >>> rod = Part(mass=3.0, center=np.zeros(2), inertia=0.5)
+    >>> tip = Part(mass=1.0, center=np.array([0.5, 0.0]), inertia=0.0)
+    >>> left = rest(rod, [tip])
+    >>> left.mass, left.center.tolist(), round(left.inertia, 3)
+    (2.0, [-0.25, 0.0], 0.125)
+    """
+    parts = list(parts)
+    mass = whole.mass - sum(part.mass for part in parts)
+    if not mass >= _LEAST * whole.mass:
+        return None
+    moment: Array = whole.mass * whole.center - sum(
+        (part.mass * part.center for part in parts), np.zeros(2)
+    )
+    center = moment / mass
+    inertia = whole.inertia - mass * _squared(center - whole.center)
+    for part in parts:
+        inertia -= part.inertia + part.mass * _squared(part.center - whole.center)
+    if not inertia >= _LEAST * whole.inertia:
+        return None
+    return Part(mass=mass, center=center, inertia=inertia)
+
+
+def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
+    """[kg m^2] Widen a moment of inertia to three axes: x along it, y across, z up.
+
+    The moment about y is that of the part. The others are estimates: the squares of x and of z
+    share it as in a uniform box of this length and height, and the mass is spread evenly over the
+    width. So a body with these three moments exists, whatever the sizes.
+    """
+    along = part.inertia * length**2 / (length**2 + height**2)
+    across = part.mass * width**2 / 12.0
+    moments: Array = np.diag(
+        [part.inertia - along + across, part.inertia, along + across],
+    )
+    return moments
+
+
+# A body with less than this share of the mass or the moment of inertia would make a simulation
+# of the whole stiff, if it is possible at all.
+_LEAST = 0.01
+
+
+def _squared(vector: Array) -> float:
+    return float(vector @ vector)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -178,3 +316,83 @@ def track_of(robot: dict[str, Any], end: str) -> tuple[str, dict[str, Any]]:
     if end and flippers["track"] is not None:
         return "robot.flippers.track", flippers["track"]
     return "robot.track", robot["track"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """What a format can hold.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    moves_surfaces : bool
+        Whether it can move the surface of a shape, as a belt needs.
+    has_hulls : bool
+        Whether it can hold the corners of a convex hull.
+    has_rotors : bool
+        Whether it can hold the rotor inertia of a motor at its joint, and the gain of a servo.
+    reserved : str
+        A pattern of names that it keeps for itself.
+    """
+
+    name: str
+    moves_surfaces: bool
+    has_hulls: bool
+    has_rotors: bool
+    reserved: str = ""
+
+
+_REASONS = {
+    "belt": "{} has no surface that moves",
+    "grouser_belt": "{} has no grousers that travel along a belt",
+    "segmental": "a chain is a loop of links, and {} has trees",
+    "force": "{} has no motor that pushes the chassis",
+}
+
+
+def refuse_unheld(robot: dict[str, Any], carriers: Iterable[Carrier], form: Format) -> None:
+    """Refuse a robot whose tracks or name a format cannot hold.
+
+    Parameters
+    ----------
+    robot : dict
+        As in a scenario in JSON.
+    carriers : iterable of Carrier
+        What runs on its chassis and flippers.
+    form : Format
+        The format.
+
+    Raises
+    ------
+    ScenarioError
+        If the track, or that of the flippers, is one of those that no model file holds, or a belt
+        where surfaces do not move; or if the name cannot be written.
+    """
+    for carrier in carriers:
+        if carrier.surface == "wheels" or (carrier.surface == "belt" and form.moves_surfaces):
+            continue
+        path, track = track_of(robot, carrier.end)
+        held = "wheels or a smooth belt" if form.moves_surfaces else "wheels"
+        reason = _REASONS[carrier.surface].format(form.name)
+        raise ScenarioError(f"{path}.kind", track["kind"], f"must be {held}: {reason}")
+    name = robot["name"]
+    if not all(letter >= " " and letter not in "\x7f\ufffe\uffff" for letter in name):
+        raise ScenarioError("robot.name", name, "must have letters only that XML can hold")
+    if form.reserved and re.fullmatch(form.reserved, name):
+        rule = f"must be no name that {form.name} reserves, with :: in it or between pairs of _"
+        raise ScenarioError("robot.name", name, rule)
+
+
+def refuse_tapering(robot: dict[str, Any], end: str, form: Format) -> NoReturn:
+    """Refuse gear wheels whose grousers taper, of the chassis or of the flippers at an end.
+
+    Raises
+    ------
+    ScenarioError
+        Always.
+    """
+    path, track = track_of(robot, end)
+    rule = f"must be as thick as the tip: {form.name} has boxes for grousers, and no hulls"
+    thickness = track["wheel"]["base_thickness"]
+    raise ScenarioError(f"{path}.wheel.base_thickness", thickness, rule)

@@ -1,10 +1,12 @@
-"""Write a robot as a model file: the one door for all formats."""
+"""Write a robot as a model file, or before an obstacle as a world for Gazebo or MuJoCo."""
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -13,21 +15,42 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
-from crawler2d.common.ends import discs_in, ends_of
+from crawler2d.common.bodies import Lane, discs_in, ends_of
+from crawler2d.drawings.scene import Scene, at_start
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Pose
-from crawler2d.models.tree import Tree
-from crawler2d.writing.across import Across, across_of
-from crawler2d.writing.held import Format
-from crawler2d.writing.mjcf import MJCF, mjcf_of
-from crawler2d.writing.model import model_of
-from crawler2d.writing.motors import Limits
-from crawler2d.writing.sdf import SDF, sdf_of
-from crawler2d.writing.solids import lowest
-from crawler2d.writing.urdf import URDF, urdf_of
-from crawler2d.writing.xml import XML, commented, document
+from crawler2d.model_tree import Array, Friction, Pose, Tree, from_rpy
+from crawler2d.writing.carriers import Across, Format, across_of
+from crawler2d.writing.formats import (
+    MJCF,
+    SDF,
+    URDF,
+    XML,
+    commented,
+    document,
+    element,
+    mjcf_of,
+    numbers,
+    pose_text,
+    sdf_of,
+    surface,
+    urdf_of,
+)
+from crawler2d.writing.model import Limits, model_of
+from crawler2d.writing.shapes import in_space, lowest
 
-__all__ = ["Model", "ModelText", "Name", "modelled", "placed_model", "stored", "written"]
+__all__ = [
+    "Ground",
+    "Model",
+    "ModelText",
+    "Name",
+    "Piece",
+    "ground_of",
+    "modelled",
+    "placed_model",
+    "stored",
+    "written",
+    "written_world",
+]
 
 Name = Literal["sdf", "urdf", "mjcf"]
 
@@ -190,3 +213,279 @@ def _comment(robot: dict[str, Any], across: Across, friction: float, left_out: l
             f"The robot: {commented(robot)}",
         ]
     )
+
+
+# Two bodies side by side: room to drift without falling off the obstacle.
+_WIDTH = 2.0  # gauges and track widths
+_FLAT = 1e-9  # [m] Heights that differ by less are equal.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Piece:
+    """A convex prism across the robot.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (n, 2)
+        [m] Its outline in side view, counter-clockwise, x forward and y up.
+    across, width : float
+        [m] Place of its middle, to the left, and its width.
+    friction : float
+        [-] Of its surface.
+    """
+
+    corners: Array
+    across: float
+    width: float
+    friction: float
+
+    @property
+    def is_box(self) -> bool:
+        """Whether it is a rectangle with level and upright sides."""
+        sides = np.abs(np.diff(self.corners, axis=0, append=self.corners[:1]))
+        return len(self.corners) == 4 and bool((sides.min(axis=1) < _FLAT).all())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ground:
+    """What the robot drives over.
+
+    Parameters
+    ----------
+    level : float
+        [m] Height of a plane: that of the lowest ground.
+    friction : float
+        [-] Of the plane.
+    pieces : tuple of Piece
+        What stands on it.
+    """
+
+    level: float
+    friction: float
+    pieces: tuple[Piece, ...]
+
+
+def ground_of(
+    lanes: list[tuple[int, Array]],
+    frictions: dict[int, float],
+    across: Across,
+    ends: tuple[float, float],
+) -> Ground:
+    """Extrude the profiles of a side view across the robot.
+
+    Parameters
+    ----------
+    lanes : list of tuple of int and ndarray
+        Each lane with its profile [m], as the core has them.
+    frictions : dict of int to float
+        [-] Of each lane.
+    across : Across
+        Widths and lateral places of the robot.
+    ends : tuple of float, shape (2,)
+        [m] From where to where the ground is wanted; the plane goes on.
+    """
+    profiles = [(lane, _between(points, *ends)) for lane, points in lanes]
+    level = min(float(points[:, 1].min()) for _, points in profiles)
+    half = 0.5 * _WIDTH * (across.gauge + across.track_width)
+    inner = 0.5 * (across.gauge - across.track_width)
+    strips = {
+        Lane.BOTH: (-half, half),
+        Lane.LEFT: (inner, half),
+        Lane.RIGHT: (-half, -inner),
+        Lane.MIDDLE: (-inner, inner),
+    }
+    pieces = [
+        Piece(
+            corners=corners,
+            across=0.5 * sum(strips[Lane(lane)]),
+            width=float(np.ptp(strips[Lane(lane)])),
+            friction=frictions[lane],
+        )
+        for lane, points in profiles
+        for corners in _convex(points, level)
+    ]
+    return Ground(level=level, friction=max(frictions.values()), pieces=tuple(pieces))
+
+
+def _between(points: Array, left: float, right: float) -> Array:
+    """Cut a profile at two places, at which the ground is level or slopes."""
+    inner = points[(points[:, 0] > left) & (points[:, 0] < right)]
+    first, last = ([x, float(np.interp(x, *points.T))] for x in (left, right))
+    return np.array([first, *inner, last])
+
+
+def _convex(points: Array, level: float) -> Iterator[Array]:
+    """Cut what is below a profile and above a level into convex polygons.
+
+    A cut goes straight down from each inner corner of the ground, where no track can touch it.
+    """
+    ahead = np.diff(points, axis=0)
+    turns = ahead[:-1, 0] * ahead[1:, 1] - ahead[:-1, 1] * ahead[1:, 0]
+    inner = [0, *(np.flatnonzero(turns > 0.0) + 1).tolist(), len(points) - 1]
+    for first, last in itertools.pairwise(inner):
+        run = points[first : last + 1]
+        if np.ptp(run[:, 0]) < _FLAT or run[:, 1].max() < level + _FLAT:
+            continue
+        # A run that begins or ends on the level, or at a wall, has its foot in line already.
+        foot = np.array([[run[0, 0], level], [run[-1, 0], level]])
+        yield _corners(np.array([foot[0], foot[1], *run[::-1]]))
+
+
+def _corners(points: Array) -> Array:
+    """Return the corners of a convex polygon: no point twice, and none on a side."""
+    there = np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > _FLAT
+    points = points[there]
+    to, on = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    turns = to[:, 0] * on[:, 1] - to[:, 1] * on[:, 0]
+    corners: Array = points[turns > _FLAT * np.linalg.norm(to, axis=1) * np.linalg.norm(on, axis=1)]
+    return corners
+
+
+_FORMATS: dict[str, Name] = {".sdf": "sdf", ".world": "sdf", ".xml": "mjcf"}
+
+# In lengths of the robot: what is seen of the ground behind its start and beyond the goal.
+_BEHIND, _BEYOND = 2.0, 4.0
+_PLANE = 100.0  # [m] How much of an endless plane is drawn.
+
+
+def written_world(
+    text: str,
+    alone: str,
+    path: str | os.PathLike[str],
+    *,
+    track_width: float | None,
+    chassis_width: float | None,
+) -> ModelText:
+    """Write the robot of a scenario where it starts; see `Robot.to_world`.
+
+    Parameters
+    ----------
+    text : str
+        The scenario in JSON.
+    alone : str
+        The same robot in JSON, on level ground.
+    path : path
+        The file, whose suffix says in which format.
+    track_width, chassis_width
+        See `Robot.to_world`.
+    """
+    name = _FORMATS.get(Path(path).suffix.lower())
+    if name is None:
+        raise ScenarioError("path", os.fspath(path), "must end in .sdf, .world or .xml")
+    scene = Scene(text, at_start(text))
+    frictions = _frictions(json.loads(text)["terrain"])
+    model = modelled(
+        alone,
+        name,
+        friction=max(frictions.values()),
+        track_width=track_width,
+        chassis_width=chassis_width,
+    )
+    left, right, _, _ = scene.extent()
+    length = right - left
+    ends = (left - _BEHIND * length, max(right, scene.goal) + _BEYOND * length)
+    ground = ground_of(_core.geometry(text)["lanes"], frictions, model.across, ends)
+    # A start is level unless it says otherwise.
+    stand = Pose(place=in_space(scene.carriers[0].poses[0], 0.0))
+    root = placed_model(model, name, stand)
+    add = _add_to_mjcf if name == "mjcf" else _into_world
+    return stored(add(root, ground, json.loads(text)["gravity"]), model.comment, path)
+
+
+def _frictions(terrain: dict[str, Any]) -> dict[int, float]:
+    """[-] Return the friction of each lane."""
+    if terrain["kind"] != "lanes":
+        return dict.fromkeys(Lane, float(terrain["friction"]))
+    left, right = (float(terrain[side]["friction"]) for side in ("left", "right"))
+    middle = terrain["middle"]
+    under = max(left, right) if middle is None else float(middle["friction"])
+    return {Lane.BOTH: left, Lane.LEFT: left, Lane.RIGHT: right, Lane.MIDDLE: under}
+
+
+def _placed(piece: Piece) -> tuple[Pose, np.ndarray[Any, Any]]:
+    """Return the middle of a piece in the world, and its corners about that."""
+    middle = 0.5 * (piece.corners.min(axis=0) + piece.corners.max(axis=0))
+    x, z = middle
+    return Pose(place=np.array([x, piece.across, z])), piece.corners - middle
+
+
+def _into_world(root: XML, ground: Ground, gravity: float) -> XML:
+    """Put the model of an SDF file into a world with a ground and light."""
+    (model,) = root
+    # The model may have any name but this one.
+    static = element("model", element("static", text="true"), name=f"{model.get('name')}_ground")
+    link = element("link", name="ground")
+    static.append(link)
+    plane = element(
+        "plane",
+        element("normal", text="0 0 1"),
+        element("size", text=numbers((_PLANE, _PLANE))),
+    )
+    shapes = [(Pose(place=np.array([0.0, 0.0, ground.level])), plane, ground.friction)]
+    shapes += [(*_sdf_shape(piece), piece.friction) for piece in ground.pieces]
+    for number, (pose, shape, friction) in enumerate(shapes):
+        for tag in ("collision", "visual"):
+            made = element(
+                tag,
+                element("pose", text=pose_text(pose)),
+                element("geometry", shape),
+                name=f"ground_{number}_{tag}",
+            )
+            if tag == "collision":
+                made.append(surface(Friction(first=friction, second=friction)))
+            link.append(made)
+    sun = element(
+        "light",
+        element("pose", text="0 0 10 0 0 0"),
+        element("direction", text="-0.3 0.4 -0.9"),
+        name="sun",
+        type="directional",
+    )
+    down = element("gravity", text=numbers((0.0, 0.0, -gravity)))
+    root[:] = [element("world", down, sun, static, model, name="crawler2d")]
+    return root
+
+
+def _sdf_shape(piece: Piece) -> tuple[Pose, XML]:
+    """Return a box, or a polygon that is drawn out along its own z, which is to the right."""
+    pose, corners = _placed(piece)
+    if piece.is_box:
+        size = (np.ptp(corners[:, 0]), piece.width, np.ptp(corners[:, 1]))
+        return pose, element("box", element("size", text=numbers(size)))
+    x, y, z = pose.place.tolist()
+    turned = from_rpy((0.5 * math.pi, 0.0, 0.0), (x, y + 0.5 * piece.width, z))
+    points = (element("point", text=numbers(corner)) for corner in corners)
+    return turned, element("polyline", *points, element("height", text=numbers(piece.width)))
+
+
+def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
+    """Put a ground into an MJCF file."""
+    parts = {part.tag: part for part in root}
+    world = parts["worldbody"]
+    parts["option"].set("gravity", numbers((0.0, 0.0, -gravity)))
+    assets = parts.get("asset")
+    if assets is None:
+        assets = element("asset")
+        root.insert(list(root).index(world), assets)
+    plane = {"type": "plane", "size": numbers((0.5 * _PLANE, 0.5 * _PLANE, 1.0))}
+    shapes = [({**plane, "pos": numbers((0.0, 0.0, ground.level))}, ground.friction)]
+    for number, piece in enumerate(ground.pieces, 1):
+        shapes.append((_mjcf_shape(f"ground_{number}", piece, assets), piece.friction))
+    for number, (shape, friction) in enumerate(shapes):
+        # With the higher priority its own friction holds, whatever the robot has.
+        given = {"name": f"ground_{number}", "friction": numbers(friction), "priority": "2"}
+        world.insert(number, element("geom", **given, **shape))
+    return root
+
+
+def _mjcf_shape(name: str, piece: Piece, assets: XML) -> dict[str, str]:
+    """Return the attributes of a box, or of a convex mesh, whose corners are an asset."""
+    pose, corners = _placed(piece)
+    half = 0.5 * piece.width
+    at = {"pos": numbers(pose.place)}
+    if piece.is_box:
+        x, z = corners.max(axis=0)
+        return {"type": "box", "size": numbers((x, half, z)), **at}
+    points = np.array([(x, side, z) for side in (-half, half) for x, z in corners])
+    assets.append(element("mesh", name=name, vertex=numbers(points.ravel())))
+    return {"type": "mesh", "mesh": name, **at}

@@ -1,27 +1,31 @@
-"""From a robot in side view to a neutral tree in three dimensions, with both sides."""
+"""From a robot in side view to a tree of links in three dimensions, and what of it is driven."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from crawler2d.common.ends import discs_in, ends_of
+from crawler2d.common.bodies import discs_in, ends_of
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Pose
-from crawler2d.models.tree import Joint, Link, Shape, Tree
-from crawler2d.models.where import MADE
-from crawler2d.writing.across import Across
-from crawler2d.writing.belly import belly_shapes
-from crawler2d.writing.belts import belt_shapes
-from crawler2d.writing.carriers import Carrier, Wheel, carriers_of, left_of
-from crawler2d.writing.gears import gear_shapes
-from crawler2d.writing.held import Format, refuse_tapering, refuse_unheld
-from crawler2d.writing.inertia import Part, tensor
-from crawler2d.writing.solids import Solids, in_space
+from crawler2d.model_tree import MADE, Joint, Link, Pose, Shape, Tree
+from crawler2d.writing.carriers import (
+    Across,
+    Carrier,
+    Format,
+    Part,
+    Wheel,
+    carriers_of,
+    left_of,
+    refuse_tapering,
+    refuse_unheld,
+    tensor,
+)
+from crawler2d.writing.shapes import Solids, belly_shapes, belt_shapes, gear_shapes, in_space
 
-__all__ = ["model_of"]
+__all__ = ["Limits", "flipper_joints", "model_of", "moved_links", "wheels_by_radius"]
 
 CHASSIS = "chassis"
 """The root link; its frame is the chassis frame."""
@@ -282,3 +286,44 @@ class _Model:
 
 def _sign(end: str) -> float:
     return 1.0 if end == "front" else -1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What the motors of a robot can do together.
+
+    Parameters
+    ----------
+    speed : float
+        [m/s] Largest speed of the tracks.
+    acceleration, deceleration : float
+        [m/s^2] Largest rates at which the commanded speed rises and falls.
+    track_height : float
+        [m] From the lower to the upper run.
+    """
+
+    speed: float
+    acceleration: float
+    deceleration: float
+    track_height: float
+
+
+def wheels_by_radius(tree: Tree, limits: Limits) -> list[tuple[float, list[Joint]]]:
+    """[m] Return the joints of all wheels, by the radius at which they have the largest speed."""
+    found: dict[float, list[Joint]] = {}
+    for joint in tree.joints.values():
+        if joint.is_unlimited and joint.velocity:
+            found.setdefault(joint.velocity, []).append(joint)
+    return [(limits.speed / velocity, joints) for velocity, joints in found.items()]
+
+
+def flipper_joints(tree: Tree) -> list[Joint]:
+    """Return the joints that turn flippers."""
+    return [
+        joint for joint in tree.joints.values() if not joint.is_locked and not joint.is_unlimited
+    ]
+
+
+def moved_links(tree: Tree) -> list[Link]:
+    """Return the links whose surface moves."""
+    return [link for link in tree.links if any(shape.surface_speed for shape in link.shapes)]

@@ -1,6 +1,232 @@
-"""One HTML page that replays a run, on its own or inside a notebook."""
+"""From a run to one self-contained HTML page, by itself or in a notebook."""
 
-from crawler2d.pictures.page.notebook import embedded
-from crawler2d.pictures.page.replay import replay_page
+from __future__ import annotations
 
-__all__ = ["embedded", "replay_page"]
+import base64
+import hashlib
+import html
+import json
+import math
+from importlib.resources import files
+from string import Template
+from typing import TYPE_CHECKING, Any
+
+from crawler2d import _core
+from crawler2d.common.units import METRICS
+from crawler2d.drawings.svg import escaped, table
+from crawler2d.pictures.page.recording import recording
+from crawler2d.pictures.scenes import ghosts
+
+if TYPE_CHECKING:
+    from crawler2d.results.findings import Mechanism
+    from crawler2d.results.record import Record
+
+__all__ = [
+    "all_figures",
+    "as_json",
+    "embedded",
+    "figures",
+    "page_template",
+    "policy",
+    "read_part",
+    "replay_page",
+    "replay_style",
+    "scene_script",
+    "sentence",
+    "verdict",
+]
+
+_HERE = "crawler2d.pictures.page"
+
+# What draws a run from the side; each part uses only those before it.
+_SCENE = (
+    "data.js",
+    "camera.js",
+    "marks.js",
+    "carrier.js",
+    "robot.js",
+    "lane.js",
+    "scene.js",
+    "pointer.js",
+    "player.js",
+)
+
+# Escaped as \u sequences, these mean the same in JSON and nothing in HTML.
+_MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
+
+
+def read_part(name: str, package: str = _HERE) -> str:
+    """Read a file that stands beside the modules of a package."""
+    return (files(package) / name).read_text(encoding="utf-8")
+
+
+def replay_style() -> str:
+    """Return the style of a replay."""
+    return read_part("page.css") + read_part("replay.css")
+
+
+def scene_script(*parts: str) -> str:
+    """Join what draws a run from the side and what a page does with that into one script."""
+    return '"use strict";\n(() => {\n' + "\n".join([*map(read_part, _SCENE), *parts]) + "})();\n"
+
+
+def page_template(name: str, package: str = _HERE) -> str:
+    """Read the body of a page, and put the head that all pages have before it."""
+    return read_part("head.html") + read_part(name, package)
+
+
+def policy(text: str) -> str:
+    """Name a script, or a style, for the security policy of a page."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def as_json(data: Any) -> str:
+    """Write data as JSON in which nothing means anything in HTML."""
+    return json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP)
+
+
+# metric, label, factor from the metric's unit, unit shown, decimals
+_FIGURES = (
+    ("time", "simulated time", 1.0, "s", 2),
+    ("time_to_clear", "cleared after", 1.0, "s", 2),
+    ("distance", "distance", 1.0, "m", 3),
+    ("track_distance", "track travel", 1.0, "m", 3),
+    ("max_angle", "largest angle, nose up", math.degrees(1.0), "°", 1),
+    ("min_angle", "largest angle, nose down", -math.degrees(1.0), "°", 1),
+    ("drive_work", "motor work", 1.0, "J", 1),
+    ("stopped_time", "time in stops", 1.0, "s", 2),
+    ("intrusion_depth", "intrusion depth at the end", 1e3, "mm", 1),
+    ("intrusion_force", "intrusion force at the end", 1.0, "N", 0),
+)
+# Shown only if not zero.
+_RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
+
+
+def sentence(run: Record) -> str:
+    """Say why the robot did not clear, or why there is no result; see `Run.reason`."""
+    return run.reason
+
+
+def verdict(run: Record) -> str:
+    """Name the outcome; empty if there is none."""
+    return "" if run.outcome is None else str(run.outcome).replace("_", " ")
+
+
+def figures(run: Record) -> list[tuple[str, str]]:
+    """Choose the metrics of most interest: label, and value with unit."""
+    chosen = []
+    for name, label, scale, unit, digits in _FIGURES:
+        value = run.metrics.get(name, 0.0)
+        shown = f"{scale * value:z.{digits}f}"
+        if name in _RARE and (not math.isfinite(value) or float(shown) == 0.0):
+            continue
+        chosen.append((label, f"{shown}{'' if unit == '°' else ' '}{unit}"))
+    return chosen
+
+
+def all_figures(run: Record) -> list[tuple[str, str]]:
+    """List every metric by its own name, in its own unit."""
+    return [(name, f"{value:.6g} {METRICS.get(name, '')}") for name, value in run.metrics.items()]
+
+
+def replay_page(run: Record, time: float | None = None) -> str:
+    """Write the page of a run; see `Run.to_html`."""
+    style, script = replay_style(), scene_script(read_part("strip.js"), read_part("replay.js"))
+    data = recording(run, time)
+    title = run.title
+    subject, _, ending = title.rpartition(": ")
+    outcome = verdict(run)
+    mechanism = [] if run.mechanism is None else [run.mechanism]
+    why = sentence(run)
+    values = {
+        "title": escaped(title),
+        "subject": escaped(subject),
+        "ending": escaped(ending.replace("_", " ")),
+        "outcome_class": html.escape(outcome.replace(" ", "-")),
+        "outcome_meaning": "" if run.outcome is None else _tooltip(run.outcome.meaning),
+        "mechanism": "".join(_mechanism(each) for each in mechanism),
+        "trials": _trials(run),
+        "sentence": f'<p class="sentence">{escaped(why)}</p>' if why else "",
+        "thinned": _thinned(data["every"], data["samples"]),
+        "figures": _listed(figures(run)),
+        "all_figures": _listed(all_figures(run)),
+        "version": escaped(str(_core.build_info()["version"])),
+        "identity": run.scenario.identity[:16],
+        "style": style,
+        "script": script,
+        "style_hashes": policy(style),
+        "script_hashes": policy(script),
+        "data": as_json(data),
+    }
+    # One pass, so that a robot's name stays text even if it looks like a placeholder.
+    return Template(page_template("page.html")).substitute(values)
+
+
+def _thinned(every: int, samples: int) -> str:
+    if every == 1:
+        return ""
+    text = f"Long run: 1 in {every} samples shown, {samples} in all."
+    return f'<p class="thinned">{text}</p>'
+
+
+def _tooltip(meaning: str) -> str:
+    return f' title="{escaped(meaning)}"'
+
+
+def _mechanism(mechanism: Mechanism) -> str:
+    meaning = f"how the ground inside is held: {mechanism.meaning}"
+    return f'<li class="mechanism"{_tooltip(meaning)}>{escaped(str(mechanism))}</li>'
+
+
+def _trials(run: Record) -> str:
+    """List what was tried as buttons that show where the robot ended."""
+    tried = ghosts(run)
+    if not tried:
+        return ""
+    buttons = "".join(
+        f'<button type="button" class="trial{" freed" * each.freed}" data-trial="{number}"'
+        f' aria-pressed="false"{_tooltip(each.meaning)}>{escaped(each.said)}</button>'
+        for number, each in enumerate(tried)
+    )
+    head = "tried at the stop; press one to see where the robot ended:"
+    return f'<section class="trials" aria-label="trials"><p>{head}</p>{buttons}</section>'
+
+
+def _listed(rows: list[tuple[str, str]]) -> str:
+    return "".join(
+        f"<div><dt>{escaped(name)}</dt><dd>{escaped(value)}</dd></div>" for name, value in rows
+    )
+
+
+# [px] Fits header, picture, controls and time strip; the metrics below need scrolling.
+_FRAME_HEIGHT = 820
+
+
+def embedded(run: Record) -> str:
+    """Show a run in a notebook: the page in a frame, or else its metrics; never raises.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    try:
+        page = replay_page(run)
+    except Exception:  # the display of a run must never fail
+        return _summary(run)
+    # Only scripts are allowed: the page can reach neither the notebook nor the network.
+    return (
+        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
+        f'title="{escaped(run.title)}" '
+        f'style="width: 100%; height: {_FRAME_HEIGHT}px; border: 0"></iframe>'
+    )
+
+
+def _summary(run: Record) -> str:
+    try:
+        why = sentence(run)
+    except Exception:
+        why = ""
+    note = f"<p>{escaped(why)}</p>" if why else ""
+    return f"<div><p><strong>{escaped(run.title)}</strong></p>{note}{table(all_figures(run))}</div>"

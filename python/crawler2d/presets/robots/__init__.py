@@ -5,9 +5,8 @@ source says what was summed. The unchanged files are in ``tests/robots`` of the 
 README says where each is from. Tests compare them with the presets.
 """
 
-from crawler2d.presets.robots.absolem import absolem
 from crawler2d.presets.robots.engineer import engineer
 from crawler2d.presets.robots.gazebo import gz_tracked_vehicle
-from crawler2d.presets.robots.marv import marv
+from crawler2d.presets.robots.subt import absolem, marv
 
 __all__ = ["absolem", "engineer", "gz_tracked_vehicle", "marv"]

@@ -1,0 +1,259 @@
+"""Audit every model file in a tree of repositories, and write one page of them all.
+
+The page is written anew after each robot, so that Ctrl-C keeps what is done.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from string import Template
+
+from crawler2d import _core
+from crawler2d.audits import words
+from crawler2d.audits.audit import Audit, audit
+from crawler2d.audits.page.parts import robot_drawn
+from crawler2d.drawings.svg import escaped
+from crawler2d.errors import Crawler2dError, ScenarioWarning
+from crawler2d.pictures.page import page_template, policy, read_part
+from crawler2d.reading.reading import Reading, read_robot
+
+__all__ = ["Entry", "add_arguments", "main_files", "run"]
+
+_OUT = Path("out/atlas.html")
+_HERE = "crawler2d.commands"
+_SAMPLES = 40
+
+_KINDS = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".mjcf")
+_LARGEST = 4_000_000  # [bytes] as for any model file
+_MOST = 5000  # files that are looked at
+_ROOTS = re.compile(rb"<\s*(sdf|robot|mujoco)[\s>]")
+_NAMED = re.compile(rb"""(?:filename|file)\s*=\s*["']([^"']+\.(?:xacro|urdf|xml|sdf))["']""")
+_MACROS = re.compile(rb"<xacro:macro\b.*?</xacro:macro>|<!--.*?-->", re.DOTALL)
+_LINKS = re.compile(rb"<(?:link|worldbody|model|xacro:(?!property|arg|macro)\w+)\b")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A model file: what was read and found, or why it was not read.
+
+    Parameters
+    ----------
+    path : Path
+        From the folder of the atlas.
+    reading : Reading, optional
+        What was read.
+    audit : Audit, optional
+        What was found.
+    refusal : str
+        Why the file was not read or not audited; "" if it was.
+    """
+
+    path: Path
+    reading: Reading | None = None
+    audit: Audit | None = None
+    refusal: str = ""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument("folder", type=Path, help="a folder of repositories")
+    parser.add_argument("--html", type=Path, default=_OUT, help=f"the page (default: {_OUT})")
+    samples = f"of what is not known of each robot (default: {_SAMPLES})"
+    parser.add_argument("--samples", type=int, default=_SAMPLES, help=samples)
+    parser.add_argument("--threads", type=int, help="default: all cores")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the atlas of a folder; returns the exit status."""
+    folder: Path = options.folder
+    if not folder.is_dir():
+        print(f"atlas: {folder} must be a folder", file=sys.stderr)
+        return 2
+    files = list(main_files(folder))
+    entries: list[Entry] = []
+    options.html.parent.mkdir(parents=True, exist_ok=True)
+    for number, path in enumerate(files, 1):
+        print(f"{number} of {len(files)}: {path}", flush=True)
+        try:
+            entries.append(_entry(folder, path, samples=options.samples, threads=options.threads))
+        except KeyboardInterrupt:
+            print(f"interrupted; {options.html} has what was done", file=sys.stderr)
+            return 130
+        _show(entries[-1])
+        _write(options.html, atlas_page(folder, entries, samples=options.samples))
+    print(f"{_conclusion(entries)}\nThe page is in {options.html}" if entries else "no model file")
+    return 0
+
+
+def main_files(folder: Path) -> Iterator[Path]:
+    """Yield the model files of a folder that no other one includes and that hold more than macros.
+
+    Parameters
+    ----------
+    folder : Path
+        Of repositories; hidden folders and links are passed over.
+
+    Yields
+    ------
+    Path
+        From the folder, in order.
+    """
+    found: dict[Path, bytes] = {}
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for name in sorted(names):
+            path = Path(place, name)
+            if path.suffix in _KINDS and path.is_file() and not path.is_symlink():
+                data = path.read_bytes()[: _LARGEST + 1]
+                if len(data) <= _LARGEST and _ROOTS.search(data):
+                    found[path.relative_to(folder)] = data
+            if len(found) >= _MOST:
+                break
+    named = {
+        (path.parts[0], Path(each.decode(errors="replace")).name)
+        for path, data in found.items()
+        for each in _NAMED.findall(data)
+    }
+    for path, data in found.items():
+        is_included = (path.parts[0], path.name) in named
+        if not is_included and _LINKS.search(_MACROS.sub(b"", data)):
+            yield path
+
+
+def _entry(folder: Path, path: Path, *, samples: int, threads: int | None) -> Entry:
+    """Read and audit a file with default options."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ScenarioWarning)  # doubts are in the reading
+        try:
+            reading = read_robot(folder / path)
+        except (Crawler2dError, ImportError, OSError) as error:
+            return Entry(path=path, refusal=str(error))
+        try:
+            found = audit(reading, samples=samples, threads=threads, progress=False)
+        except Crawler2dError as error:
+            return Entry(path=path, reading=reading, refusal=str(error))
+    return Entry(path=path, reading=reading, audit=found)
+
+
+def _show(entry: Entry) -> None:
+    print(f"    {entry.refusal or _verdict(entry)}", flush=True)
+
+
+def _verdict(entry: Entry) -> str:
+    assert entry.audit is not None  # or there is a refusal
+    return " ".join(words.conclusion(entry.audit))
+
+
+def _write(path: Path, text: str) -> None:
+    """Put a page in the place of the last one, whole or not at all."""
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(text, encoding="utf-8", newline="\n")
+    part.replace(path)
+
+
+def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLES) -> str:
+    """Write the page of an atlas.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the repositories.
+    entries : sequence of Entry
+        Their model files.
+    samples : int
+        Of each audit.
+    """
+    style = read_part("page.css") + read_part("atlas.css", _HERE)
+    sections = []
+    for name in dict.fromkeys(entry.path.parts[0] for entry in entries):
+        own = [entry for entry in entries if entry.path.parts[0] == name]
+        licence = f'<p class="origin">{escaped(licence_of(folder / name))}</p>'
+        cards = "".join(_card(entry) for entry in own if entry.reading is not None)
+        cards += _refused([entry for entry in own if entry.reading is None])
+        sections.append(f"<section><h2>{escaped(name)}</h2>{licence}{cards}</section>")
+    return Template(page_template("atlas.html", _HERE)).substitute(
+        title="Atlas of tracked robots",
+        conclusion=escaped(_conclusion(entries)),
+        entries="\n".join(sections),
+        version=escaped(str(_core.build_info()["version"])),
+        how=f"each file read with default options, audited with {samples} samples of what is not"
+        " known of it",
+        style=style,
+        style_hashes=policy(style),
+        script_hashes="'none'",
+    )
+
+
+def _conclusion(entries: Sequence[Entry]) -> str:
+    read = [entry for entry in entries if entry.reading is not None]
+    seizing = [entry for entry in entries if entry.audit is not None and entry.audit.seizes]
+    mended = [
+        e for e in seizing if e.audit is not None and any(r.confirmed for r in e.audit.repairs)
+    ]
+    return (
+        f"Of {len(entries)} model files {len(read)} were read; {len(seizing)} robots seize where a"
+        f" belt clears, for {len(mended)} of which a repair was confirmed."
+    )
+
+
+def _refused(entries: Sequence[Entry]) -> str:
+    rows = "".join(
+        f"<li>{escaped(e.path.as_posix())}: <span>{escaped(e.refusal)}</span></li>" for e in entries
+    )
+    if not rows:
+        return ""
+    return f"<details><summary>{len(entries)} not read</summary><ul>{rows}</ul></details>"
+
+
+def _card(entry: Entry) -> str:
+    name = f"<h3>{escaped(entry.path.as_posix())}</h3>"
+    reading, found = entry.reading, entry.audit
+    assert reading is not None  # others are listed
+    drawing = robot_drawn(reading.robot, "side view", reading.silhouettes, width=300, height=200)
+    parts = [drawing, name, f"<p>{escaped(reading.in_words)}</p>"]
+    if found is None:
+        parts.append(f'<p class="bad">{escaped(entry.refusal)}</p>')
+        return f"<article>{''.join(parts)}</article>"
+    look = "bad" if found.seizes else "good"
+    parts.append(f'<p class="{look}">{escaped(_verdict(entry))}</p>')
+    if found.repairs:
+        parts.append(f"<p>{escaped(words.repair_sentence(found.repairs[0]))}</p>")
+    lint = "".join(
+        f"<li>{escaped(each.severity)}: {escaped(each.what)} {escaped(each.where)}</li>"
+        for each in found.lint
+    )
+    if lint:
+        parts.append(
+            f"<details><summary>{len(found.lint)} findings</summary><ul>{lint}</ul></details>"
+        )
+    return f"<article>{''.join(parts)}</article>"
+
+
+def licence_of(repository: Path) -> str:
+    """Say under which licence a repository is, as its files do.
+
+    Parameters
+    ----------
+    repository : Path
+        Its folder, or a file.
+    """
+    if not repository.is_dir():
+        return "licence: none found"
+    said = []
+    for path in sorted(repository.glob("*")):
+        if re.match(r"(?i)(licen[cs]e|copying)", path.name) and path.is_file():
+            lines = path.read_text(encoding="utf-8", errors="replace")[:4000].splitlines()
+            first = next((line.strip() for line in lines if line.strip()), "")
+            said.append(f"{path.name}: {first[:80]}")
+    for path in sorted(repository.rglob("package.xml"))[:1]:
+        text = path.read_text(encoding="utf-8", errors="replace")[:100_000]
+        if stated := re.search(r"<license[^>]*>([^<]*)</license>", text):
+            said.append(f"package.xml: {stated[1].strip()[:80]}")
+    return f"licence: {'; '.join(said) or 'none found'}"

@@ -1,0 +1,417 @@
+"""Robots as model files hold them: links, joints and collision shapes in three dimensions.
+
+The neutral tree: links, joints and collision shapes of a robot, whatever format has them.
+
+Readers make one of a file, writers make a file of one. Everything is in the frame of the model,
+whose z axis points up, with all joints at zero; metres, kilograms, radians. What is None was not
+given.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "MADE",
+    "Array",
+    "Friction",
+    "Joint",
+    "Link",
+    "Plugin",
+    "Pose",
+    "Shape",
+    "Tree",
+    "Unread",
+    "Where",
+    "from_quaternion",
+    "from_rpy",
+    "unit",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A line of a file.
+
+    Parameters
+    ----------
+    file : str
+        Its name.
+    line : int
+        Number of the line, from 1.
+
+    Examples
+    --------
+    >>> print(Where("robot.sdf", 12))
+    robot.sdf:12
+    """
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        """Return file and line as compilers write them."""
+        return f"{self.file}:{self.line}"
+
+
+MADE = Where("", 0)
+"""Of what was made, not read."""
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Pose:
+    """A frame seen from another one.
+
+    Parameters
+    ----------
+    place : ndarray, shape (3,)
+        [m] Its origin.
+    turn : ndarray, shape (3, 3)
+        [-] Its axes, as columns.
+
+    Examples
+    --------
+    >>> import math
+    >>> ahead = Pose(place=np.array([1.0, 0.0, 0.0]))
+    >>> ahead.then(from_rpy((0.0, 0.0, math.pi / 2))).at((1.0, 0.0, 0.0)).round(9).tolist()
+    [1.0, 1.0, 0.0]
+    """
+
+    place: Array = field(default_factory=lambda: np.zeros(3))
+    turn: Array = field(default_factory=lambda: np.eye(3))
+
+    def then(self, inner: Pose) -> Pose:
+        """Return what is given in this frame, seen from where this one is."""
+        return Pose(place=self.at(inner.place), turn=self.turn @ inner.turn)
+
+    def seen_from(self, frame: Pose) -> Pose:
+        """Return this frame, seen from another one that is given in the same frame."""
+        return Pose(place=frame.turn.T @ (self.place - frame.place), turn=frame.turn.T @ self.turn)
+
+    @property
+    def rpy(self) -> tuple[float, float, float]:
+        """[rad] Roll about x, then pitch about y, then yaw about z, all of them fixed axes."""
+        turn = self.turn
+        level = math.hypot(turn[0, 0], turn[1, 0])
+        pitch = math.atan2(-turn[2, 0], level)
+        if level < 1e-9:  # x points up or down: roll and yaw turn about one axis
+            return math.atan2(-turn[1, 2], turn[1, 1]), pitch, 0.0
+        roll = math.atan2(turn[2, 1], turn[2, 2])
+        return roll, pitch, math.atan2(turn[1, 0], turn[0, 0])
+
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """[-] The turn as a quaternion, its real part first."""
+        cr, cp, cy = (math.cos(0.5 * angle) for angle in self.rpy)
+        sr, sp, sy = (math.sin(0.5 * angle) for angle in self.rpy)
+        return (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+
+    def at(self, point: Sequence[float] | Array) -> Array:
+        """[m] Return a point of this frame, shape (3,), or several, shape (n, 3)."""
+        moved: Array = np.asarray(point, dtype=float) @ self.turn.T + self.place
+        return moved
+
+    def along(self, direction: Sequence[float] | Array) -> Array:
+        """Return a direction of this frame."""
+        turned: Array = self.turn @ np.asarray(direction, dtype=float)
+        return turned
+
+
+def from_rpy(angles: Sequence[float], place: Sequence[float] = (0.0, 0.0, 0.0)) -> Pose:
+    """Turn by roll about x, then pitch about y, then yaw about z [rad], all of them fixed axes."""
+    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in angles)
+    turn = np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+    return Pose(place=np.array(place, dtype=float), turn=turn)
+
+
+def from_quaternion(wxyz: Sequence[float], place: Sequence[float] = (0.0, 0.0, 0.0)) -> Pose:
+    """Turn by a quaternion of any length but 0, its real part first."""
+    w, x, y, z = np.asarray(wxyz, dtype=float) / math.hypot(*wxyz)
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    return Pose(place=np.array(place, dtype=float), turn=turn)
+
+
+def unit(vector: Sequence[float] | Array) -> Array | None:
+    """Return the direction of a vector; None if it has none."""
+    length = math.hypot(*vector)
+    return None if length < 1e-9 else np.asarray(vector, dtype=float) / length
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Friction:
+    """What a file says about the friction of a shape.
+
+    Parameters
+    ----------
+    first, second : float
+        [-] Coefficients along the first and across it.
+    direction : ndarray, shape (3,), optional
+        Of the first; None where it is left to the engine.
+    priority : int
+        Of this shape's coefficients over those of others, in MuJoCo.
+    first_at, second_at : Where
+        Their lines.
+    """
+
+    first: float
+    second: float
+    direction: Array | None = None
+    priority: int = 0
+    first_at: Where = MADE
+    second_at: Where = MADE
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Shape:
+    """A collision shape.
+
+    Parameters
+    ----------
+    name : str
+        As in the file.
+    kind : {"box", "cylinder", "capsule", "sphere", "hull"}
+        A "hull" is that of `points`.
+    pose : Pose
+        Of its frame; the axis of cylinders and capsules is z.
+    radius : float
+        [m] Of cylinder, capsule and sphere.
+    length : float
+        [m] Of a cylinder, or of a capsule without its caps.
+    size : ndarray, shape (3,)
+        [m] Of a box.
+    points : ndarray, shape (n, 3)
+        [m] Of a hull, in the frame of the model.
+    friction : Friction, optional
+        Of its surface.
+    surface_speed : float
+        [m/s] At which the file itself moves its surface; 0: it does not.
+    at : Where
+        Its own line.
+    pose_at, size_at : Where
+        The lines of its pose and of its radius or size.
+    """
+
+    name: str
+    kind: str
+    pose: Pose
+    radius: float = 0.0
+    length: float = 0.0
+    size: Array = field(default_factory=lambda: np.zeros(3))
+    points: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    friction: Friction | None = None
+    surface_speed: float = 0.0
+    at: Where = MADE
+    pose_at: Where = MADE
+    size_at: Where = MADE
+
+    @property
+    def axis(self) -> Array:
+        """Direction of a cylinder or capsule."""
+        turned: Array = self.pose.turn[:, 2]
+        return turned
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unread:
+    """A collision shape that was left out: that it is there is all that is known of it.
+
+    Parameters
+    ----------
+    name : str
+        The file of a mesh as it is named, or the kind of the shape.
+    reason : str
+        Why it was left out.
+    at : Where
+        Its line.
+    """
+
+    name: str
+    reason: str
+    at: Where = MADE
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Link:
+    """A rigid body.
+
+    Parameters
+    ----------
+    name : str
+        As in the file.
+    pose : Pose
+        Of its frame.
+    mass : float
+        [kg] Its mass.
+    center : ndarray, shape (3,)
+        [m] Its centre of mass.
+    inertia : ndarray, shape (3, 3)
+        [kg m^2] About that.
+    shapes : tuple of Shape
+        What collides.
+    unread : tuple of Unread
+        What collides besides, but was left out.
+    at, pose_at, mass_at : Where
+        The lines of the link, of its place and of its mass.
+    """
+
+    name: str
+    pose: Pose
+    mass: float
+    center: Array
+    inertia: Array
+    shapes: tuple[Shape, ...]
+    unread: tuple[Unread, ...] = ()
+    at: Where = MADE
+    pose_at: Where = MADE
+    mass_at: Where = MADE
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Joint:
+    """What joins a link to another.
+
+    Parameters
+    ----------
+    name : str
+        As in the file.
+    kind : str
+        "fixed", "hinge", "slide", or the file's own word for anything else.
+    parent, child : str
+        The links.
+    place : ndarray, shape (3,)
+        [m] Where it is.
+    axis : ndarray, shape (3,)
+        Direction about which it turns or along which it slides.
+    lower, upper : float
+        [rad] or [m] Limits; infinite where there are none.
+    effort : float, optional
+        [N m] or [N] Largest torque or force of its motor.
+    velocity : float, optional
+        [rad/s] or [m/s] Largest speed.
+    stiffness : float
+        [N m/rad] or [N/m] Of a spring.
+    damping : float
+        [N m s/rad] or [N s/m] Of viscous friction.
+    friction : float
+        [N m] or [N] Of dry friction.
+    armature : float
+        [kg m^2] or [kg] Of the motor's rotor behind its gear, on top of the link's inertia.
+    gain : float, optional
+        [N m s/rad] or [N s/m] Of a servo of its speed: torque or force for an error of that.
+    at, effort_at, velocity_at, dynamics_at, gain_at : Where
+        Its line, and those of its limits, of damping, friction and armature, and of its servo.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    place: Array
+    axis: Array
+    lower: float = -math.inf
+    upper: float = math.inf
+    effort: float | None = None
+    velocity: float | None = None
+    stiffness: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+    armature: float = 0.0
+    gain: float | None = None
+    at: Where = MADE
+    effort_at: Where = MADE
+    velocity_at: Where = MADE
+    dynamics_at: Where = MADE
+    gain_at: Where = MADE
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether it cannot move: fixed, or with limits that leave no range."""
+        return self.kind == "fixed" or (
+            self.kind in ("hinge", "slide") and self.lower >= self.upper
+        )
+
+    @property
+    def is_unlimited(self) -> bool:
+        """Whether it can turn at least twice: what is driven on is not limited to less."""
+        return self.kind == "hinge" and self.upper - self.lower >= 4.0 * math.pi * (1.0 - 1e-3)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plugin:
+    """A plugin that the file asks for, with its settings: path, text and line of each leaf."""
+
+    name: str
+    filename: str
+    settings: tuple[tuple[str, str, Where], ...]
+    at: Where = MADE
+
+    def values(self, *paths: str) -> list[tuple[str, Where]]:
+        """Return text and line of every setting at one of these paths."""
+        return [(text, where) for path, text, where in self.settings if path in paths]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Tree:
+    """A robot as its file has it.
+
+    Parameters
+    ----------
+    name : str
+        Of the model.
+    format : str
+        "SDF 1.6", "URDF", "MJCF".
+    file : str
+        Name of the file.
+    links : tuple of Link
+        The root first, parents before their children.
+    joints : mapping of str to Joint
+        By the link that is the child.
+    plugins : tuple of Plugin
+        In their order.
+    driven : mapping of str to Where
+        The joints that the file gives a motor, and where.
+    tracks : tuple of str
+        Links whose surface something outside the file moves.
+    at : Where
+        Line of the model.
+    """
+
+    name: str
+    format: str
+    file: str
+    links: tuple[Link, ...]
+    joints: Mapping[str, Joint]
+    plugins: tuple[Plugin, ...] = ()
+    driven: Mapping[str, Where] = field(default_factory=dict)
+    tracks: tuple[str, ...] = ()
+    at: Where = MADE
+
+    @property
+    def by_name(self) -> dict[str, Link]:
+        """Its links by name."""
+        return {link.name: link for link in self.links}

@@ -1,1 +1,0 @@
-"""A robot as model files hold it: links, joints and shapes in three dimensions."""

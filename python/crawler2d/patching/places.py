@@ -1,0 +1,325 @@
+"""Wheels in the text of an SDF, a URDF or an MJCF: places, sizes, masses and limits, and copies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from typing import NoReturn
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.model_tree import Array, Link, Pose, Tree
+from crawler2d.patching.changes import Change
+from crawler2d.reading.sdf import MODEL
+from crawler2d.writing.document import Document, Span, joint_in, links_in, written
+from crawler2d.writing.formats import numbers
+
+__all__ = ["change_mjcf", "change_sdf", "change_urdf", "copied", "items_about", "names_of"]
+
+_NO_NAMES = ("class", "childclass", "material", "mesh", "type", "filename")
+"""Attributes whose values name something else than links and joints."""
+
+_WITH_NAMES = ("transmission", "actuator")
+"""Elements that are about one joint, and need names of their own."""
+
+
+def names_of(scope: Span, links: Collection[str], joint: str) -> set[str]:
+    """Return the names of a wheel, and of all that MJCF has within its bodies."""
+    names = {*links, joint}
+    for body in scope.within():
+        if body.tag == "body" and body.name in links:
+            names |= {each.name for each in body.within() if each.name}
+    return names
+
+
+def items_about(scope: Span, names: Collection[str]) -> list[Span]:
+    """Return the outermost elements that are about a wheel.
+
+    These are its links and joints; what names one of them in an attribute, such as a motor; a
+    transmission with its joint; and of a plugin each setting that is one of its names.
+
+    Parameters
+    ----------
+    scope : Span
+        Where to look.
+    names : collection of str
+        Of the wheel.
+    """
+    found = []
+    for child in scope.children:
+        if _is_about(child, names):
+            found.append(child)
+        elif child.tag not in ("link", "joint"):
+            found += items_about(child, names)
+    return found
+
+
+def _is_about(span: Span, names: Collection[str]) -> bool:
+    if any(value in names for key, value in span.attributes.items() if key not in _NO_NAMES):
+        return True
+    if span.tag == "transmission":
+        return any(joint.name in names for joint in span.all("joint"))
+    if span.tag == "joint":
+        child = span.only("child")
+        return child is not None and (child.text or child.attributes.get("link")) in names
+    return not span.children and span.text in names
+
+
+def copied(
+    document: Document,
+    items: list[Span],
+    names: Mapping[str, str],
+    change: Callable[[Document, Span], None],
+) -> list[str]:
+    """Copy elements, changed and under other names.
+
+    Parameters
+    ----------
+    document : Document
+        In which they are.
+    items : list of Span
+        As from `items_about`.
+    names : mapping of str to str
+        The new name of each.
+    change : callable
+        What to do with the copies, together in one element.
+
+    Returns
+    -------
+    list of str
+        The text of each copy.
+    """
+    # Each stands in what it stands in: a motor is known by the <actuator> round it.
+    tags = [item.parent.tag if item.parent is not None else "" for item in items]
+    whole = "".join(
+        f"<{tag}>{document.source(item)}</{tag}>" for tag, item in zip(tags, items, strict=True)
+    )
+    first = Document(f"<copies>{whole}</copies>")
+    change(first, first.root)
+    second = Document(first.text)
+    for holder in second.root.children:
+        _rename(second, holder.children[0], names)
+    third = Document(second.text)
+    return [third.source(holder.children[0]) for holder in third.root.children]
+
+
+def _rename(document: Document, item: Span, names: Mapping[str, str]) -> None:
+    suffix = next(new.removeprefix(old) for old, new in names.items())
+    for span in item.within():
+        for key, value in span.attributes.items():
+            if value in names and key not in _NO_NAMES:
+                document.set_attribute(span, key, names[value])
+            elif key == "name" and (span.tag in _WITH_NAMES or (span is item and _is_mjcf(span))):
+                document.set_attribute(span, key, value + suffix)
+        if not span.children and span.text in names:
+            document.set_text(span, names[span.text])
+
+
+def _is_mjcf(item: Span) -> bool:
+    """Whether it is a motor, a sensor or an exclusion, which MJCF names one by one."""
+    holder = "" if item.parent is None else item.parent.tag
+    return holder in ("actuator", "sensor", "contact", "tendon", "equality")
+
+
+_NOT_ROUND = ("box", "mesh", "ellipsoid", "plane", "hfield")
+_INHERITED = ("class", "friction", "condim", "priority", "contype", "conaffinity", "solref")
+
+
+def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
+    """Change a wheel; the arguments are those of `change_urdf`."""
+    every = [each for each in scope.within() if each.tag == "body" and each.name in change.links]
+    if len(every) != len(change.links):
+        _refuse_body(change.link, "no name", "must have a name, to be found in the text")
+    body = next(each for each in every if each.name == change.link)
+    if change.shift.any():
+        if body.parent is not None and body.parent.tag == "frame":
+            _refuse_body(change.link, "a <frame>", "must stand in another body itself, to be moved")
+        shift = tree.by_name[change.joint.parent].pose.turn.T @ change.shift
+        document.add_to(body, shift.tolist(), "pos")
+    for each in every:
+        _change_body(document, each, change, tree.by_name[each.name])
+    motors = [
+        each
+        for each in scope.within()
+        if each.attributes.get("joint") == change.joint.name and "actuator" in _above(each)
+    ]
+    for motor in motors:
+        _change_motor(document, motor, change)
+    has_rotor = any("armature" in each.attributes for each in (*motors, *body.all("joint")))
+    for joint in body.all("joint"):
+        document.multiply(joint, [change.effort] * 2, "actuatorfrcrange")
+        document.multiply(joint, [change.inertia], "armature")
+        if not has_rotor and change.joint.armature > 0.0 and change.inertia != 1.0:  # by a class
+            rotor = change.inertia * change.joint.armature
+            document.set_attribute(joint, "armature", written([rotor]))
+    _add_mjcf_grousers(document, body, change, tree.by_name[change.link].pose)
+
+
+def _above(span: Span) -> list[str]:
+    return [] if span.parent is None else [span.parent.tag, *_above(span.parent)]
+
+
+def _change_motor(document: Document, motor: Span, change: Change) -> None:
+    """Change what a motor can do; that of a `motor` without a limit of force is its gear."""
+    if "forcerange" in motor.attributes or motor.tag != "motor":
+        document.multiply(motor, [change.effort] * 2, "forcerange")
+    elif change.effort != 1.0:
+        gear = motor.attributes.get("gear", "1").split()
+        document.set_attribute(
+            motor, "gear", " ".join([written([float(gear[0]) * change.effort]), *gear[1:]])
+        )
+    if motor.tag in ("velocity", "intvelocity"):
+        document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
+    for name in ("kv", "armature"):
+        document.multiply(motor, [change.inertia], name)
+
+
+def _change_body(document: Document, body: Span, change: Change, link: Link) -> None:
+    inertial = body.only("inertial")
+    if inertial is not None:
+        document.multiply(inertial, [change.share], "mass")
+        for name, count in (("diaginertia", 3), ("fullinertia", 6)):
+            document.multiply(inertial, [change.inertia] * count, name, is_exact=True)
+    geoms = [geom for geom in body.all("geom") if geom.attributes.get("type") not in _NOT_ROUND]
+    for geom in geoms:
+        if "size" in geom.attributes:
+            document.multiply(geom, [change.round_size], "size")
+        elif change.round_size != 1.0:
+            (shape,) = link.shapes if len(link.shapes) == len(geoms) == 1 else (None,)
+            if shape is None:
+                _refuse_body(body.name, "geoms of a class", "must state the sizes of its wheels")
+            sizes = [change.round_size * shape.radius, 0.5 * shape.length]
+            document.set_attribute(geom, "size", written(sizes))
+    if inertial is None and (change.share, change.round_size) != (1.0, 1.0) and link.mass > 0.0:
+        if len(body.all("geom")) != 1:
+            _refuse_body(body.name, "no <inertial>", "must state its mass, for wheels to share it")
+        document.set_attribute(body.all("geom")[0], "mass", written([change.share * link.mass]))
+
+
+def _refuse_body(body: str, value: str, rule: str) -> NoReturn:
+    raise ScenarioError(f"body[{body}]", value, rule)
+
+
+def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pose) -> None:
+    geom = body.only("geom")
+    alike = {} if geom is None else geom.attributes
+    given = "".join(f' {name}="{alike[name]}"' for name in _INHERITED if name in alike)
+    for shape, place in change.grousers_on(pose):
+        where = f'pos="{written(place.place)}" quat="{numbers(place.quaternion)}"'
+        size = f'size="{written(0.5 * shape.size)}"'
+        # Its mass is that of the wheel already; without a name, as names must differ.
+        document.append(body, f'<geom type="box" {where} {size} mass="0"{given}/>')
+
+
+_ROUNDS = ("cylinder", "sphere", "capsule")
+
+
+def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
+    """Change a wheel; the arguments are those of `change_urdf`."""
+    links = links_in(scope, change.links)
+    joint = joint_in(scope, change.joint.name)
+    # What is given in the frame of the wheel moves with it; a joint usually is.
+    for each, usual in [*((link, MODEL) for link in links), (joint, change.link)]:
+        pose = each.only("pose")
+        frame = usual if pose is None else pose.attributes.get("relative_to", "") or usual
+        if change.shift.any() and frame not in change.links:
+            _move(document, each, pose, _turned(change.shift, frame, tree, each))
+    limit = joint.only("axis/limit")
+    if limit is not None:
+        for name, factor in (("effort", change.effort), ("velocity", 1.0 / change.size)):
+            value = limit.only(name)
+            if value is not None and not value.text.startswith(("-", "inf")):
+                document.multiply(value, [factor])
+    for link in links:
+        if change.share != 1.0 and link.only("inertial/mass") is None:
+            _refuse_element(link, "no mass", "must state its mass, for wheels to share it")
+        document.multiply(link.only("inertial/mass"), [change.share])
+        inertia = link.only("inertial/inertia")
+        for moment in inertia.children if inertia is not None else ():
+            document.multiply(moment, [change.inertia], is_exact=True)
+        for shape in link.all("collision", "visual"):
+            for kind in _ROUNDS:
+                document.multiply(shape.only(f"geometry/{kind}/radius"), [change.round_size])
+        if link.name == change.link:
+            _add_sdf_grousers(document, link, change, tree.by_name[change.link].pose)
+
+
+def _move(document: Document, element: Span, pose: Span | None, shift: Array) -> None:
+    if pose is None:
+        document.append(element, f"<pose>{written([*shift, 0.0, 0.0, 0.0])}</pose>")
+    elif not pose.text:
+        document.set_text(pose, written([*shift, 0.0, 0.0, 0.0]))
+    else:
+        document.add_to(pose, shift.tolist())
+
+
+def _turned(shift: Array, frame: str, tree: Tree, element: Span) -> Array:
+    """[m] Return a shift of the model in the frame in which an element is given."""
+    if frame == MODEL:
+        return shift
+    if frame not in tree.by_name:
+        _refuse_element(element, frame, "must be placed in the frame of a link or of the model")
+    turned: Array = np.asarray(tree.by_name[frame].pose.turn.T @ shift)
+    return turned
+
+
+def _refuse_element(element: Span, value: str, rule: str) -> NoReturn:
+    raise ScenarioError(f"{element.tag}[{element.name}]", value, rule)
+
+
+def _add_sdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
+    first = link.only("collision")
+    surface = None if first is None else first.only("surface")
+    of_wheel = "" if surface is None else document.source(surface)
+    for shape, place in change.grousers_on(pose):
+        pose_text = f"<pose>{written(place.place)} {numbers(place.rpy)}</pose>"
+        box = f"<geometry><box><size>{written(shape.size)}</size></box></geometry>"
+        for tag, more in (("collision", of_wheel), ("visual", "")):
+            document.append(
+                link, f'<{tag} name="{shape.name}_{tag}">{pose_text}{box}{more}</{tag}>'
+            )
+
+
+def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
+    """Change a wheel.
+
+    Parameters
+    ----------
+    document : Document
+        The text.
+    scope : Span
+        The element in which its links and joints are.
+    change : Change
+        What becomes of it.
+    tree : Tree
+        The model as it was read.
+    """
+    joint = joint_in(scope, change.joint.name)
+    if change.shift.any():
+        shift = tree.by_name[change.joint.parent].pose.turn.T @ change.shift
+        origin = joint.only("origin")
+        if origin is None:
+            document.append(joint, f'<origin xyz="{written(shift)}"/>')
+        else:
+            document.add_to(origin, shift.tolist(), "xyz")
+    limit = joint.only("limit")
+    document.multiply(limit, [change.effort], "effort")
+    document.multiply(limit, [1.0 / change.size], "velocity")
+    for link in links_in(scope, change.links):
+        document.multiply(link.only("inertial/mass"), [change.share], "value")
+        inertia = link.only("inertial/inertia")
+        for name in inertia.attributes if inertia is not None else ():
+            document.multiply(inertia, [change.inertia], name, is_exact=True)
+        for shape in link.all("collision", "visual"):
+            for each in (shape.only(f"geometry/{kind}") for kind in _ROUNDS):
+                document.multiply(each, [change.round_size], "radius")
+        if link.name == change.link:
+            _add_urdf_grousers(document, link, change, tree.by_name[change.link].pose)
+
+
+def _add_urdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
+    for shape, place in change.grousers_on(pose):
+        origin = f'<origin xyz="{written(place.place)}" rpy="{numbers(place.rpy)}"/>'
+        box = f'<geometry><box size="{written(shape.size)}"/></geometry>'
+        for tag in ("collision", "visual"):
+            document.append(link, f'<{tag} name="{shape.name}_{tag}">{origin}{box}</{tag}>')

@@ -1,0 +1,152 @@
+"""What is recorded about a robot that is read: sources of figures, notes, doubts and its wheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import islice
+
+from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.model_tree import Where
+from crawler2d.reading.wheels import Runner
+
+__all__ = ["Doubt", "Sources", "Telling", "estimate", "lines", "named", "noted", "place_of"]
+
+_MOST = 4  # lines that are listed one by one
+
+
+class Sources(Mapping[str, str]):
+    """Sources by path, such as ``robot.mass``; printing them shows a table.
+
+    Parameters
+    ----------
+    entries : mapping of str to str
+        File and lines, or the word "estimate" with its rule.
+
+    Examples
+    --------
+    >>> Sources({"robot.mass": "cart.sdf:12", "robot.track_mass": "estimate: a hundredth"})
+    robot.mass        cart.sdf:12
+    robot.track_mass  estimate: a hundredth
+    """
+
+    __slots__ = ("_entries",)
+
+    def __init__(self, entries: Mapping[str, str]) -> None:
+        self._entries = tuple(entries.items())
+
+    def __getitem__(self, path: str) -> str:
+        """Return the source of a figure."""
+        return dict(self._entries)[path]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the paths."""
+        return (path for path, _ in self._entries)
+
+    def __len__(self) -> int:
+        """Count the figures."""
+        return len(self._entries)
+
+    def __repr__(self) -> str:
+        """Write one line for each figure."""
+        width = max((len(path) for path, _ in self._entries), default=0)
+        return "\n".join(f"{path:{width}}  {source}" for path, source in self._entries)
+
+    @property
+    def estimates(self) -> tuple[str, ...]:
+        """The paths of the figures that are estimates."""
+        return tuple(path for path, source in self._entries if source.startswith("estimate"))
+
+
+def estimate(rule: str) -> str:
+    """Say that a figure is an estimate, and by which rule."""
+    return f"estimate: {rule}"
+
+
+def lines(places: Iterable[Where], what: str = "") -> str:
+    """Write lines of a file; of many, how many and from where to where.
+
+    Examples
+    --------
+    >>> lines([Where("a.sdf", 7), Where("a.sdf", 3), Where("a.sdf", 7)])
+    'a.sdf:3, 7'
+    >>> lines([Where("a.sdf", line) for line in range(10, 70)], "sum")
+    'a.sdf:10 to 69, sum of 60 lines'
+    """
+    by_file: dict[str, set[int]] = {}
+    for place in places:
+        by_file.setdefault(place.file, set()).add(place.line)
+    parts = []
+    for file, numbers in by_file.items():
+        order = sorted(numbers)
+        if len(order) <= _MOST:
+            parts.append(f"{file}:{', '.join(str(number) for number in order)}")
+            continue
+        kind = f"{what} of {len(order)}" if what else f"{len(order)}"
+        parts.append(f"{file}:{order[0]} to {order[-1]}, {kind} lines")
+    return "; ".join(parts)
+
+
+Doubt = tuple[str, object, str]
+"""Path, value and reason of a `ScenarioWarning`."""
+
+_MOST_NOTES = 10
+
+
+@dataclass(slots=True, kw_only=True)
+class Telling:
+    """Gathers what is told while a robot is made.
+
+    Parameters
+    ----------
+    at : Where
+        Line of the model.
+    sources : dict of str to str
+        By path.
+    notes : list of str
+        What was decided.
+    doubts : list of Doubt
+        What is hardly meant.
+    rows : list of (str, Runner)
+        All wheels and drums, each with its carrier, in the order of the table.
+    """
+
+    at: Where
+    sources: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    doubts: list[Doubt] = field(default_factory=list)
+    rows: list[tuple[str, Runner]] = field(default_factory=list)
+
+    def note(self, path: str, source: str) -> None:
+        """Keep the source of a figure."""
+        self.sources[path] = source
+
+
+def place_of(runner: Runner) -> Where:
+    """Return the line that says where a wheel or drum is."""
+    return runner.link.pose_at if runner.joint is not None else runner.shape.pose_at
+
+
+@contextmanager
+def noted(doubts: Iterable[Doubt]) -> Iterator[None]:
+    """Add to a refusal what was done without before it, which may be its cause, as notes."""
+    try:
+        yield
+    except ScenarioError as error:
+        for doubt in islice(doubts, _MOST_NOTES):
+            error.add_note(str(ScenarioWarning(*doubt)))
+        raise
+
+
+def named(names: Sequence[str], most: int = 3) -> str:
+    """List names; of many, the first and how many more.
+
+    Examples
+    --------
+    >>> named(["a", "b"]), named(["a", "b", "c", "d", "e"])
+    ('a, b', 'a, b, c and 2 more')
+    """
+    more = len(names) - most
+    shown = ", ".join(names[:most])
+    return shown if more <= 0 else f"{shown} and {more} more"

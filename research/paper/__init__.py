@@ -1,0 +1,1 @@
+"""The paper that introduced gear wheels, reproduced: `python -m research paper`."""

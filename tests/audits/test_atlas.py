@@ -1,0 +1,59 @@
+"""The atlas: which files are taken for models, and a page of what was read and what was not."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from crawler2d.__main__ import main
+from crawler2d.commands.atlas import licence_of, main_files
+from tests.reading.carts import FILES, WHEELS, urdf
+
+
+@pytest.fixture
+def forest(tmp_path: Path) -> Path:
+    """Two repositories: one with a cart, one with a macro, its caller and a broken file."""
+    cart, other = tmp_path / "trees" / "cart", tmp_path / "trees" / "other" / "urdf"
+    cart.mkdir(parents=True)
+    other.mkdir(parents=True)
+    shutil.copy(FILES / "cart.urdf", cart)
+    (cart / "LICENSE").write_text("\nMIT License\n\nCopyright", encoding="utf-8")
+    (cart / "notes.xml").write_text("<notes/>", encoding="utf-8")
+    (other.parent / "package.xml").write_text("<license>BSD</license>", encoding="utf-8")
+    macro = "<robot xmlns:xacro='x'><xacro:macro name='m'><link name='a'/></xacro:macro></robot>"
+    (other / "part.xacro").write_text(macro, encoding="utf-8")
+    caller = "<robot xmlns:xacro='x'><xacro:include filename='part.xacro'/><link name='b'/></robot>"
+    (other / "whole.xacro").write_text(caller, encoding="utf-8")
+    (other / "<b>.urdf").write_text(urdf(WHEELS).replace("</robot>", ""), encoding="utf-8")
+    return tmp_path / "trees"
+
+
+def test_files_that_others_include_and_files_of_macros_are_no_models(forest: Path) -> None:
+    names = [path.as_posix() for path in main_files(forest)]
+    assert names == ["cart/cart.urdf", "other/urdf/<b>.urdf", "other/urdf/whole.xacro"]
+
+
+def test_the_page_has_every_model_with_its_licence_and_why_it_was_not_read(
+    forest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "out" / "atlas.html"
+    assert main(["atlas", str(forest), "--html", str(page), "--samples", "2"]) == 0
+    assert "Of 3 model files 1 were read" in capsys.readouterr().out
+    text = page.read_text(encoding="utf-8")
+    for part in ("cart/cart.urdf", "LICENSE: MIT License", "package.xml: BSD", "well-formed XML"):
+        assert part in text
+    assert "<b>" not in text.replace("&lt;b&gt;", "")
+    assert not re.search(r"(src|href)=\"(?!data:)", text)
+    assert text.count("<svg") == 1
+
+
+def test_a_folder_that_is_none_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["atlas", str(tmp_path / "absent")]) == 2
+    assert "must be a folder" in capsys.readouterr().err
+
+
+def test_a_repository_without_a_licence_says_so(tmp_path: Path) -> None:
+    assert licence_of(tmp_path) == "licence: none found"

@@ -1,0 +1,97 @@
+"""Eq. (1) and the claims of the paper."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from research.paper.claims import claims
+from research.paper.claims_ground import force_is_flat, gears_end_seizure
+from research.paper.claims_models import geometry, shaking_of_gears, unevenness
+from research.paper.design import QUICK, Work
+from research.paper.layouts import layouts
+from research.paper.phases import gear_angles, off_formula, phases, shaking
+from research.paper.report import claims_text, equation_text
+
+
+def work(folder: Path) -> Work:
+    design = replace(QUICK, claim_repeats=2, driving_repeats=1)
+    return Work(store=folder / "paper.sqlite", design=design, threads=1, progress=False)
+
+
+def test_gears_start_at_the_angles_of_equation_1(tmp_path: Path) -> None:
+    found = phases(work(tmp_path))
+    assert {row.model: row.count for row in found}["line of 3"] == 6  # and three on the flipper
+    assert max(row.off for row in found) < 1e-12  # rounding
+
+
+def test_another_phase_is_off_equation_1() -> None:
+    track = c2d.LineOfWheels(3, wheel=c2d.GearWheel(phase_fraction=0.5))
+    robot = c2d.robots.engineer(flippers=None, track=track)
+    run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=3.0))
+    number, angle, theta = gear_angles(run)[0]
+    assert number == 1
+    assert theta == pytest.approx(2.0 * np.pi / 7.0)
+    assert off_formula(number, angle, theta) == pytest.approx(theta / 6.0)
+
+
+def test_a_third_of_theta_takes_most_of_the_swing_but_not_for_three_gears(tmp_path: Path) -> None:
+    shaken = shaking(work(tmp_path))
+    swings = {(row.count, round(row.fraction, 2)): row.swing for row in shaken}
+    # In step all wheels stand on two grousers at once, then on one: a chord between the corners of
+    # two tips, 6 mm thick, of seven. Looked at every 10 ms.
+    half = np.pi / 7.0 - np.arcsin(0.003 / 0.064)
+    for count in (3, 5):
+        assert swings[count, 0.0] == pytest.approx(0.064 * (1.0 - np.cos(half)), rel=0.01)
+    assert swings[5, 0.33] < 0.1 * swings[5, 0.0]
+    assert swings[3, 0.5] < swings[3, 0.33] < 0.5 * swings[3, 0.0]
+    rough, third = shaking_of_gears(work(tmp_path), shaken)
+    assert (rough.verdict, third.verdict) == ("holds", "holds in part")
+    assert "eq. (1) within" in equation_text(phases(work(tmp_path)), shaken)
+
+
+@pytest.mark.parametrize("count", [5, 9])
+def test_pockets_of_a_line_are_as_deep_as_the_circles_leave_them(count: int) -> None:
+    robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(count))
+    deep, mean = unevenness(robot)
+    pitch = 0.365 / (count - 1)
+    assert deep == pytest.approx(0.064 - (0.064**2 - pitch**2 / 4.0) ** 0.5, rel=1e-6)
+    # A circular segment holds two thirds of its chord's rectangle, less for deep ones.
+    assert mean == pytest.approx(deep / 3.0, rel=0.1)
+
+
+def test_slots_are_as_deep_as_the_belly_is_high() -> None:
+    robot = layouts()["line of 3"].on(c2d.robots.engineer(flippers=None))
+    assert unevenness(robot)[0] == pytest.approx(0.034)
+    assert geometry().verdict == "holds in part"
+
+
+def test_five_gears_stay_on_an_edge_of_2_mm_that_three_gears_clear(tmp_path: Path) -> None:
+    claim = gears_end_seizure(work(tmp_path))
+    held = {check.what: check.holds for check in claim.checks}
+    assert not held["line of 5 gears clear an edge 2 mm thick"]
+    assert held["line of 5 gears clear an edge 10 mm thick"]
+    assert held["line of 3 gears clear an edge 2 mm thick"]
+    assert claim.verdict == "holds in part"
+    assert "| 1 | gears end seizure on sharp edges |" in claims_text([claim])
+
+
+def test_every_claim_has_its_verdict(tmp_path: Path) -> None:
+    tiny = replace(QUICK, claim_repeats=1, field_repeats=1, driving_repeats=1, computing_repeats=1)
+    little = replace(work(tmp_path), design=tiny)
+    found = claims(little, shaking(little))
+    verdicts = {claim.text: claim.verdict for claim in found}
+    assert len(verdicts) == len(found) >= 15
+    unasked = [text for text, verdict in verdicts.items() if verdict == "cannot be asked here"]
+    assert len(unasked) == 3
+    assert any("turn" in text for text in unasked)
+    assert verdicts["segmental tracks have a low computational efficiency"] == "holds"
+    assert verdicts["the protrusions of gears complicate odometry"] == "holds"
+
+
+def test_a_force_is_unlike_a_belt_at_a_step(tmp_path: Path) -> None:
+    held = {check.what: check.holds for check in force_is_flat(work(tmp_path)).checks}
+    assert held["flat: as the belt"]
+    assert held["step of 60 mm: unlike the belt"]

@@ -1,0 +1,87 @@
+"""The notebooks: they run from top to bottom, and their texts, code and outputs belong together."""
+
+import ast
+import functools
+import re
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from tests.research.notebooks import NOTEBOOKS, executed, hash_of_sources, kept_hash, read, shown
+
+of_each = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+
+@functools.cache
+def quick_run(path: Path) -> nbformat.NotebookNode:
+    return executed(path, quick=True)
+
+
+def test_there_is_a_notebook() -> None:
+    assert NOTEBOOKS
+
+
+# What a text may name: what is put in, where the paper has it, and files of the project.
+GIVEN = re.compile(r"a step of 75 mm|(Fig\.|Table|eq\.) \(?\d+\)?|crawler2d|\w+_2\.ipynb")
+
+
+@of_each
+def test_a_text_leaves_figures_to_the_runs(path: Path) -> None:
+    texts = [cell.source for cell in read(path).cells if cell.cell_type == "markdown"]
+    stated = [line for text in texts for line in GIVEN.sub("", text).splitlines()]
+    assert [line for line in stated if re.search(r"\d", line)] == []
+
+
+def findings(text: str) -> int:
+    """Count the findings of a text: its quoted paragraphs."""
+    return len(re.findall(r"^>.*(?:\n>.*)*", text, re.MULTILINE))
+
+
+def asserts(code: str) -> int:
+    return sum(isinstance(node, ast.Assert) for node in ast.walk(ast.parse(code)))
+
+
+@of_each
+def test_a_finding_is_asserted_in_the_next_cell(path: Path) -> None:
+    cells = read(path).cells
+    texts = [k for k, cell in enumerate(cells) if cell.cell_type == "markdown"]
+    stating = [k for k in texts if findings(cells[k].source)]
+    assert stating
+    for k in stating:
+        assert cells[k + 1].cell_type == "code"
+        assert asserts(cells[k + 1].source) >= findings(cells[k].source), cells[k].source
+
+
+@of_each
+def test_the_notebook_runs_and_warns_of_nothing(path: Path) -> None:
+    kinds = [kind for cell in shown(quick_run(path)) for kind, _ in cell]
+    assert "image/png" in kinds
+    assert "stderr" not in kinds
+
+
+@of_each
+def test_the_outputs_are_those_of_the_sources(path: Path) -> None:
+    committed = read(path)
+    assert kept_hash(committed) == hash_of_sources(committed), "run make notebooks"
+
+
+@of_each
+def test_every_cell_that_shows_something_has_it_committed(path: Path) -> None:
+    made, committed = (
+        [[kind for kind, _ in cell] for cell in shown(notebook)]
+        for notebook in (quick_run(path), read(path))
+    )
+    assert committed == made
+
+
+@of_each
+def test_a_notebook_can_be_read_on_the_web(path: Path) -> None:
+    # Larger ones are slow to show, and each new version stays in the history.
+    assert path.stat().st_size < 500_000
+
+
+@pytest.mark.soak
+@of_each
+def test_a_full_run_says_what_is_committed(path: Path) -> None:
+    assert shown(executed(path, quick=False)) == shown(read(path))
