@@ -7,7 +7,7 @@ import pytest
 
 from tests.walls.rooms import ROOT
 
-SINCE = "6a259e85"
+SINCE = "6a259e8938"
 """The last commit before this rule."""
 
 LONGEST = 72
