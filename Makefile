@@ -25,7 +25,7 @@ CARGO := PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo
 help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 14
 
-study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
+study: $(VENV)/.built ## the main job in half a minute; all of it with ARGS=--full; files in out/
 	$(BIN)/python -m research seizure $(ARGS)
 
 # Two at a time, in this order: where one needs but one core, compiles or waits for another build, the other takes the rest.
@@ -105,7 +105,7 @@ notebooks: $(VENV)/.built ## run the notebooks of studies/ and keep their output
 	$(BIN)/python -m tests.research.notebooks $(ARGS)
 
 paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; an hour or two, Ctrl-C loses nothing
-	$(BIN)/python -m research paper $(ARGS)
+	$(BIN)/python -m research paper --full $(ARGS)
 
 paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Table 2, a quarter of an hour; Ctrl-C loses nothing
 	$(BIN)/python -m research chart $(ARGS)

@@ -39,7 +39,7 @@ __all__ = ["STUDIES", "add_arguments"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options that all studies have."""
-    parser.add_argument("--quick", action="store_true", help="few heights and repeats")
+    parser.add_argument("--full", action="store_true", help="all heights and repeats; minutes")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results")
     parser.add_argument("--threads", type=int, default=None, help="default: all cores")
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
@@ -59,7 +59,7 @@ def _command(study: Callable[[argparse.Namespace], None]) -> Callable[[argparse.
 
 
 def _run_chain_steps(options: argparse.Namespace) -> None:
-    repeats = 2 if options.quick else 40
+    repeats = 40 if options.full else 2
     steps = chain_steps(repeats=repeats, seed=options.seed, threads=options.threads)
     text = f"{chain_steps_text(steps)}\n"
     print(f"\n{text}")
@@ -67,7 +67,7 @@ def _run_chain_steps(options: argparse.Namespace) -> None:
 
 
 def _run_flippers(options: argparse.Namespace) -> None:
-    heights, repeats = (HEIGHTS[1::4], 2) if options.quick else (HEIGHTS, 6)
+    heights, repeats = (HEIGHTS, 6) if options.full else (HEIGHTS[1::4], 2)
     highest = highest_steps(heights, repeats=repeats, seed=options.seed, threads=options.threads)
     text = f"{highest_steps_text(highest)}\n"
     print(f"\n{text}")
@@ -75,7 +75,7 @@ def _run_flippers(options: argparse.Namespace) -> None:
 
 
 def _run_seizure(options: argparse.Namespace) -> None:
-    design, out = QUICK if options.quick else FULL, options.out
+    design, out = FULL if options.full else QUICK, options.out
     study = Study(design=design, seed=options.seed, threads=options.threads)
     begin = time.perf_counter()
     print(report.header(study), flush=True)
@@ -138,7 +138,7 @@ def _run_seizure(options: argparse.Namespace) -> None:
 
 
 def _run_chains(options: argparse.Namespace) -> None:
-    design, out = CHAINS_QUICK if options.quick else CHAINS, options.out
+    design, out = CHAINS if options.full else CHAINS_QUICK, options.out
     study = Study(design=design, models=chain_models(), seed=options.seed, threads=options.threads)
     begin = time.perf_counter()
     print(report.header(study), flush=True)
@@ -163,7 +163,7 @@ def _run_drive(options: argparse.Namespace) -> None:
     out = options.out
     plan = Plan(seed=options.seed, threads=options.threads, store=out / "drive.sqlite")
     asked, others = design(), other_cases()
-    if options.quick:
+    if not options.full:
         plan = replace(plan, repeats=3)
         asked = cases(("line of 5",), speeds=(0.4,), inertias=(0.0, 0.1))
         others = others[:1]

@@ -20,7 +20,7 @@ __all__ = ["add_arguments", "run"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``python -m research paper``."""
-    parser.add_argument("--quick", action="store_true", help="few layouts, heights and repeats")
+    parser.add_argument("--full", action="store_true", help="all of it; an hour or two")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results")
     parser.add_argument("--threads", type=int, default=None, help="default: all cores")
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     out.mkdir(parents=True, exist_ok=True)
     work = Work(
         store=out / "paper.sqlite",
-        design=QUICK if options.quick else FULL,
+        design=FULL if options.full else QUICK,
         seed=options.seed,
         threads=options.threads,
     )

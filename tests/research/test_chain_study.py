@@ -71,7 +71,7 @@ def test_it_writes_its_table_and_its_picture(
 ) -> None:
     design = replace(CHAINS_QUICK, heights={"step": (0.03,)}, repeats=1)
     monkeypatch.setattr(command, "CHAINS_QUICK", design)
-    assert main(["chains", "--quick", "--out", str(tmp_path)]) == 0
+    assert main(["chains", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     with (tmp_path / "chains.csv").open(newline="") as file:
         found = list(csv.DictReader(file))

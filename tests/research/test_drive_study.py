@@ -93,7 +93,7 @@ def test_it_writes_its_tables_and_its_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command, "other_cases", lambda: KNIFE)
-    assert main(["drive", "--quick", "--out", str(tmp_path)]) == 0
+    assert main(["drive", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     with (tmp_path / "drive.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

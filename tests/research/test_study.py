@@ -288,7 +288,7 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
 ) -> None:
     monkeypatch.setattr(command, "QUICK", TINY)
     out = tmp_path / "out"
-    assert main(["seizure", "--quick", "--out", str(out)]) == 0
+    assert main(["seizure", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "torque 6.0 N m per sprocket" in printed
     text = (out / "study.txt").read_text(encoding="utf-8")
@@ -323,7 +323,7 @@ def test_ctrl_c_ends_the_study_with_its_own_exit_code(
         raise c2d.BatchInterrupted([])
 
     monkeypatch.setattr(Study, "on_obstacle", interrupted)
-    assert main(["seizure", "--quick", "--out", str(tmp_path)]) == 130
+    assert main(["seizure", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
 
 

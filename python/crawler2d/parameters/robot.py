@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from crawler2d import _core
 from crawler2d.common.arrays import Table, frozen_rows, real_number
@@ -429,10 +429,8 @@ class Robot(Parameters):
         >>> text.count("gz::sim::systems::TrackController")
         4
         """
-        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
-
         widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return written(self._alone(), "sdf", path, friction=friction, **widths)
+        return self._written("sdf", path, friction=friction, **widths)
 
     @takes_keywords
     def to_urdf(
@@ -450,20 +448,15 @@ class Robot(Parameters):
 
         Parameters
         ----------
-        path : str or PathLike, optional
-            File to write; None writes none.
+        path, track_width, chassis_width
+            As those of `to_sdf`.
         friction : float
-            [-] Coefficient of all of its surfaces: each simulator combines two
-            surfaces in its own way.
-        track_width : float, optional
-            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
-        chassis_width : float, optional
-            [m] Of the belly across. None takes what is free between the tracks.
+            [-] Coefficient of all of its surfaces: each simulator combines two in its own way.
 
         Returns
         -------
         str
-            The text of the file; a console shows only how long it is.
+            As that of `to_sdf`.
 
         Raises
         ------
@@ -482,10 +475,8 @@ class Robot(Parameters):
         ...
         crawler2d.errors.ScenarioError: robot.track.kind must be wheels: URDF has no surface ...
         """
-        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
-
         widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return written(self._alone(), "urdf", path, friction=friction, **widths)
+        return self._written("urdf", path, friction=friction, **widths)
 
     @takes_keywords
     def to_mjcf(
@@ -506,20 +497,15 @@ class Robot(Parameters):
 
         Parameters
         ----------
-        path : str or PathLike, optional
-            File to write; None writes none.
+        path, track_width, chassis_width
+            As those of `to_sdf`.
         friction : float
-            [-] Coefficient of all of its surfaces: it holds whatever the ground
-            has.
-        track_width : float, optional
-            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
-        chassis_width : float, optional
-            [m] Of the belly across. None takes what is free between the tracks.
+            [-] Coefficient of all of its surfaces: it holds whatever the ground has.
 
         Returns
         -------
         str
-            The text of the file; a console shows only how long it is.
+            As that of `to_sdf`.
 
         Raises
         ------
@@ -534,10 +520,8 @@ class Robot(Parameters):
         >>> text.count("<velocity "), text.count('friction="0.7"')
         (8, 9)
         """
-        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
-
         widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return written(self._alone(), "mjcf", path, friction=friction, **widths)
+        return self._written("mjcf", path, friction=friction, **widths)
 
     @takes_keywords
     def to_world(
@@ -565,15 +549,13 @@ class Robot(Parameters):
             File to write: ``.sdf`` or ``.world`` for SDF 1.6, ``.xml`` for MJCF.
         terrain : terrain
             Any of `crawler2d.terrains`, such as one of `Audit.obstacles`.
-        track_width : float, optional
-            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
-        chassis_width : float, optional
-            [m] Of the belly across. None takes what is free between the tracks.
+        track_width, chassis_width
+            As those of `to_sdf`.
 
         Returns
         -------
         str
-            The text of the file; a console shows only how long it is.
+            As that of `to_sdf`.
 
         Raises
         ------
@@ -612,6 +594,16 @@ class Robot(Parameters):
         # At rest and with the shortest steps.
         drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
         return Form(self, ground, drive=drive, solver=solver).to_json()
+
+    def _written(
+        self,
+        format_: Literal["sdf", "urdf", "mjcf"],
+        path: str | os.PathLike[str] | None,
+        **how: Any,
+    ) -> str:
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        return written(self._alone(), format_, path, **how)
 
     def _repr_html_(self) -> str | None:
         """Show side view and main figures in a notebook; a broken robot is shown as text."""

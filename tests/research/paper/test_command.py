@@ -46,7 +46,7 @@ def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixt
     page = tmp_path / "page.md"
     page.write_text("Ours:\n\n<!-- table 2 -->\n<!-- end of table 2 -->\n")
     asked = [*("--table", "2"), *("--table", "3"), *("--table", "figures")]
-    arguments = ["paper", "--quick", "--out", str(tmp_path), "--threads", "1", *asked]
+    arguments = ["paper", "--out", str(tmp_path), "--threads", "1", *asked]
     assert main([*arguments, "--into", str(page)]) == 0
     printed = capsys.readouterr().out
     text = (tmp_path / "paper.md").read_text(encoding="utf-8")
@@ -97,7 +97,7 @@ def test_ctrl_c_ends_it_with_its_own_exit_code(
         raise c2d.BatchInterrupted([])
 
     monkeypatch.setattr(parts, "cross_fields", interrupted)
-    assert main(["paper", "--quick", "--out", str(tmp_path)]) == 130
+    assert main(["paper", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
     # What had been made before is there.
     assert "## Chosen beforehand" in (tmp_path / "paper.md").read_text(encoding="utf-8")
@@ -107,7 +107,7 @@ def test_a_store_that_another_process_writes_is_told_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with Store(tmp_path / "paper.sqlite"):
-        assert main(["paper", "--quick", "--out", str(tmp_path), "--table", "2"]) == 2
+        assert main(["paper", "--out", str(tmp_path), "--table", "2"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("python -m research paper: ")
     assert "is being written" in line
