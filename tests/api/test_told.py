@@ -17,7 +17,7 @@ from crawler2d.parameters.fields import Parameters
 from tests.shared import VARIANTS
 
 ROOT = Path(__file__).parents[2]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+CHOOSING = (ROOT / "docs/guide/choosing-wheels.md").read_text(encoding="utf-8")
 CONVENTIONS = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
 
 
@@ -60,13 +60,13 @@ def test_every_track_model_and_terrain_has_a_row_in_the_conventions(cls: type[Pa
     assert f"| `{cls.__name__}` | `{cls.kind}` |" in about
 
 
-def test_every_track_model_is_public_and_in_the_readme() -> None:
+def test_every_track_model_is_public_and_in_the_guide() -> None:
     assert [cls.__name__ for cls in MODELS if cls.__name__ not in c2d.__all__] == []
-    assert [cls.__name__ for cls in MODELS if f"| `{cls.__name__}(" not in README] == []
+    assert [cls.__name__ for cls in MODELS if f"| `{cls.__name__}(" not in CHOOSING] == []
 
 
-def test_every_generator_of_terrains_is_in_the_readme_and_every_terrain_has_one() -> None:
-    named = README.partition("\n## Terrains\n")[2].partition("\n## ")[0]
+def test_every_generator_of_terrains_is_in_the_conventions_and_every_terrain_has_one() -> None:
+    named = section("Terrains")
     generators = c2d.terrains.__all__
     assert [name for name in generators if not re.search(f"`{name}[`(]", named)] == []
     made = [getattr(c2d.terrains, name) for name in generators]

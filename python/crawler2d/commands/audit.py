@@ -41,7 +41,7 @@ __all__ = [
 
 def add_report_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options to those of ``crawler2d audit``."""
-    group = parser.add_argument_group("for continuous integration; see docs/ci.md")
+    group = parser.add_argument_group("for continuous integration; see docs/guide/audit.md")
     group.add_argument(
         "--lint",
         action="store_true",
