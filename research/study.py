@@ -135,6 +135,8 @@ def _run_seizure(options: argparse.Namespace) -> None:
     _draw(cells, phases, runs, out)
     count = sum(table["outcome"].size for table in (*sweeps.values(), robots, flat, turned))
     print(f"{count + len(runs)} runs in {took:.0f} s; tables and pictures are in {out}")
+    if not options.full:
+        print("This was a look at few heights; the whole study: make study ARGS=--full (minutes)")
 
 
 def _run_chains(options: argparse.Namespace) -> None:
