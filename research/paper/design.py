@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crawler2d.studies.campaign import How, Sampling
+from crawler2d.studies.campaign import RateSampling, Sampling
 from crawler2d.sweeps.sequential import Until
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class Work:
             "progress": self.progress,
         }
 
-    def how(self, repeats: int) -> How:
+    def how(self, repeats: int) -> RateSampling:
         """Return the keywords of a study of rates whose cells all have the same number of runs."""
         until = Until(width=_NO_WIDTH, least=repeats, most=repeats)
         return {**self.sampling, "until": until}

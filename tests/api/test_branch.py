@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.runs.labelled import UNITS
+from crawler2d.runs.dataset import UNITS
 from tests.shared import GEAR, ROBOT, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4))

@@ -12,7 +12,7 @@ import crawler2d as c2d
 from crawler2d.parameters.track import Track
 from crawler2d.results.findings import Balance, Pull
 from crawler2d.runs import cross_check
-from crawler2d.runs.cross_check import STUDY, CrossCheck, agreement_of, cross_checked
+from crawler2d.runs.cross_check import STUDY, CrossCheck, agreement_of, compare_engines
 from tests.shared import ROBOT, refused
 
 STEP = c2d.terrains.step
@@ -91,7 +91,7 @@ def test_on_level_ground_paths_do_not_part() -> None:
 
 
 def test_a_run_that_did_not_stop_has_neither_balance_nor_forces(seized: c2d.Run) -> None:
-    check = cross_checked(
+    check = compare_engines(
         seized, lambda other: c2d.simulate(other.replace({"duration": 1.0})), announce=False
     )
     assert not check.same_outcome
@@ -249,7 +249,7 @@ def test_a_check_says_before_it_starts_how_long_it_will_take(
 def test_only_what_takes_long_is_announced(
     most: float, is_told: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    cross_check._say("rapier", 1.0, most)
+    cross_check._announce("rapier", 1.0, most)
     said = capsys.readouterr().err
     assert said == (
         "cross_check: rapier will take about 1 s if its run ends when this one did,"

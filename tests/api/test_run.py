@@ -13,7 +13,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.common.arrays import Table
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs.labelled import UNITS
+from crawler2d.runs.dataset import UNITS
 from tests.shared import ROBOT
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.arrays import Table
-from crawler2d.results.findings import Intrusion, Tried
+from crawler2d.results.findings import Intrusion, TrialResult
 
 CONTACTS = {
     "body": [2, 1, 0],
@@ -40,7 +40,7 @@ PIECE = Intrusion(
 OUT = c2d.Outcome
 
 
-def tried(name: str, time: float = math.inf, **fields: Any) -> Tried:
+def tried(name: str, time: float = math.inf, **fields: Any) -> TrialResult:
     """Make a trial: it frees the robot if it takes a finite time."""
     freed = math.isfinite(time)
     plain: dict[str, Any] = {
@@ -58,7 +58,7 @@ def tried(name: str, time: float = math.inf, **fields: Any) -> Tried:
         "chassis_angle": 0.0,
         "flipper_angles": (),
     }
-    return Tried(**(plain | fields))
+    return TrialResult(**(plain | fields))
 
 
 def piece(**fields: Any) -> Intrusion:
@@ -176,7 +176,7 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
         ),
     ],
 )
-def test_what_came_of_a_trial_is_said_in_a_few_words(trial: Tried, said: str) -> None:
+def test_what_came_of_a_trial_is_said_in_a_few_words(trial: TrialResult, said: str) -> None:
     assert str(made(trials=(trial,))) == f"{SEIZED}. Tried: {said}"
 
 

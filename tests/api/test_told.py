@@ -11,8 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
-from crawler2d.parameters import settings as gaits
-from crawler2d.parameters import terrain, track
+from crawler2d.parameters import settings, terrain, track
 from crawler2d.parameters.fields import Parameters
 from tests.shared import VARIANTS
 
@@ -27,7 +26,7 @@ def kinds_of(module: Any) -> list[type[Parameters]]:
     return [cls for cls in classes if issubclass(cls, Parameters) and cls.kind]
 
 
-KINDS = [cls for module in (track, terrain, gaits) for cls in kinds_of(module)]
+KINDS = [cls for module in (track, terrain, settings) for cls in kinds_of(module)]
 MODELS = [cls for cls in kinds_of(track) if cls.place == "robot.track"]
 
 

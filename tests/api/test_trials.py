@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.results.findings import Tried
+from crawler2d.results.findings import TrialResult
 from crawler2d.runs.branch import EscapeForce
 from tests.shared import GEAR, ROBOT, refused
 
@@ -21,8 +21,8 @@ def seized() -> c2d.Run:
     return c2d.simulate(SEIZING)
 
 
-def same(one: Tried, other: Tried) -> bool:
-    return all(getattr(one, each.name) == getattr(other, each.name) for each in fields(Tried))
+def same(one: TrialResult, other: TrialResult) -> bool:
+    return all(getattr(one, each.name) == getattr(other, each.name) for each in fields(TrialResult))
 
 
 def test_trials_are_those_of_the_diagnosis_and_what_if_makes_one_of_them(seized: c2d.Run) -> None:

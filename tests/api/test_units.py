@@ -10,7 +10,6 @@ from crawler2d.common.units import METRICS, unit_of
 from crawler2d.parameters import (
     drivetrain,
     flippers,
-    gaits,
     robot,
     scenario,
     settings,
@@ -46,7 +45,7 @@ def test_an_element_has_the_unit_of_its_column(path: str, unit: str | None) -> N
 
 def test_units_are_those_of_the_docstrings() -> None:
     documented: dict[str, str] = {}
-    for module in (scenario, settings, gaits, robot, drivetrain, flippers, terrain, track):
+    for module in (scenario, settings, robot, drivetrain, flippers, terrain, track):
         for kind in vars(module).values():
             if inspect.isclass(kind) and issubclass(kind, Parameters):
                 text = inspect.getdoc(kind) or ""

@@ -12,7 +12,6 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.parameters import settings, terrain
-from crawler2d.parameters import settings as gaits
 from tests.shared import ROBOT, TRAPEZOID, VARIANTS
 
 HOSTILE = "</td><script>alert(1)</script> & \" ' \u2028 \ud800"
@@ -113,7 +112,7 @@ else:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-NAMES = {**vars(c2d), **vars(terrain), **vars(gaits), **vars(settings)}
+NAMES = {**vars(c2d), **vars(terrain), **vars(settings)}
 
 
 @pytest.mark.parametrize("scenario", VARIANTS.values(), ids=VARIANTS)

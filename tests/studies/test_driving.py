@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.studies.driving import FRICTION, TORQUE, UNCHANGED, limits
+from crawler2d.studies.driving import FRICTION, TORQUE, UNCHANGED, limiting_changes
 from crawler2d.sweeps.axes import COLUMNS
 from crawler2d.sweeps.store import stored_rows
 from tests.shared import ROBOT
@@ -98,8 +98,10 @@ def test_a_limit_is_what_improves_the_median_by_more_than_chance(
 ) -> None:
     values = np.array([before, torque, friction])[None, :, None, :]
     changes = (UNCHANGED, TORQUE, FRICTION)
-    assert limits(values, changes, share=0.02, least=0.01).tolist() == [[expected]]
-    assert limits(-values, changes, share=0.02, least=0.01, falls=True).tolist() == [[expected]]
+    assert limiting_changes(values, changes, share=0.02, least=0.01).tolist() == [[expected]]
+    assert limiting_changes(-values, changes, share=0.02, least=0.01, falls=True).tolist() == [
+        [expected]
+    ]
 
 
 def test_where_two_limits_meet_neither_alone_is_one() -> None:

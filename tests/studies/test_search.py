@@ -9,7 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.results.record import Row
 from crawler2d.studies.campaign import Tally
-from crawler2d.studies.candidates import Candidate, Fresh, halve, ranked
+from crawler2d.studies.candidates import Candidate, FreshDraws, halve, ranked
 from crawler2d.sweeps.plan import Planner
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
@@ -100,7 +100,7 @@ def test_every_run_has_its_own_draw_of_what_varies_and_of_what_is_not_known() ->
     unknowns = Variation.of(BASE, UNKNOWN, ["terrain"], "unknown")
     variation = Variation.of(BASE, {"drive.speed": c2d.scaled(0.9, 1.1)}, ["terrain"])
     world = Planner(variation, Variation({}), 3).worlds(BASE, ("a",))[0]
-    planner = Fresh(variation, unknowns, 3)
+    planner = FreshDraws(variation, unknowns, 3)
     whole = [each.text for each in planner.runs(world, 0, 6).checked]  # type: ignore[union-attr]
     parts: list[Any] = [c2d.Scenario.from_json(text) for text in whole]
     assert len({each.terrain.friction for each in parts}) == 6

@@ -9,7 +9,7 @@ from typing import Any
 
 import crawler2d as c2d
 from crawler2d.results.record import Row
-from crawler2d.sweeps.database import COLUMNS, sealed
+from crawler2d.sweeps.database import COLUMNS, with_checksum
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
 
@@ -53,7 +53,7 @@ def change(path: Path, number: int, **columns: Any) -> None:
             connection.execute(f"UPDATE run SET {name} = ? WHERE rowid = ?", (value, number))
         query = f"SELECT {COLUMNS} FROM run WHERE rowid = ?"
         *values, _ = connection.execute(query, (number,)).fetchone()
-        checksum = sealed(values)[-1]
+        checksum = with_checksum(values)[-1]
         connection.execute("UPDATE run SET checksum = ? WHERE rowid = ?", (checksum, number))
 
 

@@ -11,7 +11,7 @@ import crawler2d as c2d
 from crawler2d._core import Passed
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
-from crawler2d.studies.campaign import multiplied
+from crawler2d.studies.campaign import scaled_draws
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
 from crawler2d.variation.distributions import (
     Levels,
@@ -203,7 +203,7 @@ def test_levels_are_taken_in_turn_and_what_is_slow_takes_long() -> None:
 def test_what_a_study_doubles_is_doubled_at_every_level() -> None:
     fast = Scenario(ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(speed=0.8))
     variation = Variation.of(fast, {"drive.speed": Levels((0.1, 1.0))}, [])
-    planner = multiplied(Planner(variation, Variation({}), 0), {"drive.speed": 2.0})
+    planner = scaled_draws(Planner(variation, Variation({}), 0), {"drive.speed": 2.0})
     (world,) = planner.worlds(fast, [])
     assert planner.runs(world, 0, 2).drawn["drive.speed"].tolist() == pytest.approx([0.08, 0.8])
 

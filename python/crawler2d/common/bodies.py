@@ -20,10 +20,10 @@ __all__ = [
     "Disc",
     "Lane",
     "bodies_of",
+    "body_poses",
     "discs_in",
     "ends_of",
     "is_short",
-    "moved",
     "two_discs",
 ]
 
@@ -128,7 +128,7 @@ def bodies_of(text: str) -> Table:
     return Table({**columns, "outline": outlines})
 
 
-def moved(text: str, trace: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
+def body_poses(text: str, trace: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
     """Compute the poses of all bodies at n samples of a run.
 
     Parameters

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.bodies import TRACED, BodyKind, Lane, moved
+from crawler2d.common.bodies import TRACED, BodyKind, Lane, body_poses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -186,7 +186,7 @@ class Scene:
 
     def __init__(self, text: str, columns: Mapping[str, NDArray[np.float64]]) -> None:
         geometry = _core.geometry(text)
-        found = moved(text, columns)
+        found = body_poses(text, columns)
         self.lanes: list[tuple[int, NDArray[np.float64]]] = [
             lane for lane in geometry["lanes"] if lane[0] != Lane.MIDDLE
         ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.bodies import TRACED, moved
+from crawler2d.common.bodies import TRACED, body_poses
 from crawler2d.common.extras import extra
 from crawler2d.drawings.scene import (
     BLUE,
@@ -21,7 +21,7 @@ from crawler2d.drawings.scene import (
     placed,
     relative,
 )
-from crawler2d.results.diagnosis import told
+from crawler2d.results.diagnosis import trial_text
 from crawler2d.results.outcome import TRIALS
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from crawler2d.drawings.scene import Carrier
-    from crawler2d.results.findings import Tried
+    from crawler2d.results.findings import TrialResult
     from crawler2d.results.record import Record
 
 __all__ = [
@@ -292,7 +292,7 @@ def ghosts(run: Record) -> list[Ghost]:
     why = run.diagnosis
     if why is None:
         return []
-    said = {tried: text for tried in why.trials if (text := told(why, tried))}
+    said = {tried: text for tried in why.trials if (text := trial_text(why, tried))}
     return [
         Ghost(
             change=text.partition(":")[0],
@@ -319,7 +319,7 @@ def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
                 yield placed(outline, frame)
 
 
-def _frames(run: Record, trials: list[Tried]) -> NDArray[np.float64]:
+def _frames(run: Record, trials: list[TrialResult]) -> NDArray[np.float64]:
     """[m, m, rad] Poses of the carriers at the ends of n trials, shape (n, k, 3)."""
     chassis = np.array([(*tried.position, tried.chassis_angle) for tried in trials]).reshape(-1, 3)
     # What runs round the carriers moves none of them.
@@ -330,5 +330,5 @@ def _frames(run: Record, trials: list[Tried]) -> NDArray[np.float64]:
         "flipper_angles": np.array([tried.flipper_angles for tried in trials]),
         **{name: np.repeat(values, len(trials), axis=0) for name, values in last.items()},
     }
-    arms = moved(run.scenario.to_json(), columns)["arms"]
+    arms = body_poses(run.scenario.to_json(), columns)["arms"]
     return np.concatenate([chassis[:, None], arms], axis=1)

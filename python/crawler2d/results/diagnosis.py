@@ -10,10 +10,10 @@ import numpy as np
 
 from crawler2d.common.arrays import Table
 from crawler2d.common.bodies import BodyKind
-from crawler2d.results.findings import Findings, Intrusion, Mechanism, Tried
+from crawler2d.results.findings import Findings, Intrusion, Mechanism, TrialResult
 from crawler2d.results.outcome import Outcome
 
-__all__ = ["Diagnosis", "body_name", "in_words", "sentence", "told"]
+__all__ = ["Diagnosis", "body_name", "in_words", "sentence", "trial_text"]
 
 _NAMES = {
     BodyKind.BELT: "the belt",
@@ -80,11 +80,11 @@ def sentence(found: Findings) -> str:
     facts = f"{_head(d)}: {said}" if said else _head(d)
     if d.passing:
         return f"{facts}. {_goes_on(d)}"
-    tried = "; ".join(filter(None, (told(d, each) for each in d.trials)))
+    tried = "; ".join(filter(None, (trial_text(d, each) for each in d.trials)))
     return f"{facts}. Tried: {tried}{_beyond_belts(d)}" if tried else facts
 
 
-def told(d: Findings, tried: Tried) -> str:
+def trial_text(d: Findings, tried: TrialResult) -> str:
     """Say what was changed in a trial and what came of it; nothing of a control."""
     return f"{_CHANGED[tried.name]}: {_came(d, tried)}" if tried.name in _CHANGED else ""
 
@@ -117,13 +117,13 @@ def _beyond_belts(d: Findings) -> str:
     return f". No belt {'got past here' if d.reached_by_belt else 'came this far'} from the start"
 
 
-def _is_past(tried: Tried) -> bool:
+def _is_past(tried: TrialResult) -> bool:
     """Whether a belt got past the stop, be it to tip over farther on."""
     is_lost = tried.outcome in (Outcome.TIPPED_OVER, Outcome.LEFT_TERRAIN)
     return tried.freed or (is_lost and tried.distance > 0.0)
 
 
-def _came(d: Findings, tried: Tried) -> str:
+def _came(d: Findings, tried: TrialResult) -> str:
     """Say what came of a trial of a stop."""
     end = _end(d, tried)
     if tried.freed:
@@ -143,7 +143,7 @@ def _came(d: Findings, tried: Tried) -> str:
     return said
 
 
-def _how_far(tried: Tried) -> str:
+def _how_far(tried: TrialResult) -> str:
     """Say how far ahead of the stop a trial came, or how far it fell short of it."""
     if abs(tried.distance) < _LEAST_DEPTH:
         return ""
@@ -151,7 +151,7 @@ def _how_far(tried: Tried) -> str:
     return f"{1e3 * abs(tried.distance):.0f} mm {which}"
 
 
-def _end(d: Findings, tried: Tried) -> str:
+def _end(d: Findings, tried: TrialResult) -> str:
     if not tried.jammed:
         return in_words(tried.outcome)
     jam = tried.intrusion
@@ -163,7 +163,7 @@ def _end(d: Findings, tried: Tried) -> str:
     return "is jammed again" if again else f"is jammed again,{_where(jam)}"
 
 
-def _is_jammed_elsewhere(d: Findings, tried: Tried) -> bool:
+def _is_jammed_elsewhere(d: Findings, tried: TrialResult) -> bool:
     """Whether a trial ended in a jam at another edge, or in another track, than the stop."""
     was, jam = d.intrusion, tried.intrusion
     if not tried.jammed or jam is None:
@@ -230,20 +230,20 @@ def _on_it(d: Findings) -> str:
     ):
         forces[int(body)] += float(force)
         sliding[int(body)] += float(force) * bool(slides)
-    told = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
-    told = [body for body in told if forces[body] >= _LEAST_SHARE * sum(forces.values())]
-    names = [body_name(d, body) for body in told]
+    bearers = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
+    bearers = [body for body in bearers if forces[body] >= _LEAST_SHARE * sum(forces.values())]
+    names = [body_name(d, body) for body in bearers]
     if len(names) == 2 and names[0] == names[1]:
         names[1] = "another"
-    slides = [sliding[body] > 0.5 * forces[body] for body in told]
+    slides = [sliding[body] > 0.5 * forces[body] for body in bearers]
     does = ["slides on it under a load of" if slide else "bears on it with" for slide in slides]
-    newtons = [f"{forces[body]:.0f} N" for body in told]
-    if not told:
+    newtons = [f"{forces[body]:.0f} N" for body in bearers]
+    if not bearers:
         return ""
     said = f"{names[0]} {does[0]} {newtons[0]}"
-    if len(told) == 2 and does[0] != does[1]:
+    if len(bearers) == 2 and does[0] != does[1]:
         said += f" and {names[1]} {does[1]} {newtons[1]}"
-    elif len(told) == 2:
+    elif len(bearers) == 2:
         said += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
     return said + _HELD.get(str(d.mechanism), "")
 
@@ -378,7 +378,7 @@ class Diagnosis(Findings):
         mechanism, inside = values["mechanism"], values["intrusion"]
         values["outcome"] = Outcome(values["outcome"])
         values["symptom"] = Outcome(values["symptom"])
-        values["trials"] = tuple(map(Tried.from_core, values["trials"]))
+        values["trials"] = tuple(map(TrialResult.from_core, values["trials"]))
         values["mechanism"] = None if mechanism is None else Mechanism(mechanism)
         values["intrusion"] = None if inside is None else Intrusion(**inside)
         values["contacts"] = Table(values["contacts"])

@@ -10,9 +10,9 @@ from typing import Any, Literal
 
 from crawler2d.common.arrays import Table
 from crawler2d.common.bodies import BodyKind
-from crawler2d.results.outcome import MECHANISMS, Outcome, listed
+from crawler2d.results.outcome import MECHANISMS, Outcome, glossary_text
 
-__all__ = ["Balance", "Findings", "Intrusion", "Mechanism", "Pull", "Tried"]
+__all__ = ["Balance", "Findings", "Intrusion", "Mechanism", "Pull", "TrialResult"]
 
 
 class Mechanism(StrEnum):
@@ -32,7 +32,7 @@ class Mechanism(StrEnum):
 
 
 if Mechanism.__doc__ is not None:  # not so with python -OO
-    Mechanism.__doc__ += "\n\n" + listed(MECHANISMS)
+    Mechanism.__doc__ += "\n\n" + glossary_text(MECHANISMS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +75,7 @@ class Intrusion:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tried:
+class TrialResult:
     """What came of one change at a stop; see `Trial`.
 
     Attributes
@@ -128,7 +128,7 @@ class Tried:
     flipper_angles: tuple[float, ...]
 
     @classmethod
-    def from_core(cls, plain: Mapping[str, Any]) -> Tried:
+    def from_core(cls, plain: Mapping[str, Any]) -> TrialResult:
         """Convert the dictionary that the core returns."""
         values = {"intrusion": None, **plain, "outcome": Outcome(plain["outcome"])}
         if values["intrusion"] is not None:
@@ -148,7 +148,7 @@ class Findings:
     outcome: Outcome
     symptom: Outcome
     passing: bool
-    trials: tuple[Tried, ...]
+    trials: tuple[TrialResult, ...]
     jammed: bool
     mechanism: Mechanism | None
     time: float

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from crawler2d import _core
 
-__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "listed"]
+__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "glossary_text"]
 
 OUTCOMES = {
     "detracked": "a chain of shoes came off its guide or its wheels",
@@ -53,7 +53,7 @@ TRIALS = {
 """What is changed at a stop, one thing at a time."""
 
 
-def listed(words: dict[str, str]) -> str:
+def glossary_text(words: dict[str, str]) -> str:
     """List words and their meanings for the end of a docstring."""
     return "\n".join(f"- {word}: {meaning}" for word, meaning in words.items())
 
@@ -90,6 +90,6 @@ class Outcome(StrEnum):
 
 
 if Outcome.__doc__ is not None:  # not so with python -OO
-    Outcome.__doc__ += "\n" + listed(OUTCOMES)
+    Outcome.__doc__ += "\n" + glossary_text(OUTCOMES)
 
 _STOPS = frozenset(_core.kinds()["stop"])

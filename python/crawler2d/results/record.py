@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.common.arrays import Figures, Table, read_only
-from crawler2d.common.bodies import bodies_of, moved
+from crawler2d.common.bodies import bodies_of, body_poses
 from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, own_error
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
@@ -249,7 +249,7 @@ class Record:
         True
         """
         self._recorded("time")
-        return read_only(moved(self.scenario.to_json(), self._trace)["bodies"])
+        return read_only(body_poses(self.scenario.to_json(), self._trace)["bodies"])
 
     @property
     def contacts(self) -> Table:

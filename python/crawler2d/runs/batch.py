@@ -16,7 +16,7 @@ from crawler2d.runs.branch import Recording, Trials, recording, trial_names
 from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
 
-__all__ = ["BatchInterrupted", "simulate", "simulate_many", "simulate_passed"]
+__all__ = ["BatchInterrupted", "simulate", "simulate_many", "simulate_valid"]
 
 
 class BatchInterrupted(KeyboardInterrupt):
@@ -172,13 +172,13 @@ def simulate_many(
     checked = _checked(batch)
     if on_error == "raise":
         raise_first(checked)
-    runs = simulate_passed(batch, checked, recorded, threads=count, progress=progress)
+    runs = simulate_valid(batch, checked, recorded, threads=count, progress=progress)
     if on_error == "raise":
         raise_first([run.error for run in runs])
     return runs
 
 
-def simulate_passed(
+def simulate_valid(
     scenarios: Sequence[Scenario],
     checked: Sequence[_core.Passed | ScenarioError],
     recorded: tuple[float, str, list[str]],

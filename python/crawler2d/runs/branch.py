@@ -15,7 +15,7 @@ from crawler2d.common.arrays import real_number
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import ClosedTrack
-from crawler2d.results.findings import Tried
+from crawler2d.results.findings import TrialResult
 from crawler2d.results.record import Record
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ __all__ = [
     "branch_scenario",
     "branch_time",
     "escape_force_at",
-    "pushed",
+    "read_push",
     "recording",
     "refuse_without_result",
     "run_of_trial",
@@ -88,7 +88,7 @@ def _known(name: object, path: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trial(Tried, Generic[R]):
+class Trial(TrialResult, Generic[R]):
     """What came of one change at a stop, and the run that shows it; see `Run.trials`.
 
     One thing is changed in the pose of the stop, and the robot drives on for `criteria.escape_time`
@@ -100,9 +100,9 @@ class Trial(Tried, Generic[R]):
     Attributes
     ----------
     name, freed, starts, freeing, distance, time, outcome, jammed, intrusion, duration
-        See `Tried`.
+        See `TrialResult`.
     position, chassis_angle, flipper_angles
-        See `Tried`.
+        See `TrialResult`.
     run : Run
         How it went from the instant of the stop; simulated again when it is first asked for.
     """
@@ -110,9 +110,11 @@ class Trial(Tried, Generic[R]):
     show: Callable[[], R] = field(repr=False)
 
     @classmethod
-    def of(cls, tried: Tried, show: Callable[[], R]) -> Trial[R]:
+    def of(cls, tried: TrialResult, show: Callable[[], R]) -> Trial[R]:
         """Add the way to the run."""
-        return cls(**{each.name: getattr(tried, each.name) for each in fields(Tried)}, show=show)
+        return cls(
+            **{each.name: getattr(tried, each.name) for each in fields(TrialResult)}, show=show
+        )
 
     @cached_property
     def run(self) -> R:
@@ -148,13 +150,13 @@ class EscapeForce(_Levels):
         return found
 
 
-def trials_at(run: Record, time: float, names: tuple[str, ...]) -> tuple[Tried, ...]:
+def trials_at(run: Record, time: float, names: tuple[str, ...]) -> tuple[TrialResult, ...]:
     """Make trials at a stop; those that make no sense for the robot are left out."""
     found = _core.trials(run.scenario.to_json(), time, list(names))
-    return tuple(map(Tried.from_core, found))
+    return tuple(map(TrialResult.from_core, found))
 
 
-def trial_at(run: Record, time: float, name: str) -> Tried:
+def trial_at(run: Record, time: float, name: str) -> TrialResult:
     """Make one trial at a stop."""
     found = trials_at(run, time, (_known(name, "name"),))
     if not found:
@@ -173,12 +175,12 @@ def run_of_trial(run: Record, time: float, name: str) -> tuple[Scenario, dict[st
 
 def variant_tried_at(
     run: Record, time: float, variant: Scenario, push: tuple[float, float]
-) -> Tried:
+) -> TrialResult:
     """Try to continue from a stop as another scenario."""
     found = _core.what_if(run.scenario.to_json(), time, variant.to_json(), push)
     if found is None:
         raise ScenarioError("run", run, "must have stopped")
-    return Tried.from_core(found)
+    return TrialResult.from_core(found)
 
 
 def escape_force_at(run: Record, time: float) -> EscapeForce:
@@ -255,10 +257,10 @@ def simulate_branch(
     """Repeat the run up to a time, and continue as another scenario."""
     recorded = recording(sample_interval, record)
     text, changed = run.scenario.to_json(), variant.to_json()
-    return _core.branch(text, time, changed, pushed(push), *recorded)
+    return _core.branch(text, time, changed, read_push(push), *recorded)
 
 
-def pushed(push: tuple[float, float] | None) -> tuple[float, float]:
+def read_push(push: tuple[float, float] | None) -> tuple[float, float]:
     """Read a force and the time in which it rises; none is a force of 0."""
     if push is None:
         return 0.0, 0.0

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from crawler2d.parameters.scenario import Scenario
 
-__all__ = ["STUDY", "Agreement", "CrossCheck", "agreement_of", "cross_checked"]
+__all__ = ["STUDY", "Agreement", "CrossCheck", "agreement_of", "compare_engines"]
 
 STUDY = {
     "force on skids": (128, 128, 32, 32),
@@ -239,7 +239,7 @@ def _engine(run: Record) -> str:
     return _NAMES[run.scenario.solver.engine]
 
 
-def cross_checked(
+def compare_engines(
     run: R, simulate: Callable[[Scenario], R], *, announce: bool | Callable[[float, float], None]
 ) -> CrossCheck[R]:
     """Simulate a run's scenario in the other engine, with its history, and compare.
@@ -251,7 +251,9 @@ def cross_checked(
         raise ScenarioError("announce", announce, "must be True, False or a callable")
     scenario = _in_the_other_engine(run.scenario)
     if announce:
-        tell = announce if callable(announce) else partial(_say, _NAMES[scenario.solver.engine])
+        tell = (
+            announce if callable(announce) else partial(_announce, _NAMES[scenario.solver.engine])
+        )
         tell(*_expected(run, scenario))
     other = simulate(scenario)
     first = run if run.has_history else simulate(run.scenario)
@@ -280,7 +282,7 @@ def _expected(run: Record, scenario: Scenario) -> tuple[float, float]:
     return pace * run.metrics["time"], pace * max(scenario.duration, run.metrics["time"])
 
 
-def _say(engine: str, likely: float, most: float) -> None:
+def _announce(engine: str, likely: float, most: float) -> None:
     """Tell on stderr how long it will take, if it is worth the words."""
     if most >= _LONG:
         sys.stderr.write(

@@ -23,7 +23,7 @@ from crawler2d.runs.branch import (
     trials_at,
     variant_tried_at,
 )
-from crawler2d.runs.cross_check import CrossCheck, cross_checked
+from crawler2d.runs.cross_check import CrossCheck, compare_engines
 from crawler2d.runs.progress import Progress, Reporter, reporter
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from crawler2d.parameters.scenario import Scenario
     from crawler2d.parameters.settings import Drive
     from crawler2d.parameters.track import Track
-    from crawler2d.results.findings import Tried
+    from crawler2d.results.findings import TrialResult
 
 __all__ = ["Run"]
 
@@ -321,7 +321,7 @@ class Run(Record):
             drive=drive,
             duration=None,
         )
-        tried = variant_tried_at(self, time, variant, branching.pushed(push))
+        tried = variant_tried_at(self, time, variant, branching.read_push(push))
         shown = variant.replace({"duration": tried.duration})
 
         def show() -> Run:
@@ -332,14 +332,14 @@ class Run(Record):
 
         return Trial.of(tried, show)
 
-    def _remember(self, *made: Tried) -> None:
+    def _remember(self, *made: TrialResult) -> None:
         """Let the diagnosis tell of trials that were made of this run's stop."""
         if self.diagnosis is not None:
             known = {tried.name: tried for tried in (*self.diagnosis.trials, *made)}
             trials = tuple(known[name] for name in trial_names("all") if name in known)
             self.diagnosis = replace(self.diagnosis, trials=trials)
 
-    def _shown(self, time: float, tried: Tried) -> Callable[[], Run]:
+    def _shown(self, time: float, tried: TrialResult) -> Callable[[], Run]:
         """Give the way to the run of a trial."""
 
         def show() -> Run:
@@ -445,7 +445,7 @@ class Run(Record):
         >>> bool(check.distance < 1e-3)
         True
         """
-        return cross_checked(self, _with_history, announce=announce)
+        return compare_engines(self, _with_history, announce=announce)
 
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled dataset.
@@ -463,7 +463,7 @@ class Run(Record):
         AttributeError
             If the run was recorded with ``record="summary"``.
         """
-        from crawler2d.runs.labelled import to_dataset  # noqa: PLC0415 - optional
+        from crawler2d.runs.dataset import to_dataset  # noqa: PLC0415 - optional
 
         return to_dataset(self)
 

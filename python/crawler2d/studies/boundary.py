@@ -20,12 +20,12 @@ from crawler2d.studies.campaign import (
     Campaign,
     Cell,
     Counts,
-    How,
+    RateSampling,
     Tally,
     campaign,
     is_cleared,
 )
-from crawler2d.studies.tables import Models, found_of, read_models
+from crawler2d.studies.tables import Models, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
@@ -65,7 +65,7 @@ def critical(
     models: Models | None = None,
     tolerance: float | None = None,
     points: int = POINTS,
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Find where the rate of clearing passes one half along one field, such as a friction.
 
@@ -146,7 +146,7 @@ def critical(
         empty = [Tally(some.world, some.until, some.counts)] * samples
         tallies = [line.tallies.get(value, empty) for line in lines for value in values]
         dims = {"model": (list(fields), {}), name: (values, field_attributes([path]))}
-        found = found_of(study, "critical", tallies, dims)
+        found = rate_table(study, "critical", tallies, dims)
     return _with_crossings(found, lines)
 
 

@@ -33,17 +33,17 @@ __all__ = [
     "Campaign",
     "Cell",
     "Counts",
-    "How",
+    "RateSampling",
     "Sampling",
     "Tally",
     "campaign",
     "counting",
     "is_cleared",
-    "multiplied",
+    "scaled_draws",
 ]
 
 
-def multiplied(planner: Planner, factors: Mapping[str, float]) -> Planner:
+def scaled_draws(planner: Planner, factors: Mapping[str, float]) -> Planner:
     """Multiply what is drawn of some fields: the same numbers give values times a factor.
 
     Parameters
@@ -69,7 +69,7 @@ def multiplied(planner: Planner, factors: Mapping[str, float]) -> Planner:
 
 def _of(variation: Variation, factors: Mapping[str, float]) -> Variation:
     found = {
-        path: _Multiplied(each, factors[path])
+        path: _ScaledDraws(each, factors[path])
         # Levels are of the field's own value, which has the factor already.
         if path in factors and not isinstance(each, Levels)
         else each
@@ -79,7 +79,7 @@ def _of(variation: Variation, factors: Mapping[str, float]) -> Variation:
 
 
 @dataclass(frozen=True, slots=True)
-class _Multiplied:
+class _ScaledDraws:
     """A distribution times a factor, which the field's own value holds already."""
 
     of: Distribution
@@ -136,7 +136,7 @@ class Sampling(TypedDict, total=False):
     progress: bool | Progress | None
 
 
-class How(Sampling, total=False):
+class RateSampling(Sampling, total=False):
     """The keywords of a study of rates.
 
     until : Until
@@ -272,7 +272,7 @@ class Campaign:
     def __init__(
         self,
         base: Scenario,
-        how: How,
+        how: RateSampling,
         planner: Planner,
         collector: Collector,
         report: Reporter,
@@ -321,7 +321,7 @@ class Campaign:
         rule = self.until if until is None else until
         found = []
         for each in cells:
-            planner = multiplied(self.planner, each.factors)
+            planner = scaled_draws(self.planner, each.factors)
             worlds = planner.worlds(each.scenario, each.names)
             found.append([Tally(world, rule, counts, others, planner=planner) for world in worlds])
         everyone = [tally for tallies in found for tally in tallies]
@@ -357,7 +357,7 @@ class Campaign:
 @contextlib.contextmanager
 def campaign(
     base: Scenario,
-    how: How | Sampling,
+    how: RateSampling | Sampling,
     swept: Sequence[str] = (),
     *,
     threshold: float | None = None,
@@ -393,7 +393,7 @@ def campaign(
     else:
         count = whole_number(repeats, "repeats", 1, 10**6)
         rule = Until(least=count, most=count)
-    given: How = {"until": rule, **how}
+    given: RateSampling = {"until": rule, **how}
     unknowns = Variation.of(base, how.get("unknown") or {}, swept, "unknown")
     variation = Variation.of(base, how.get("vary"), [*swept, *unknowns.distributions])
     if not isinstance(given["until"], Until):

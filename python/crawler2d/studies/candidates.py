@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.common.extras import extra
-from crawler2d.runs.labelled import build_attributes
+from crawler2d.runs.dataset import build_attributes
 from crawler2d.studies.campaign import Campaign, Tally
 from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.plan import Plan, Planner, World
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.found import Found
 
-__all__ = ["Candidate", "Confirmation", "Fresh", "halve", "judged", "ranked"]
+__all__ = ["Candidate", "Confirmation", "FreshDraws", "halve", "ranked", "search_table"]
 
 
-class Fresh(Planner):
+class FreshDraws(Planner):
     """Draws everything anew for every run: run k has sample k of the unknowns, and its repeat k."""
 
     __slots__ = ()
@@ -179,7 +179,7 @@ class Confirmation:
         return all(each.rate >= goal for each in self.intervals)
 
 
-def judged(
+def search_table(
     study: Campaign,
     candidates: Sequence[Candidate],
     grounds: Sequence[Label],

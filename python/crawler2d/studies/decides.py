@@ -14,7 +14,7 @@ from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs.labelled import build_attributes
+from crawler2d.runs.dataset import build_attributes
 from crawler2d.studies.boundary import (
     SPOKEN,
     Crossing,
@@ -24,7 +24,7 @@ from crawler2d.studies.boundary import (
     line_over,
     range_of,
 )
-from crawler2d.studies.campaign import Campaign, How, Tally, campaign, counting
+from crawler2d.studies.campaign import Campaign, RateSampling, Tally, campaign, counting
 from crawler2d.studies.sensitivity import COVERAGE, RUN_TO_RUN, Design, bounds, estimate, rate_of
 from crawler2d.studies.tables import Models, read_models
 from crawler2d.sweeps.axes import field_attributes
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.found import Found
 
-__all__ = ["Answer", "decided", "what_decides"]
+__all__ = ["Answer", "decision_table", "what_decides"]
 
 _SPOKEN = {
     "first": "first-order index",
@@ -75,7 +75,7 @@ class Answer:
     lines: list[tuple[Range, Line | None]]
 
 
-def decided(
+def decision_table(
     study: Campaign, design: Design, models: Sequence[Any], answers: Sequence[Answer], outcome: str
 ) -> Found:
     """Arrange what was found.
@@ -226,7 +226,7 @@ def what_decides(
     *,
     models: Models | None = None,
     outcome: str = "cleared",
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Find which of the unknowns decides whether the robot gets over.
 
@@ -343,7 +343,7 @@ def what_decides(
                 line = line_over(study, along, (f"model={label}", name), counts)
                 lines.append((along, line))
             answers.append(Answer(matrices, lines))
-        return decided(study, design, list(fields), answers, outcome)
+        return decision_table(study, design, list(fields), answers, outcome)
 
 
 def _power_of_two(value: object) -> int:

@@ -15,7 +15,7 @@ from crawler2d.parameters.fields import read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import Sampling, campaign
 from crawler2d.studies.steady import Halt, RunUp, drive, on_plane
-from crawler2d.studies.tables import Dims, Measure, Models, measured_of, read_models
+from crawler2d.studies.tables import Dims, Measure, Models, measure_table, read_models
 from crawler2d.variation.distributions import Ranges
 from crawler2d.variation.variability import of_contact, of_start
 
@@ -28,13 +28,13 @@ __all__ = [
     "FRICTION",
     "TORQUE",
     "UNCHANGED",
-    "Asked",
     "Change",
     "Figure",
+    "Request",
     "acceleration",
     "braking_distance",
-    "limited",
-    "limits",
+    "limiting_changes",
+    "limiting_study",
     "max_speed",
 ]
 
@@ -79,7 +79,7 @@ TORQUE = Change("torque", ("robot.drivetrain.max_torque",), "robot.drivetrain.ma
 FRICTION = Change("friction", ("terrain.friction",), "terrain.friction, an input")
 
 
-def limits(
+def limiting_changes(
     values: NDArray[np.float64],
     changes: tuple[Change, ...],
     *,
@@ -162,7 +162,7 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class Request:
     """What is asked of a study: models, commanded speed [m/s] and number of repeats."""
 
     models: Models | None
@@ -170,7 +170,7 @@ class Asked:
     repeats: int
 
 
-def limited(figure: Figure, scenario: Scenario, asked: Asked, how: Sampling) -> Found:
+def limiting_study(figure: Figure, scenario: Scenario, asked: Request, how: Sampling) -> Found:
     """Drive every model as it is and with each change, and arrange what came of it."""
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
@@ -212,8 +212,8 @@ def limited(figure: Figure, scenario: Scenario, asked: Asked, how: Sampling) -> 
             "part": (_PARTS[: 3 + 2 * figure.halts], {"long_name": "how far a run goes"}),
         }
         tallies = [part for both in driven for course in both if course for part in course.tallies]
-        found = measured_of(study, figure.study, tallies, dims, measures)
-    limit = limits(values, changes, share=_SHARE, least=figure.least, falls=figure.halts)
+        found = measure_table(study, figure.study, tallies, dims, measures)
+    limit = limiting_changes(values, changes, share=_SHARE, least=figure.least, falls=figure.halts)
     ended = np.array([(halt or run_up).ended for run_up, halt in driven])
     one, every = found[figure.name], found[f"{figure.name}_with"]
     meanings = {change.name: change.meaning for change in changes[1:]}
@@ -317,7 +317,7 @@ def max_speed(
     >>> found["speed"].values.round(3).tolist(), found["limit"].values.tolist()
     ([1.39], ['command'])
     """
-    return limited(_MAX_SPEED, scenario, Asked(models, speed, repeats), how)
+    return limiting_study(_MAX_SPEED, scenario, Request(models, speed, repeats), how)
 
 
 @takes_keywords
@@ -361,7 +361,7 @@ def acceleration(
     >>> found["limit"].values.tolist()
     ['command', 'torque']
     """
-    return limited(_ACCELERATION, scenario, Asked(models, speed, repeats), how)
+    return limiting_study(_ACCELERATION, scenario, Request(models, speed, repeats), how)
 
 
 @takes_keywords
@@ -406,7 +406,7 @@ def braking_distance(
     >>> found["limit"].item()
     'command'
     """
-    return limited(_BRAKING, scenario, Asked(models, speed, repeats), how)
+    return limiting_study(_BRAKING, scenario, Request(models, speed, repeats), how)
 
 
 def _speed(run_up: RunUp, _halt: Halt | None) -> NDArray[np.float64]:

@@ -15,8 +15,16 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import is_whole, read_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies.campaign import Cell, Counts, How, Tally, campaign, counting, is_cleared
-from crawler2d.studies.tables import Models, found_of, read_models
+from crawler2d.studies.campaign import (
+    Cell,
+    Counts,
+    RateSampling,
+    Tally,
+    campaign,
+    counting,
+    is_cleared,
+)
+from crawler2d.studies.tables import Models, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.sweeps.rates import BAND
 
@@ -127,7 +135,7 @@ def seizure_map(
     outcome: str = "seized",
     models: Models | None = None,
     refine: int = 1,
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Map how runs end over two fields, such as height and friction, and how often.
 
@@ -228,7 +236,7 @@ def seizure_map(
         }
         with warnings.catch_warnings():  # a cell that was not simulated has no band
             warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
-            found = found_of(study, "seizure_map", grid.tallies, dims)
+            found = rate_table(study, "seizure_map", grid.tallies, dims)
     found["rate"].attrs["long_name"] = f"rate of {outcome}"
     return _with_ends(found, grid, tuple(dims), ends).assign_attrs(outcome=outcome)
 

@@ -16,8 +16,8 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import NO_RESULT
-from crawler2d.studies.campaign import Cell, How, Tally, campaign
-from crawler2d.studies.tables import Models, found_of, read_models
+from crawler2d.studies.campaign import Cell, RateSampling, Tally, campaign
+from crawler2d.studies.tables import Models, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
@@ -33,7 +33,7 @@ def max_obstacle(
     *,
     models: Models | None = None,
     heights: Sequence[float] | None = None,
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Find the highest obstacle that each model clears.
 
@@ -90,7 +90,7 @@ def max_slope(
     *,
     models: Models | None = None,
     angles: Sequence[float] | None = None,
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Find the steepest slope that each model climbs; see `max_obstacle`.
 
@@ -113,7 +113,7 @@ def max_gap(
     *,
     models: Models | None = None,
     widths: Sequence[float] | None = None,
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Find the widest gap that each model crosses; see `max_obstacle`.
 
@@ -136,7 +136,7 @@ def _ladder(
     figure: str,
     over: tuple[str, Sequence[float]],
     models: Models | None,
-    how: How,
+    how: RateSampling,
 ) -> Found:
     path, values = over
     read_path(scenario, path)  # the terrain has it
@@ -153,7 +153,7 @@ def _ladder(
             for value in rungs
         ]
         tallies = study.repeat(cells)
-        found = found_of(
+        found = rate_table(
             study,
             figure,
             tallies,
@@ -209,7 +209,7 @@ def success(
     *,
     terrains: Mapping[str, Terrain] | None = None,
     models: Models | None = None,
-    **how: Unpack[How],
+    **how: Unpack[RateSampling],
 ) -> Found:
     """Find how often each model gets over each ground, and how and where it fails.
 
@@ -261,7 +261,7 @@ def success(
         tallies = study.repeat(cells)
         no_units: dict[str, str] = {}
         dims = {"model": (list(fields), no_units), "terrain": (list(grounds), no_units)}
-        found = found_of(study, "success", tallies, dims)
+        found = rate_table(study, "success", tallies, dims)
     ends = [Counter(row.outcome for row in tally.rows) for each in tallies for tally in each]
     occurred = [each for each in (*map(str, Outcome), *NO_RESULT) if any(end[each] for end in ends)]
     shape, dimensions = found["rate"].shape, found["rate"].dims

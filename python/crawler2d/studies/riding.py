@@ -17,12 +17,12 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
-from crawler2d.runs.labelled import build_attributes
+from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, reporter
 from crawler2d.runs.simulation import Simulation
 from crawler2d.studies.campaign import Cell, Sampling, Tally, campaign
 from crawler2d.studies.driving import FRICTION, UNCHANGED, Change
-from crawler2d.studies.tables import Dims, Measure, Models, measured_of, read_models, summary
+from crawler2d.studies.tables import Dims, Measure, Models, measure_table, read_models, summary
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -114,7 +114,7 @@ def ride(
         fields = read_models(scenario, models)
         cells = [Cell((f"model={label}",), scenario.replace(own)) for label, own in fields.items()]
         tallies = study.repeat(cells)
-        found = measured_of(
+        found = measure_table(
             study,
             "ride",
             tallies,
@@ -207,7 +207,7 @@ def odometry(
                 both, 1.0 / ratios - 1.0, "1", f"{text} with each change"
             ),
         }
-        found = measured_of(study, "odometry", tallies, dims, measures)
+        found = measure_table(study, "odometry", tallies, dims, measures)
     ends = np.array([_ended(tally) for each in tallies for tally in each])
     like = found["odometry_error_with"]
     told = {"long_name": "how most runs ended"}

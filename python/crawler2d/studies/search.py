@@ -15,9 +15,16 @@ from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.studies.campaign import Campaign, Sampling, Tally, campaign
-from crawler2d.studies.candidates import Candidate, Confirmation, Fresh, halve, judged, ranked
+from crawler2d.studies.candidates import (
+    Candidate,
+    Confirmation,
+    FreshDraws,
+    halve,
+    ranked,
+    search_table,
+)
 from crawler2d.studies.tables import Models
-from crawler2d.sweeps.axes import Label, labelled
+from crawler2d.sweeps.axes import Label, read_labels
 from crawler2d.sweeps.sweep import variants
 from crawler2d.variation.draws import Variation
 from crawler2d.variation.variability import of_contact, of_field, of_start
@@ -148,7 +155,7 @@ def search(
         rounds = halve(study, candidates, goal, study.until.least)
         confirmed = _confirmed(study, ranked(candidates, goal)[:2], fresh)
         cost = "wheels a side" if objective is None else getattr(objective, "__name__", "cost")
-        return judged(study, candidates, list(grounds), confirmed, goal).assign_attrs(
+        return search_table(study, candidates, list(grounds), confirmed, goal).assign_attrs(
             objective=cost,
             first=study.until.least,
             rounds=rounds,
@@ -171,7 +178,7 @@ def _grounds(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
     """Return the terrains by label."""
     if terrains is None:
         return {scenario.terrain.kind: scenario.terrain}
-    found = labelled(terrains, "terrains")
+    found = read_labels(terrains, "terrains")
     for label, ground in found.items():
         if not isinstance(ground, Terrain):
             raise ScenarioError(f"terrains[{label!r}]", ground, "must be a terrain")
@@ -187,7 +194,7 @@ def _candidates(
     """Make the candidates, and say why others are left out."""
     own = study.planner
     nominal = replace(own, unknowns=Variation({}))
-    planner = Fresh(own.variation, own.unknowns, own.seed)
+    planner = FreshDraws(own.variation, own.unknowns, own.seed)
     candidates, refusals, errors = [], [], []
     for label, each in fields.items():
         worlds = []
@@ -222,7 +229,7 @@ def _cost(scenario: Scenario, label: Label, objective: Objective | None) -> floa
 def _confirmed(study: Campaign, chosen: Sequence[Candidate], fresh: int) -> list[Confirmation]:
     """Simulate what was chosen with draws that the search has not had."""
     own = study.planner
-    planner = Fresh(own.variation, own.unknowns, own.seed + _ELSEWHERE)
+    planner = FreshDraws(own.variation, own.unknowns, own.seed + _ELSEWHERE)
     by_robot = replace(own, seed=own.seed + 2 * _ELSEWHERE)
     found = []
     for candidate in chosen:

@@ -12,7 +12,7 @@ from crawler2d.common.extras import extra
 from crawler2d.errors import raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import Campaign, Counts, Tally
-from crawler2d.studies.candidates import Fresh
+from crawler2d.studies.candidates import FreshDraws
 from crawler2d.sweeps.axes import short_names
 from crawler2d.variation.draws import Variation
 
@@ -266,7 +266,7 @@ class Design:
         study = self._study
         (world,) = study.planner.worlds(cell, (f"model={label}", f"matrix={self.matrices[matrix]}"))
         columns = self._points[matrix].T
-        planner = Fresh(
+        planner = FreshDraws(
             _given(study.planner.variation, columns[len(self.factors) :]),
             _given(self.unknowns, columns[: len(self.factors)]),
             study.planner.seed,

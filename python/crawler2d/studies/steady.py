@@ -120,7 +120,7 @@ class Course(ABC):
     def ways(self) -> NDArray[np.float64]:
         """[m] How far the robot has moved along its axis, shape (durations, samples, repeats)."""
         return np.array(
-            [[[_way(row) for row in tally.rows] for tally in own] for own in self.tallies]
+            [[[_path_length(row) for row in tally.rows] for tally in own] for own in self.tallies]
         )
 
     @property
@@ -239,7 +239,7 @@ def _looks(time: float) -> float:
     return math.ceil(100.0 * time) / 100.0
 
 
-def _way(row: Row) -> float:
+def _path_length(row: Row) -> float:
     """[m] How far a run has come, also where it ended early because nothing moved any more."""
     if row.error is not None:
         return math.nan

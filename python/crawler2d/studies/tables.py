@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs.labelled import build_attributes
+from crawler2d.runs.dataset import build_attributes
 from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.sweeps.rates import banded
 from crawler2d.sweeps.sweep import Variant, variants
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
     from crawler2d.sweeps.statistics import Interval
 
-__all__ = ["Dims", "Measure", "Models", "found_of", "measured_of", "read_models", "summary"]
+__all__ = ["Dims", "Measure", "Models", "measure_table", "rate_table", "read_models", "summary"]
 
 Models = Mapping[Any, Variant] | Sequence[Variant]
 """By label, or objects that label themselves; see `compare`."""
@@ -49,7 +49,7 @@ _SPOKEN = {
 }
 
 
-def found_of(
+def rate_table(
     campaign: Campaign,
     figure: str,
     tallies: Sequence[Sequence[Tally]],
@@ -98,7 +98,7 @@ def found_of(
     until = campaign.until
     merged = whole.merge(rates)
     return Found(merged.data_vars, merged.coords).assign_attrs(
-        **_told(campaign, figure, flat),
+        **_attributes(campaign, figure, flat),
         until=str(until),
         confidence_level=until.confidence,
         interval="sequential",
@@ -125,7 +125,7 @@ class Measure:
     long_name: str
 
 
-def measured_of(
+def measure_table(
     campaign: Campaign,
     figure: str,
     tallies: Sequence[Sequence[Tally]],
@@ -137,7 +137,7 @@ def measured_of(
     Parameters
     ----------
     campaign, figure, tallies, dims
-        See `found_of`.
+        See `rate_table`.
     measures : mapping of str to Measure
         By name, which no column of `sweep` has; the first is the one that `Found.plot` draws.
 
@@ -159,7 +159,9 @@ def measured_of(
     for name, measure in measures.items():
         found = found.assign(summary(name, _each(measure, found)))
     return Found(found.data_vars, found.coords).assign_attrs(
-        **_told(campaign, figure, flat), repeats=campaign.until.most, measure=next(iter(measures))
+        **_attributes(campaign, figure, flat),
+        repeats=campaign.until.most,
+        measure=next(iter(measures)),
     )
 
 
@@ -176,7 +178,7 @@ def summary(name: str, each: xarray.DataArray) -> dict[str, xarray.DataArray]:
     Returns
     -------
     dict of str to DataArray
-        See `measured_of`.
+        See `measure_table`.
     """
     parts = {
         f"{name}_each": (each, "of each repeat"),
@@ -237,7 +239,7 @@ def _runs(
     longest = max((len(tally.rows) for tally in flat), default=0)
     rows = [row for t in flat for row in (*t.rows, *[None] * (longest - len(t.rows)))]
     columns = row_columns(rows, trials=campaign.trials, with_times=True)
-    columns |= _drawn(campaign, flat, longest)
+    columns |= _drawn_values(campaign, flat, longest)
     return dataset_of(
         columns, {**sizes, "repeat": longest}, {**coordinates, "repeat": np.arange(longest)}
     )
@@ -251,7 +253,7 @@ def _sampled(campaign: Campaign, flat: Sequence[Tally]) -> dict[str, Column]:
     return columns
 
 
-def _told(campaign: Campaign, figure: str, flat: Sequence[Tally]) -> dict[str, Any]:
+def _attributes(campaign: Campaign, figure: str, flat: Sequence[Tally]) -> dict[str, Any]:
     """Say what was done, as attributes."""
     return {
         "figure": figure,
@@ -264,7 +266,7 @@ def _told(campaign: Campaign, figure: str, flat: Sequence[Tally]) -> dict[str, A
     }
 
 
-def _drawn(campaign: Campaign, flat: Sequence[Tally], longest: int) -> dict[str, Column]:
+def _drawn_values(campaign: Campaign, flat: Sequence[Tally], longest: int) -> dict[str, Column]:
     columns: dict[str, Column] = {}
     for path, name in short_names(list(campaign.planner.variation.distributions)).items():
         parts = []

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from crawler2d.results.diagnosis import Diagnosis
-    from crawler2d.results.findings import Tried
+    from crawler2d.results.findings import TrialResult
 
 __all__ = [
     "COLUMNS",
@@ -30,8 +30,8 @@ __all__ = [
     "Label",
     "coordinates",
     "field_attributes",
-    "labelled",
     "read_axes",
+    "read_labels",
     "short_name",
     "short_names",
     "stop_columns",
@@ -43,7 +43,7 @@ Label = str | int | float
 _LONGEST = 60
 
 
-def labelled(values: object, place: str) -> dict[Label, Any]:
+def read_labels(values: object, place: str) -> dict[Label, Any]:
     """Read the values of an axis: a mapping from labels, or a sequence that labels itself.
 
     Parameters
@@ -190,7 +190,7 @@ def stop_columns(why: Sequence[Diagnosis | None], asked: Sequence[str] = ()) -> 
     return columns
 
 
-def _made(why: Diagnosis | None, name: str) -> Tried | None:
+def _made(why: Diagnosis | None, name: str) -> TrialResult | None:
     trials = () if why is None else why.trials
     return next((tried for tried in trials if tried.name == name), None)
 
@@ -251,7 +251,7 @@ def read_axes(over: object) -> list[Axis]:
     axes = []
     for (key, paths), name in zip(keys.items(), dimensions, strict=True):
         place = f"over[{key!r}]"
-        values = labelled(over[key], place)
+        values = read_labels(over[key], place)
         if isinstance(key, tuple):
             rows = {label: _row(value, paths, place) for label, value in values.items()}
         else:

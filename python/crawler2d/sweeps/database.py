@@ -28,13 +28,13 @@ __all__ = [
     "Place",
     "damage_of",
     "place_of",
+    "read_checked",
     "read_row",
-    "sealed",
+    "store_errors",
     "to_read",
     "to_write",
-    "told",
-    "unsealed",
     "values_of",
+    "with_checksum",
 ]
 
 COLUMNS = (
@@ -55,7 +55,7 @@ _UNREADABLE = (AttributeError, LookupError, RecursionError, TypeError, ValueErro
 def values_of(row: Row, build: str, trials: str) -> tuple[Any, ...]:
     """Return the values of a row, in the order of `COLUMNS`."""
     figures = {name: None if math.isnan(value) else value for name, value in row.metrics.items()}
-    return sealed(
+    return with_checksum(
         (
             row.identity,
             build,
@@ -70,7 +70,7 @@ def values_of(row: Row, build: str, trials: str) -> tuple[Any, ...]:
     )
 
 
-def sealed(values: Sequence[Any]) -> tuple[Any, ...]:
+def with_checksum(values: Sequence[Any]) -> tuple[Any, ...]:
     """Append their checksum to the values of a row."""
     # JSON keeps apart where a value ends and of which type it is; what it does not know, such as
     # the bytes of a damaged column, is in no sound row.
@@ -82,7 +82,7 @@ class OtherBuild(ValueError):
     """A row is as it was written, by another build, but this one cannot read it."""
 
 
-def unsealed(values: Sequence[Any]) -> Kept:
+def read_checked(values: Sequence[Any]) -> Kept:
     """Return the run in a row, its build and its trials.
 
     Raises
@@ -92,7 +92,7 @@ def unsealed(values: Sequence[Any]) -> Kept:
     ValueError
         If the row is not as it was written; it says why.
     """
-    if sealed(values[:-1]) != tuple(values):
+    if with_checksum(values[:-1]) != tuple(values):
         raise ValueError("its checksum is another")
     identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, _ = values
     # What is stored is the canonical text, so this holds for every build.
@@ -267,7 +267,7 @@ def to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
     StoreError
         If it is no store, is damaged, cannot be written, or another process writes into it.
     """
-    with told(path), contextlib.ExitStack() as stack:
+    with store_errors(path), contextlib.ExitStack() as stack:
         real = Path(os.path.realpath(path))
         lock = stack.enter_context(contextlib.closing(Lock(real)))
         if not real.is_file() or real.stat().st_nlink > 1:
@@ -307,7 +307,7 @@ def to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
     StoreError
         If there is no such file, it is no store, or, if that is `checked`, damaged.
     """
-    with told(path):
+    with store_errors(path):
         real = Path(os.path.realpath(path))
         if not real.is_file():
             raise StoreError(f"{path} is not there: a sweep with store= makes a store")
@@ -345,7 +345,7 @@ def read_row(path: Path, number: int, values: Sequence[Any]) -> Kept | None:
         If it is damaged.
     """
     try:
-        return unsealed(values)
+        return read_checked(values)
     except OtherBuild:
         return None
     except ValueError as fault:
@@ -356,7 +356,7 @@ def read_row(path: Path, number: int, values: Sequence[Any]) -> Kept | None:
 
 
 @contextlib.contextmanager
-def told(path: Path) -> Iterator[None]:
+def store_errors(path: Path) -> Iterator[None]:
     """Turn an error of SQLite, or of the system, into one that says what helps."""
     try:
         yield
@@ -462,7 +462,7 @@ def _convert(connection: sqlite3.Connection, path: Path) -> None:
         f"SELECT rowid, {COLUMNS.removesuffix(', checksum')} FROM former ORDER BY rowid"
     )
     for number, *values in former:
-        row = sealed(values)
+        row = with_checksum(values)
         read_row(path, number, row)
         connection.execute(INSERT, row)
     connection.execute("DROP TABLE former")

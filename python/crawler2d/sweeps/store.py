@@ -22,11 +22,11 @@ from crawler2d.sweeps.database import (
     Place,
     damage_of,
     place_of,
+    read_checked,
     read_row,
+    store_errors,
     to_read,
     to_write,
-    told,
-    unsealed,
     values_of,
 )
 
@@ -108,7 +108,7 @@ class Store:
                 f"SELECT rowid, {COLUMNS} FROM run"
                 f" WHERE build = ? AND trials = ? AND identity IN ({marks})"
             )
-            with told(self.path):
+            with store_errors(self.path):
                 for number, *values in self._connection.execute(
                     query, (self._build, self._trials, *some)
                 ):
@@ -149,7 +149,7 @@ class Store:
         """Make changes, all or none."""
         connection = self._connection
         try:
-            with told(self.path):
+            with store_errors(self.path):
                 self._lock.keep()
                 connection.execute("BEGIN IMMEDIATE")
                 yield connection
@@ -229,7 +229,7 @@ def join_stores(into: Place, *others: Place) -> int:
 
 def _stored(place: Path) -> Iterator[tuple[Kept | None, list[Any]]]:
     """Read every row of a store, also as its values."""
-    with told(place), contextlib.closing(to_read(place)) as connection:
+    with store_errors(place), contextlib.closing(to_read(place)) as connection:
         query = f"SELECT rowid, {COLUMNS} FROM run ORDER BY rowid"
         for number, *values in connection.execute(query):
             yield read_row(place, number, values), values
@@ -292,7 +292,7 @@ def check_store(path: Place) -> tuple[Damage, ...]:
         try:
             for number, *values in connection.execute(f"SELECT rowid, {COLUMNS} FROM run"):
                 try:
-                    unsealed(values)
+                    read_checked(values)
                 except OtherBuild:
                     continue
                 except ValueError as fault:

@@ -17,7 +17,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.branch import Trials
 from crawler2d.runs.progress import Progress
-from crawler2d.sweeps.axes import Axis, Label, labelled, read_axes
+from crawler2d.sweeps.axes import Axis, Label, read_axes, read_labels
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
 from crawler2d.sweeps.tabulate import OnError, tabulate
@@ -338,7 +338,7 @@ def compare(
 
 def variants(models: object) -> dict[Label, Mapping[str, Any]]:
     """Read the argument `models`: what each replaces, by path, by its label."""
-    return {label: _fields(model, label) for label, model in labelled(models, "models").items()}
+    return {label: _fields(model, label) for label, model in read_labels(models, "models").items()}
 
 
 def _fields(model: object, label: Label) -> Mapping[str, Any]:

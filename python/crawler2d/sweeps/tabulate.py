@@ -19,7 +19,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
 from crawler2d.runs.batch import BatchInterrupted
 from crawler2d.runs.branch import Trials, trial_names, yes_or_no
-from crawler2d.runs.labelled import build_attributes
+from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
 from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names, stop_columns

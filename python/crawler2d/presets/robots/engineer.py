@@ -10,7 +10,7 @@ from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.track import HybridWheels, LineOfWheels, Track
-from crawler2d.presets.robots.finish import finished
+from crawler2d.presets.robots.choices import with_choices
 
 __all__ = ["engineer"]
 
@@ -150,4 +150,4 @@ def engineer(
     )
     wheels = HybridWheels(((-0.186, 0.0, 0.08), (0.0, 0.0, 0.08), (0.186, 0.0, 0.08)))
     public = (wheels, LineOfWheels(2, wheel_radius=0.056))
-    return finished(robot, flippers=flippers, built=built, track=track, public=public)
+    return with_choices(robot, flippers=flippers, built=built, track=track, public=public)

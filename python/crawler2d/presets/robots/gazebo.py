@@ -9,7 +9,7 @@ from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.track import BeltTrack, Track
-from crawler2d.presets.robots.finish import finished
+from crawler2d.presets.robots.choices import with_choices
 
 __all__ = ["gz_tracked_vehicle"]
 
@@ -123,4 +123,4 @@ def gz_tracked_vehicle(
         torque_limit=50.0,
     )
     public = (BeltTrack(), None)
-    return finished(robot, flippers=flippers, built=built, track=track, public=public)
+    return with_choices(robot, flippers=flippers, built=built, track=track, public=public)

@@ -10,7 +10,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import GrouserBeltTrack, LineOfWheels, Track
-from crawler2d.presets.robots.finish import finished, is_rough
+from crawler2d.presets.robots.choices import is_rough, with_choices
 
 __all__ = ["absolem", "marv"]
 
@@ -149,7 +149,7 @@ def absolem(
     if rough:
         robot = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=30.0))
     public = (LineOfWheels(8), LineOfWheels(5))
-    return finished(robot, flippers=flippers, built=built, track=track, public=public)
+    return with_choices(robot, flippers=flippers, built=built, track=track, public=public)
 
 
 @takes_keywords
@@ -269,7 +269,7 @@ def marv(
     if rough:
         robot = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=50.0))
     public = (roots, LineOfWheels(8))
-    return finished(robot, flippers=flippers, built=built, track=track, public=public)
+    return with_choices(robot, flippers=flippers, built=built, track=track, public=public)
 
 
 def _bow(angle: float) -> tuple[float, float]:

@@ -9,10 +9,10 @@ from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import Track
 
-__all__ = ["finished", "is_rough"]
+__all__ = ["is_rough", "with_choices"]
 
 
-def finished(
+def with_choices(
     robot: Robot,
     *,
     flippers: Flippers | str | None,
