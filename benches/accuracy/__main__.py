@@ -1,11 +1,11 @@
-"""Draw cells, make their runs, write the page.
+"""Draw cells, make their runs, write their figures into the page.
 
 Usage, from the repository root: ``python -m benches.accuracy [search | run | report] [--set N]``.
 ``search`` completes set N of cells, drawn with seed N; ``run`` makes the runs that are missing, and
-more where a cell is undecided; ``report`` writes the page. Without a verb, it runs and reports.
-``--quick`` tries all of it in half a minute. Ctrl-C loses nothing: the same command goes on where
-it ended. The settings file names arguments of `Solver`, the finest last, the ``reference`` among
-them that all are compared with, and the ``default`` that is judged.
+more where a cell is undecided; ``report`` writes the figures into the page. Without a verb, it runs
+and reports. ``--quick`` tries all of it in half a minute. Ctrl-C loses nothing: the same command
+goes on where it ended. The settings file names arguments of `Solver`, the finest last, the
+``reference`` among them that all are compared with, and the ``default`` that is judged.
 """
 
 from __future__ import annotations
@@ -28,9 +28,10 @@ from benches.accuracy.store import Store
 from benches.accuracy.verdicts import undecided
 from benches.peers import machine
 from benches.peers.timing import progress
+from research.markdown import spliced
 
 _ROOT = Path(__file__).parents[2]
-_PAGE = _ROOT / "docs" / "studies" / "accuracy.md"
+_PAGE = _ROOT / "docs" / "accuracy.md"
 _STORE = _ROOT / "out" / "accuracy.sqlite"
 _SETTINGS = Path(__file__).with_name("settings.json")
 
@@ -76,14 +77,21 @@ class Job:
                 self._complete(store, undecided(self._study(store)), pair, count)
 
     def report(self) -> None:
-        """Write page and figures from the runs in the store."""
+        """Write the parts of the page, the figures and the table of cells from the store."""
         with Store(self.store, any_build=self.any_build) as store:
             study = self._study(store)
-        here = machine.describe({"crawler2d": c2d.__version__})
-        folder = self.page.with_suffix("")
-        text = report.render(study, here, folder.name)
+        parts = report.render(study, machine.describe({"crawler2d": c2d.__version__}))
+        if self.page.exists():
+            page = self.page.read_text(encoding="utf-8")
+        else:
+            page = "\n\n".join(f"<!-- {name} -->\n<!-- end of {name} -->" for name in parts) + "\n"
+        text, folder = spliced(page, parts), self.page.with_suffix("")
         plot.plot(study, folder)
-        self.page.write_text(text, encoding="utf-8", newline="\n")
+        for path, written in {
+            self.page: text,
+            folder / "cells.csv": report.table_of_cells(study),
+        }.items():
+            path.write_text(written, encoding="utf-8", newline="\n")
         sys.stdout.write(text)
 
     def _cells(self) -> list[Cell]:

@@ -227,9 +227,13 @@ def test_everything_is_tried_in_half_a_minute(tmp_path: Path) -> None:
     main(["--quick", "--store", str(tmp_path / "runs.sqlite")])
     drawn = json.loads((tmp_path / "accuracy-quick.json").read_text(encoding="utf-8"))
     page = (tmp_path / "accuracy-quick.md").read_text(encoding="utf-8")
-    assert all(f"| {cell['name']}" in page for cell in drawn)
-    assert {path.name for path in (tmp_path / "accuracy-quick").iterdir()} == {
+    folder = tmp_path / "accuracy-quick"
+    cells = (folder / "cells.csv").read_text(encoding="utf-8").splitlines()
+    assert [line.partition(",")[0] for line in cells[1:]] == [cell["name"] for cell in drawn]
+    assert all(f"| {name} |" in page for name in ("1 ms", "2 ms"))
+    assert {path.name for path in folder.iterdir()} == {
         "all.svg",
+        "cells.csv",
         "rates.svg",
         "paths.svg",
     }
