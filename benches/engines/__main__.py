@@ -20,8 +20,9 @@ from benches.engines.predict import PREDICTIONS, predict, unlike
 from benches.engines.refining import refine
 from benches.engines.running import RESULTS, processes, run
 from benches.engines.scan import scanned
-from benches.engines.table import parts
+from benches.engines.table import agreeing, parts
 from benches.engines.telling import tell
+from benches.peers import dots
 from research.markdown import spliced
 
 _PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
@@ -151,6 +152,9 @@ def _tables(folder: Path) -> None:
     if folder == RESULTS:
         page = spliced(_PAGE.read_text(encoding="utf-8"), found)
         _PAGE.write_text(page, encoding="utf-8")
+        dots.draw(
+            agreeing(read(), folder), "runs that end as predicted [%]", _PAGE.with_suffix(".svg")
+        )
 
 
 if __name__ == "__main__":

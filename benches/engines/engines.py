@@ -35,7 +35,7 @@ class Entry:
 
 ENGINES: dict[str, Entry] = {
     "pymunk": Entry("Chipmunk, finely", True, False, 8),
-    "rapier": Entry("crawler2d's own door to rapier", True, False, 3),
+    "rapier": Entry("crawler2d's second backend", True, False, 3),
     "ode": Entry("ODE as Gazebo classic sets it", False, True, 8),
     "ode-fine": Entry("ODE, finely", True, True, 3),
     "bullet": Entry("Bullet as PyBullet sets it", False, True, 6),

@@ -17,7 +17,7 @@ from benches.engines.robots import MODELS
 from benches.engines.running import results_of
 from research.markdown import markdown_table
 
-__all__ = ["load", "parts"]
+__all__ = ["agreeing", "load", "parts"]
 
 Results = Mapping[str, Runs]
 """Runs by engine."""
@@ -69,6 +69,18 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
         "yaw": yaw.table(folder),
         "cells": _cells(plane, predicted, results),
     }
+
+
+def agreeing(cells: Sequence[Cell], folder: Path) -> dict[str, dict[str, float]]:
+    """Return by engine in how many runs [%] it agrees with each predicted outcome."""
+    plane, predicted = [cell for cell in cells if cell.group == "plane"], read()
+    found: dict[str, dict[str, float]] = {}
+    for name, runs in load(folder)[0].items():
+        ends = [[b["end"] == "cleared" for b in pair[1:]] for pair in pairs(plane, predicted, runs)]
+        for clears, what in ((False, "predicted to stop"), (True, "predicted to clear")):
+            same = [own == clears for mine, own in ends if mine == clears]
+            found.setdefault(name, {})[what] = 100.0 * sum(same) / len(same)
+    return found
 
 
 def _engines(

@@ -14,10 +14,10 @@ from pathlib import Path
 from benches.models.cases import CASES, STARTS
 from benches.models.predict import PREDICTIONS, predicted
 from benches.models.running import ENGINES, FILES, RESULTS, engine_of, run
-from benches.models.table import table
+from benches.models.table import parts
 from research.markdown import spliced
 
-_PAGE = Path(__file__).parents[2] / "docs" / "studies" / "engines.md"
+_PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
 
 
 def main() -> None:
@@ -66,10 +66,10 @@ def main() -> None:
             )
     else:
         paths = given.results or [RESULTS / f"{engine}.json" for engine in ENGINES]
-        text = table([path for path in paths if path.exists()])
-        sys.stdout.write(text + "\n")
+        found = parts([path for path in paths if path.exists()])
+        sys.stdout.write("\n\n".join(found.values()) + "\n")
         if not given.results:
-            page = spliced(_PAGE.read_text(encoding="utf-8"), {"outcomes": text})
+            page = spliced(_PAGE.read_text(encoding="utf-8"), found)
             _PAGE.write_text(page, encoding="utf-8")
 
 

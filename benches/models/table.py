@@ -14,7 +14,7 @@ from benches.models.predict import PREDICTIONS
 from benches.models.running import FILES
 from research.markdown import markdown_table
 
-__all__ = ["agreement", "counts", "rows", "summary", "table"]
+__all__ = ["agreement", "counts", "parts", "rows", "summary"]
 
 _KINDS = ("runs", "firm")
 
@@ -86,11 +86,13 @@ def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
     return found
 
 
-def table(paths: Sequence[Path]) -> str:
-    """Return the tables in Markdown; results are named after their files."""
+def parts(paths: Sequence[Path]) -> dict[str, str]:
+    """Return the tables in Markdown, by name; results are named after their files."""
     results = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
     header = ["robot", "cell, friction", "file", "crawler2d", "firm motors", *results]
     ends = ("predicted to stop", "predicted to clear")
     firm = (f"{end}, firm motors" for end in ends)
-    sums = markdown_table(["engine", *ends, *firm], counts(results))
-    return f"{markdown_table(header, rows(results))}\n\nStarts that agree, of all cells:\n\n{sums}"
+    return {
+        "outcomes": markdown_table(header, rows(results)),
+        "files": markdown_table(["engine", *ends, *firm], counts(results)),
+    }

@@ -1,6 +1,7 @@
 """benches/engines: cells are well formed, all engines get one robot, nothing runs unpredicted."""
 
 import json
+import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benches.engines import running, yaw
+from benches.engines import running, table, yaw
 from benches.engines.agreement import apart, pairs, rate, share
 from benches.engines.cells import GROUNDS, STARTS, Cell, read, write
 from benches.engines.driving import driven, scene_of
@@ -20,6 +21,8 @@ from benches.engines.predict import PREDICTIONS, check, hash_of, unlike
 from benches.engines.predict import read as predictions
 from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
 from benches.engines.solid import solid_of
+from benches.models import running as running_files
+from benches.models import table as table_of_files
 from benches.models.ode_child import GAZEBO, interpreter
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import (
@@ -31,6 +34,7 @@ from crawler2d.parameters.terrain import (
     Step,
     Terrain,
 )
+from research.markdown import spliced
 
 CELL = Cell(
     group="plane",
@@ -271,6 +275,14 @@ def test_rates_are_told_with_their_intervals_and_pairs_by_their_draw() -> None:
     assert share(found) == "1 of 2"
     assert apart([stops] * 8, [clears] * 8)
     assert not apart([stops] * 2, [clears] * 1)
+
+
+def test_the_page_has_the_tables_of_the_results() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text("utf-8")
+    files = [running_files.RESULTS / f"{name}.json" for name in running_files.ENGINES]
+    made = {**table.parts(read(), running.RESULTS), **table_of_files.parts(files)}
+    assert set(re.findall("<!-- end of (.+) -->", page)) <= set(made)
+    assert spliced(page, made) == page
 
 
 def test_a_run_that_is_there_is_not_made_again(
