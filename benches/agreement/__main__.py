@@ -14,10 +14,11 @@ from benches.agreement.ensembles import ensembles, ensembles_table
 from benches.agreement.one_by_one import one_by_one, one_by_one_table
 from benches.agreement.pairs import RESULTS, read, run
 from benches.agreement.pinched import pinched, pinched_table
-from benches.agreement.study import study, study_table
+from benches.agreement.study import study, study_shares, study_table
 from benches.agreement.table import parts
 from benches.agreement.third import ask, read_third
 from benches.engines.telling import tell
+from benches.peers import dots
 from research.markdown import spliced
 
 _PAGE = Path(__file__).parents[2] / "docs" / "studies" / "agreement.md"
@@ -66,6 +67,7 @@ def _tell_tables(output: Path) -> None:
     if output == RESULTS:
         page = _PAGE.read_text(encoding="utf-8")
         _PAGE.write_text(spliced(page, made), encoding="utf-8", newline="\n")
+        dots.draw(study_shares(), "runs [%]", _PAGE.with_suffix(".svg"))
 
 
 if __name__ == "__main__":

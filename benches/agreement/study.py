@@ -16,7 +16,7 @@ from research.markdown import markdown_table
 from research.models import study_models
 from research.sweeps import FULL
 
-__all__ = ["STUDY", "at_height", "read_cells", "study", "study_table"]
+__all__ = ["STUDY", "at_height", "read_cells", "study", "study_shares", "study_table"]
 
 STUDY = Path(__file__).with_name("study.json")
 _ENGINES = ["own", "rapier"]
@@ -111,6 +111,26 @@ def study_table(path: Path = STUDY) -> str:
     models = list(dict.fromkeys(cell["model"] for cell in cells))
     groups = [(model, [c for c in cells if c["model"] == model]) for model in models]
     return markdown_table(head, [_row(*group) for group in [*groups, ("all", cells)]])
+
+
+def study_shares(path: Path = STUDY) -> dict[str, dict[str, float]]:
+    """Return by model in how many runs [%] each engine gets over, and how many end alike."""
+    found = {}
+    cells = read_cells(path)
+    for model in dict.fromkeys(cell["model"] for cell in cells):
+        runs = [
+            [end == "cleared" for end in ends]
+            for cell in cells
+            if cell["model"] == model
+            for ends in zip(*cell["ends"], strict=True)
+        ]
+        over = {
+            f"get over in {name}": 100.0 * sum(column) / len(runs)
+            for name, column in zip(("crawler2d", "rapier"), zip(*runs, strict=True), strict=True)
+        }
+        alike = 100.0 * sum(own == other for own, other in runs) / len(runs)
+        found[model] = {**over, "end alike": alike}
+    return found
 
 
 def _row(name: str, cells: list[dict[str, Any]]) -> tuple[str, ...]:

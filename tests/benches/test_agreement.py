@@ -10,6 +10,7 @@ import crawler2d as c2d
 from benches.agreement import pairs, pinched, study
 from benches.agreement.drawing import MODELS, drawn
 from benches.agreement.table import parts
+from research.markdown import spliced
 from research.sweeps import FULL
 
 
@@ -87,6 +88,12 @@ def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
     ]
     last = study.study_table(path).splitlines()[-1]
     assert last.startswith("| all | 3 | 3 | ")
+
+
+def test_the_page_has_the_table_of_the_results() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "studies" / "agreement.md").read_text("utf-8")
+    assert "<!-- end of study -->" in page
+    assert spliced(page, {"study": study.study_table()}) == page
 
 
 def test_rapier_holds_rows_gears_and_wheels_all_round_of_the_study() -> None:
