@@ -1,4 +1,4 @@
-"""Run the benchmark; it writes progress to stderr, tables, `out/peers.json` and the report.
+"""Run the benchmark; it writes progress to stderr, the report to `out/`, and its page and picture.
 
 Usage, from the repository root: ``python -m benches.peers [--quick] [--sections SECTION ...]``.
 """
@@ -14,16 +14,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from benches.peers import accuracy, chains, machine, report, scenes, sections
+from benches.peers import accuracy, chains, dots, machine, report, scenes, sections
 from benches.peers.accuracy import Effort
 from benches.peers.batches import batches
 from benches.peers.engine import Setting
 from benches.peers.engines import NAMES, engine, engines
 from benches.peers.timing import interleaved, progress
+from crawler2d.reports.markdown import spliced
 
 _ROOT = Path(__file__).parents[2]
 _RESULT = _ROOT / "out" / "peers.json"
-_REPORT = _ROOT / "docs" / "studies" / "peers.md"
+_PAGE = _ROOT / "docs" / "studies" / "peers.md"
 _REPEATS = 5
 _WORLDS = 8
 _ENSEMBLE = 12
@@ -66,10 +67,15 @@ def main() -> None:
                 result["wall"] = time.perf_counter() - start
             path.parent.mkdir(exist_ok=True)
             path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-    text = report.render(json.loads(path.read_text(encoding="utf-8")))
+    result = json.loads(path.read_text(encoding="utf-8"))
+    text = report.render(result)
     sys.stdout.write(text)
+    path.with_suffix(".md").write_text(text, encoding="utf-8", newline="\n")
     if not arguments.quick and arguments.scenes == scenes.NAMES:
-        _REPORT.write_text(text, encoding="utf-8", newline="\n")
+        page = spliced(_PAGE.read_text(encoding="utf-8"), report.parts(result))
+        _PAGE.write_text(page, encoding="utf-8", newline="\n")
+        factors = report.speeds(result["accuracy"])
+        dots.draw(factors, "simulated time / wall time", _PAGE.with_suffix(".svg"), scale="log")
 
 
 def _refuse_without_a_run(parser: argparse.ArgumentParser, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The report: Markdown from the results, for the screen and for docs/studies."""
+"""The report: Markdown from the results, for the screen, `out/` and docs/studies."""
 
 from __future__ import annotations
 
@@ -26,6 +26,28 @@ def render(result: dict[str, Any]) -> str:
     parts += [write(result[name]) for name, write in sections.items() if name in result]
     parts.append(_LIMITS)
     return markdown.page(parts)
+
+
+def parts(result: dict[str, Any]) -> dict[str, str]:
+    """Write what the page has of the report, by name."""
+    return {
+        "measured": machine.sentence(result["machine"], result["wall"]),
+        "speeds": _by_scene(result["accuracy"], _speed_cell),
+    }
+
+
+def speeds(rows: Rows) -> dict[str, dict[str, float]]:
+    """Return the real-time factors at equal accuracy, by scene and engine."""
+    found: dict[str, dict[str, float]] = {}
+    for row in rows:
+        factors = found.setdefault(row["scene"], {})
+        if row["found"]:
+            factors[row["engine"]] = 1.0 / row["per_second"]
+    return found
+
+
+def _speed_cell(row: dict[str, Any]) -> str:
+    return f"{1.0 / row['per_second']:.0f}x" if row["found"] else "none"
 
 
 def _head(result: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""Run the study; it writes progress to stderr, `out/scaling.json`, the page and its figures.
+"""Run the study; it writes progress to stderr, the report to `out/`, and its page and figures.
 
 Usage, from the repository root: ``python -m benches.scaling [--quick | --render]``.
 """
@@ -18,6 +18,7 @@ from benches.peers.timing import progress
 from benches.scaling import plot, report, scenes
 from benches.scaling.cost import measure
 from benches.scaling.threads import threads
+from crawler2d.reports.markdown import spliced
 
 _ROOT = Path(__file__).parents[2]
 _PAGE = _ROOT / "docs" / "studies" / "scaling.md"
@@ -40,11 +41,13 @@ def main() -> None:
         path.parent.mkdir(exist_ok=True)
         measured = run(quick=arguments.quick)
         path.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
-    page = path.with_suffix(".md") if arguments.quick else _PAGE
     result = json.loads(path.read_text(encoding="utf-8"))
     text = report.render(result)
-    plot.plot(result, page.with_suffix(""))
-    page.write_text(text, encoding="utf-8", newline="\n")
+    path.with_suffix(".md").write_text(text, encoding="utf-8", newline="\n")
+    plot.plot(result, (path if arguments.quick else _PAGE).with_suffix(""))
+    if not arguments.quick:
+        page = spliced(_PAGE.read_text(encoding="utf-8"), report.parts(result))
+        _PAGE.write_text(page, encoding="utf-8", newline="\n")
     sys.stdout.write(text)
 
 

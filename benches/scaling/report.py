@@ -1,4 +1,4 @@
-"""The page of the study: Markdown from the results."""
+"""The report of the study: Markdown from the results."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ AIM = 1.3
 
 
 def render(result: dict[str, Any]) -> str:
-    """Write the page from the results."""
+    """Write the report."""
     rows = result["rows"]
     return markdown.page(
         [
@@ -35,6 +35,14 @@ def render(result: dict[str, Any]) -> str:
             _accuracies(rows),
         ]
     )
+
+
+def parts(result: dict[str, Any]) -> dict[str, str]:
+    """Write what the page has of the report, by name."""
+    return {
+        "measured": machine.sentence(result["machine"], result["wall"]),
+        "wheels": _exponents(curves(result["rows"], "wheels"), (FLAT, STEP)),
+    }
 
 
 def _head(result: dict[str, Any]) -> str:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benches.peers import chain_crawler2d, chain_robot, chains_report
+from benches.peers import chain_crawler2d, chain_robot, chains_report, report
 from benches.peers.chain_robot import TEETH, ChainRobot
 from benches.peers.engine import Setting
+from crawler2d.reports.markdown import spliced
 from crawler2d.runs.simulation import Simulation
 
 STEP = np.array([(-5.0, 0.0), (0.8, 0.0), (0.8, 0.15), (15.0, 0.15)])
@@ -79,6 +80,29 @@ def test_pymunks_chain_runs_and_stays_on() -> None:
     assert len(early.path) < len(run.path)
 
 
+MACHINE = {
+    "date": "2000-01-01",
+    "processor": "one",
+    "cores": 2,
+    "load": 0.0,
+    "system": "any",
+    "python": "3",
+    "versions": {"pymunk": "7"},
+}
+
+
+def test_the_page_has_a_place_for_each_part_of_the_report() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "studies" / "peers.md").read_text("utf-8")
+    rows = [
+        {"scene": "lwa5-round-step", "engine": "pymunk", "found": {"a": 1}, "per_second": 2e-3},
+        {"scene": "lwa5-round-step", "engine": "MuJoCo", "found": None, "per_second": None},
+    ]
+    assert report.speeds(rows) == {"lwa5-round-step": {"pymunk": 500.0}}
+    parts = report.parts({"machine": MACHINE, "wall": 60.0, "accuracy": rows})
+    assert "| lwa5-round-step | 500x |  | none |  |  |" in parts["speeds"]
+    assert all(text in spliced(page, parts) for text in parts.values())
+
+
 def test_the_report_says_what_is_met_and_what_is_not() -> None:
     cell: dict[str, Any] = {"shoes": 22, "terrain": "flat", "gap": 5e-6}
     judged = {
@@ -95,15 +119,7 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
     }
     text = chains_report.render(
         {
-            "machine": {
-                "date": "2000-01-01",
-                "processor": "one",
-                "cores": 2,
-                "load": 0.0,
-                "system": "any",
-                "python": "3",
-                "versions": {"pymunk": "7"},
-            },
+            "machine": MACHINE,
             "wall": 60.0,
             "side_by_side": [
                 {**cell, **judged, "engine": "crawler2d", "per_second": 3e-2},

@@ -12,6 +12,7 @@ from benches.scaling import plot, report, scenes
 from benches.scaling.scenes import Point
 from benches.scaling.slopes import curves
 from crawler2d.parameters.terrain import Points, Terrain
+from crawler2d.reports.markdown import spliced
 
 POINTS = list(scenes.points())
 # A belt on more pieces takes seconds to get anywhere.
@@ -98,6 +99,13 @@ def test_the_page_tells_what_it_is_given() -> None:
     # Whole ground costs 5 ms, the others 100,004.
     assert "| belt | 5 | 100,004 | 100,004 | 20000.80 | 20000.80 |" in text
     assert max(map(len, prose(text))) <= 100
+
+
+def test_the_page_has_a_place_for_each_part() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "studies" / "scaling.md").read_text("utf-8")
+    parts = report.parts(result())
+    assert "| line, round | 3 to 96; 1.00, 1.00 |" in parts["wheels"]
+    assert all(text in spliced(page, parts) for text in parts.values())
 
 
 def prose(text: str) -> Sequence[str]:
