@@ -93,7 +93,7 @@ MACHINE = {
 
 def test_the_page_has_a_place_for_each_part_of_the_report() -> None:
     page = (Path(__file__).parents[2] / "docs" / "studies" / "peers.md").read_text("utf-8")
-    rows = [
+    rows: list[dict[str, Any]] = [
         {"scene": "lwa5-round-step", "engine": "pymunk", "found": {"a": 1}, "per_second": 2e-3},
         {"scene": "lwa5-round-step", "engine": "MuJoCo", "found": None, "per_second": None},
     ]
