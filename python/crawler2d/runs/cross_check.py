@@ -64,7 +64,7 @@ _ERRS = {
     ),
     "24 gears all round": "at steps Chipmunk gets over as seldom as crawler2d, rapier more often",
 }
-"""Which way the two differ where a third engine was asked; same page, "as ensembles"."""
+"""Which way the two differ where a third engine was asked; same page, "As ensembles"."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
