@@ -20,7 +20,7 @@ from benches.peers.batches import batches
 from benches.peers.engine import Setting
 from benches.peers.engines import NAMES, engine, engines
 from benches.peers.timing import interleaved, progress
-from crawler2d.reports.markdown import spliced
+from research.markdown import spliced
 
 _ROOT = Path(__file__).parents[2]
 _RESULT = _ROOT / "out" / "peers.json"

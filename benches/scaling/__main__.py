@@ -18,7 +18,7 @@ from benches.peers.timing import progress
 from benches.scaling import plot, report, scenes
 from benches.scaling.cost import measure
 from benches.scaling.threads import threads
-from crawler2d.reports.markdown import spliced
+from research.markdown import spliced
 
 _ROOT = Path(__file__).parents[2]
 _PAGE = _ROOT / "docs" / "studies" / "scaling.md"

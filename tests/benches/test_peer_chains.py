@@ -12,8 +12,8 @@ import pytest
 from benches.peers import chain_crawler2d, chain_robot, chains_report, report
 from benches.peers.chain_robot import TEETH, ChainRobot
 from benches.peers.engine import Setting
-from crawler2d.reports.markdown import spliced
 from crawler2d.runs.simulation import Simulation
+from research.markdown import spliced
 
 STEP = np.array([(-5.0, 0.0), (0.8, 0.0), (0.8, 0.15), (15.0, 0.15)])
 every_chain = pytest.mark.parametrize("count", TEETH)

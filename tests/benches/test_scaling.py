@@ -12,7 +12,7 @@ from benches.scaling import plot, report, scenes
 from benches.scaling.scenes import Point
 from benches.scaling.slopes import curves
 from crawler2d.parameters.terrain import Points, Terrain
-from crawler2d.reports.markdown import spliced
+from research.markdown import spliced
 
 POINTS = list(scenes.points())
 # A belt on more pieces takes seconds to get anywhere.
