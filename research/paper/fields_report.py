@@ -20,10 +20,7 @@ __all__ = ["chosen_text", "failures_text", "layouts_text", "table_2_text"]
 
 def chosen_text() -> str:
     """List what was chosen before any run: layouts for rows, and settings."""
-    known = layouts()
-    readings = [
-        (each.row, each.layout, known[each.layout].source, each.reason) for each in READINGS
-    ]
+    readings = [(each.row, each.layout, each.reason) for each in READINGS]
     settings = [
         (
             each.name,
@@ -35,10 +32,9 @@ def chosen_text() -> str:
     ]
     return "\n\n".join(
         (
-            markdown_table(("row of the paper", "layout", "from", "why"), readings),
+            markdown_table(("row of the paper", "layout", "why"), readings),
             markdown_table(("setting", "motors", "friction", "why"), settings),
-            "Tracks without wheels have no motor a wheel: theirs is that of a sprocket, with the"
-            " same figure.",
+            "Tracks without wheels have one motor, at the sprocket, of the same torque.",
         )
     )
 
@@ -46,22 +42,17 @@ def chosen_text() -> str:
 def table_2_text(rows: Sequence[Beside]) -> str:
     """Set the paper's Table 2 beside ours: counts, difference with its interval, verdict."""
     settings = list(dict.fromkeys(row.setting for row in rows))
-    places = dict.fromkeys((row.obstacle, row.column, row.model) for row in rows)
     table = []
-    for obstacle, column, model in places:
-        own = {
-            row.setting: row
-            for row in rows
-            if (row.obstacle, row.column, row.model) == (obstacle, column, model)
-        }
+    for obstacle, model in dict.fromkeys((row.obstacle, row.model) for row in rows):
+        own = {row.setting: row for row in rows if (row.obstacle, row.model) == (obstacle, model)}
         share = percent(next(iter(own.values())).paper)
-        table.append((obstacle, column, model, share, *(_beside(own.get(s)) for s in settings)))
-    head = ("field", "column of the paper", "layout", "paper [%]", *settings)
+        table.append((obstacle, model, share, *(_beside(own.get(s)) for s in settings)))
+    head = ("field", "layout", "paper [%]", *settings)
     note = (
-        "Cells: our runs that cleared; the difference from the paper's rate in points of per cent,"
-        " with Newcombe's 95 % interval (20 runs of the paper's); and the verdict. *Agrees* means"
-        f" within {100 * WITHIN:.0f} points; *differs*, that it is not and the interval leaves out"
-        " 0; *open*, that it is not and the interval holds 0."
+        "Cells: our runs that cleared; the difference from the paper's rate in percentage points,"
+        " with Newcombe's 95 % interval (20 runs of the paper); the verdict. *Agrees*: within"
+        f" {100 * WITHIN:.0f} points. Otherwise *differs* if the interval excludes 0, *open* if it"
+        " contains 0."
     )
     return f"{note}\n\n{markdown_table(head, table)}"
 

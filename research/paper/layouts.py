@@ -67,7 +67,7 @@ READINGS = (
     Reading(
         row=CWA_ROUND,
         layout="16 all round, spaced",
-        reason="section 3 starts from the model of Fig. 7: small wheels with spaces in between",
+        reason="section 3 starts from Fig. 7: small wheels, spaced",
     ),
     Reading(
         row=LWA_ROUND,
@@ -77,12 +77,12 @@ READINGS = (
     Reading(
         row=CWA_GEAR,
         layout=_SPACED_GEARS,
-        reason="section 3: all small wheels of Fig. 7 were replaced by gears of the same size",
+        reason="section 3 replaces the wheels of Fig. 7 by gears of the same size (Fig. 12)",
     ),
     Reading(
         row=LWA_GEAR,
         layout="line of 3 gears",
-        reason="the line of large wheels with gears in their place (Fig. 13)",
+        reason="the line of large wheels, with gears instead (Fig. 13)",
     ),
     Reading(
         row=GEAR_MODEL,
@@ -92,12 +92,12 @@ READINGS = (
     Reading(
         row=GEAR_MODEL_OTHERWISE,
         layout=_SPACED_GEARS,
-        reason="the pictures of these fields (Figs. 15 to 17) show small gears all round",
+        reason="Figs. 15 to 17, of these fields, show small gears all round",
     ),
     Reading(
         row=REAL_ROBOT,
         layout="belt with grousers",
-        reason="ours: no model stands for the robot; this has its outline and its grousers",
+        reason="our choice: it has the outline and the grousers of the robot",
     ),
 )
 """From the text; all other layouts stand beside them as ours."""

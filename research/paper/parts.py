@@ -47,7 +47,7 @@ Made = Iterator[tuple[str, str]]
 
 _ORDER = (
     *("chosen beforehand", "table 2", "all layouts", "failures", "table 1", "table 3"),
-    *("equation (1)", "claims", "figures"),
+    *("highest obstacles", "real-time factors", "equation (1)", "claims", "checks", "figures"),
 )
 """Of the sections in the page."""
 
@@ -107,12 +107,14 @@ class Pages:
             write_csv(self.out / f"paper_{name}.csv", rows)
 
     def picture(self, name: str, draw: Callable[[], Figure]) -> None:
-        """Draw a figure as paper_NAME.png, beside the other page, too."""
-        folders = [self.out, *([] if self.into is None else [self.into.parent])]
+        """Draw a figure as paper_NAME.png, beside the other page, too, if that shows it."""
+        file, folders = f"paper_{name}.png", [self.out]
+        if self.into is not None and file in self.into.read_text(encoding="utf-8"):
+            folders.append(self.into.parent)
         try:
             figure = draw()
             for folder in folders:
-                figure.savefig(folder / f"paper_{name}.png", dpi=100)
+                figure.savefig(folder / file, dpi=100)
         except ImportError as missing:
             print(f"no picture: {missing}", file=sys.stderr)
 
@@ -186,7 +188,9 @@ def _tables_1_and_3(work: Work, pages: Pages) -> Made:
     pages.rows("slopes", slopes)
     pages.rows("heights", heights)
     yield "table 1", report.table_1_text(slopes, driven)
-    yield "table 3", report.table_3_text(driven, heights, factors)
+    yield "table 3", report.table_3_text(driven)
+    yield "highest obstacles", report.heights_text(heights)
+    yield "real-time factors", report.computing_text(factors)
 
 
 def _equation(work: Work, pages: Pages) -> Made:
@@ -197,7 +201,9 @@ def _equation(work: Work, pages: Pages) -> Made:
 
 
 def _claims(work: Work, _pages: Pages) -> Made:
-    yield "claims", report.claims_text(claims(work, shaking(work)))
+    found = claims(work, shaking(work))
+    yield "claims", report.claims_text(found)
+    yield "checks", report.checks_text(found)
 
 
 def _figures(work: Work, pages: Pages) -> Made:

@@ -17,7 +17,16 @@ if TYPE_CHECKING:
     from research.paper.phases import Phase, Shaking
     from research.paper.stuck import Stuck
 
-__all__ = ["claims_text", "equation_text", "figures_text", "table_1_text", "table_3_text"]
+__all__ = [
+    "checks_text",
+    "claims_text",
+    "computing_text",
+    "equation_text",
+    "figures_text",
+    "heights_text",
+    "table_1_text",
+    "table_3_text",
+]
 
 _RPM = 60.0 / (2.0 * math.pi)
 
@@ -75,12 +84,9 @@ def table_1_text(slopes: Sequence[Slope], rows: Sequence[Driving]) -> str:
     )
 
 
-def table_3_text(
-    rows: Sequence[Driving], heights: Sequence[Height], factors: Sequence[Computing]
-) -> str:
-    """Set the paper's Table 3 beside ours, row by row."""
+def table_3_text(rows: Sequence[Driving]) -> str:
+    """Set speed, braking and acceleration of the paper's Table 3 beside ours, row by row."""
     theirs = {row.model: row for row in published.TABLE_3}
-    computed = {row.row: row for row in factors}
     driven = [
         (
             row.row,
@@ -95,54 +101,59 @@ def table_3_text(
         )
         for row in rows
     ]
+    limits = {limit for row in rows for limit in (row.speed_limit, row.full_speed_limit)}
+    inputs = {limit for row in rows for limit in (row.braking_limit, row.acceleration_limit)}
+    head = (
+        *("row of the paper", "layout", "speed, paper", "ours", "braking, paper", "ours"),
+        *("acceleration, paper", "ours", "turning [rpm], paper"),
+    )
+    return (
+        "Speed [m/s], commanded 0.4 m/s and in brackets at full command; braking distance [m] from"
+        " 0.4 m/s; acceleration [m/s^2]. Acceleration and deceleration of a drivetrain are *inputs*"
+        " of our robots: 0.2 and 4 m/s^2 were taken from the row of the real robot, so these two"
+        " columns show only that every layout can follow. What limits speed, found by doubling:"
+        f" {', '.join(sorted(limits))}; acceleration and braking: {', '.join(sorted(inputs))}. A"
+        " side view has no turning: the paper's rates stand alone."
+        f"\n\n{markdown_table(head, driven)}"
+    )
+
+
+def heights_text(heights: Sequence[Height]) -> str:
+    """Set the highest obstacles of the paper's Table 3 beside ours."""
     settings = list(dict.fromkeys(height.setting for height in heights))
     climbed = []
-    for row in rows:
-        own = {each.setting: each for each in heights if each.row == row.row}
-        paper_mm = mm(theirs[row.row].max_height)
-        climbed.append((row.row, row.model, paper_mm, *(_height(own[s]) for s in settings)))
+    for row in dict.fromkeys(height.row for height in heights):
+        own = {each.setting: each for each in heights if each.row == row}
+        first = own[settings[0]]
+        climbed.append((first.model, mm(first.paper), *(_height(own[s]) for s in settings)))
+    return (
+        "Highest parallelepiped [mm] on level ground, 100 mm thick, with flippers and the gait"
+        f" `Climb`: the greatest height that half of {heights[0].repeats} runs cleared, in"
+        " brackets lower ones that they did not; then how most runs end on the next."
+        f"\n\n{markdown_table(('layout', 'paper', *settings), climbed)}"
+    )
+
+
+def computing_text(factors: Sequence[Computing]) -> str:
+    """Set the real-time factors of the paper's Table 3 beside ours."""
     costs = [
         (
             row.row,
             row.model,
-            f"{computed[row.row].paper:g}",
-            f"{computed[row.row].standing:.0f}",
-            f"{computed[row.row].driving:.0f}",
-            f"{computed[row.row].in_field:.0f} ({computed[row.row].moved:.2f})",
+            f"{row.paper:g}",
+            f"{row.standing:.0f}",
+            f"{row.driving:.0f}",
+            f"{row.in_field:.0f} ({row.moved:.2f})",
         )
-        for row in rows
+        for row in factors
     ]
-    limits = {limit for row in rows for limit in (row.speed_limit, row.full_speed_limit)}
-    inputs = {limit for row in rows for limit in (row.braking_limit, row.acceleration_limit)}
-    return "\n\n".join(
-        (
-            "Speed [m/s], commanded 0.4 m/s and in brackets at full command; braking distance [m]"
-            " from 0.4 m/s; acceleration [m/s^2]. Acceleration and deceleration of a drivetrain are"
-            " *inputs* of our robots: 0.2 and 4 m/s^2 were taken from the row of the real robot, so"
-            " these two columns show no more than that every layout can follow. What limits speed,"
-            f" found by doubling: {', '.join(sorted(limits))}; acceleration and braking:"
-            f" {', '.join(sorted(inputs))}. A side view has no turning: the paper's rates stand"
-            " alone.",
-            markdown_table(
-                (
-                    *("row of the paper", "layout", "speed, paper", "ours", "braking, paper"),
-                    *("ours", "acceleration, paper", "ours", "turning [rpm], paper"),
-                ),
-                driven,
-            ),
-            "Highest parallelepiped on level ground [mm], 100 mm thick, with flippers and the gait"
-            f" `Climb`, {heights[0].repeats} runs a height: the greatest height that half of the"
-            " runs cleared, in brackets lower ones that they did not; then how most runs end on"
-            " the next.",
-            markdown_table(("row of the paper", "layout", "paper", *settings), climbed),
-            "Real-time factor. The paper's is that of Gazebo, in three dimensions, on its machine;"
-            " ours is simulated time by processor time of one thread of this machine, in side"
-            " view: standing and driving on level ground, and driving in a random step field (in"
-            " brackets how far it came there [m]). Only ratios within a column can be compared.",
-            markdown_table(
-                ("row of the paper", "layout", "paper", "standing", "driving", "in a field"), costs
-            ),
-        )
+    head = ("row of the paper", "layout", "paper", "standing", "driving", "in a field")
+    return (
+        "The paper's real-time factor is that of Gazebo, in three dimensions, on its machine; ours"
+        " is simulated time by processor time of one thread of this machine, in side view:"
+        " standing and driving on level ground, and driving in a random step field (in brackets"
+        " how far it came there [m]). Only ratios within a column can be compared."
+        f"\n\n{markdown_table(head, costs)}"
     )
 
 
@@ -173,24 +184,24 @@ def equation_text(phases: Sequence[Phase], shaken: Sequence[Shaking]) -> str:
 
 
 def claims_text(claims: Sequence[Claim]) -> str:
-    """List the claims with their verdicts, then the checks behind them."""
-    short = [
-        (str(number), claim.text, claim.section, f"**{claim.verdict}**", claim.experiment)
-        for number, claim in enumerate(claims, 1)
+    """List the claims with their verdicts."""
+    rows = [
+        (str(number), claim.text, f"**{claim.verdict}**") for number, claim in enumerate(claims, 1)
     ]
+    return markdown_table(("", "claim", "verdict"), rows)
+
+
+def checks_text(claims: Sequence[Claim]) -> str:
+    """List the experiment and the checks behind each verdict."""
     verdicts = {True: "yes", False: "no", None: "not shown"}
-    checks = [
-        (str(number), check.what, verdicts[check.holds], check.found)
-        for number, claim in enumerate(claims, 1)
-        for check in claim.checks
-    ]
-    return "\n\n".join(
-        (
-            markdown_table(("", "claim", "section", "verdict", "experiment"), short),
-            "What had to be so for each, and what came out; counts are runs that cleared of all:",
-            markdown_table(("claim", "what had to be so", "is it", "found"), checks),
-        )
-    )
+    rows = []
+    for number, claim in enumerate(claims, 1):
+        rows.append((str(number), f"section {claim.section}: {claim.experiment}", "", ""))
+        rows += [
+            (str(number), check.what, verdicts[check.holds], check.found) for check in claim.checks
+        ]
+    head = ("claim", "experiment, then what it must show", "shown", "found")
+    return f"Counts are runs that cleared of all.\n\n{markdown_table(head, rows)}"
 
 
 def figures_text(stuck: Sequence[Stuck], folder: str) -> str:

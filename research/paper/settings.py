@@ -50,22 +50,22 @@ PRESET = Setting(
     name="preset",
     max_torque=6.0,
     friction=0.9,
-    reason="the preset without rotors; both figures are estimates (6 N m holds 1.6 times the 45"
-    " degrees of Table 1)",
+    reason="the preset without rotors; both figures are estimates (6 N m holds the 45 degrees of"
+    " Table 1 with a margin of 1.6)",
 )
 STRONG = Setting(
     name="strong motors",
     max_torque=60.0,
     friction=0.9,
-    reason="ten times the torque: motors that keep their speed whatever it takes",
+    reason="ten times the torque: motors that hold their speed",
 )
 PUBLIC = Setting(
     name="public simulation",
     max_torque=100.0,
     friction=1.0,
     a_wheel=True,
-    reason="the public simulation model of the robot: an effort of 100 N m a wheel, a friction of"
-    " 100, of which its engine takes the smaller with the ground's, 1.0 where none is given",
+    reason="the public simulation model: an effort of 100 N m a wheel, and the smaller of its"
+    " friction, 100, and the ground's, 1.0 by default",
 )
 SETTINGS = (PRESET, STRONG, PUBLIC)
 

@@ -43,8 +43,9 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 
 def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    page = tmp_path / "page.md"
-    page.write_text("Ours:\n\n<!-- table 2 -->\n<!-- end of table 2 -->\n")
+    page = tmp_path / "pages" / "page.md"
+    page.parent.mkdir()
+    page.write_text("![](paper_table_2.png)\n\n<!-- table 2 -->\n<!-- end of table 2 -->\n")
     asked = [*("--table", "2"), *("--table", "3"), *("--table", "figures")]
     arguments = ["paper", "--out", str(tmp_path), "--threads", "1", *asked]
     assert main([*arguments, "--into", str(page)]) == 0
@@ -57,7 +58,10 @@ def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixt
     sections = [line for line in text.splitlines() if line.startswith("## ")]
     assert sections == [
         f"## {name}"
-        for name in ("Table 2", "All layouts", "Failures", "Table 1", "Table 3", "Figures")
+        for name in (
+            *("Table 2", "All layouts", "Failures", "Table 1", "Table 3"),
+            *("Highest obstacles", "Real-time factors", "Figures"),
+        )
     ]
 
     found = rows(tmp_path / "paper_table_2.csv")
@@ -67,7 +71,7 @@ def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixt
     assert {row["model"] for row in rows(tmp_path / "paper_table_2_beside.csv")} == {
         *("16 all round, spaced", "line of 3")
     }
-    assert "| random RSE | LWA, large standard fixed wheels | line of 3 | 15 |" in text
+    assert "| random RSE | line of 3 | 15 |" in text
     assert "| line of 3 | Fig. 3 |" in text
     assert "arc tangent" in text
     (belt,) = (row for row in rows(tmp_path / "paper_driving.csv") if row["model"] == "belt")
@@ -75,12 +79,13 @@ def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixt
     assert float(belt["braking"]) == pytest.approx(0.02, rel=1e-3)
     for name in ("table_2", "layouts", "stuck"):
         assert (tmp_path / f"paper_{name}.png").stat().st_size > 10_000
+    assert {each.name for each in page.parent.iterdir()} == {"page.md", "paper_table_2.png"}
     for number in (4, 5):
         assert (tmp_path / "replays_paper" / f"figure_{number}.html").stat().st_size > 10_000
         assert f"Fig. {number}, " in text
     assert all(f"| {drawn.number} | {drawn.caption} | drawn |" in text for drawn in DRAWN)
     spliced = page.read_text()
-    assert spliced.startswith("Ours:\n\n<!-- table 2 -->\n\nCells: ")
+    assert spliced.startswith("![](paper_table_2.png)\n\n<!-- table 2 -->\n\nCells: ")
     assert spliced.endswith("\n\n<!-- end of table 2 -->\n")
 
     # The store has every run: what is asked again is not simulated again.
