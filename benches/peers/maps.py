@@ -152,26 +152,28 @@ def render(found: dict[str, Any]) -> str:
         [
             "# A map of rates, and what it costs",
             f"""
-What `make bench-map` measures: a line of five wheels in front of a step, {columns} heights by
-{rows} frictions; {found["repeats"]} repeats under `variability.of_contact` for each of
-{found["samples"]} samples of `unknowns.of_robot` (centre of mass, torque, belly).
-{machine.sentence(found["machine"], found["took"])}
-""",
-            f"""
-One `sweep` on one thread: {found["runs"]:,} runs in {found["wall"]:.1f} s, {1.0 / own:.0f} runs a
-second, {found["simulated"]:.2f} s simulated a run. {100.0 * outside:.1f} % of the time went by
-outside the core. Outcomes: {outcomes}.
-""",
-            f"""
-The same by a loop over pymunk, on one thread, for {found["looped"]} of these runs, spread evenly.
-It ends a run as soon as the rear axle has passed the edge, or the robot has moved by less than
-{1e3 * _STANDS:g} mm in {_WINDOW:g} s, and tells no more than whether it cleared; crawler2d also
-says how it stopped, and tries a closed track where that needs it. The cheapest setting that clears
-or not as the finest in {100.0 * found["agrees"]:g} % of the runs is {cheapest["setting"]}:
-{1e3 * cheapest["wall"]:.1f} ms a run, **{cheapest["wall"] / own:.1f} times** crawler2d's
-{1e3 * own:.1f} ms.
+One `sweep` on one thread made a map of {columns} heights of a step by {rows} frictions at
+{1.0 / own:.0f} runs a second: {found["runs"]:,} runs in {found["wall"]:.1f} s. The cheapest loop
+over pymunk that clears or not as its finest setting in {100.0 * found["agrees"]:g} % of the runs is
+{cheapest["setting"]}: {1e3 * cheapest["wall"]:.1f} ms a run, **{cheapest["wall"] / own:.1f} times**
+crawler2d's {1e3 * own:.1f} ms.
 """,
             markdown.table(head, table),
+            f"""
+The robot is on a line of five wheels, with {found["repeats"]} repeats under
+`variability.of_contact` for each of {found["samples"]} samples of `unknowns.of_robot` (centre of
+mass, torque, belly); {found["simulated"]:.2f} s are simulated a run. {100.0 * outside:.1f} % of the
+time went by outside the core. Outcomes: {outcomes}.
+""",
+            "## What limits the answer",
+            f"""
+The loop, on one thread, has {found["looped"]} of these runs, spread evenly. It ends a run as soon
+as the rear axle has passed the edge, or the robot has moved by less than {1e3 * _STANDS:g} mm in
+{_WINDOW:g} s, and finds only whether it cleared; crawler2d also says how it stopped, and tries a
+closed track where that needs it.
+""",
+            "## How to repeat it",
+            f"`make bench-map`. {machine.sentence(found['machine'], found['took'])}",
         ]
     )
 

@@ -34,7 +34,7 @@ def chosen_text() -> str:
         (
             markdown_table(("row of the paper", "layout", "why"), readings),
             markdown_table(("setting", "motors", "friction", "why"), settings),
-            "Tracks without wheels have one motor, at the sprocket, of the same torque.",
+            "Without wheels that is the torque of the sprocket.",
         )
     )
 
