@@ -1,7 +1,7 @@
 """What the files of a crate import of each other, unit tests left out."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from tests.walls.rooms import Import
@@ -45,23 +45,23 @@ def rust_imports(folder: Path) -> list[Import]:
     files = rust_files(folder)
     by_module = {module: file for file, module in files.items()}
     codes = {file: code_of((folder / file).read_text(encoding="utf-8")) for file in files}
-    faces = {
-        (*module, path[-1]): resolved(path, module, by_module, {})
+    exports = {
+        (*module, name): absolute(path, module, by_module)
         for file, module in files.items()
-        for _, path in paths(codes[file], _HANDED_ON)
+        for _, path, name in paths(codes[file], _HANDED_ON)
     }
     found = set()
     for file, module in files.items():
         code = codes[file]
-        for position, path in paths(code):
-            target = resolved(path, module, by_module, faces)
-            is_face = target is not None and faces.get((*module, path[-1])) == target
+        for position, path, name in paths(code):
+            full = absolute(path, module, by_module)
             # A room that hands on what is in it does not depend on that.
-            if target is None or (is_face and target[: len(module)] == module):
+            if module and exports.get((*module, name)) == full and full[: len(module)] == module:
                 continue
-            if by_module[target] != file:
-                line = code.count("\n", 0, position) + 1
-                found.add(Import(file, line, by_module[target]))
+            line = code.count("\n", 0, position) + 1
+            for imported in resolved(full, by_module, exports):
+                if imported != file:
+                    found.add(Import(file, line, imported))
     return sorted(found, key=lambda each: (each.file, each.line, each.imported))
 
 
@@ -93,59 +93,74 @@ def _end_of_item(code: str, start: int) -> int:
     return len(code)
 
 
-def paths(code: str, uses: re.Pattern[str] = _USE) -> Iterator[tuple[int, list[str]]]:
-    """Yield the paths of `use` items, and those in code that begin at a module, with positions."""
+def paths(code: str, uses: re.Pattern[str] = _USE) -> Iterator[tuple[int, list[str], str]]:
+    """Yield the paths of `use` items, and those in code that begin at a module.
+
+    Each comes with its position, and with the name that it has from there on.
+    """
     for match in uses.finditer(code):
-        for offset, path in _branches(match[1]):
-            yield match.start(1) + offset, path
+        for offset, path, name in _branches(match[1]):
+            yield match.start(1) + offset, path, name
     if uses is not _USE:
         return
     for match in _PATH.finditer(_USE.sub(_blank, code)):
-        yield match.start(), re.split(r"\s*::\s*", match[1])
+        path = re.split(r"\s*::\s*", match[1])
+        yield match.start(), path, path[-1]
 
 
-def _branches(tree: str, before: tuple[str, ...] = ()) -> Iterator[tuple[int, list[str]]]:
+def _branches(tree: str, before: tuple[str, ...] = ()) -> Iterator[tuple[int, list[str], str]]:
     """Spread the braces of a `use`; each path comes with the place of its last part."""
     stem, brace, _ = tree.partition("{")
-    parts = [*before, *re.findall(r"\w+|\*", stem.split(" as ")[0])]
+    own, _, alias = stem.partition(" as ")
+    parts = [*before, *re.findall(r"\w+|\*", own)]
     if not brace:
         if tree.strip():
-            yield len(stem) - len(stem.lstrip()), parts
+            if parts[-1] == "self" and len(parts) > 1:
+                parts.pop()
+            yield len(stem) - len(stem.lstrip()), parts, alias.strip() or parts[-1]
         return
     begin = start = len(stem) + 1
     depth = 0
     for position in range(begin, len(tree)):
         character = tree[position]
         if character in "," * (depth == 0) or (character == "}" and depth == 0):
-            for offset, path in _branches(tree[start:position], tuple(parts)):
-                yield start + offset, path
+            for offset, path, name in _branches(tree[start:position], tuple(parts)):
+                yield start + offset, path, name
             start = position + 1
         depth += (character == "{") - (character == "}")
 
 
-def resolved(
-    path: list[str],
-    module: Module,
-    modules: dict[Module, str],
-    faces: dict[Module, Module | None],
-) -> Module | None:
-    """Find the module that a path leads to; None if it leads out of the crate.
-
-    `faces` are names that a module hands on, with the modules that they come from.
-    """
+def absolute(path: list[str], module: Module, modules: Mapping[Module, str]) -> Module:
+    """Write a path from the root of the crate; it is empty if the path leads out of the crate."""
     first = path[0]
     if first == "crate":
-        full = path[1:]
-    elif first in ("self", "super"):
+        return tuple(path[1:])
+    if first in ("self", "super"):
         ups = sum(part == "super" for part in path)
-        full = [*module[: len(module) - ups], *(p for p in path if p not in ("self", "super"))]
-    elif (*module, first) in modules:
-        full = [*module, *path]
-    else:
-        return None
-    for end in range(len(full), -1, -1):
-        if faces.get(tuple(full[:end])) is not None:
-            return faces[tuple(full[:end])]
-        if tuple(full[:end]) in modules:
-            return tuple(full[:end])
-    return None
+        below = (part for part in path if part not in ("self", "super"))
+        return (*module[: len(module) - ups], *below)
+    return (*module, *path) if (*module, first) in modules else ()
+
+
+def resolved(
+    full: Module, modules: Mapping[Module, str], exports: Mapping[Module, Module]
+) -> Iterator[str]:
+    """Yield the file that defines what a path from the root names, and files that export it.
+
+    `exports` are names that a module hands on, with their paths. A `mod.rs` or `lib.rs` on the
+    way does not count: it only makes a folder a module.
+    """
+    passed = set[Module]()
+    while full:
+        known = {*modules, *(exports.keys() - passed)}
+        name = next(full[:end] for end in range(len(full), -1, -1) if full[:end] in known)
+        # A module may hand on a name that one of its modules has; what goes on is in the latter.
+        is_module = name in modules and (name != full or name not in exports or name in passed)
+        if is_module:
+            yield modules[name]
+            return
+        passed.add(name)
+        file = modules[name[:-1]]
+        if not file.endswith(("mod.rs", "lib.rs")):
+            yield file
+        full = (*exports[name], *full[len(name) :]) if exports[name] else ()

@@ -168,6 +168,35 @@ def test_a_name_that_a_room_hands_on_is_imported_from_where_it_is_defined(tmp_pa
     ]
 
 
+def test_a_name_that_is_handed_on_twice_is_imported_from_where_it_is_defined(
+    tmp_path: Path,
+) -> None:
+    texts = {
+        "ground/mod.rs": "mod low;\npub use low::Lowest as Floor;\n",
+        "ground/low/mod.rs": "mod lowest;\npub use lowest::Lowest;\n",
+        "ground/low/lowest.rs": "pub struct Lowest;\n",
+        "upper/high.rs": "use crate::ground::Floor;\nuse crate::ground::low::Lowest;\n",
+    }
+    house = crate(tmp_path, texts)
+    (house.folder / "ground/low.rs").unlink()
+    assert [each for each in imports_of(house) if each.file == "upper/high.rs"] == [
+        Import("upper/high.rs", 1, "ground/low/lowest.rs"),
+        Import("upper/high.rs", 2, "ground/low/lowest.rs"),
+    ]
+
+
+def test_a_circle_through_names_that_are_handed_on_is_a_fault(tmp_path: Path) -> None:
+    texts = {
+        "upper/mod.rs": "mod checked;\nmod high;\npub use checked::Checked;\n",
+        "upper/checked.rs": "use super::high::LIMIT;\npub struct Checked;\n",
+        "upper/high.rs": "mod pace;\npub use pace::LIMIT;\nuse super::Checked;\n",
+        "upper/high/pace.rs": "pub const LIMIT: f64 = 1.0;\n",
+    }
+    house = crate(tmp_path, texts)
+    (fault,) = faults(House(house.folder, house.rooms, "nowhere"))
+    assert fault.startswith("upper/checked.rs:1: imports upper/high.rs, which leads back to it")
+
+
 def test_a_name_from_above_cannot_be_handed_on(tmp_path: Path) -> None:
     house = crate(tmp_path, {"ground/low.rs": "pub use crate::upper::high::High;\n"})
     assert faults(house) == upwards(1, "rs")

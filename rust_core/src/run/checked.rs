@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::needs;
-use super::simulation::FARTHEST_TURN;
+use super::step_length::{FARTHEST_TURN, fastest_turn};
 use crate::engine;
 use crate::error::Error;
 use crate::geometry::{Vector, end_discs};
@@ -223,18 +223,6 @@ fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError>
         return Err(ScenarioError::new("criteria.intrusion_depth", depth, rule));
     }
     Ok(())
-}
-
-/// [rad/s] Fastest rate at which a wheel or flipper of these parts can be driven.
-pub(super) fn fastest_turn(scenario: &Scenario, parts: &[Part]) -> f64 {
-    let radii = parts.iter().flat_map(Part::discs);
-    let tip = radii.fold(f64::INFINITY, |tip, (outer, _)| tip.min(outer.radius));
-    let of_flippers = scenario
-        .robot
-        .flippers
-        .as_ref()
-        .map_or(0.0, |f| f.rate_limit);
-    of_flippers.max(scenario.robot.drivetrain.max_speed / tip)
 }
 
 /// The place of a field in a text, also of one that is left out because it has its default.

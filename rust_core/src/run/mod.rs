@@ -13,6 +13,7 @@ mod scale;
 mod simulate;
 mod simulation;
 mod sinkage;
+mod step_length;
 mod tip;
 mod trace;
 mod trials;

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::contact_table::ContactTable;
 use super::record::Record;
-use super::simulation::SAME_TIME;
 use super::sinkage::Sinkage;
+use super::step_length::SAME_TIME;
 use super::trace::{Recorder, Trace};
 use super::trials::{self, EscapeForce};
 use super::{Checked, Metrics, Simulation, budget};

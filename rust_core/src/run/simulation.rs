@@ -7,7 +7,6 @@ mod drive;
 mod engine;
 mod gait;
 mod moment;
-mod pace;
 mod push;
 mod snapshot;
 mod step;
@@ -18,12 +17,10 @@ mod whole;
 use std::sync::Arc;
 
 use self::gait::{Driver, Target};
-pub(super) use self::pace::{FARTHEST_TURN, SAME_TIME};
-use self::pace::{Pace, Rule};
 use self::push::Push;
 use super::Checked;
-use super::checked::fastest_turn;
 use super::record::Columns;
+use super::step_length::{StepControl, StepRule};
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Balance, Diagnosis, Scene};
 use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};
@@ -56,8 +53,8 @@ pub struct Simulation {
     free: f64,
     /// The state at the beginning of the step before the one that is being tried.
     earlier: State,
-    rule: Rule,
-    pace: Pace,
+    step_rule: StepRule,
+    step_control: StepControl,
     steps: u64,
     command: f64,
     driver: Driver,
@@ -122,7 +119,7 @@ impl Simulation {
         let contact = ContactFinder::new(method, &model.parts, &ground.lanes);
         let reach = model.reach();
         let monitor = Monitor::new(scenario, &ground, &model);
-        let rule = rule_of(scenario, &model);
+        let step_rule = StepRule::of(scenario, &model.parts);
         let dynamics = Dynamics::new(
             model,
             ground.lanes.iter().map(|lane| lane.friction).collect(),
@@ -147,8 +144,8 @@ impl Simulation {
             began: 0.0,
             length: 0.0,
             free: 0.0,
-            rule,
-            pace: Pace::default(),
+            step_rule,
+            step_control: StepControl::default(),
             steps: 0,
             set_point: 0.0,
             set_point_before: 0.0,
@@ -395,14 +392,5 @@ impl Simulation {
 
     pub(crate) fn monitor(&self) -> &Monitor {
         &self.monitor
-    }
-}
-
-/// How long the steps of a scenario are.
-fn rule_of(scenario: &Scenario, model: &Model) -> Rule {
-    let solver = &scenario.solver;
-    match (solver.accuracy, solver.time_step) {
-        (Some(accuracy), _) => Rule::accurate(accuracy, fastest_turn(scenario, &model.parts)),
-        (None, step) => Rule::Fixed(step.unwrap_or_default()),
     }
 }

@@ -3,7 +3,7 @@
 use super::Simulation;
 use super::contact_table::ContactTable;
 use super::record::{Columns, Record};
-use super::simulation::SAME_TIME;
+use super::step_length::SAME_TIME;
 use crate::dynamics::State;
 use crate::error::LimitError;
 use crate::limits::memory::{Budget, Rows, reserve};

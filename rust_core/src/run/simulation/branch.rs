@@ -36,7 +36,7 @@ impl Simulation {
         branch.commanded_like(self);
         branch.dynamics.start_from(self.dynamics.impulses());
         branch.dents = self.dents.clone();
-        branch.pace = self.pace;
+        branch.step_control = self.step_control;
         (branch.before, branch.free) = (self.before.clone(), self.free);
         branch.seen_ahead = self.seen_ahead;
         branch

@@ -3,11 +3,11 @@
 use super::Simulation;
 use super::drive;
 use super::gait::Sight;
-use super::pace::SAME_TIME;
 use super::push::Push;
 use crate::error::Error;
 use crate::geometry::direction;
 use crate::robot::Mount;
+use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Drive, End, Flippers, Gait, ScenarioError};
 
 impl Simulation {

@@ -8,13 +8,13 @@ use sha2::{Digest, Sha256};
 
 use super::Simulation;
 use super::gait::Driver;
-use super::pace::Pace;
 use super::push::Push;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
 use crate::observe::Seen;
 use crate::run::Checked;
+use crate::run::step_length::StepControl;
 use crate::scenario::ScenarioError;
 use crate::version::BUILD_ID;
 
@@ -37,7 +37,7 @@ struct Moment {
     scenario: String,
     time: f64,
     steps: u64,
-    pace: Pace,
+    step_control: StepControl,
     before: State,
     free: f64,
     seen_ahead: f64,
@@ -67,7 +67,7 @@ impl Simulation {
             scenario: self.scenario.to_json(),
             time: self.time,
             steps: self.steps,
-            pace: self.pace,
+            step_control: self.step_control,
             before: self.before.clone(),
             free: self.free,
             seen_ahead: self.seen_ahead,
@@ -127,7 +127,7 @@ impl Simulation {
         }
         (simulation.time, simulation.began) = (moment.time, moment.time);
         simulation.steps = moment.steps;
-        simulation.pace = moment.pace;
+        simulation.step_control = moment.step_control;
         (simulation.before, simulation.free) = (moment.before, moment.free);
         simulation.seen_ahead = moment.seen_ahead;
         simulation.command = moment.command;
@@ -160,7 +160,7 @@ impl Simulation {
         let fastest = self.scenario.robot.drivetrain.max_speed;
         (0.0..LATEST).contains(&time)
             && moment.steps <= MOST_STEPS
-            && moment.pace.fits()
+            && moment.step_control.fits()
             && (0.0..LATEST).contains(&moment.free)
             && moment.before.fits(model)
             && (0.0..FAR).contains(&moment.seen_ahead)

@@ -1,10 +1,10 @@
 //! One step: tried, judged by its local error, and kept or tried again with a shorter one.
 
 use super::Simulation;
-use super::pace::{Rule, SAME_TIME, arrive};
 use crate::dynamics::{SetPoint, Trend};
 use crate::error::{Error, SimulationError};
 use crate::geometry::Vector;
+use crate::run::step_length::{SAME_TIME, StepRule, arrive};
 use crate::solver::Effort;
 use crate::units::{Metres, MetresPerSecond, Seconds};
 
@@ -77,7 +77,7 @@ impl Simulation {
         };
         std::mem::swap(&mut self.before, &mut self.earlier);
         self.before.copy(&self.state);
-        let h = self.pace.next(self.rule, self.time, limit);
+        let h = self.step_control.next(self.step_rule, self.time, limit);
         let engine = self.engine.take();
         let taken = if let Some(mut engine) = engine {
             let taken = self.take_in(&mut engine, h);
@@ -109,7 +109,7 @@ impl Simulation {
                 return tried;
             }
             let error = self.local_error(tried.h);
-            match self.pace.judge(self.rule, tried.h, error) {
+            match self.step_control.judge(self.step_rule, tried.h, error) {
                 Ok(()) => return tried,
                 Err(shorter) => {
                     self.state.copy(&self.before);
@@ -123,7 +123,7 @@ impl Simulation {
 
     /// [m] The local error of the step that was tried, if that matters; infinite if the state is not finite.
     fn local_error(&self, h: f64) -> f64 {
-        if let Rule::Fixed(_) = self.rule {
+        if let StepRule::Fixed(_) = self.step_rule {
             return 0.0;
         }
         if !self.state.is_finite() {

@@ -125,7 +125,9 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
         ("time", |s, fresh| {
             (s.time, s.began) = (fresh.time, fresh.time);
         }),
-        ("pace", |s, fresh| s.pace = fresh.pace),
+        ("step_control", |s, fresh| {
+            s.step_control = fresh.step_control
+        }),
         ("command", |s, fresh| s.command = fresh.command),
         ("driver", |s, fresh| s.driver = fresh.driver),
         ("set point", |s, fresh| s.set_point = fresh.set_point),

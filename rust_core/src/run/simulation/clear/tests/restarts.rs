@@ -67,7 +67,7 @@ fn trials_from_other_starts() {
         let checked = Checked::from_json(scenario).expect("a valid scenario");
         let mut robot = Simulation::new(&checked);
         let end = robot.scenario.duration;
-        while robot.time() < at - crate::run::simulation::SAME_TIME.value() {
+        while robot.time() < at - crate::run::step_length::SAME_TIME.value() {
             robot.step_until(end).expect("the state stays finite");
         }
         let greatest = robot.monitor.best_advance();

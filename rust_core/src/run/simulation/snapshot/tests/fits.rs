@@ -53,7 +53,7 @@ type Spoil = fn(&mut Moment);
 /// Each spoils one thing.
 const SPOILS: [(&str, Spoil); 16] = [
     ("time", |m| m.time += 1.0),
-    ("pace", |m| m.pace = Pace::never()),
+    ("step_control", |m| m.step_control = StepControl::never()),
     ("last step", |m| m.free = f64::NAN),
     ("velocity before it", |m| m.before.velocity.x = f64::NAN),
     ("x", |m| m.state.center.x = f64::NAN),

@@ -1,7 +1,10 @@
 //! The length of the next step: a given one, or one whose local error is what was asked for.
 
-use crate::units::Seconds;
 use serde::{Deserialize, Serialize};
+
+use crate::robot::Part;
+use crate::scenario::Scenario;
+use crate::units::Seconds;
 
 /// [s] Longest step: the accuracy of rates gains nothing from a limit, but what is looked at between two steps does.
 const LONGEST: Seconds = Seconds(0.016);
@@ -10,7 +13,7 @@ const SHORTEST: Seconds = Seconds(2e-5);
 /// [s] Length of the first step.
 const FIRST: Seconds = Seconds(1e-3);
 /// [rad] Farthest that anything may turn in a step: it would pass over corners without contact.
-pub(crate) const FARTHEST_TURN: f64 = 0.7;
+pub(super) const FARTHEST_TURN: f64 = 0.7;
 /// Exponents of the controller, on the last error and on the one before (Gustafsson 1991), and the order of the
 /// error.
 const PROPORTIONAL: f64 = 0.7;
@@ -26,37 +29,42 @@ const TOO_MUCH: f64 = 1.5;
 /// Smallest error in units of the accuracy that the controller remembers.
 const LEAST: f64 = 1e-3;
 /// [s] Times closer than this are the same.
-pub(in crate::run) const SAME_TIME: Seconds = Seconds(1e-9);
+pub(super) const SAME_TIME: Seconds = Seconds(1e-9);
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Rule {
+pub(super) enum StepRule {
     /// [s] As long as given.
     Fixed(f64),
     /// [m] Such that their local error is this.
     Accuracy { accuracy: f64, longest: f64 },
 }
 
-impl Rule {
-    /// Steps of an accuracy [m] of a robot of which nothing turns faster than a rate [rad/s].
-    pub(super) fn accurate(accuracy: f64, rate: f64) -> Self {
-        Self::Accuracy {
-            accuracy,
-            longest: LONGEST.value().min(FARTHEST_TURN / rate),
+impl StepRule {
+    /// That of a scenario, whose robot has these parts.
+    pub(super) fn of(scenario: &Scenario, parts: &[Part]) -> Self {
+        match (scenario.solver.accuracy, scenario.solver.time_step) {
+            (Some(accuracy), _) => Self::Accuracy {
+                accuracy,
+                longest: LONGEST
+                    .value()
+                    .min(FARTHEST_TURN / fastest_turn(scenario, parts)),
+            },
+            (None, step) => Self::Fixed(step.unwrap_or_default()),
         }
     }
 }
 
 /// Decides how long the next step is.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Pace {
+pub(super) struct StepControl {
     /// [s] Length that the last errors suggest.
     wanted: f64,
     /// The last error in units of the accuracy.
     last: f64,
 }
 
-impl Default for Pace {
+impl Default for StepControl {
     fn default() -> Self {
         Self {
             wanted: FIRST.value(),
@@ -65,15 +73,15 @@ impl Default for Pace {
     }
 }
 
-impl Pace {
+impl StepControl {
     /// [s] Length of the next step, which is to end at `limit` at the latest.
-    pub(super) fn next(&self, rule: Rule, time: f64, limit: f64) -> f64 {
+    pub(super) fn next(&self, rule: StepRule, time: f64, limit: f64) -> f64 {
         let (limit, wanted) = match rule {
-            Rule::Fixed(step) => {
+            StepRule::Fixed(step) => {
                 let next = ((time + SAME_TIME.value()) / step).floor() + 1.0;
                 (limit.min(next * step), step)
             }
-            Rule::Accuracy { longest, .. } => (limit, self.wanted.min(longest)),
+            StepRule::Accuracy { longest, .. } => (limit, self.wanted.min(longest)),
         };
         let left = limit - time;
         if left <= wanted + SAME_TIME.value() {
@@ -85,8 +93,8 @@ impl Pace {
     }
 
     /// Whether a step of `h` [s] with this error [m] will do; if not, how long to try instead.
-    pub(super) fn judge(&mut self, rule: Rule, h: f64, error: f64) -> Result<(), f64> {
-        let Rule::Accuracy { accuracy, .. } = rule else {
+    pub(super) fn judge(&mut self, rule: StepRule, h: f64, error: f64) -> Result<(), f64> {
+        let StepRule::Accuracy { accuracy, .. } = rule else {
             return Ok(());
         };
         let ratio = (error / accuracy).max(LEAST);
@@ -136,4 +144,16 @@ pub(super) fn arrive(time: f64, limit: f64) -> f64 {
     } else {
         time
     }
+}
+
+/// [rad/s] Fastest rate at which a wheel or flipper of these parts can be driven.
+pub(super) fn fastest_turn(scenario: &Scenario, parts: &[Part]) -> f64 {
+    let radii = parts.iter().flat_map(Part::discs);
+    let tip = radii.fold(f64::INFINITY, |tip, (outer, _)| tip.min(outer.radius));
+    let of_flippers = scenario
+        .robot
+        .flippers
+        .as_ref()
+        .map_or(0.0, |f| f.rate_limit);
+    of_flippers.max(scenario.robot.drivetrain.max_speed / tip)
 }
