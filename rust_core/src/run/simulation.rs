@@ -4,7 +4,6 @@ mod branch;
 mod clear;
 mod command;
 mod drive;
-mod engine;
 mod gait;
 mod moment;
 mod push;
@@ -16,8 +15,9 @@ mod whole;
 
 use std::sync::Arc;
 
-use self::gait::{Driver, Target};
-use self::push::Push;
+use self::command::Commands;
+use self::moment::Scratch;
+use self::step::{Attempt, LastStep};
 use super::Checked;
 use super::record::Columns;
 use super::step_length::{StepControl, StepRule};
@@ -30,7 +30,6 @@ use crate::geometry::{Pose, Vector};
 use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Running, start_position};
 use crate::scenario::{Engine, Scenario};
-use crate::solver::Effort;
 use crate::terrain::{Ground, Side};
 
 /// A simulation: what was built from the scenario, and the current state.
@@ -41,47 +40,22 @@ pub struct Simulation {
     dynamics: Dynamics,
     /// What moves the robot in place of the dynamics, if the scenario says so.
     engine: Option<EngineWorld>,
+    step_rule: StepRule,
+    /// [m] Distance of the robot's farthest point from its centre of mass.
+    reach: f64,
     monitor: Monitor,
+    commands: Commands,
     state: State,
     /// [s] Simulated time.
     time: f64,
-    /// The state at the beginning of the last step, when that was [s], and the step's length [s].
-    before: State,
-    began: f64,
-    length: f64,
-    /// [s] Its length if nothing struck the ground in it, else 0: an impact says nothing of how velocities go on.
-    free: f64,
-    /// The state at the beginning of the step before the one that is being tried.
-    earlier: State,
-    step_rule: StepRule,
-    step_control: StepControl,
     steps: u64,
-    command: f64,
-    driver: Driver,
-    /// Where the driver wants the flippers.
-    targets: [Target; 2],
+    /// [m/s] Set-point of the drivetrain.
     set_point: f64,
-    set_point_before: f64,
-    /// The push at the centre of mass, along x.
-    push: Push,
-    /// It has done what the scenario says from time 0 on: no branch, no command by hand, no push.
-    follows_scenario: bool,
     dents: Dents,
-    /// The same for the step that is being tried.
-    dents_now: Dents,
-    contacts: Vec<Contact>,
-    /// Positions of the moving parts for the search for contacts.
-    then: Running,
-    /// [m] How far the last search for contacts saw beyond the present pose, and that of the step being tried.
-    seen_ahead: f64,
-    seen_now: f64,
-    /// Scratch of the monitor: a state within a step, and speeds of the drives.
-    seen_state: State,
-    speeds: Vec<f64>,
-    /// The solver's work in the last step, with what was tried in vain.
-    effort: Effort,
-    /// [m] Distance of the robot's farthest point from its centre of mass.
-    reach: f64,
+    step_control: StepControl,
+    last: LastStep,
+    attempt: Attempt,
+    scratch: Scratch,
 }
 
 impl Simulation {
@@ -127,39 +101,24 @@ impl Simulation {
             scenario.solver.clone(),
         );
         Self {
-            command: scenario.drive.speed,
-            driver: Driver::default(),
-            targets: [Target::default(); 2],
+            commands: Commands::of(&scenario.drive),
             scenario: scenario.clone(),
             ground,
             contact,
             dynamics,
             engine: None,
+            step_rule,
+            reach,
             monitor,
-            before: state.clone(),
-            earlier: state.clone(),
-            seen_state: state.clone(),
+            last: LastStep::none(&state),
             state,
             time: 0.0,
-            began: 0.0,
-            length: 0.0,
-            free: 0.0,
-            step_rule,
-            step_control: StepControl::default(),
             steps: 0,
             set_point: 0.0,
-            set_point_before: 0.0,
-            push: Push::default(),
-            follows_scenario: true,
             dents: Dents::default(),
-            dents_now: Dents::default(),
-            contacts: Vec::new(),
-            then: Running::default(),
-            seen_ahead: 0.0,
-            seen_now: 0.0,
-            speeds: Vec::new(),
-            effort: Effort::default(),
-            reach,
+            step_control: StepControl::default(),
+            attempt: Attempt::default(),
+            scratch: Scratch::default(),
         }
     }
 
@@ -242,7 +201,7 @@ impl Simulation {
         // A robot that stands may still leave under a push that has just risen.
         let may_leave = || {
             let windows = f64::from(self.scenario.criteria.stationary_windows);
-            self.time < self.push.end() + windows * self.stop_window()
+            self.time < self.commands.push.end() + windows * self.stop_window()
         };
         self.monitor.is_over() && (self.monitor.ended_as().is_some() || !may_leave())
     }
@@ -278,7 +237,7 @@ impl Simulation {
             envelopes: self.monitor.envelopes(),
             criteria: &self.scenario.criteria,
             gravity: self.scenario.gravity,
-            command: self.command,
+            command: self.commands.speed,
             set_point: self.set_point,
             half_length: 0.5 * self.scenario.robot.outline.axle_distance(),
             running,
@@ -287,22 +246,22 @@ impl Simulation {
 
     /// Whether it has done what the scenario says from time 0 on: no branch, no command by hand, no push.
     pub(crate) fn follows_scenario(&self) -> bool {
-        self.follows_scenario
+        self.commands.follow_scenario
     }
 
     /// [s] Time without progress that counts as a stop.
     pub(crate) fn stop_window(&self) -> f64 {
-        self.monitor.window(self.command)
+        self.monitor.window(self.commands.speed)
     }
 
     /// [m/s] Commanded speed.
     pub(crate) fn command(&self) -> f64 {
-        self.command
+        self.commands.speed
     }
 
     /// 1 or -1 as commanded.
     pub(crate) fn direction(&self) -> f64 {
-        if self.command < 0.0 { -1.0 } else { 1.0 }
+        if self.commands.speed < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// [N] Weight of the whole robot.

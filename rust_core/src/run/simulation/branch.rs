@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Simulation;
+use super::command::Commands;
 use super::gait::has_the_same_speeds;
 use crate::contact::Dents;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
@@ -37,8 +38,8 @@ impl Simulation {
         branch.dynamics.start_from(self.dynamics.impulses());
         branch.dents = self.dents.clone();
         branch.step_control = self.step_control;
-        (branch.before, branch.free) = (self.before.clone(), self.free);
-        branch.seen_ahead = self.seen_ahead;
+        branch.last.before.copy(&self.last.before);
+        (branch.last.free, branch.last.sight) = (self.last.free, self.last.sight);
         branch
     }
 
@@ -77,11 +78,10 @@ impl Simulation {
     /// The same simulation, watched anew; the same engine moves it.
     pub(in crate::run) fn copy(&self) -> Self {
         let model = self.dynamics.model().clone();
-        Self {
-            engine: self.engine.clone(),
-            follows_scenario: self.follows_scenario,
-            ..self.continued(&self.scenario, Arc::clone(&self.ground), model)
-        }
+        let mut copy = self.continued(&self.scenario, Arc::clone(&self.ground), model);
+        copy.engine = self.engine.clone();
+        copy.commands.follow_scenario = self.commands.follow_scenario;
+        copy
     }
 
     /// The same instant as a variant of the scenario; one that is not rebuilt must have the same parts, or no belly.
@@ -104,17 +104,20 @@ impl Simulation {
 
     /// Takes over the time and what is commanded then, unless its scenario has another command.
     fn commanded_like(&mut self, other: &Self) {
-        (self.time, self.began) = (other.time, other.time);
+        (self.time, self.last.began) = (other.time, other.time);
         let (before, now) = (&other.scenario.drive, &self.scenario.drive);
-        self.command = if has_the_same_speeds(before, now) {
-            other.command
-        } else {
-            now.speed
+        self.commands = Commands {
+            speed: if has_the_same_speeds(before, now) {
+                other.commands.speed
+            } else {
+                now.speed
+            },
+            driver: other.commands.driver.commanded(before, now),
+            push: other.commands.push,
+            follow_scenario: false,
+            ..self.commands
         };
-        self.driver = other.driver.commanded(before, now);
-        (self.set_point, self.set_point_before) = (other.set_point, other.set_point);
-        self.push = other.push;
-        self.follows_scenario = false;
+        (self.set_point, self.last.set_point) = (other.set_point, other.set_point);
         self.monitor.seen = Seen::from(self.time);
     }
 }

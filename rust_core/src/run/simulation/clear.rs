@@ -53,7 +53,7 @@ impl Simulation {
         for arm in &mut state.flippers {
             arm.rate = 0.0;
         }
-        (self.set_point, self.set_point_before) = (0.0, 0.0);
+        (self.set_point, self.last.set_point) = (0.0, 0.0);
     }
 
     /// Straight up from its own floor, as far as it takes to be clear.

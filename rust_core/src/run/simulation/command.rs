@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::drive;
-use super::gait::Sight;
+use super::gait::{Driver, Sight, Target};
 use super::push::Push;
 use crate::error::Error;
 use crate::geometry::direction;
@@ -10,12 +10,39 @@ use crate::robot::Mount;
 use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Drive, End, Flippers, Gait, ScenarioError};
 
+/// What the robot is to do.
+#[derive(Clone, Copy)]
+pub(super) struct Commands {
+    /// [m/s] Speed of the drives.
+    pub speed: f64,
+    pub driver: Driver,
+    /// Where the driver wants the front and rear flippers.
+    pub targets: [Target; 2],
+    /// The push at the centre of mass, along x.
+    pub push: Push,
+    /// Whether they have been the scenario's from time 0 on: no branch, no command by hand, no push.
+    pub follow_scenario: bool,
+}
+
+impl Commands {
+    /// Those of a scenario at time 0.
+    pub(super) fn of(drive: &Drive) -> Self {
+        Self {
+            speed: drive.speed,
+            driver: Driver::default(),
+            targets: Default::default(),
+            push: Push::default(),
+            follow_scenario: true,
+        }
+    }
+}
+
 impl Simulation {
     /// Decides what the drives and the flippers are to do from now on.
     pub(super) fn decide(&mut self) {
         let (drive, time) = (&self.scenario.drive, self.time);
-        if let Some(speed) = self.driver.speed(drive, time) {
-            self.command = speed;
+        if let Some(speed) = self.commands.driver.speed(drive, time) {
+            self.commands.speed = speed;
         }
         if let Some(flippers) = &self.scenario.robot.flippers {
             let sight = Sight {
@@ -23,7 +50,7 @@ impl Simulation {
                 chassis_angle: self.state.angle,
                 touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
             };
-            self.targets = self.driver.targets(drive, flippers.angle, sight);
+            self.commands.targets = self.commands.driver.targets(drive, flippers.angle, sight);
         }
     }
 
@@ -41,21 +68,21 @@ impl Simulation {
         };
         let next = entries.into_iter().flatten().filter_map(next);
         let limits = &self.scenario.robot.drivetrain;
-        let ramp = drive::ramp_time(self.set_point, self.command, limits);
+        let ramp = drive::ramp_time(self.set_point, self.commands.speed, limits);
         // A remainder that is only rounding is no ramp.
         let ramp = if ramp > SAME_TIME.value() {
             ramp
         } else {
             f64::INFINITY
         };
-        let risen = Some(self.push.end()).filter(|end| *end > self.time);
+        let risen = Some(self.commands.push.end()).filter(|end| *end > self.time);
         next.chain(risen).fold(self.time + ramp, f64::min)
     }
 
     /// [m/s] The set-point of the drivetrain after a time [s].
     pub(super) fn set_point_after(&self, time: f64) -> f64 {
         let limits = &self.scenario.robot.drivetrain;
-        drive::set_point(self.set_point, self.command, limits, time)
+        drive::set_point(self.set_point, self.commands.speed, limits, time)
     }
 
     /// Whether the flipper at an end bears on something beyond its root.
@@ -85,8 +112,8 @@ impl Simulation {
             gait: None,
         };
         drive.check(&self.scenario.robot.drivetrain)?;
-        self.command = speed;
-        self.follows_scenario = false;
+        self.commands.speed = speed;
+        self.commands.follow_scenario = false;
         Ok(())
     }
 
@@ -109,8 +136,10 @@ impl Simulation {
             let rule = "must be >= -6.3 rad and <= 6.3 rad";
             return Err(ScenarioError::new(path, angle, rule).into());
         }
-        self.driver.hold(usize::from(end == End::Rear), angle);
-        self.follows_scenario = false;
+        self.commands
+            .driver
+            .hold(usize::from(end == End::Rear), angle);
+        self.commands.follow_scenario = false;
         Ok(())
     }
 
@@ -124,7 +153,7 @@ impl Simulation {
         flipper_angles: [(End, Option<f64>); 2],
         push: Option<f64>,
     ) -> Result<(), Error> {
-        let before = (self.command, self.driver, self.push, self.follows_scenario);
+        let before = self.commands;
         let mut give = || {
             push.map_or(Ok(()), |push| self.set_push(push))?;
             for (end, angle) in flipper_angles {
@@ -134,14 +163,14 @@ impl Simulation {
         };
         let given = give();
         if given.is_err() {
-            (self.command, self.driver, self.push, self.follows_scenario) = before;
+            self.commands = before;
         }
         given
     }
 
     /// [N] The push at the centre of mass, along x.
     pub fn push(&self) -> f64 {
-        self.push.at(self.time)
+        self.commands.push.at(self.time)
     }
 
     /// Sets the push at the centre of mass to a force [N] along x, from now on.
@@ -165,8 +194,8 @@ impl Simulation {
             let rule = "must be >= 0 s and <= 100000 s";
             return Err(ScenarioError::new("push.rise_time", rise_time, rule).into());
         }
-        self.push = self.push.raised(force, self.time, rise_time);
-        self.follows_scenario = false;
+        self.commands.push = self.commands.push.raised(force, self.time, rise_time);
+        self.commands.follow_scenario = false;
         Ok(())
     }
 }

@@ -5,6 +5,7 @@ use crate::dynamics::State;
 use crate::geometry::Pose;
 use crate::observe::Reading;
 use crate::robot::{Model, Running};
+use crate::solver::Effort;
 
 /// A simulation at an instant.
 #[derive(Clone, Copy)]
@@ -15,6 +16,15 @@ pub(crate) struct Moment<'a> {
     pub time: f64,
     /// [m/s] Set-point of the drivetrain.
     pub set_point: f64,
+}
+
+/// Buffers of [`Simulation::observe`].
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// A state within a step.
+    state: State,
+    running: Running,
+    drive_speeds: Vec<f64>,
 }
 
 impl<'a> Moment<'a> {
@@ -85,27 +95,28 @@ impl Simulation {
         if time >= self.time {
             return self.now();
         }
-        let h = self.time - self.began;
-        let share = (time - self.began) / h;
+        let last = &self.last;
+        let h = self.time - last.began;
+        let share = (time - last.began) / h;
         let model = self.dynamics.model();
-        state.set_between([&self.before, &self.state], model, (h, share));
+        state.set_between([&last.before, &self.state], model, (h, share));
         Moment {
             model,
             state,
             time,
-            set_point: self.set_point_before + (self.set_point - self.set_point_before) * share,
+            set_point: last.set_point + (self.set_point - last.set_point) * share,
         }
     }
 
-    /// Shows the last step to the monitor, in parts that end when it looks.
-    pub(super) fn observe(&mut self) {
+    /// Shows the last step, and the solver's work in it, to the monitor, in parts that end when it looks.
+    pub(super) fn observe(&mut self, effort: Effort) {
         // First, because a chain that has come off takes precedence over all other outcomes of the same step.
         if !self.dynamics.model().chains.is_empty() {
             self.monitor.observe_chains(self.dynamics.chain_reading());
         }
-        self.monitor.observe_effort(self.effort);
-        let mut state = std::mem::take(&mut self.seen_state);
-        let mut from = self.began;
+        self.monitor.observe_effort(effort);
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let mut from = self.last.began;
         while from < self.time {
             let look = self.monitor.next_look();
             let to = if look > from {
@@ -113,37 +124,30 @@ impl Simulation {
             } else {
                 self.time
             };
-            self.observe_part(from, to, &mut state);
+            self.observe_part(from, to, &mut scratch);
             from = to;
         }
-        self.seen_state = state;
+        self.scratch = scratch;
     }
 
-    fn observe_part(&mut self, from: f64, to: f64, state: &mut State) {
-        let mut speeds = std::mem::take(&mut self.speeds);
-        let mut running = std::mem::take(&mut self.then);
-        let middle = self.at(0.5 * (from + to), state);
+    fn observe_part(&mut self, from: f64, to: f64, scratch: &mut Scratch) {
+        let middle = self.at(0.5 * (from + to), &mut scratch.state);
+        let speeds = &mut scratch.drive_speeds;
         speeds.clear();
         speeds.extend((0..middle.state.drives.len()).map(|k| middle.drive_speed(k)));
         let forward_speed = middle.reading().forward_speed();
-        let end = self.at(to, state);
+        let end = self.at(to, &mut scratch.state);
         let reading = end.reading();
         if !end.model.flippers.is_empty() {
-            end.running(&mut running);
+            end.running(&mut scratch.running);
         }
-        let drives = self
-            .state
-            .drives
-            .iter()
-            .copied()
-            .zip(speeds.iter().copied());
+        let drives = self.state.drives.iter().copied();
         self.monitor.observe(
             (&reading, forward_speed),
-            self.command,
+            self.commands.speed,
             self.dynamics.loaded(),
-            drives,
-            &running,
+            drives.zip(speeds.iter().copied()),
+            &scratch.running,
         );
-        (self.speeds, self.then) = (speeds, running);
     }
 }

@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::Simulation;
+use super::command::Commands;
 use super::gait::Driver;
 use super::push::Push;
+use super::step::LastStep;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
@@ -40,12 +42,12 @@ struct Moment {
     step_control: StepControl,
     before: State,
     free: f64,
-    seen_ahead: f64,
+    sight: f64,
     command: f64,
     driver: Driver,
     set_point: f64,
     push: Push,
-    follows_scenario: bool,
+    follow_scenario: bool,
     state: State,
     impulses: Impulses,
     dents: Dents,
@@ -68,14 +70,14 @@ impl Simulation {
             time: self.time,
             steps: self.steps,
             step_control: self.step_control,
-            before: self.before.clone(),
-            free: self.free,
-            seen_ahead: self.seen_ahead,
-            command: self.command,
-            driver: self.driver,
+            before: self.last.before.clone(),
+            free: self.last.free,
+            sight: self.last.sight,
+            command: self.commands.speed,
+            driver: self.commands.driver,
             set_point: self.set_point,
-            push: self.push,
-            follows_scenario: self.follows_scenario,
+            push: self.commands.push,
+            follow_scenario: self.commands.follow_scenario,
             state: self.state.clone(),
             impulses: self.dynamics.impulses(),
             dents: self.dents.clone(),
@@ -125,16 +127,25 @@ impl Simulation {
             let rule = "must hold a state that its own robot and ground can reach";
             return Err(refused("an impossible state", rule));
         }
-        (simulation.time, simulation.began) = (moment.time, moment.time);
+        simulation.time = moment.time;
         simulation.steps = moment.steps;
         simulation.step_control = moment.step_control;
-        (simulation.before, simulation.free) = (moment.before, moment.free);
-        simulation.seen_ahead = moment.seen_ahead;
-        simulation.command = moment.command;
-        simulation.driver = moment.driver;
-        (simulation.set_point, simulation.set_point_before) = (moment.set_point, moment.set_point);
-        simulation.push = moment.push;
-        simulation.follows_scenario = moment.follows_scenario;
+        simulation.last = LastStep {
+            before: moment.before,
+            began: moment.time,
+            length: 0.0,
+            free: moment.free,
+            set_point: moment.set_point,
+            sight: moment.sight,
+        };
+        simulation.commands = Commands {
+            speed: moment.command,
+            driver: moment.driver,
+            push: moment.push,
+            follow_scenario: moment.follow_scenario,
+            ..simulation.commands
+        };
+        simulation.set_point = moment.set_point;
         simulation.state = moment.state;
         simulation.dynamics.start_from(moment.impulses);
         simulation.dents = moment.dents;
@@ -163,7 +174,7 @@ impl Simulation {
             && moment.step_control.fits()
             && (0.0..LATEST).contains(&moment.free)
             && moment.before.fits(model)
-            && (0.0..FAR).contains(&moment.seen_ahead)
+            && (0.0..FAR).contains(&moment.sight)
             && (low - FAR..=high + FAR).contains(&x)
             && y < FAR + self.ground.highest()
             && moment.command.abs() <= fastest

@@ -1,9 +1,12 @@
-//! One step: tried, judged by its local error, and kept or tried again with a shorter one.
+//! One step: attempted, judged by its local error, and kept, or dropped for a shorter one.
 
 use super::Simulation;
-use crate::dynamics::{SetPoint, Trend};
+use crate::contact::{Contact, Dents};
+use crate::dynamics::{SetPoint, State, Trend};
+use crate::engine::Command;
 use crate::error::{Error, SimulationError};
 use crate::geometry::Vector;
+use crate::robot::Running;
 use crate::run::step_length::{SAME_TIME, StepRule, arrive};
 use crate::solver::Effort;
 use crate::units::{Metres, MetresPerSecond, Seconds};
@@ -24,13 +27,59 @@ const GAIN: f64 = 2.0;
 /// A step that is cut short by more than this share looks for its contacts again.
 const CUT: f64 = 0.1;
 
-/// A step that was taken, or tried.
-pub(super) struct Taken {
+/// What one step tries; nothing of it is in the simulation until it is kept.
+#[derive(Default)]
+pub(super) struct Attempt {
+    /// The state at its end.
+    state: State,
     /// [s] Its length.
-    pub h: f64,
+    length: f64,
     /// Whether something strikes the ground in it.
-    pub strikes: bool,
-    pub set_point: SetPoint,
+    strikes: bool,
+    /// [m/s] Set-point of the drivetrain at its end.
+    set_point: f64,
+    /// Positions of the moving parts in its middle, where contacts are searched for.
+    running: Running,
+    contacts: Vec<Contact>,
+    dents: Dents,
+    /// [m] How far beyond the pose at its end that search saw.
+    sight: f64,
+}
+
+/// The last step that was kept.
+#[derive(Clone)]
+pub(super) struct LastStep {
+    /// The state at its beginning.
+    pub before: State,
+    /// [s] When it began.
+    pub began: f64,
+    /// [s] Its length.
+    pub length: f64,
+    /// [s] Its length if nothing struck the ground in it, else 0: an impact says nothing of how velocities go on.
+    pub free: f64,
+    /// [m/s] Set-point of the drivetrain at its beginning.
+    pub set_point: f64,
+    /// [m] How far beyond the pose at its end the search for contacts saw.
+    pub sight: f64,
+}
+
+impl LastStep {
+    /// None: the simulation begins with a state at time 0.
+    pub(super) fn none(state: &State) -> Self {
+        Self {
+            before: state.clone(),
+            began: 0.0,
+            length: 0.0,
+            free: 0.0,
+            set_point: 0.0,
+            sight: 0.0,
+        }
+    }
+
+    /// How velocities changed in it.
+    fn trend(&self) -> Option<Trend<'_>> {
+        Trend::since(&self.before, self.free)
+    }
 }
 
 impl Simulation {
@@ -56,7 +105,7 @@ impl Simulation {
 
     /// [s] Length of the last step.
     pub fn last_step(&self) -> f64 {
-        self.length
+        self.last.length
     }
 
     /// Advances by one step that ends at `limit` [s] at the latest.
@@ -71,74 +120,67 @@ impl Simulation {
             self.time = limit;
             return Ok(());
         }
-        self.effort = Effort {
-            steps: 1,
-            ..Effort::default()
-        };
-        std::mem::swap(&mut self.before, &mut self.earlier);
-        self.before.copy(&self.state);
         let h = self.step_control.next(self.step_rule, self.time, limit);
-        let engine = self.engine.take();
-        let taken = if let Some(mut engine) = engine {
-            let taken = self.take_in(&mut engine, h);
-            self.engine = Some(engine);
-            taken
+        // Its buffers are used again.
+        let mut attempt = std::mem::take(&mut self.attempt);
+        let effort = if self.engine.is_some() {
+            self.attempt_in_engine(&mut attempt, h);
+            Effort::default()
         } else {
-            self.take(h.min(self.known()), limit)
+            let h = h.min(self.contacts_known_for());
+            self.attempt_accurately(&mut attempt, h, limit)
         };
         self.steps += 1;
-        if !self.state.is_finite() {
-            let body = "the robot".to_owned();
-            let step = self.steps;
-            return Err(SimulationError { step, body }.into());
-        }
-        self.keep_time(&taken, limit);
-        if self.engine.is_none() {
-            self.keep(&taken);
-        }
-        self.observe();
+        let kept = self.keep(&mut attempt, limit);
+        self.attempt = attempt;
+        kept?;
+        self.observe(Effort { steps: 1, ..effort });
         Ok(())
     }
 
-    /// Takes a step of `h` [s] at most, as long as its accuracy allows.
-    fn take(&mut self, mut h: f64, limit: f64) -> Taken {
+    /// Attempts a step of `h` [s] at most, as long as its accuracy allows; returns the solver's work, with that of
+    /// attempts that were dropped.
+    fn attempt_accurately(&mut self, attempt: &mut Attempt, mut h: f64, limit: f64) -> Effort {
+        let mut effort = Effort::default();
         loop {
-            let tried = self.attempt(h, limit - self.time);
-            self.effort = self.effort.plus(self.dynamics.effort());
-            if tried.strikes && self.state.is_finite() {
-                return tried;
+            self.attempt_step(attempt, h, limit - self.time);
+            effort = effort.plus(self.dynamics.effort());
+            if attempt.strikes && attempt.state.is_finite() {
+                return effort;
             }
-            let error = self.local_error(tried.h);
-            match self.step_control.judge(self.step_rule, tried.h, error) {
-                Ok(()) => return tried,
+            let error = self.local_error(attempt);
+            match self
+                .step_control
+                .judge(self.step_rule, attempt.length, error)
+            {
+                Ok(()) => return effort,
                 Err(shorter) => {
-                    self.state.copy(&self.before);
                     self.dynamics.rewind();
-                    self.effort.repeated_steps += 1;
+                    effort.repeated_steps += 1;
                     h = shorter;
                 }
             }
         }
     }
 
-    /// [m] The local error of the step that was tried, if that matters; infinite if the state is not finite.
-    fn local_error(&self, h: f64) -> f64 {
+    /// [m] The local error of an attempt, if that matters; infinite if its state is not finite.
+    fn local_error(&self, attempt: &Attempt) -> f64 {
         if let StepRule::Fixed(_) = self.step_rule {
             return 0.0;
         }
-        if !self.state.is_finite() {
+        if !attempt.state.is_finite() {
             return f64::INFINITY;
         }
         self.dynamics
-            .local_error(&self.before, &self.state, h, self.reach)
+            .local_error(&self.state, &attempt.state, attempt.length, self.reach)
     }
 
-    /// Tries a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the ground; the
-    /// next, with the impact, is short.
-    fn attempt(&mut self, h: f64, left: f64) -> Taken {
+    /// Attempts a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the
+    /// ground; the next, with the impact, is short.
+    fn attempt_step(&mut self, attempt: &mut Attempt, h: f64, left: f64) {
         let mut h = h;
         let strikes = loop {
-            let travel = self.find_contacts(h);
+            let travel = self.find_contacts(attempt, h);
             if h > 2.0 * COLLISION_STEP.value() && self.dynamics.has_lost(0.5 * travel) {
                 h *= 0.5;
                 continue;
@@ -151,31 +193,52 @@ impl Simulation {
                 break strikes;
             }
         };
-        let set_point = SetPoint {
+        let set_point = self.set_points(h);
+        let targets = self.commands.targets;
+        let angles = targets.map(|target| target.angle);
+        let keep_level = targets.map(|target| target.keeps_level);
+        self.dynamics
+            .command_flippers(&self.state, angles, keep_level, h, self.last.trend());
+        attempt.state.copy(&self.state);
+        self.dynamics
+            .advance(&mut attempt.state, set_point, (h, strikes));
+        (attempt.length, attempt.strikes) = (h, strikes);
+        attempt.set_point = set_point.end;
+    }
+
+    /// The same of `h` [s] in another engine; what that has given up is not finite.
+    fn attempt_in_engine(&mut self, attempt: &mut Attempt, h: f64) {
+        let set_point = self.set_points(h).end;
+        let push = self.commands.push.at(self.time + 0.5 * h);
+        let travel = self.dynamics.fastest(&self.state, self.reach) * h;
+        attempt.state.copy(&self.state);
+        (attempt.length, attempt.strikes) = (h, false);
+        attempt.set_point = set_point;
+        let Some(engine) = &mut self.engine else {
+            return;
+        };
+        let world = (self.dynamics.model(), &*self.ground);
+        let contacts = engine.step(world, &mut attempt.state, Command { set_point, push }, h);
+        if engine.has_lost_something() {
+            attempt.state.angle = f64::NAN;
+        }
+        self.dynamics.take_contacts(contacts, travel, h);
+    }
+
+    /// The set-points of the drivetrain in the next `h` [s].
+    fn set_points(&self, h: f64) -> SetPoint {
+        SetPoint {
             middle: self.set_point_after(0.5 * h),
             end: self.set_point_after(h),
-        };
-        let angles = self.targets.map(|target| target.angle);
-        let keep_level = self.targets.map(|target| target.keeps_level);
-        let trend = Trend::since(&self.earlier, self.free);
-        self.dynamics
-            .command_flippers(&self.state, angles, keep_level, h, trend);
-        self.dynamics
-            .advance(&mut self.state, set_point, (h, strikes));
-        Taken {
-            h,
-            strikes,
-            set_point,
         }
     }
 
     /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
-        let (fast, trend) = (
-            (h, COLLISION_SPEED.value()),
-            Trend::since(&self.earlier, self.free),
-        );
-        let strike = self.dynamics.next_strike(&self.state, fast, trend);
+        let fast = (h, COLLISION_SPEED.value());
+        let strike = self
+            .dynamics
+            .next_strike(&self.state, fast, self.last.trend());
         if strike > h {
             (h, false)
         } else {
@@ -185,9 +248,9 @@ impl Simulation {
 
     /// [s] For how long the last search for contacts holds: nothing that it could not see may get deeper into the
     /// robot than the next one looks, which is in the middle of the next step.
-    fn known(&self) -> f64 {
+    fn contacts_known_for(&self) -> f64 {
         let speed = self.dynamics.fastest(&self.state, self.reach);
-        let room = 2.0 * (self.seen_ahead + UNSEEN.value());
+        let room = 2.0 * (self.last.sight + UNSEEN.value());
         2.0 * room / (speed + (speed * speed + 4.0 * self.gain() * room).sqrt())
     }
 
@@ -196,49 +259,57 @@ impl Simulation {
         GAIN * self.scenario.gravity
     }
 
-    /// Returns how far anything may move in the step [m].
-    fn find_contacts(&mut self, h: f64) -> f64 {
+    /// Finds the contacts of a step of `h` [s]; returns how far anything may move in it [m].
+    fn find_contacts(&mut self, attempt: &mut Attempt, h: f64) -> f64 {
         let speed = self.dynamics.fastest(&self.state, self.reach);
         let travel = (speed + self.gain() * h) * h;
         // A fast body finds a contact one step before it closes.
         let prediction = self.scenario.solver.prediction_distance.max(travel);
-        self.seen_now = prediction - 0.5 * travel;
+        attempt.sight = prediction - 0.5 * travel;
         // In the middle of the step: with normals from its beginning, the error would be as large as the angle that
         // a wheel turns round an edge in half a step.
         let (half, model) = (0.5 * h, self.dynamics.model());
         let middle = self.state.pose_after(half, model);
-        self.state.running_after(half, model, &mut self.then);
-        self.contact
-            .find(middle, &self.then, prediction, &mut self.contacts);
-        self.dynamics.recognise(&mut self.contacts, travel);
-        self.dents_now.clone_from(&self.dents);
+        let (running, contacts) = (&mut attempt.running, &mut attempt.contacts);
+        self.state.running_after(half, model, running);
+        self.contact.find(middle, running, prediction, contacts);
+        self.dynamics.recognise(contacts, travel);
+        attempt.dents.clone_from(&self.dents);
         let last = self.dynamics.loaded().iter().map(|l| &l.contact);
-        self.dents_now.forgive(&mut self.contacts, &last);
-        self.dynamics.outer_force = Vector::new(self.push.at(self.time + half), 0.0);
-        self.dynamics
-            .prepare(&self.state, &self.contacts, (h, travel));
-        self.dynamics
-            .bound_faces(&self.contacts, &self.ground.lanes);
+        attempt.dents.forgive(contacts, &last);
+        let push = self.commands.push.at(self.time + half);
+        self.dynamics.outer_force = Vector::new(push, 0.0);
+        self.dynamics.prepare(&self.state, contacts, (h, travel));
+        self.dynamics.bound_faces(contacts, &self.ground.lanes);
         travel
     }
 
-    /// Moves the time on by a step.
-    fn keep_time(&mut self, taken: &Taken, limit: f64) {
-        (self.began, self.length) = (self.time, taken.h);
-        self.free = if taken.strikes { 0.0 } else { taken.h };
-        self.time = arrive(self.time + taken.h, limit);
-        self.set_point_before = self.set_point;
-        self.set_point = taken.set_point.end;
-    }
-
-    /// Keeps what our own dynamics have found in a step, for the next one.
-    fn keep(&mut self, taken: &Taken) {
-        self.seen_ahead = self.seen_now;
-        self.dynamics
-            .keep(&self.state, &self.contacts, taken.h, taken.strikes);
-        std::mem::swap(&mut self.dents, &mut self.dents_now);
-        let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
-        self.dents.heal(contacts);
+    /// Makes an attempt the last step; what it replaces is left in it.
+    fn keep(&mut self, attempt: &mut Attempt, limit: f64) -> Result<(), SimulationError> {
+        std::mem::swap(&mut self.last.before, &mut self.state);
+        std::mem::swap(&mut self.state, &mut attempt.state);
+        if !self.state.is_finite() {
+            let body = "the robot".to_owned();
+            return Err(SimulationError {
+                step: self.steps,
+                body,
+            });
+        }
+        let (h, strikes) = (attempt.length, attempt.strikes);
+        (self.last.began, self.last.length) = (self.time, h);
+        self.last.free = if strikes { 0.0 } else { h };
+        self.last.set_point = self.set_point;
+        self.set_point = attempt.set_point;
+        self.time = arrive(self.time + h, limit);
+        if self.engine.is_none() {
+            self.last.sight = attempt.sight;
+            self.dynamics
+                .keep(&self.state, &attempt.contacts, h, strikes);
+            std::mem::swap(&mut self.dents, &mut attempt.dents);
+            let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
+            self.dents.heal(contacts);
+        }
+        Ok(())
     }
 }
 
@@ -279,11 +350,18 @@ mod tests {
         fn gap_after(&mut self, time: f64) -> f64 {
             let model = self.dynamics.model();
             let pose = self.state.pose_after(time, model);
-            self.state.running_after(time, model, &mut self.then);
-            self.contact
-                .find(pose, &self.then, 0.05, &mut self.contacts);
-            let gaps = self.contacts.iter().map(|contact| contact.distance);
+            let (mut running, mut contacts) = (Running::default(), Vec::new());
+            self.state.running_after(time, model, &mut running);
+            self.contact.find(pose, &running, 0.05, &mut contacts);
+            let gaps = contacts.iter().map(|contact| contact.distance);
             gaps.fold(f64::INFINITY, f64::min)
+        }
+
+        /// A step of `h` [s] at most, not kept.
+        fn tried(&mut self, h: f64) -> Attempt {
+            let mut attempt = Attempt::default();
+            self.attempt_step(&mut attempt, h, f64::INFINITY);
+            attempt
         }
     }
 
@@ -310,9 +388,8 @@ mod tests {
         for i in 1..10 {
             let mut simulation = on_gears(0.0);
             simulation.state.center.y += 5e-5 * f64::from(i);
-            simulation.before.copy(&simulation.state);
-            let tried = simulation.attempt(0.012, f64::INFINITY);
-            let error = simulation.local_error(tried.h);
+            let tried = simulation.tried(0.012);
+            let error = simulation.local_error(&tried);
             assert!(tried.strikes || error > 1e-5, "{error} m");
         }
     }
@@ -328,13 +405,12 @@ mod tests {
         let left = libm::sqrt(2.0 * gap / gravity) - simulation.time();
         let (speed, fallen) = (gravity * simulation.time(), gap - simulation.gap_after(0.0));
         assert!((gap - fallen) / speed > 1.5 * left, "it must speed up");
-        simulation.before.copy(&simulation.state);
-        let tried = simulation.attempt(STEP, f64::INFINITY);
-        let off = tried.h - left;
+        let tried = simulation.tried(STEP);
+        let off = tried.length - left;
         assert!(
             off.abs() < COLLISION_STEP.value(),
             "{} s, {left} s",
-            tried.h
+            tried.length
         );
     }
 
@@ -375,14 +451,14 @@ mod tests {
             if expected == 0.0 {
                 continue;
             }
-            let tried = simulation.attempt(STEP, f64::INFINITY);
+            let tried = simulation.tried(STEP);
             // Near the end of a step, the corner of a tip that lands may be another than in its middle.
             if expected < 0.9 * STEP {
                 found += 1;
-                let off = tried.h - expected;
-                assert!(off.abs() < 0.05 * STEP, "{} s, {expected} s", tried.h);
+                let off = tried.length - expected;
+                assert!(off.abs() < 0.05 * STEP, "{} s, {expected} s", tried.length);
             } else if expected > STEP {
-                assert!(tried.h >= STEP, "{} s", tried.h);
+                assert!(tried.length >= STEP, "{} s", tried.length);
             }
         }
         assert!(found > 10, "{found}");

@@ -123,15 +123,19 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     type Forget = fn(&mut Simulation, Simulation);
     let all: [(&str, Forget); 10] = [
         ("time", |s, fresh| {
-            (s.time, s.began) = (fresh.time, fresh.time);
+            (s.time, s.last.began) = (fresh.time, fresh.time);
         }),
         ("step_control", |s, fresh| {
             s.step_control = fresh.step_control
         }),
-        ("command", |s, fresh| s.command = fresh.command),
-        ("driver", |s, fresh| s.driver = fresh.driver),
+        ("command", |s, fresh| {
+            s.commands.speed = fresh.commands.speed
+        }),
+        ("driver", |s, fresh| {
+            s.commands.driver = fresh.commands.driver
+        }),
         ("set point", |s, fresh| s.set_point = fresh.set_point),
-        ("push", |s, fresh| s.push = fresh.push),
+        ("push", |s, fresh| s.commands.push = fresh.commands.push),
         ("state", |s, fresh| s.state = fresh.state),
         ("impulses", |s, fresh| {
             s.dynamics.start_from(fresh.dynamics.impulses());
