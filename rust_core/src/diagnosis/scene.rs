@@ -130,9 +130,9 @@ impl Scene<'_> {
                 .iter()
                 .any(|c| self.model.parts[c.body].drive == Some(k))
         };
-        let bears = |k: &usize| (self.model.pushes_chassis && *k == 0) || on_drive(*k);
-        let motors = (0..self.model.motors.min(stance.drives.len())).filter(bears);
-        let motors: Vec<&DriveMean> = motors.map(|k| &stance.drives[k]).collect();
+        let bears = |k: &usize| self.model.push_drive() == Some(*k) || on_drive(*k);
+        let bearing = self.model.driven().filter(bears);
+        let motors: Vec<&DriveMean> = bearing.filter_map(|k| stance.drives.get(k)).collect();
         let stalled = motors
             .iter()
             .filter(|d| !self.is_moving(d.speed) && self.is_at_limit(d))

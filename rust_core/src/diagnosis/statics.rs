@@ -14,6 +14,10 @@ use crate::solver::Direction;
 
 /// Multiple of the weight above which a force counts as unlimited.
 const WITHOUT_LIMIT: f64 = 1e3;
+/// The balances of the whole robot; those of its drives and arms follow.
+const HORIZONTAL: usize = 0;
+const VERTICAL: usize = 1;
+const MOMENT: usize = 2;
 
 /// A stop as a set of possible forces.
 #[derive(Clone, Debug)]
@@ -26,8 +30,8 @@ pub(super) struct Statics {
     /// [m] Lever arm that converts moments to forces.
     lever: f64,
     radius: f64,
-    /// Force along the chassis, of a model that pushes the chassis: direction and lever.
-    push: Option<(f64, f64, f64)>,
+    /// Force along the chassis, of a model that pushes the chassis: its drive, direction and lever.
+    push: Option<(usize, (f64, f64, f64))>,
     /// Pivots of the arms.
     hinges: Vec<Hinge>,
 }
@@ -79,13 +83,12 @@ impl Statics {
         bounds: Vec<[f64; 2]>,
         lever: f64,
     ) -> Self {
-        let bears = |k: usize| {
-            (model.pushes_chassis && k == 0) || supports.iter().any(|s| s.drive == Some(k))
-        };
-        let motors = (0..model.drives).map(|k| k < model.motors && bears(k));
-        let push = model.pushes_chassis.then(|| {
+        let bears =
+            |k: usize| model.push_drive() == Some(k) || supports.iter().any(|s| s.drive == Some(k));
+        let motors = (0..model.drives).map(|k| model.has_motor(k) && bears(k));
+        let push = model.push_drive().map(|drive| {
             let axis = push_axis(model, angle);
-            (axis.unit.x, axis.unit.y, axis.lever)
+            (drive, (axis.unit.x, axis.unit.y, axis.lever))
         });
         Self {
             motors: motors.collect(),
@@ -147,11 +150,10 @@ impl Statics {
     fn rows(&self, forces: &[Force]) -> Rows {
         let n = forces.len();
         let mut rows = Rows::default();
-        let first_hinge = 3 + self.motors.len();
         for i in 0..self.size() {
-            let weight = match i.checked_sub(first_hinge) {
+            let weight = match i.checked_sub(self.of_hinge(0)) {
                 Some(k) => self.hinges[k].weight / self.lever,
-                None if i == 1 => 1.0,
+                None if i == VERTICAL => 1.0,
                 None => 0.0,
             };
             for sign in [1.0, -1.0] {
@@ -190,8 +192,8 @@ impl Statics {
         for (k, _) in self.motors.iter().enumerate().filter(|(_, bears)| **bears) {
             // The force at the surface, and its reaction on the chassis.
             let mut effect = self.nothing();
-            effect[2] = self.radius / self.lever;
-            effect[3 + k] = -1.0;
+            effect[MOMENT] = self.radius / self.lever;
+            effect[self.of_drive(k)] = -1.0;
             let [least, most] = self.bounds[k];
             forces.push(Force {
                 effect,
@@ -201,21 +203,32 @@ impl Statics {
         }
         for (k, hinge) in self.hinges.iter().enumerate() {
             let mut effect = self.nothing();
-            effect[3 + self.motors.len() + k] = 1.0;
+            effect[self.of_hinge(k)] = 1.0;
             forces.push(Force::within(effect, hinge.torque / self.lever));
         }
-        if let Some((x, y, lever)) = self.push {
+        if let Some((drive, (x, y, lever))) = self.push {
             let mut effect = self.nothing();
-            (effect[0], effect[1], effect[2]) = (x, y, lever / self.lever);
-            effect[3] = 1.0;
+            (effect[HORIZONTAL], effect[VERTICAL]) = (x, y);
+            effect[MOMENT] = lever / self.lever;
+            effect[self.of_drive(drive)] = 1.0;
             forces.push(Force::within(effect, WITHOUT_LIMIT));
         }
         forces
     }
 
-    /// Number of balances: x, y, moment, and one for each drive and each arm.
+    /// The balance of the torque on a drive.
+    fn of_drive(&self, drive: usize) -> usize {
+        MOMENT + 1 + drive
+    }
+
+    /// The balance of the moment on an arm about its pivot.
+    fn of_hinge(&self, hinge: usize) -> usize {
+        self.of_drive(self.motors.len()) + hinge
+    }
+
+    /// Number of balances.
     fn size(&self) -> usize {
-        3 + self.motors.len() + self.hinges.len()
+        self.of_hinge(self.hinges.len())
     }
 
     fn nothing(&self) -> Vec<f64> {
@@ -227,14 +240,14 @@ impl Statics {
         let (n, t) = (&support.normal, &support.tangent);
         let unit = n.unit + t.unit * friction;
         let mut effect = self.nothing();
-        (effect[0], effect[1]) = (unit.x, unit.y);
-        effect[2] = (n.lever + t.lever * friction) / self.lever;
+        (effect[HORIZONTAL], effect[VERTICAL]) = (unit.x, unit.y);
+        effect[MOMENT] = (n.lever + t.lever * friction) / self.lever;
         if let Some(k) = support.drive {
-            effect[3 + k] = (n.spin_lever + t.spin_lever * friction) / self.radius;
+            effect[self.of_drive(k)] = (n.spin_lever + t.spin_lever * friction) / self.radius;
         }
         if let Some(k) = support.hinge {
             let lever = n.joint_lever + t.joint_lever * friction;
-            effect[3 + self.motors.len() + k] = lever / self.lever;
+            effect[self.of_hinge(k)] = lever / self.lever;
         }
         effect
     }

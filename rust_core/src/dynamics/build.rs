@@ -20,7 +20,7 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
         let inertia = match sprocket {
             Some(sprocket) => sprocket.inertia,
             // The drive of a chain on a guide has no inertia of its own.
-            None if k < chains.len() => 1.0,
+            None if model.has_chain(k) => 1.0,
             None => model.drive_inertia(k),
         };
         Spin::new(inertia, model.rotor_inertia(k))
@@ -33,14 +33,14 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
         chains.iter().map(Chain::ring).collect(),
     );
     let of_drive = |k: usize| {
-        let has_motor = k < model.motors && model.motor.force > 0.0;
-        let on = if k < chains.len() {
+        let has_motor = model.has_motor(k) && model.motor.force > 0.0;
+        let on = if model.has_chain(k) {
             Driven::Ring(k)
         } else {
             Driven::Spin(k)
         };
         // The surface runs forwards while its drive spins clockwise.
-        let locks = k < model.motors && model.motor.self_locking;
+        let locks = model.has_motor(k) && model.motor.self_locking;
         behind_gear(Motor::new(on, -model.drive_radius, has_motor), locks)
     };
     let of_arm = |(k, arm): (usize, &Arm)| {
@@ -49,10 +49,10 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
     };
     let of_arms = arms.iter().enumerate().map(of_arm);
     problem.motors = (0..model.drives).map(of_drive).chain(of_arms).collect();
-    if model.pushes_chassis {
+    if let Some(drive) = model.push_drive() {
         let acts = Acts::Base {
             joint: None,
-            spin: Some(0),
+            spin: Some(drive),
         };
         let push = Bilateral::new(acts, push_axis(model, 0.0));
         problem.bilaterals.push(push);

@@ -86,13 +86,15 @@ impl Dynamics {
         }
     }
 
-    /// Stores the forces of the rests, which come after the contacts with the ground.
-    pub(super) fn remember_rests(&mut self, contacts: usize) {
+    /// Stores the forces of the rests.
+    pub(super) fn remember_rests(&mut self) {
+        if self.chains.is_empty() {
+            return;
+        }
         for chain in &mut self.chains {
             chain.forget_rests();
         }
-        let rests = self.touches.iter().zip(&self.problem.contacts);
-        for (touch, solved) in rests.skip(contacts) {
+        for (touch, solved) in self.touches.iter().zip(&self.problem.contacts) {
             if let Acts::LinkAndSlide(link) | Acts::LinkAndSpin { link, .. } = solved.acts {
                 self.chains[link.ring].remember_rest(link.number, touch, solved.grip);
             }

@@ -14,6 +14,7 @@ use super::arm::Arm;
 use super::state::{State, Turn};
 use super::trend::Trend;
 use crate::geometry::Vector;
+use crate::robot::held_speed;
 use crate::scenario::End;
 use crate::solver::{Acts, Inertia, Twist};
 
@@ -99,12 +100,11 @@ impl Dynamics {
             let (on, free) = (Acts::on_joint(k), arm.free.turn - turn);
             Inertia::of_rotor(on, arm.rule.rotor_inertia, free)
         }));
-        let motors = &mut self.problem.motors[self.model.drives..];
+        let motors = &mut self.problem.motors[self.model.flipper_motors()];
         for (motor, arm) in motors.iter_mut().zip(&self.flippers) {
-            // Without a motor a gear that locks itself holds the arm as it is.
-            let turns = arm.rule.torque_limit > 0.0 || !arm.rule.self_locking;
-            let rate = if turns { arm.rate } else { 0.0 };
-            motor.aim(rate, arm.rule.torque_limit * time);
+            let most = arm.rule.torque_limit;
+            let rate = held_speed(arm.rate, most, arm.rule.self_locking);
+            motor.aim(rate, most * time);
         }
     }
 

@@ -71,7 +71,7 @@ impl Dynamics {
         }
         self.loaded = impulses.contacts;
         self.identity = impulses.identity;
-        // The belly is the last part.
+        // As in `Model::in_order`, a model without the belly has one part less.
         let parts = self.model.parts.len();
         self.loaded.retain(|l| l.contact.part < parts);
         self.identity.keep_parts(parts);

@@ -79,7 +79,8 @@ pub(crate) struct Dynamics {
     solver: Solver,
     /// The robot's bodies, motors and contacts as the solver sees them, ...
     problem: Problem,
-    /// ... and what else a step knows of these contacts.
+    /// ... and what else a step knows of these contacts: those with the ground in the order in which they were found,
+    /// then the rests of chains.
     touches: Vec<Touch>,
     /// [N] The last force of a track that is modelled as a force only.
     push_force: Option<f64>,
@@ -386,6 +387,6 @@ impl Dynamics {
                 grip: solved.grip,
             });
         }
-        self.remember_rests(contacts.len());
+        self.remember_rests();
     }
 }

@@ -16,13 +16,10 @@ impl Dynamics {
     pub(super) fn drive_to_middle(&mut self, state: &State, set_point: SetPoint, half: f64) {
         let rule = &self.model.motor;
         let target = rule.target(set_point.middle);
-        let motors = &mut self.problem.motors[..self.model.drives];
         if !rule.depends_on_speed() {
-            for motor in motors {
-                motor.aim(target, rule.force * half);
-            }
-            return;
+            return self.hold_speed(target, half);
         }
+        let motors = &mut self.problem.motors[self.model.drive_motors()];
         self.forces.clear();
         for (k, motor) in motors.iter_mut().enumerate() {
             let speed = state.track_speed(&self.model, k);
@@ -52,13 +49,10 @@ impl Dynamics {
         let rule = &self.model.motor;
         let target = rule.target(set_point.end);
         if !rule.depends_on_speed() {
-            for motor in &mut self.problem.motors[..self.model.drives] {
-                motor.aim(target, rule.force * h);
-            }
-            return;
+            return self.hold_speed(target, h);
         }
         let so_far: Vec<f64> = self.problem.motor_impulses().collect();
-        let motors = &mut self.problem.motors[..self.model.drives];
+        let motors = &mut self.problem.motors[self.model.drive_motors()];
         for ((k, motor), so_far) in motors.iter_mut().enumerate().zip(so_far) {
             let forces = self.forces[k];
             let so_far = motor.without_lock(so_far);
@@ -75,6 +69,14 @@ impl Dynamics {
         }
     }
 
+    /// Has motors whose force is the same at any speed hold a target [m/s] for a time [s].
+    fn hold_speed(&mut self, target: f64, time: f64) {
+        let most = self.model.motor.force * time;
+        for motor in &mut self.problem.motors[self.model.drive_motors()] {
+            motor.aim(target, most);
+        }
+    }
+
     /// Stores the mean forces of the motors over a step of `h` [s], and what the errors of their speeds have added up to: at
     /// its limits a motor adds up nothing.
     pub(super) fn collect_motors(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
@@ -86,12 +88,12 @@ impl Dynamics {
                 state.drives[k].integral += rule.integral * mean * h;
             }
         }
-        let mut impulses = self.problem.motor_impulses();
-        for drive in &mut state.drives {
-            drive.force = impulses.next().unwrap_or_default() / h;
-        }
-        for flipper in &mut state.flippers {
-            flipper.torque = impulses.next().unwrap_or_default() / h;
+        let first_flipper = self.model.flipper_motors().start;
+        for (k, impulse) in self.problem.motor_impulses().enumerate() {
+            match k.checked_sub(first_flipper) {
+                None => state.drives[k].force = impulse / h,
+                Some(flipper) => state.flippers[flipper].torque = impulse / h,
+            }
         }
     }
 }

@@ -131,7 +131,7 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
             let wheels: Vec<_> = axles.into_iter().zip(ratios).collect();
             joints::shaft(world, chassis, &wheels, shared * inertia)
         };
-        if drive < model.motors && model.motor.force > 0.0 {
+        if model.has_motor(drive) && model.motor.force > 0.0 {
             let torque = model.motor.force * first.radius;
             if let Some(joint) = joints::turning(&mut world.multibody_joints, joint) {
                 joints::limit(joint, JointAxis::AngX, torque);

@@ -26,20 +26,20 @@ impl Model {
             belt.as_ref().is_some_and(inside)
         };
         let tracks = self.tracks();
-        let (mut parts, mut belly) = (Vec::new(), Vec::new());
-        for part in &self.parts {
-            match &part.shape {
-                Shape::Polygon { corners } if part.kind == BodyKind::Belly => {
-                    belly.extend((!is_covered(corners)).then(|| part.clone()));
-                }
-                // Wheels that no track runs round stay, all of a side on its motor.
-                _ if !self.has_track(part.mount) => parts.push(Part {
-                    drive: Some(part.lane),
-                    ..part.clone()
-                }),
-                _ => {}
-            }
-        }
+        let is_bare = |part: &&Part| match &part.shape {
+            Shape::Polygon { corners } => !is_covered(corners),
+            _ => true,
+        };
+        let belly = self.belly().filter(is_bare).cloned();
+        // Wheels that no track runs round stay, all of a side on its motor.
+        let wheels = self
+            .track_parts()
+            .filter(|part| !self.has_track(part.mount));
+        let on_motor = wheels.map(|wheel| Part {
+            drive: Some(wheel.lane),
+            ..wheel.clone()
+        });
+        let mut parts: Vec<Part> = on_motor.collect();
         for lane in 0..tracks {
             for mount in self.mounts_of_tracks() {
                 let height = match surface {
@@ -57,11 +57,10 @@ impl Model {
                 }));
             }
         }
-        parts.extend(belly);
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
         Ok(Self {
-            parts,
+            parts: Self::in_order(parts, belly),
             drives: tracks,
             motors: tracks,
             drive_masses: vec![mass / tracks as f64; tracks],

@@ -51,8 +51,10 @@ impl Model {
         let of_chassis = mass * about(self.center_of_mass);
         self.moment_of_inertia = locked - of_shoes - of_chassis - of_sprockets;
         self.mass = mass;
-        // The first drives are those of the chains, which have their own mass; the others keep theirs.
-        self.drive_masses[..chains.len()].fill(0.0);
+        // Chains have their own mass; the other drives keep theirs.
+        for chain in &chains {
+            self.drive_masses[chain.number] = 0.0;
+        }
         if let Some(sprocket) = chains.first().and_then(|chain| chain.sprocket.as_ref()) {
             self.drive_radius = sprocket.teeth.drive_radius();
         }

@@ -24,6 +24,7 @@ pub use kind::BodyKind;
 pub use model::Model;
 pub(crate) use motor::Line;
 pub use motor::MotorRule;
+pub(crate) use motor::held_speed;
 pub use mount::Mount;
 pub use outline::{Body, Circuit};
 pub use part::{Part, Shape};

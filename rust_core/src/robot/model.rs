@@ -1,5 +1,7 @@
 //! The robot as it is simulated: one body, the parts that meet the ground, and the drives.
 
+use std::ops::Range;
+
 use super::{BodyKind, ChainOfShoes, Flipper, MotorRule, Mount, Part, Running, Shape, track};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::scenario::{Robot, ScenarioError, Track};
@@ -13,11 +15,11 @@ pub struct Model {
     pub center_of_mass: Vector,
     /// [kg m^2] Moment of inertia without the parts that turn with the drives.
     pub moment_of_inertia: f64,
-    /// Parts that can meet the ground; the belly, if there is one, is the last.
+    /// Parts that can meet the ground, in the order of [`Self::in_order`].
     pub parts: Vec<Part>,
-    /// Number of drives; those with a motor come first.
+    /// Number of drives.
     pub drives: usize,
-    /// Number of drives with a motor; the others turn freely.
+    /// Number of drives with a motor, which are [`Self::driven`].
     pub motors: usize,
     /// [kg] Mass that moves at the surface speed, for each drive.
     pub drive_masses: Vec<f64>,
@@ -25,7 +27,7 @@ pub struct Model {
     pub drive_radius: f64,
     /// What each motor can do.
     pub motor: MotorRule,
-    /// The drive pushes the chassis along its axis, whether it touches the ground or not.
+    /// A drive, [`Self::push_drive`], pushes the chassis along its axis, whether it touches the ground or not.
     pub pushes_chassis: bool,
     /// Chains of shoes, each with the drive of the same number. If there are any, `mass`, `center_of_mass` and
     /// `moment_of_inertia` are those of the chassis without them.
@@ -44,19 +46,17 @@ impl Model {
     /// Wheels that do not fit the robot; shoes and arms that leave nothing for the chassis.
     pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
         let track = track::build(robot)?;
-        let mut parts = track.parts;
-        if let Some(belly) = &robot.belly {
-            let corners = belly.iter().map(|p| Vector::new(p[0], p[1])).collect();
-            let shape = Shape::Polygon { corners };
-            parts.push(Part {
-                kind: BodyKind::Belly,
-                shape,
-                drive: None,
-                friction_limit: f64::INFINITY,
-                lane: 0,
-                mount: Mount::Chassis,
-            });
-        }
+        let belly = robot.belly.as_ref().map(|corners| Part {
+            kind: BodyKind::Belly,
+            shape: Shape::Polygon {
+                corners: corners.iter().map(|p| Vector::new(p[0], p[1])).collect(),
+            },
+            drive: None,
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            mount: Mount::Chassis,
+        });
+        let parts = Self::in_order(track.parts, belly);
         let radius = robot.outline.rear_radius();
         let flippers = Flipper::of(robot);
         // A chain has all of the track's mass and force; only flippers have drives besides.
@@ -105,6 +105,55 @@ impl Model {
         }
     }
 
+    /// Parts in their order: the belly is the last, so that without it the others keep their numbers.
+    pub(super) fn in_order(of_tracks: Vec<Part>, belly: Option<Part>) -> Vec<Part> {
+        let mut parts = of_tracks;
+        parts.extend(belly);
+        parts
+    }
+
+    /// The parts but the belly.
+    pub(super) fn track_parts(&self) -> impl Iterator<Item = &Part> {
+        self.parts
+            .iter()
+            .filter(|part| part.kind != BodyKind::Belly)
+    }
+
+    /// The belly.
+    pub(super) fn belly(&self) -> Option<&Part> {
+        self.parts.iter().find(|part| part.kind == BodyKind::Belly)
+    }
+
+    /// The drives with a motor; the others turn freely.
+    pub(crate) fn driven(&self) -> Range<usize> {
+        0..self.motors
+    }
+
+    /// Whether a drive has a motor.
+    pub(crate) fn has_motor(&self, drive: usize) -> bool {
+        self.driven().contains(&drive)
+    }
+
+    /// Whether a drive is that of the chain of the same number.
+    pub(crate) fn has_chain(&self, drive: usize) -> bool {
+        drive < self.chains.len()
+    }
+
+    /// The drive that pushes the chassis.
+    pub(crate) fn push_drive(&self) -> Option<usize> {
+        self.pushes_chassis.then_some(0)
+    }
+
+    /// Places of the drives in a list of all motors.
+    pub(crate) fn drive_motors(&self) -> Range<usize> {
+        0..self.drives
+    }
+
+    /// Places of the flippers in a list of all motors.
+    pub(crate) fn flipper_motors(&self) -> Range<usize> {
+        self.drives..self.drives + self.flippers.len()
+    }
+
     /// Positions of the moving parts at time 0, with the tracks advanced by `track_phase` [m].
     pub(crate) fn running_at_start(&self, track_phase: f64) -> Running {
         let mut running = Running::default();
@@ -142,7 +191,7 @@ impl Model {
 
     /// [kg m^2] Moment of inertia of the rotor of one drive, as far as that turns over the chassis.
     pub(crate) fn rotor_inertia(&self, drive: usize) -> f64 {
-        if drive < self.motors {
+        if self.has_motor(drive) {
             self.motor.rotor_mass * self.drive_radius * self.drive_radius
         } else {
             0.0
@@ -162,11 +211,8 @@ impl Model {
 
     /// Number of lanes under the tracks.
     pub(crate) fn tracks(&self) -> usize {
-        let of_tracks = self
-            .parts
-            .iter()
-            .filter(|part| part.kind != BodyKind::Belly);
-        of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
+        let lanes = self.track_parts().map(|part| part.lane + 1);
+        lanes.max().unwrap_or(1)
     }
 
     /// What carries bodies of tracks or wheels: the chassis and the flippers.

@@ -49,6 +49,16 @@ impl Correction {
     }
 }
 
+/// The speed or rate that a motor holds where one is commanded: without a force or torque to give, a gear that locks
+/// itself stays at rest.
+pub(crate) fn held_speed(commanded: f64, most: f64, self_locking: bool) -> f64 {
+    if most > 0.0 || !self_locking {
+        commanded
+    } else {
+        0.0
+    }
+}
+
 impl MotorRule {
     /// Both tracks' motors together.
     pub(super) fn of(drivetrain: &Drivetrain, outline: &TrackOutline) -> Self {
@@ -96,16 +106,12 @@ impl MotorRule {
     /// [m/s] The speed of the surface that it holds where that is commanded: behind a gear that locks itself none at which it
     /// has no force left.
     pub(crate) fn target(&self, commanded: f64) -> f64 {
-        if !self.self_locking {
-            return commanded;
+        let held = held_speed(commanded, self.force, self.self_locking);
+        let spent = self.curve.iter().find(|[_, share]| *share <= 0.0);
+        match spent {
+            Some([fastest, _]) if self.self_locking => held.clamp(-fastest, *fastest),
+            _ => held,
         }
-        let fastest = if self.force > 0.0 {
-            let spent = self.curve.iter().find(|[_, share]| *share <= 0.0);
-            spent.map_or(f64::INFINITY, |[speed, _]| *speed)
-        } else {
-            0.0
-        };
-        commanded.clamp(-fastest, fastest)
     }
 
     /// Its largest forces near a speed [m/s] of the surface, forwards and backwards.

@@ -29,17 +29,17 @@ impl Model {
         model
     }
 
-    /// Parts of the left track, then of the right, then the belly; drives in the same order, those with a motor
-    /// first. A force along the chassis has no side and stays one.
+    /// Parts of the left track, then of the right; drives in the same order, those with a motor first. A force along the chassis has no side and stays one.
     fn side_by_side(self) -> Self {
-        let shared = usize::from(self.pushes_chassis);
+        let shared = self.push_drive().into_iter().count();
         let (motors, free) = (self.motors - shared, self.drives - self.motors);
         let of_side = |drive: usize, side: usize| {
             if !self.chains.is_empty() {
-                2 * drive + side // the first drives are those of the chains
+                // Its first drives are those of the chains.
+                2 * drive + side
             } else if drive < shared {
                 drive
-            } else if drive < self.motors {
+            } else if self.has_motor(drive) {
                 drive + side * motors
             } else {
                 drive + motors + side * free
@@ -50,11 +50,9 @@ impl Model {
             .iter()
             .map(|chain| chain.path.count)
             .sum::<usize>();
-        let is_belly = |part: &&Part| part.kind == BodyKind::Belly;
         let mut parts = Vec::new();
         for lane in 0..2 {
-            let of_track = self.parts.iter().filter(|part| !is_belly(part));
-            parts.extend(of_track.map(|part| Part {
+            parts.extend(self.track_parts().map(|part| Part {
                 drive: part.drive.map(|k| of_side(k, lane)),
                 mount: match part.mount {
                     Mount::Chassis | Mount::Flipper(_) => part.mount,
@@ -64,7 +62,6 @@ impl Model {
                 ..part.clone()
             }));
         }
-        parts.extend(self.parts.iter().filter(is_belly).cloned());
         let drives = shared + 2 * (motors + free);
         let mut drive_masses = self.drive_masses.clone();
         drive_masses.resize(drives, 0.0);
@@ -95,7 +92,7 @@ impl Model {
         let chains = chains.collect();
         let motors = shared + 2 * motors;
         Self {
-            parts,
+            parts: Self::in_order(parts, self.belly().cloned()),
             drives,
             drive_masses,
             chains,

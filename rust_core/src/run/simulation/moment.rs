@@ -36,8 +36,8 @@ impl<'a> Moment<'a> {
     /// The state as users see it.
     pub(crate) fn reading(&self) -> Reading {
         let (state, pose) = (self.state, self.pose());
-        let driven = 0..self.model.motors;
-        let motors = self.model.motors as f64;
+        let driven = self.model.driven();
+        let motors = driven.len() as f64;
         Reading {
             time: self.time,
             position: pose.translation,
