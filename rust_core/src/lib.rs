@@ -55,7 +55,8 @@ pub use scenario::{
     ContactMethod, Doubt, Drive, Drivetrain, End, Ends, Engine, FieldPattern, Flippers,
     ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
     MAX_POINTS, Pi, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria,
-    ShoeShape, Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ShoeShape, Solver, Start, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline,
+    Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

@@ -6,7 +6,7 @@ use crate::contact::{Contact, TrackEnvelope};
 use crate::geometry::Rotation;
 use crate::observe::{Bearing, DriveMean};
 use crate::robot::{Model, Mount};
-use crate::scenario::{LineOfWheels, Scenario, Terrain, Track, TrackOutline, Wheel};
+use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, TrackOutline, Wheel};
 use crate::terrain::Ground;
 
 /// [m] Half the distance between the end axles.
@@ -44,8 +44,7 @@ impl Stage {
         scenario.terrain = Terrain::Points {
             points: [vec![[-4.0, 0.0]], posts, vec![[4.0, 0.0]]].concat(),
             goal: 1.0,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
         let model = Model::on(&scenario.robot, &ground).expect("it can be built");

@@ -239,7 +239,7 @@ fn place_of<'a>(text: &'a mut Value, pointer: &str) -> Option<&'a mut Value> {
 mod tests {
     use super::*;
     use crate::run::Simulation;
-    use crate::scenario::Terrain;
+    use crate::scenario::{Surface, Terrain};
 
     fn engineer() -> Scenario {
         let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
@@ -281,8 +281,8 @@ mod tests {
         let found = first.varied(&fields, rows);
         let mut variant = engineer();
         variant.robot.center_of_mass[1] = 0.03;
-        if let Terrain::Step { friction, .. } = &mut variant.terrain {
-            *friction = 0.7;
+        if let Terrain::Step { surface, .. } = &mut variant.terrain {
+            surface.friction = 0.7;
         }
         let moved = found[0].as_ref().expect("it is valid");
         assert_eq!(moved.scenario, variant);
@@ -324,8 +324,7 @@ mod tests {
         heavier.robot.mass += 1.0;
         let flat = |height| Terrain::Step {
             height,
-            friction: 0.9,
-            edge_radius: 0.0,
+            surface: Surface::sharp(0.9),
         };
         apart.terrain = Terrain::Lanes {
             left: Box::new(flat(0.05)),

@@ -34,10 +34,8 @@ pub(super) fn corners(terrain: &Terrain) -> u64 {
     };
     match terrain {
         Terrain::Points {
-            points,
-            edge_radius,
-            ..
-        } => rounded(points.len() as u64, *edge_radius),
+            points, surface, ..
+        } => rounded(points.len() as u64, surface.edge_radius),
         Terrain::Lanes {
             left,
             right,
@@ -47,11 +45,11 @@ pub(super) fn corners(terrain: &Terrain) -> u64 {
             let of_belly = middle.as_ref().map_or(own[0] + own[1], |m| corners(m));
             own[0] + own[1] + of_belly
         }
-        Terrain::Stairs {
-            count, edge_radius, ..
-        } => rounded(2 * u64::from(*count), *edge_radius),
+        Terrain::Stairs { count, surface, .. } => {
+            rounded(2 * u64::from(*count), surface.edge_radius)
+        }
         Terrain::RandomStepfield(field) => {
-            3 * rounded(2 * u64::from(field.posts), field.edge_radius)
+            3 * rounded(2 * u64::from(field.posts), field.surface.edge_radius)
         }
         _ => 1000,
     }

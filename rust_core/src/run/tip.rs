@@ -65,15 +65,14 @@ fn standing(robot: &Simulation, backwards: bool) -> Option<TipOver> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Scenario, Terrain};
+    use crate::scenario::{Scenario, Surface, Terrain};
 
     fn before_a_step(height: f64) -> Checked {
         let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
         let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
         scenario.terrain = Terrain::Step {
             height,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         Checked::new(&scenario).expect("it is valid")
     }

@@ -27,7 +27,7 @@ pub use flippers::{End, Ends, Flippers};
 pub use outline::TrackOutline;
 pub use robot::Robot;
 pub use settings::{ContactMethod, Engine, SeizureCriteria, Solver, Start};
-pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
+pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Surface, Terrain};
 pub(crate) use text::parse;
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ClosedSurface, ClosedTrack, ForceSupport,

@@ -15,6 +15,32 @@ const HEIGHT: Range = Range::above(0.0, 100.0, "m");
 const YAW: Range = Range::between(-1.396_263, 1.396_263, "rad");
 const LENGTH: Range = Range::between(SMALLEST, 1e4, "m");
 
+/// What the robot touches of a terrain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Surface {
+    /// [m] Radius of every convex edge; 0 is sharp.
+    pub edge_radius: f64,
+    /// Coulomb friction with the robot.
+    pub friction: f64,
+}
+
+impl Surface {
+    /// With sharp edges.
+    pub const fn sharp(friction: f64) -> Self {
+        Self {
+            edge_radius: 0.0,
+            friction,
+        }
+    }
+
+    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+        Ok(Self {
+            edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+            friction: f.number("friction", FRICTION)?,
+        })
+    }
+}
+
 /// One terrain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -30,10 +56,9 @@ pub enum Terrain {
     Step {
         /// [m] Height of the step.
         height: f64,
-        /// [m] Radius of the convex edge; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// A slope from x = 0, then a level top.
     Ramp {
@@ -41,10 +66,9 @@ pub enum Terrain {
         angle: f64,
         /// [m] Horizontal length of the slope.
         length: f64,
-        /// [m] Radius of the convex edge; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// A parallelepiped on level ground, its front face at x = 0.
     Barrier {
@@ -52,10 +76,9 @@ pub enum Terrain {
         height: f64,
         /// [m] Thickness along x.
         thickness: f64,
-        /// [m] Radius of the convex edges; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// A triangular prism on level ground, from x = 0.
     Ridge {
@@ -63,10 +86,9 @@ pub enum Terrain {
         height: f64,
         /// [rad] Angle between its flanks.
         edge_angle: f64,
-        /// [m] Radius of the convex edges; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// A trench with vertical walls, from x = 0.
     Gap {
@@ -74,10 +96,9 @@ pub enum Terrain {
         width: f64,
         /// [m] Depth.
         depth: f64,
-        /// [m] Radius of the convex edges; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// Steps up, the first face at x = 0, then a level top.
     Stairs {
@@ -87,10 +108,9 @@ pub enum Terrain {
         rise: f64,
         /// [m] Depth of each step along x.
         run: f64,
-        /// [m] Radius of the convex edges; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// Half a pipe on level ground, from x = 0.
     HalfRound {
@@ -107,10 +127,9 @@ pub enum Terrain {
         height: f64,
         /// [m] Thickness at right angles to its front face.
         thickness: f64,
-        /// [m] Radius of the convex edges; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// Square posts of random heights from x = 0, a row under each track.
     RandomStepfield(Stepfield),
@@ -120,10 +139,9 @@ pub enum Terrain {
         points: Vec<[f64; 2]>,
         /// [m] The x that the whole robot must pass.
         goal: f64,
-        /// [m] Radius of every convex edge; 0 is sharp.
-        edge_radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// Of its faces and edges.
+        #[serde(flatten)]
+        surface: Surface,
     },
     /// A profile for each track and one for the belly.
     Lanes {
@@ -169,10 +187,9 @@ pub struct Stepfield {
     pub barrier_thickness: f64,
     /// [rad] Turn of that barrier, as for a diagonal barrier.
     pub barrier_yaw: f64,
-    /// [m] Radius of the convex edges; 0 is sharp.
-    pub edge_radius: f64,
-    /// Coulomb friction with the robot.
-    pub friction: f64,
+    /// Of its faces and edges.
+    #[serde(flatten)]
+    pub surface: Surface,
 }
 
 impl Terrain {
@@ -198,39 +215,33 @@ impl Terrain {
             },
             "step" => Self::Step {
                 height: f.number("height", HEIGHT)?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "ramp" => Self::Ramp {
                 angle: f.number("angle", Range::between(-1.553_343, 1.553_343, "rad"))?,
                 length: f.number("length", LENGTH)?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "barrier" => Self::Barrier {
                 height: f.number("height", HEIGHT)?,
                 thickness: f.number("thickness", LENGTH)?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "ridge" => Self::Ridge {
                 height: f.number("height", HEIGHT)?,
                 edge_angle: f.number("edge_angle", Range::between(0.01, 3.13, "rad"))?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "gap" => Self::Gap {
                 width: f.number("width", LENGTH)?,
                 depth: f.number("depth", HEIGHT)?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "stairs" => Self::Stairs {
                 count: f.integer("count", 1, 1000)?,
                 rise: f.number("rise", HEIGHT)?,
                 run: f.number("run", LENGTH)?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "half_round" => Self::HalfRound {
                 radius: f.number("radius", SIZE)?,
@@ -240,15 +251,13 @@ impl Terrain {
                 yaw: f.number("yaw", YAW)?,
                 height: f.number("height", HEIGHT)?,
                 thickness: f.number("thickness", LENGTH)?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "random_stepfield" => Self::RandomStepfield(Stepfield::read(&mut f)?),
             "points" => Self::Points {
                 points: f.points("points", Range::between(-1e7, 1e7, "m"), MAX_POINTS)?,
                 goal: f.number("goal", Range::between(-1e7, 1e7, "m"))?,
-                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-                friction: f.number("friction", FRICTION)?,
+                surface: Surface::read(&mut f)?,
             },
             "lanes" => {
                 let left = Self::read_lane(&mut f, "left")?;
@@ -275,17 +284,16 @@ impl Terrain {
     /// Multiplies the friction of all its lanes.
     pub(crate) fn scale_friction(&mut self, factor: f64) {
         match self {
-            Self::Flat { friction, .. }
-            | Self::Step { friction, .. }
-            | Self::Ramp { friction, .. }
-            | Self::Barrier { friction, .. }
-            | Self::Ridge { friction, .. }
-            | Self::Gap { friction, .. }
-            | Self::Stairs { friction, .. }
-            | Self::HalfRound { friction, .. }
-            | Self::DiagonalBarrier { friction, .. }
-            | Self::RandomStepfield(Stepfield { friction, .. })
-            | Self::Points { friction, .. } => *friction *= factor,
+            Self::Flat { friction, .. } | Self::HalfRound { friction, .. } => *friction *= factor,
+            Self::Step { surface, .. }
+            | Self::Ramp { surface, .. }
+            | Self::Barrier { surface, .. }
+            | Self::Ridge { surface, .. }
+            | Self::Gap { surface, .. }
+            | Self::Stairs { surface, .. }
+            | Self::DiagonalBarrier { surface, .. }
+            | Self::RandomStepfield(Stepfield { surface, .. })
+            | Self::Points { surface, .. } => surface.friction *= factor,
             Self::Lanes {
                 left,
                 right,
@@ -326,8 +334,7 @@ impl Stepfield {
             barrier_height: f.number("barrier_height", Range::between(0.0, 100.0, "m"))?,
             barrier_thickness: f.number("barrier_thickness", LENGTH)?,
             barrier_yaw: f.number("barrier_yaw", YAW)?,
-            edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-            friction: f.number("friction", FRICTION)?,
+            surface: Surface::read(f)?,
         })
     }
 }

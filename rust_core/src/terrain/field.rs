@@ -75,6 +75,7 @@ fn bits(seed: u32, lane: u32, post: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Surface;
 
     const GAUGE: f64 = 0.2;
 
@@ -89,8 +90,7 @@ mod tests {
             barrier_height: 0.0,
             barrier_thickness: 0.1,
             barrier_yaw: 0.0,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         }
     }
 

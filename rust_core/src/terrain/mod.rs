@@ -15,7 +15,7 @@ use straight::COLLINEAR;
 pub(crate) use place::facet_along;
 pub(crate) use straight::{FINE, STRAIGHT};
 
-use crate::scenario::{Scenario, ScenarioError, Terrain};
+use crate::scenario::{Scenario, ScenarioError, Surface, Terrain};
 pub use profile::{Edge, Profile, Side};
 
 /// The ground of a scenario.
@@ -54,15 +54,14 @@ impl Ground {
                 yaw,
                 height,
                 thickness,
-                edge_radius,
-                friction,
+                surface,
             } => {
                 let lanes = field::barrier((*height, *thickness), *yaw, 0.0, gauge);
-                Self::skylines(&lanes, *edge_radius, *friction)
+                Self::skylines(&lanes, *surface)
             }
             Terrain::RandomStepfield(field) => {
                 let lanes = field::stepfield(field, gauge);
-                Self::skylines(&lanes, field.edge_radius, field.friction)
+                Self::skylines(&lanes, field.surface)
             }
             _ => {
                 let lane = Described::new("terrain", terrain)?;
@@ -103,11 +102,15 @@ impl Ground {
     }
 
     /// Level tops and vertical faces under the left track, the right one and the belly.
-    fn skylines(lanes: &[Skyline; 3], radius: f64, friction: f64) -> Result<Self, ScenarioError> {
+    fn skylines(lanes: &[Skyline; 3], surface: Surface) -> Result<Self, ScenarioError> {
         let end = lanes[2].end();
         let profile = |skyline: &Skyline| {
             let points = skyline.points(-RUN_OUT.value(), end + RUN_OUT.value());
-            Profile::new("terrain", &points, radius, friction, true)
+            let Surface {
+                edge_radius,
+                friction,
+            } = surface;
+            Profile::new("terrain", &points, edge_radius, friction, true)
         };
         if lanes[0] == lanes[1] {
             return Ok(Self::of(vec![profile(&lanes[0])?], 1, end));
@@ -210,8 +213,8 @@ impl Described {
         let profile = Profile::new(
             path,
             &obstacle.points,
-            obstacle.edge_radius,
-            obstacle.friction,
+            obstacle.surface.edge_radius,
+            obstacle.surface.friction,
             true,
         )?;
         let (low, high) = profile.extent();

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Outcome, Record, Run, Scenario, Simulation, Terrain, simulate};
+use crawler2d_core::{Outcome, Record, Run, Scenario, Simulation, Surface, Terrain, simulate};
 
 use crate::common::*;
 
@@ -140,8 +140,7 @@ fn a_grouser_that_comes_down_on_a_thin_wall_does_not_pass_into_it() {
         scenario.terrain = Terrain::Barrier {
             height: 0.06,
             thickness: 0.01,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         // The same grouser comes down on the wall each time.
         scenario.start.approach = 0.05 + 0.001 * f64::from(i);

@@ -1,7 +1,7 @@
 //! The belt under its force limit: starting, stalling, two opposed contacts, braking; no oscillation.
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Run, Scenario, Terrain};
+use crawler2d_core::{Run, Scenario, Surface, Terrain};
 
 use crate::common::*;
 
@@ -73,8 +73,7 @@ fn pit(slope: f64, friction: f64) -> Terrain {
     Terrain::Points {
         points,
         goal: 8.0,
-        edge_radius: 0.0,
-        friction,
+        surface: Surface::sharp(friction),
     }
 }
 

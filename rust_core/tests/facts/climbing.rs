@@ -1,7 +1,7 @@
 //! How high a slow, strong robot climbs, against plane quasi-statics.
 
 use crate::common::*;
-use crawler2d_core::{Outcome, Scenario, Terrain, TorqueSharing, TrackOutline};
+use crawler2d_core::{Outcome, Scenario, Surface, Terrain, TorqueSharing, TrackOutline};
 
 /// Friction that holds a track on an edge up to 45 degrees and more. Far more friction would not be
 /// ampler: from about 3 on the nose sticks to the face and the track stalls at any torque.
@@ -222,8 +222,7 @@ pub(crate) fn before_a_gap(base: &Scenario, width: f64) -> Scenario {
     scenario.terrain = Terrain::Points {
         points,
         goal: width,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     scenario
 }

@@ -4,7 +4,7 @@ use crawler2d_core::{
     BeltTrack, Cancel, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Engine,
     Flippers, ForceSupport, ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold,
     HybridWheels, LineOfWheels, Outcome, Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape,
-    Simulation, Terrain, Track, Wheel, outcome_of, simulate,
+    Simulation, Surface, Terrain, Track, Wheel, outcome_of, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -258,8 +258,7 @@ pub(crate) fn force_on_wheels() -> Track {
 pub(crate) fn step(height: f64, friction: f64) -> Terrain {
     Terrain::Step {
         height,
-        edge_radius: 0.0,
-        friction,
+        surface: Surface::sharp(friction),
     }
 }
 
@@ -270,8 +269,7 @@ pub(crate) fn slope(angle: f64, friction: f64) -> Terrain {
     Terrain::Points {
         points,
         goal: 19.0 * c,
-        edge_radius: 0.0,
-        friction,
+        surface: Surface::sharp(friction),
     }
 }
 

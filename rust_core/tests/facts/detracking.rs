@@ -1,6 +1,6 @@
 //! That no chain leaves its guide or its wheels, whatever ground it runs over.
 
-use crawler2d_core::{ChainReading, Outcome, Scenario, Simulation, Terrain};
+use crawler2d_core::{ChainReading, Outcome, Scenario, Simulation, Surface, Terrain};
 
 use crate::common::*;
 use crate::segmental::{Build, COUNTS, chained, toothed};
@@ -34,8 +34,7 @@ fn trials(seed: u64) -> Vec<Trial> {
             terrain: Terrain::Points {
                 points,
                 goal: last[0] + 59.0,
-                edge_radius: 0.0,
-                friction: 0.9,
+                surface: Surface::sharp(0.9),
             },
             commands: commands.to_vec(),
         }

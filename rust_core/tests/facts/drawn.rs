@@ -3,7 +3,7 @@
 use crawler2d_core::{
     ChainMechanism, Checked, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers,
     Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
-    ShoeShape, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ShoeShape, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 
 use crate::common::*;
@@ -158,8 +158,7 @@ fn drawn_terrain(draw: &mut Draw) -> Terrain {
             yaw: draw.between(-1.3, 1.3),
             height: draw.between(0.01, 0.3),
             thickness: draw.between(0.01, 0.3),
-            edge_radius: 0.0,
-            friction: draw.between(0.0, 2.0),
+            surface: Surface::sharp(draw.between(0.0, 2.0)),
         },
         1 => Terrain::RandomStepfield(Stepfield {
             seed,
@@ -175,8 +174,7 @@ fn drawn_terrain(draw: &mut Draw) -> Terrain {
             barrier_height: draw.between(-0.2, 0.3).max(0.0),
             barrier_thickness: draw.between(0.01, 0.3),
             barrier_yaw: draw.between(-1.0, 1.0),
-            edge_radius: 0.0,
-            friction: draw.between(0.0, 2.0),
+            surface: Surface::sharp(draw.between(0.0, 2.0)),
         }),
         2 => Terrain::Lanes {
             left: Box::new(drawn_lane(draw)),
@@ -194,26 +192,34 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
         2 => Terrain::Ramp {
             angle: draw.between(-1.2, 1.2),
             length: draw.between(0.05, 2.0),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         3 => Terrain::Barrier {
             height,
             thickness: draw.between(0.005, 0.5),
-            edge_radius: 0.002,
-            friction,
+            surface: Surface {
+                edge_radius: 0.002,
+                friction,
+            },
         },
         4 => Terrain::Ridge {
             height,
             edge_angle: draw.between(0.2, 3.0),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         5 => Terrain::Gap {
             width: draw.between(0.02, 1.0),
             depth: height,
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         6 => Terrain::HalfRound {
             radius: height,
@@ -231,8 +237,10 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
             Terrain::Points {
                 points,
                 goal: x,
-                edge_radius,
-                friction,
+                surface: Surface {
+                    edge_radius,
+                    friction,
+                },
             }
         }
     }

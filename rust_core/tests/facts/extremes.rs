@@ -1,6 +1,6 @@
 //! Falls, blocks, starts and scenes at the edge of what is legal: nothing gets into the ground or out of numbers.
 
-use crawler2d_core::{Scenario, Simulation, Terrain};
+use crawler2d_core::{Scenario, Simulation, Surface, Terrain};
 
 use crate::common::*;
 use crate::drawn::drawn;
@@ -28,8 +28,7 @@ fn no_fall_is_so_fast_that_the_ground_is_missed() {
             scenario.terrain = Terrain::Points {
                 points: vec![[-5.0, height], [0.0, height], [0.0, 0.0], [8.0, 0.0]],
                 goal: 7.0,
-                edge_radius: 0.0,
-                friction: 0.9,
+                surface: Surface::sharp(0.9),
             };
             scenario.criteria.tip_over_angle = 3.1;
             scenario.drive.speed = 1.0;
@@ -54,8 +53,7 @@ fn a_belt_that_slides_over_an_edge_stays_on_it() {
         scenario.terrain = Terrain::Points {
             points: vec![[-5.0, 0.5], [0.0, 0.5], [0.0, 0.0], [8.0, 0.0]],
             goal: 7.0,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         scenario.drive.speed = 1.0;
         let mut simulation = Simulation::new(&checked(&scenario));
@@ -87,8 +85,7 @@ fn no_block_gets_deeper_into_a_robot_than_a_millimetre() {
         scenario.terrain = Terrain::Points {
             points: points.clone(),
             goal: x + 1.0,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         scenario.drive.speed = 0.8;
         scenario.robot.drivetrain.max_acceleration = 2.0;
@@ -139,16 +136,14 @@ fn extreme_but_legal_scenes_run_with_finite_numbers() {
             s.terrain = Terrain::Barrier {
                 height: 0.08,
                 thickness: 0.001,
-                edge_radius: 0.0,
-                friction: 0.9,
+                surface: Surface::sharp(0.9),
             };
         }),
         ("a slope of 89.9 degrees", |s| {
             s.terrain = Terrain::Points {
                 points: vec![[-5.0, 0.0], [0.0, 0.0], [0.001_745, 1.0], [5.0, 1.0]],
                 goal: 1.0,
-                edge_radius: 0.0,
-                friction: 0.9,
+                surface: Surface::sharp(0.9),
             };
         }),
         ("a step of ten radii", |s| s.terrain = step(0.64, 0.9)),
@@ -157,8 +152,7 @@ fn extreme_but_legal_scenes_run_with_finite_numbers() {
             s.terrain = Terrain::Gap {
                 width: 50.0,
                 depth: 50.0,
-                edge_radius: 0.0,
-                friction: 0.9,
+                surface: Surface::sharp(0.9),
             };
             s.drive.speed = 1.3;
             s.robot.drivetrain.max_acceleration = 10.0;

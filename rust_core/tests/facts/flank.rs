@@ -1,6 +1,6 @@
 //! Flanks of grousers against rails: how hard a belt and a chain with the same grousers pull.
 
-use crawler2d_core::{Scenario, Simulation, Terrain, Track};
+use crawler2d_core::{Scenario, Simulation, Surface, Terrain, Track};
 
 use crate::common::*;
 
@@ -15,8 +15,7 @@ fn rails() -> Terrain {
     Terrain::Points {
         points,
         goal: 19.0,
-        edge_radius: 0.0,
-        friction: 0.05,
+        surface: Surface::sharp(0.05),
     }
 }
 

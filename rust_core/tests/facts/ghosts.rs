@@ -1,6 +1,6 @@
 //! Flat ground is flat however it is cut, and wherever it lies.
 
-use crawler2d_core::{Ground, Profile, Scenario, Simulation, Terrain};
+use crawler2d_core::{Ground, Profile, Scenario, Simulation, Surface, Terrain};
 
 use crate::common::*;
 
@@ -136,8 +136,7 @@ fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
     let step_at = |x: f64| Terrain::Points {
         points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],
         goal: x,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     for (name, scenario) in scenarios() {
         let path = |x: f64| {

@@ -1,6 +1,6 @@
 //! A belt whose grousers travel with it: how it rolls, stands, pulls and climbs.
 
-use crawler2d_core::{BodyKind, Model, Outcome, Scenario, Simulation, Terrain, Track};
+use crawler2d_core::{BodyKind, Model, Outcome, Scenario, Simulation, Surface, Terrain, Track};
 
 use crate::common::*;
 
@@ -106,8 +106,7 @@ fn a_shift_by_a_hundred_metres_changes_hundredths_of_a_millimetre_at_most() {
         scenario.terrain = Terrain::Points {
             points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],
             goal: x,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         scenario.start.approach = 1.0;
         fixed(&mut scenario, 1e-3);
@@ -136,8 +135,7 @@ fn a_flank_against_a_rail_pulls_with_all_the_motors_have() {
     scenario.terrain = Terrain::Points {
         points,
         goal: 4.9,
-        edge_radius: 0.0,
-        friction: 0.05,
+        surface: Surface::sharp(0.05),
     };
     let force = 2.0 * 2.0 / 0.052;
     for (share, holds) in [(0.97, true), (1.05, false)] {

@@ -1,6 +1,6 @@
 //! Two lanes under one chassis: each track meets its own ground, the belly the one between.
 
-use crawler2d_core::{BodyKind, Model, Simulation, Terrain, Track, Wheel};
+use crawler2d_core::{BodyKind, Model, Simulation, Surface, Terrain, Track, Wheel};
 
 use crate::common::*;
 
@@ -32,8 +32,7 @@ fn level(height: f64, friction: f64) -> Terrain {
     Terrain::Points {
         points: vec![[-5.0, height], [5.0, height]],
         goal: 4.0,
-        edge_radius: 0.0,
-        friction,
+        surface: Surface::sharp(friction),
     }
 }
 

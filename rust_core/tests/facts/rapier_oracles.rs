@@ -1,6 +1,6 @@
 //! The closed forms in rapier's dynamics, beside how far our own are off.
 
-use crawler2d_core::{GearWheel, Outcome, Scenario, Simulation, Terrain, Wheel};
+use crawler2d_core::{GearWheel, Outcome, Scenario, Simulation, Surface, Terrain, Wheel};
 
 use crate::candidates::Row;
 use crate::climbing::{
@@ -281,8 +281,7 @@ fn a_robot_in_the_air_falls_freely_in_rapier() {
             [60.0, -50.0],
         ],
         goal: 59.0,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     // The speed that is read is that of the chassis, which sways by three millionths of this as it turns with its wheels.
     agree("fall [m/s2]", &scenario, (G, 1e-5), |scenario| {

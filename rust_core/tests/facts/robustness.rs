@@ -3,7 +3,8 @@
 use std::panic::catch_unwind;
 
 use crawler2d_core::{
-    Checked, Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Terrain, simulate,
+    Checked, Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Surface, Terrain,
+    simulate,
 };
 use serde_json::{Value, json};
 
@@ -156,8 +157,7 @@ fn with_points(points: Vec<[f64; 2]>) -> Result<Checked, Error> {
     scenario.terrain = Terrain::Points {
         points,
         goal: 1.0,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     Checked::new(&scenario)
 }
@@ -237,8 +237,7 @@ fn robot_that_drives_off_the_ground_has_left_the_terrain() {
     scenario.terrain = Terrain::Points {
         points: vec![[-5.0, 0.0], [0.2, 0.0], [0.3, -0.01], [1.0, -0.01]],
         goal: 1.0,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     let run = run(&scenario);
     assert_eq!(run.outcome.name(), "left_terrain");
@@ -262,8 +261,7 @@ fn offset_of_the_whole_scene_changes_nothing() {
         scenario.terrain = Terrain::Points {
             points,
             goal: x,
-            edge_radius: 0.0,
-            friction: 0.9,
+            surface: Surface::sharp(0.9),
         };
         scenario.robot.track = line(5);
         scenario.duration = 0.9; // the front wheel is about to meet the edge

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use crawler2d_core::{Checked, FieldPattern, Run, Scenario, Stepfield, Terrain};
+use crawler2d_core::{Checked, FieldPattern, Run, Scenario, Stepfield, Surface, Terrain};
 
 use crate::common::*;
 use crate::drawn::drawn;
@@ -13,8 +13,10 @@ fn points(points: &[[f64; 2]], edge_radius: f64) -> Terrain {
     Terrain::Points {
         points: points.to_vec(),
         goal: points[points.len() - 2][0],
-        edge_radius,
-        friction: FRICTION,
+        surface: Surface {
+            edge_radius,
+            friction: FRICTION,
+        },
     }
 }
 
@@ -22,8 +24,10 @@ fn barrier(height: f64, thickness: f64, edge_radius: f64) -> Terrain {
     Terrain::Barrier {
         height,
         thickness,
-        edge_radius,
-        friction: FRICTION,
+        surface: Surface {
+            edge_radius,
+            friction: FRICTION,
+        },
     }
 }
 
@@ -55,8 +59,10 @@ fn blocks(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
             Terrain::Gap {
                 width: 0.15,
                 depth: size,
-                edge_radius: radius,
-                friction,
+                surface: Surface {
+                    edge_radius: radius,
+                    friction,
+                },
             },
         ),
         (
@@ -65,8 +71,10 @@ fn blocks(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
                 count: 3,
                 rise: size,
                 run: 0.25,
-                edge_radius: radius,
-                friction,
+                surface: Surface {
+                    edge_radius: radius,
+                    friction,
+                },
             },
         ),
         (
@@ -75,8 +83,10 @@ fn blocks(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
                 count: 3,
                 rise: size,
                 run: 0.8 * size,
-                edge_radius: 0.8 * radius,
-                friction,
+                surface: Surface {
+                    edge_radius: 0.8 * radius,
+                    friction,
+                },
             },
         ),
     ]
@@ -103,8 +113,10 @@ fn slopes(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
             Terrain::Ramp {
                 angle: FRAC_PI_4,
                 length: size,
-                edge_radius: of_slope(FRAC_PI_4),
-                friction,
+                surface: Surface {
+                    edge_radius: of_slope(FRAC_PI_4),
+                    friction,
+                },
             },
         ),
         (
@@ -112,8 +124,10 @@ fn slopes(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
             Terrain::Ridge {
                 height: size,
                 edge_angle: FRAC_PI_2,
-                edge_radius: of_slope(FRAC_PI_2),
-                friction,
+                surface: Surface {
+                    edge_radius: of_slope(FRAC_PI_2),
+                    friction,
+                },
             },
         ),
         (
@@ -152,8 +166,10 @@ fn two_lanes(size: f64, share: f64) -> Vec<(&'static str, Terrain)> {
                 barrier_height: 0.0,
                 barrier_thickness: 0.1,
                 barrier_yaw: 0.0,
-                edge_radius: 0.025 * (1.0 - share),
-                friction,
+                surface: Surface {
+                    edge_radius: 0.025 * (1.0 - share),
+                    friction,
+                },
             }),
         ),
         (
@@ -162,8 +178,10 @@ fn two_lanes(size: f64, share: f64) -> Vec<(&'static str, Terrain)> {
                 yaw: 0.4,
                 height: size,
                 thickness: 0.2,
-                edge_radius: radius,
-                friction,
+                surface: Surface {
+                    edge_radius: radius,
+                    friction,
+                },
             },
         ),
         (
@@ -180,8 +198,10 @@ fn two_lanes(size: f64, share: f64) -> Vec<(&'static str, Terrain)> {
 fn step_of(height: f64, edge_radius: f64) -> Terrain {
     Terrain::Step {
         height,
-        edge_radius,
-        friction: FRICTION,
+        surface: Surface {
+            edge_radius,
+            friction: FRICTION,
+        },
     }
 }
 

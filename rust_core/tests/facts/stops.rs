@@ -2,7 +2,7 @@
 
 use crawler2d_core::{
     Cancel, Change, ClosedSurface, ClosedTrack, Mechanism, Outcome, Run, Scenario, Simulation,
-    Terrain, Track, Wanted, Wheel, escape_force, make_trials, simulate,
+    Surface, Terrain, Track, Wanted, Wheel, escape_force, make_trials, simulate,
 };
 
 use crate::common::*;
@@ -84,8 +84,7 @@ fn seized_on(draw: &mut Draw, wheel: &Wheel) -> Option<Simulation> {
         Terrain::Barrier {
             height,
             thickness: draw.between(0.01, 0.05),
-            edge_radius: 0.0,
-            friction,
+            surface: Surface::sharp(friction),
         }
     };
     scenario.robot.drivetrain.max_deceleration = 1e3;
@@ -264,8 +263,7 @@ fn a_belly_on_a_ridge_hangs_up() {
     scenario.terrain = Terrain::Ridge {
         height: 0.06,
         edge_angle: 1.5,
-        edge_radius: 0.0,
-        friction: 0.6,
+        surface: Surface::sharp(0.6),
     };
     let (_, d) = why(&scenario);
     assert_eq!(d.outcome, Outcome::HungUp);
@@ -292,13 +290,12 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
             [4.0, 0.5],
         ],
         goal: 1.0,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     let mut loaded = 0;
     for friction in [0.5, 0.6, 0.7] {
-        if let Terrain::Points { friction: f, .. } = &mut scenario.terrain {
-            *f = friction;
+        if let Terrain::Points { surface, .. } = &mut scenario.terrain {
+            surface.friction = friction;
         }
         let (_, d) = why(&scenario);
         println!(

@@ -16,7 +16,8 @@ use crate::draw::Draw;
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::{Model, Mount};
 use crate::scenario::{
-    CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Scenario, Terrain, Track, Wheel,
+    CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Scenario, Surface, Terrain,
+    Track, Wheel,
 };
 use crate::terrain::Ground;
 
@@ -77,31 +78,41 @@ fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
     match kind {
         0 => Terrain::Step {
             height,
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         1 => Terrain::Barrier {
             height,
             thickness: draw.between(0.005, 0.2),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         2 => Terrain::Ridge {
             height,
             edge_angle: draw.between(0.3, 2.5),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         3 => Terrain::Gap {
             width: draw.between(0.05, 0.3),
             depth: height,
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         4 => Terrain::Step {
             height,
-            edge_radius: draw.between(0.002, 0.015),
-            friction,
+            surface: Surface {
+                edge_radius: draw.between(0.002, 0.015),
+                friction,
+            },
         },
         _ => {
             let mut x = -1.0;
@@ -114,8 +125,10 @@ fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
             Terrain::Points {
                 points,
                 goal: 0.0,
-                edge_radius,
-                friction,
+                surface: Surface {
+                    edge_radius,
+                    friction,
+                },
             }
         }
     }
@@ -146,8 +159,7 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
     let terrain = Terrain::Barrier {
         height: 0.03,
         thickness: 0.02,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     let profile = Ground::new(&terrain, 0.2)
         .expect("a ground")

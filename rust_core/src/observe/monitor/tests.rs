@@ -11,7 +11,7 @@ use approx::assert_relative_eq;
 use super::*;
 use crate::contact::Contact;
 use crate::geometry::Vector;
-use crate::scenario::{Terrain, TrackOutline};
+use crate::scenario::{Surface, Terrain, TrackOutline};
 use crate::solver::Grip;
 
 /// [s] Time between two readings, a tenth of that between two checks.
@@ -37,8 +37,7 @@ fn ground(points: &[[f64; 2]]) -> Terrain {
     Terrain::Points {
         points: points.to_vec(),
         goal: 1.0,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::geometry::direction;
 use crate::observe::Outcome;
 use crate::scenario::{
     ChainMechanism, Engine, ForceSupport, ForceTrack, GearWheel, LineOfWheels, SegmentalTrack,
-    ShoeShape, Terrain, Track, Wheel,
+    ShoeShape, Surface, Terrain, Track, Wheel,
 };
 
 fn engineer() -> Scenario {
@@ -51,8 +51,7 @@ fn gears(count: u32, height: f64, center: f64) -> Scenario {
     scenario.robot.drivetrain.max_acceleration = 2.0;
     scenario.terrain = Terrain::Step {
         height,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     scenario
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::run::{Record, escape_force, simulate};
 use crate::scenario::{
-    ForceSupport, ForceTrack, LineOfWheels, Scenario, Terrain, TorqueSharing, Track, Wheel,
+    ForceSupport, ForceTrack, LineOfWheels, Scenario, Surface, Terrain, TorqueSharing, Track, Wheel,
 };
 
 fn engineer() -> Scenario {
@@ -22,8 +22,7 @@ fn wheels(count: u32, height: f64) -> Scenario {
     });
     scenario.terrain = Terrain::Step {
         height,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     scenario
 }
@@ -32,8 +31,7 @@ fn barrier(height: f64, thickness: f64) -> Terrain {
     Terrain::Barrier {
         height,
         thickness,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     }
 }
 
@@ -137,8 +135,7 @@ fn a_stop_that_the_robot_leaves_by_itself_is_passing() {
     let mut scenario = engineer();
     scenario.terrain = Terrain::Step {
         height: 0.07,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     let criteria = &mut scenario.criteria;
     (

@@ -1,6 +1,6 @@
 //! What is judged: robots before obstacles, each with small variations from run to run.
 
-use crawler2d_core::{GearWheel, Scenario, Terrain, Track, Wheel};
+use crawler2d_core::{GearWheel, Scenario, Surface, Terrain, Track, Wheel};
 
 use crate::common::*;
 
@@ -36,7 +36,7 @@ impl Scene {
 
 fn friction(terrain: &Terrain) -> f64 {
     match terrain {
-        Terrain::Points { friction, .. } => *friction,
+        Terrain::Points { surface, .. } => surface.friction,
         _ => panic!("a field of blocks is a list of points"),
     }
 }
@@ -55,8 +55,7 @@ fn blocks(draw: &mut Draw, height: f64, friction: f64) -> Terrain {
     Terrain::Points {
         points,
         goal: 0.75,
-        edge_radius: 0.0,
-        friction,
+        surface: Surface::sharp(friction),
     }
 }
 
@@ -127,21 +126,27 @@ pub(crate) fn drawn_scene(seed: u64) -> Scene {
         1 => Terrain::Barrier {
             height,
             thickness: draw.between(0.01, 0.2),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         2 => Terrain::Ridge {
             height,
             edge_angle: draw.between(0.6, 2.0),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         3 => Terrain::Stairs {
             count: 3,
             rise: 0.8 * height,
             run: draw.between(0.15, 0.3),
-            edge_radius,
-            friction,
+            surface: Surface {
+                edge_radius,
+                friction,
+            },
         },
         _ => {
             field = Some(height);

@@ -4,7 +4,7 @@ mod restarts;
 
 use super::*;
 use crate::run::Checked;
-use crate::scenario::{Scenario, Terrain};
+use crate::scenario::{Scenario, Surface, Terrain};
 
 /// A belt in front of a post whose top is at a height [m], moved onto it by `way` from its start.
 fn on_a_post(height: f64, way: Way) -> Simulation {
@@ -14,8 +14,7 @@ fn on_a_post(height: f64, way: Way) -> Simulation {
     scenario.terrain = Terrain::Barrier {
         height,
         thickness: 0.01,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     let checked = Checked::new(&scenario).expect("the scenario is valid");
     let mut simulation = Simulation::new(&checked);

@@ -5,7 +5,9 @@ mod fits;
 use super::*;
 use crate::geometry::Vector;
 use crate::scenario::Scenario;
-use crate::scenario::{BeltTrack, End, Ends, Flippers, LineOfWheels, Terrain, Track, Wheel};
+use crate::scenario::{
+    BeltTrack, End, Ends, Flippers, LineOfWheels, Surface, Terrain, Track, Wheel,
+};
 
 /// The Engineer with front arms, on three wheels in front of a post, after a while.
 fn on_wheels() -> Simulation {
@@ -33,8 +35,7 @@ fn on_wheels() -> Simulation {
     scenario.terrain = Terrain::Barrier {
         height: 0.03,
         thickness: 0.01,
-        edge_radius: 0.0,
-        friction: 0.9,
+        surface: Surface::sharp(0.9),
     };
     let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
     // The post is now in the gap between the middle and the front wheel.
