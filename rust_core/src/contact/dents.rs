@@ -44,8 +44,8 @@ impl Dents {
     }
 
     /// Whether a step that ended with these contacts can have left the dents.
-    pub(crate) fn fits<'a>(&self, contacts: impl Iterator<Item = &'a Contact>) -> bool {
-        let numbers: HashSet<u64> = contacts.map(|c| c.number).collect();
+    pub(crate) fn fits(&self, contacts: &[Contact]) -> bool {
+        let numbers: HashSet<u64> = contacts.iter().map(|c| c.number).collect();
         let fits = |d: &Dent| plausible(&[d.depth]) && numbers.contains(&d.contact);
         self.dents.iter().all(fits)
     }
@@ -53,21 +53,17 @@ impl Dents {
     /// Measures gaps from the bottom of the dents; `last` holds the contacts of the last step.
     ///
     /// If ground in a dent also comes to bear on another face of the part, that face is dented as deep.
-    pub(crate) fn forgive<'a>(
-        &mut self,
-        contacts: &mut [Contact],
-        last: &(impl Iterator<Item = &'a Contact> + Clone),
-    ) {
+    pub(crate) fn forgive(&mut self, contacts: &mut [Contact], last: &[Contact]) {
         if self.dents.is_empty() {
             return;
         }
         for contact in contacts {
-            let is_new = || last.clone().all(|c| c.number != contact.number);
+            let is_new = || last.iter().all(|c| c.number != contact.number);
             let known = self.depth_at(contact);
             if let Some(depth) = known {
                 contact.distance += depth;
             } else if is_new()
-                && let Some(depth) = self.depth_beside(contact, last.clone())
+                && let Some(depth) = self.depth_beside(contact, last)
             {
                 contact.distance += depth;
                 self.dents.push(Dent {
@@ -79,11 +75,11 @@ impl Dents {
     }
 
     /// Lets the dents heal by the actual motion of the robot; the contacts are those after a step.
-    pub(crate) fn heal<'a>(&mut self, contacts: impl Iterator<Item = &'a Contact>) {
+    pub(crate) fn heal(&mut self, contacts: &[Contact]) {
         if self.dents.is_empty() {
             return;
         }
-        let left = contacts.filter_map(|contact| {
+        let left = contacts.iter().filter_map(|contact| {
             let depth = self.depth_at(contact)? - contact.distance.max(0.0);
             (depth > 0.0).then_some(Dent {
                 contact: contact.number,
@@ -101,13 +97,11 @@ impl Dents {
     }
 
     /// [m] Depth of the dent nearest to a contact on the same part, if there is one.
-    fn depth_beside<'a>(
-        &self,
-        contact: &Contact,
-        last: impl Iterator<Item = &'a Contact>,
-    ) -> Option<f64> {
+    fn depth_beside(&self, contact: &Contact, last: &[Contact]) -> Option<f64> {
         let apart = |c: &Contact| (c.point - contact.point).length();
-        let of_part = last.filter(|c| c.part == contact.part && apart(c) < BESIDE.value());
+        let of_part = last
+            .iter()
+            .filter(|c| c.part == contact.part && apart(c) < BESIDE.value());
         let dented = of_part.filter_map(|c| Some((apart(c), self.depth_at(c)?)));
         let nearest = dented.min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, depth)| depth)
@@ -122,16 +116,9 @@ mod tests {
     use crate::geometry::Vector;
 
     fn contact(number: u64, x: f64, distance: f64) -> Contact {
-        let point = Vector::new(x, 0.0);
         Contact {
-            part: 0,
-            facet: 0,
-            edge: 1,
-            point,
-            normal: Vector::Y,
-            distance,
             number,
-            began: point,
+            ..Contact::new(0, (0, 1), (Vector::new(x, 0.0), Vector::Y), distance)
         }
     }
 
@@ -139,14 +126,14 @@ mod tests {
     fn gap(dents: &mut Dents, x: f64, distance: f64) -> f64 {
         let last = contact(1, x, distance);
         let mut contacts = [last];
-        dents.forgive(&mut contacts, &[last].iter());
+        dents.forgive(&mut contacts, &[last]);
         contacts[0].distance
     }
 
     /// A step that ends at this distance.
     fn step(dents: &mut Dents, x: f64, distance: f64) {
         let contact = contact(1, x, gap(dents, x, distance));
-        dents.heal([contact].iter());
+        dents.heal(&[contact]);
     }
 
     #[test]
@@ -171,7 +158,7 @@ mod tests {
         let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
         let last = [contact(1, 0.0, -0.04), contact(2, 0.009, 0.0)];
         let mut contacts = [contact(1, 0.0, -0.04), contact(2, 0.009, -0.02)];
-        dents.forgive(&mut contacts, &last.iter());
+        dents.forgive(&mut contacts, &last);
         assert_eq!(contacts.map(|c| c.distance), [0.0, -0.02]);
     }
 
@@ -183,11 +170,11 @@ mod tests {
             let mut closed = contact(2, x, -0.03);
             closed.part = part;
             let mut contacts = [last[0], closed];
-            dents.forgive(&mut contacts, &last.iter());
-            dents.heal(contacts.iter());
+            dents.forgive(&mut contacts, &last);
+            dents.heal(&contacts);
             // From then on its dent is as deep as the ground was inside it. In micrometres:
             let mut deeper = [contact(2, x, -0.05)];
-            dents.forgive(&mut deeper, &contacts.iter());
+            dents.forgive(&mut deeper, &contacts);
             [contacts[1].distance, deeper[0].distance].map(|gap| (gap * 1e6).round())
         };
         assert_eq!(gap(0.009, 0), [10_000.0, -20_000.0]);

@@ -1,6 +1,6 @@
 //! Contacts between the robot's parts and the ground.
 //!
-//! The equations: docs/physics.md, "Contacts".
+//! The equations: docs/physics.md, "Contacts", and what a step has found: docs/physics.md, "State".
 
 mod dents;
 mod depth;
@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Vector, plausible, plausible_vectors, right_of};
 use crate::robot::Model;
+use crate::solver::Grip;
 use crate::terrain::Profile;
 
 use crate::units::Metres;
@@ -28,7 +29,7 @@ pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
 pub(crate) use reference::solids_of;
 
-/// A place where a part is on the ground or about to be.
+/// A place where a part is on the ground or about to be, and what a step has found there.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Contact {
     /// Index of the part.
@@ -47,17 +48,66 @@ pub(crate) struct Contact {
     pub number: u64,
     /// [m] The point at which it closed.
     pub began: Vector,
+    /// [N] Mean normal force over the step; 0 when just found, as all that follows.
+    pub normal_force: f64,
+    /// [N] Mean friction on the robot over the step, along the normal turned by -90 degrees.
+    pub friction_force: f64,
+    /// [m/s] Velocity of the surface over the ground in the same direction.
+    pub surface_speed: f64,
+    /// [N] Normal force from which the next step starts.
+    pub normal_guess: f64,
+    /// [N] Friction from which the next step starts.
+    pub friction_guess: f64,
+    /// Its last grip.
+    pub grip: Grip,
 }
 
 impl Contact {
-    /// Whether a robot and its lanes have the part and the ground of this contact.
+    /// One that has not carried a load yet.
+    pub(crate) fn new(
+        part: usize,
+        (facet, edge): (usize, i32),
+        (point, normal): (Vector, Vector),
+        distance: f64,
+    ) -> Self {
+        Self {
+            part,
+            facet,
+            edge,
+            point,
+            normal,
+            distance,
+            number: 0,
+            began: point,
+            normal_force: 0.0,
+            friction_force: 0.0,
+            surface_speed: 0.0,
+            normal_guess: 0.0,
+            friction_guess: 0.0,
+            grip: Grip::Open,
+        }
+    }
+
+    /// [N] Force on the robot.
+    pub(crate) fn force(&self) -> Vector {
+        self.normal * self.normal_force + right_of(self.normal) * self.friction_force
+    }
+
+    /// Whether a robot and its lanes have the part and the ground of this contact, and its forces are plausible.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         let lane = model.parts.get(self.part).and_then(|p| lanes.get(p.lane));
         lane.is_some_and(|lane| {
             let edges = -1..lane.edges.len() as i32;
             self.facet + 1 < lane.points.len() && edges.contains(&self.edge)
         }) && plausible_vectors(&[self.point, self.normal, self.began])
-            && plausible(&[self.distance])
+            && plausible(&[
+                self.distance,
+                self.normal_force,
+                self.friction_force,
+                self.surface_speed,
+                self.normal_guess,
+                self.friction_guess,
+            ])
     }
 }
 

@@ -131,16 +131,9 @@ impl ReferenceContact {
             for point in manifold.points.iter().filter(|p| p.dist < prediction) {
                 let on_solid = pose.transform_point(point.local_p2);
                 let middle = 0.5 * (point.local_p1 + on_solid);
-                contacts.push(Contact {
-                    part: body,
-                    facet,
-                    edge: profile.edge_at(facet, point.local_p1),
-                    point: middle,
-                    normal: manifold.local_n1,
-                    distance: point.dist,
-                    number: 0,
-                    began: middle,
-                });
+                let edge = profile.edge_at(facet, point.local_p1);
+                let place = (middle, manifold.local_n1);
+                contacts.push(Contact::new(body, (facet, edge), place, point.dist));
             }
         }
     }

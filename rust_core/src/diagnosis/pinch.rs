@@ -14,7 +14,10 @@ impl Scene<'_> {
     /// Whether two neighbouring shoes bear on the ground inside the track where the gap between them is closing: bent
     /// apart, as round an end of the track, and about to be straightened, as at the leading end.
     pub(super) fn pinches(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
-        let bearing = stance.bearings.iter().filter(|b| b.normal_force > 0.0);
+        let bearing = stance
+            .bearings
+            .iter()
+            .filter(|b| b.contact.normal_force > 0.0);
         let mut durations = vec![0.0; self.running.shoes.len()];
         for (bearing, contact) in bearing.zip(contacts).filter(|(_, c)| c.in_pocket) {
             if let Some(shoe) = self.model.parts[contact.body].mount.shoe() {

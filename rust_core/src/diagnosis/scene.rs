@@ -52,7 +52,7 @@ impl Scene<'_> {
                 .bearings
                 .iter()
                 .filter(|b| self.bears_on(&place, &b.contact));
-            let force = on_it.map(|b| b.normal_force).sum();
+            let force = on_it.map(|b| b.contact.normal_force).sum();
             let kinds = place.bodies.map(|body| self.model.parts[body].kind);
             LoadedIntrusion {
                 carrier: self.model.carrier(place.mount),
@@ -90,8 +90,9 @@ impl Scene<'_> {
         /// Share of the friction cone that a rattling contact must use, on average.
         const AT_LIMIT: f64 = 0.95;
 
-        let limit = self.friction(bearing.contact.part) * bearing.normal_force;
-        self.is_moving(bearing.slip) && bearing.friction_force.abs() >= AT_LIMIT * limit
+        let contact = &bearing.contact;
+        let limit = self.friction(contact.part) * contact.normal_force;
+        self.is_moving(contact.surface_speed) && contact.friction_force.abs() >= AT_LIMIT * limit
     }
 
     /// The facts from which the mechanism follows.
@@ -99,7 +100,7 @@ impl Scene<'_> {
         let contacts: Vec<StopContact> = stance
             .bearings
             .iter()
-            .filter(|b| b.normal_force > 0.0)
+            .filter(|b| b.contact.normal_force > 0.0)
             .map(|b| StopContact {
                 number: b.contact.number,
                 body: b.contact.part,
@@ -108,9 +109,9 @@ impl Scene<'_> {
                 edge: b.contact.edge,
                 point: b.contact.point,
                 normal: b.contact.normal,
-                normal_force: b.normal_force,
-                friction_force: b.friction_force,
-                surface_speed: b.slip,
+                normal_force: b.contact.normal_force,
+                friction_force: b.contact.friction_force,
+                surface_speed: b.contact.surface_speed,
                 slides: self.slides(b),
                 in_pocket: pocket.is_some_and(|p| self.bears_on(&p.place, &b.contact)),
                 side: self.lanes[self.model.parts[b.contact.part].lane].side,
@@ -153,7 +154,10 @@ impl Scene<'_> {
         /// Share of the surface speed that is along the normal; zero for a round wheel, except for rounding.
         const INTO_GROUND: f64 = 0.05;
 
-        let bearing = stance.bearings.iter().filter(|b| b.normal_force > 0.0);
+        let bearing = stance
+            .bearings
+            .iter()
+            .filter(|b| b.contact.normal_force > 0.0);
         bearing.zip(contacts).any(|(bearing, contact)| {
             // A surface speed of 1 moves the surface by -spin_lever / drive_radius along the normal.
             let into_ground = self.levers(stance, &bearing.contact).normal.spin_lever;
@@ -186,7 +190,7 @@ impl Scene<'_> {
 
     /// The same by the motion of the surfaces alone: what moves on the ground slides, whatever force was found there.
     pub(super) fn statics_of_surfaces(&self, stance: &Stance) -> Option<Statics> {
-        let slides = |b: &Bearing| self.is_moving(b.slip);
+        let slides = |b: &Bearing| self.is_moving(b.contact.surface_speed);
         self.statics_where(stance, &slides)
     }
 
@@ -197,7 +201,11 @@ impl Scene<'_> {
         }
         let pose = Pose::new(stance.position, stance.angle);
         let supports = stance.bearings.iter().map(|b| {
-            let slides = if slides(b) { b.slip.signum() } else { 0.0 };
+            let slides = if slides(b) {
+                b.contact.surface_speed.signum()
+            } else {
+                0.0
+            };
             self.support(pose, &b.contact, slides)
         });
         let of_drive = |k: usize| {

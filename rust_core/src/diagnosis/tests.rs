@@ -67,18 +67,10 @@ impl Stage {
     fn stance(&self, shares: [f64; 2]) -> Stance {
         let bearing = |(x, facet, share): (f64, usize, f64)| Bearing {
             contact: Contact {
-                part: 0,
-                facet,
-                edge: -1,
-                point: Vector::new(x, POST),
-                normal: Vector::Y,
-                distance: 0.0,
                 number: facet as u64,
-                began: Vector::ZERO,
+                normal_force: share * self.weight(),
+                ..Contact::new(0, (facet, -1), (Vector::new(x, POST), Vector::Y), 0.0)
             },
-            normal_force: share * self.weight(),
-            friction_force: 0.0,
-            slip: 0.0,
             duration: 1.0,
         };
         let places = [(-0.1, 2, shares[0]), (0.1, 6, shares[1])];

@@ -89,16 +89,8 @@ mod tests {
         let points = [-slope(-0.2), Vector::ZERO, middle, middle + slope(-bend)];
         let points = points.map(|point| [point.x, point.y]);
         let lane = Profile::new("terrain", &points, 0.0, 0.5, true).expect("a profile");
-        let contact = Contact {
-            part: 0,
-            facet: 1,
-            edge: -1,
-            point: middle - Vector::new(0.003, 0.0),
-            normal: Vector::Y,
-            distance: 0.0,
-            number: 0,
-            began: Vector::ZERO,
-        };
+        let point = middle - Vector::new(0.003, 0.0);
+        let contact = Contact::new(0, (1, -1), (point, Vector::Y), 0.0);
         Face::of(&contact, &lane)
     }
 

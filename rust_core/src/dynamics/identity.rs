@@ -11,7 +11,6 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
-use super::LoadedContact;
 use crate::contact::Contact;
 use crate::robot::Model;
 use crate::terrain::Profile;
@@ -64,7 +63,7 @@ struct Lost {
 
 impl Found {
     /// The contacts of the `last` step that are gone.
-    fn gone<'a>(&'a self, last: &'a [LoadedContact]) -> impl Iterator<Item = &'a LoadedContact> {
+    fn gone<'a>(&'a self, last: &'a [Contact]) -> impl Iterator<Item = &'a Contact> {
         let both = last.iter().zip(&self.taken);
         both.filter_map(|(l, taken)| (!taken).then_some(l))
     }
@@ -73,12 +72,7 @@ impl Found {
 impl Identity {
     /// Numbers the contacts of a step in which nothing moves farther than `travel` [m] after the `last` one; both are
     /// sorted by part and x.
-    pub(super) fn recognise(
-        &mut self,
-        last: &[LoadedContact],
-        contacts: &mut [Contact],
-        travel: f64,
-    ) {
+    pub(super) fn recognise(&mut self, last: &[Contact], contacts: &mut [Contact], travel: f64) {
         let near = SAME_PLACE.value().max(2.0 * travel);
         let found = &mut self.found;
         found.given = self.given;
@@ -100,15 +94,12 @@ impl Identity {
     }
 
     /// The contacts of the `last` step that were not recognised.
-    pub(super) fn gone<'a>(
-        &'a self,
-        last: &'a [LoadedContact],
-    ) -> impl Iterator<Item = &'a LoadedContact> {
+    pub(super) fn gone<'a>(&'a self, last: &'a [Contact]) -> impl Iterator<Item = &'a Contact> {
         self.found.gone(last)
     }
 
     /// Keeps what was recognised in a step of `h` [s] after the `last` one.
-    pub(super) fn keep(&mut self, last: &[LoadedContact], h: f64) {
+    pub(super) fn keep(&mut self, last: &[Contact], h: f64) {
         let found = &self.found;
         self.given = found.given;
         for lost in &mut self.lost {
@@ -119,7 +110,7 @@ impl Identity {
             .retain(|lost| again.next() != Some(&true) && lost.age < REMEMBERED.value());
         let gone = found.gone(last);
         self.lost.extend(gone.map(|l| Lost {
-            contact: l.contact,
+            contact: *l,
             age: 0.0,
         }));
         let too_many = self.lost.len().saturating_sub(MOST_LOST);
@@ -135,24 +126,24 @@ impl Identity {
     /// `from` are too far left for this and all later contacts.
     fn take_nearest(
         &mut self,
-        last: &[LoadedContact],
+        last: &[Contact],
         from: &mut usize,
         contact: &Contact,
         near: f64,
     ) -> Option<Contact> {
         let place = (contact.part, contact.point.x);
-        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + near) < place;
+        let behind = |l: &Contact| (l.part, l.point.x + near) < place;
         while last.get(*from).is_some_and(behind) {
             *from += 1;
         }
         let within = (*from..last.len()).take_while(|i| {
-            let known = &last[*i].contact;
+            let known = &last[*i];
             (known.part, known.point.x - near) <= place
         });
         let free = within.filter(|i| !self.found.taken[*i]);
-        let nearest = nearest(free.map(|i| (i, last[i].contact)), contact, near)?;
+        let nearest = nearest(free.map(|i| (i, last[i])), contact, near)?;
         self.found.taken[nearest] = true;
-        Some(last[nearest].contact)
+        Some(last[nearest])
     }
 
     /// Takes the number of the nearest contact that has opened, if it is near enough.
@@ -172,11 +163,11 @@ impl Identity {
     }
 
     /// Whether these can be the contacts of the last step; no two known contacts may share a number.
-    pub(super) fn fits(&self, last: &[LoadedContact], model: &Model, lanes: &[Profile]) -> bool {
+    pub(super) fn fits(&self, last: &[Contact], model: &Model, lanes: &[Profile]) -> bool {
         let fits = |lost: &Lost| {
             lost.contact.fits(model, lanes) && (0.0..REMEMBERED.value()).contains(&lost.age)
         };
-        let last = last.iter().map(|l| l.contact.number);
+        let last = last.iter().map(|l| l.number);
         let lost = self.lost.iter().map(|lost| lost.contact.number);
         let mut numbers: Vec<u64> = last.chain(lost).collect();
         numbers.sort_unstable();
@@ -206,20 +197,20 @@ fn nearest(
 
 /// The contacts of the last step, looked up by number.
 pub(super) struct Numbered<'a> {
-    contacts: &'a [LoadedContact],
+    contacts: &'a [Contact],
     /// Likely position of the next one: contacts come in the same order as in the last step.
     next: usize,
 }
 
 impl<'a> Numbered<'a> {
-    pub(super) fn new(contacts: &'a [LoadedContact]) -> Self {
+    pub(super) fn new(contacts: &'a [Contact]) -> Self {
         Self { contacts, next: 0 }
     }
 
     /// The contact with a number, if the last step had it.
-    pub(super) fn get(&mut self, number: u64) -> Option<LoadedContact> {
+    pub(super) fn get(&mut self, number: u64) -> Option<Contact> {
         let mut all = (self.next..self.contacts.len()).chain(0..self.next);
-        let found = all.find(|i| self.contacts[*i].contact.number == number)?;
+        let found = all.find(|i| self.contacts[*i].number == number)?;
         self.next = found + 1;
         Some(self.contacts[found])
     }

@@ -5,7 +5,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::Dynamics;
-use super::LoadedContact;
 use super::chain::{Chain, ChainImpulses};
 use super::identity::Identity;
 use crate::contact::Contact;
@@ -18,15 +17,15 @@ use crate::terrain::Profile;
 pub(crate) struct Impulses {
     push: Option<f64>,
     motors: Vec<Hold>,
-    pub(super) contacts: Vec<LoadedContact>,
+    pub(super) contacts: Vec<Contact>,
     pub(super) identity: Identity,
     chains: Vec<ChainImpulses>,
 }
 
 impl Impulses {
     /// The contacts of the step.
-    pub(crate) fn contacts(&self) -> impl Iterator<Item = &Contact> {
-        self.contacts.iter().map(|l| &l.contact)
+    pub(crate) fn contacts(&self) -> &[Contact] {
+        &self.contacts
     }
 }
 
@@ -73,7 +72,7 @@ impl Dynamics {
         self.identity = impulses.identity;
         // As in `Model::in_order`, a model without the belly has one part less.
         let parts = self.model.parts.len();
-        self.loaded.retain(|l| l.contact.part < parts);
+        self.loaded.retain(|l| l.part < parts);
         self.identity.keep_parts(parts);
         for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
             chain.start_from(impulses);

@@ -21,7 +21,6 @@ mod forces;
 mod identity;
 mod impulses;
 mod levers;
-mod loaded;
 mod local_error;
 mod meeting;
 mod motors;
@@ -57,7 +56,6 @@ use crate::units::Seconds;
 pub use chains::ChainReading;
 pub(crate) use impulses::Impulses;
 pub(crate) use levers::Levers;
-pub(crate) use loaded::LoadedContact;
 pub(crate) use push::push_axis;
 pub(crate) use set_point::SetPoint;
 pub(crate) use state::{
@@ -90,7 +88,7 @@ pub(crate) struct Dynamics {
     chains: Vec<Chain>,
     /// Speed of the fastest tip relative to the chassis, in units of the surface speed.
     tip_speed: f64,
-    loaded: Vec<LoadedContact>,
+    loaded: Vec<Contact>,
     /// The state of the last step with the velocities of its motion.
     moved: State,
     identity: Identity,
@@ -123,7 +121,7 @@ impl Dynamics {
     }
 
     /// The contacts of the last step with their forces.
-    pub(crate) fn loaded(&self) -> &[LoadedContact] {
+    pub(crate) fn loaded(&self) -> &[Contact] {
         &self.loaded
     }
 
@@ -140,7 +138,7 @@ impl Dynamics {
     /// bears nowhere.
     pub(crate) fn has_lost(&self, travel: f64) -> bool {
         let mut gone = self.identity.gone(&self.loaded);
-        gone.any(|l| (0.0..travel).contains(&l.contact.distance))
+        gone.any(|l| (0.0..travel).contains(&l.distance))
     }
 
     /// Gives the contacts of a step in which nothing moves farther than `travel` [m] their numbers.
@@ -153,18 +151,14 @@ impl Dynamics {
     pub(crate) fn take_over(&mut self, contacts: &mut [Contact]) {
         self.recognise(contacts, 0.0);
         self.identity.keep(&self.loaded, 0.0);
-        self.loaded = contacts.iter().copied().map(LoadedContact::open).collect();
+        self.loaded = contacts.to_vec();
     }
 
     /// Takes the contacts that something else has found in a step of `h` [s] in which nothing moved farther than `travel`
     /// [m], and numbers them.
-    pub(crate) fn take_contacts(&mut self, mut found: Vec<LoadedContact>, travel: f64, h: f64) {
-        let mut contacts: Vec<Contact> = found.iter().map(|l| l.contact).collect();
-        self.recognise(&mut contacts, travel);
+    pub(crate) fn take_contacts(&mut self, mut found: Vec<Contact>, travel: f64, h: f64) {
+        self.recognise(&mut found, travel);
         self.identity.keep(&self.loaded, h);
-        for (loaded, contact) in found.iter_mut().zip(contacts) {
-            loaded.contact = contact;
-        }
         self.loaded = found;
     }
 
@@ -374,17 +368,15 @@ impl Dynamics {
         self.loaded.clear();
         let found = self.touches.iter().zip(&self.problem.contacts);
         for ((touch, solved), contact) in found.zip(contacts) {
-            self.loaded.push(LoadedContact {
-                contact: Contact {
-                    distance: touch.gap,
-                    ..*contact
-                },
+            self.loaded.push(Contact {
+                distance: touch.gap,
                 normal_force: solved.normal_impulse / h,
                 friction_force: solved.friction_impulse / h,
                 surface_speed: solved.slip(state),
                 normal_guess: touch.normal_guess,
                 friction_guess: touch.friction_guess,
                 grip: solved.grip,
+                ..*contact
             });
         }
         self.remember_rests();

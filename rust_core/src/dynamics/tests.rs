@@ -106,15 +106,9 @@ fn rotor_in_the_air_resists_only_what_turns_over_the_chassis() {
 
 /// A belt clamped between a floor and a ceiling that follow the robot.
 fn clamped(state: &State) -> [Contact; 2] {
-    let at = |y: f64, up: f64| Contact {
-        part: 0,
-        facet: 0,
-        edge: -1,
-        point: state.center + Vector::new(0.0, y),
-        normal: Vector::new(0.0, up),
-        distance: -3e-7,
-        number: 0,
-        began: Vector::ZERO,
+    let at = |y: f64, up: f64| {
+        let point = state.center + Vector::new(0.0, y);
+        Contact::new(0, (0, -1), (point, Vector::new(0.0, up)), -3e-7)
     };
     [at(-0.064, 1.0), at(0.064, -1.0)]
 }
@@ -191,16 +185,8 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
                 let count = draw(1.0, 9.0) as usize;
                 let mut contact = || {
                     let (place, normal) = (draw(0.0, 6.3), draw(0.0, 6.3));
-                    Contact {
-                        part: 0,
-                        facet: 0,
-                        edge: -1,
-                        point: state.center + 0.2 * direction(place),
-                        normal: direction(normal),
-                        distance: 0.0,
-                        number: 0,
-                        began: Vector::ZERO,
-                    }
+                    let point = state.center + 0.2 * direction(place);
+                    Contact::new(0, (0, -1), (point, direction(normal)), 0.0)
                 };
                 let mut contacts: Vec<Contact> = (0..count).map(|_| contact()).collect();
                 contacts.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));

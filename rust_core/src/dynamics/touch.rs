@@ -2,7 +2,6 @@
 //!
 //! The equations: docs/physics.md, "Softness".
 
-use super::LoadedContact;
 use super::face::Face;
 use super::levers::{Levers, Place};
 use super::meeting::Meeting;
@@ -47,7 +46,7 @@ impl Touch {
     /// sees it; `last` is the same contact in the last step.
     pub(super) fn new(
         contact: &crate::contact::Contact,
-        last: Option<LoadedContact>,
+        last: Option<crate::contact::Contact>,
         state: &State,
         model: &Model,
         time: f64,
@@ -104,7 +103,7 @@ impl Touch {
     pub(super) fn continued(
         mut self,
         mut solved: Contact,
-        last: Option<LoadedContact>,
+        last: Option<crate::contact::Contact>,
         friction: f64,
     ) -> (Self, Contact) {
         solved.friction = friction;

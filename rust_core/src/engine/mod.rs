@@ -17,7 +17,8 @@ use rapier2d_f64::prelude::{
     ImpulseJointHandle, JointAxis, MultibodyJointHandle, PhysicsWorld, RigidBodyHandle,
 };
 
-use crate::dynamics::{LoadedContact, State};
+use crate::contact::Contact;
+use crate::dynamics::State;
 use crate::geometry::Vector;
 use crate::robot::Model;
 use crate::terrain::Ground;
@@ -77,7 +78,7 @@ impl EngineWorld {
         state: &mut State,
         command: Command,
         h: f64,
-    ) -> Vec<LoadedContact> {
+    ) -> Vec<Contact> {
         self.give(model, state, command);
         self.remember();
         self.world.integration_parameters.dt = h;

@@ -7,7 +7,7 @@ use rapier2d_f64::prelude::{ContactPair, JointAxis, RigidBodyHandle};
 use super::EngineWorld;
 use super::motion::Motion;
 use crate::contact::Contact;
-use crate::dynamics::{LoadedContact, State};
+use crate::dynamics::State;
 use crate::geometry::{Vector, cross, right_of};
 use crate::robot::Model;
 use crate::solver::Grip;
@@ -19,13 +19,7 @@ const SAME_POINT: f64 = 1e-9;
 
 impl EngineWorld {
     /// Reads where everything is after a step of `h` [s], and what the drives did in it against these contacts.
-    pub(super) fn read(
-        &self,
-        model: &Model,
-        contacts: &[LoadedContact],
-        state: &mut State,
-        h: f64,
-    ) {
+    pub(super) fn read(&self, model: &Model, contacts: &[Contact], state: &mut State, h: f64) {
         let rotation = *self.world.bodies[self.robot.chassis].rotation();
         let chassis = Motion::of(&self.world, self.robot.chassis);
         state.angle += to_half_turn(rotation.angle() - state.angle);
@@ -49,7 +43,7 @@ impl EngineWorld {
     fn read_drive(
         &self,
         model: &Model,
-        contacts: &[LoadedContact],
+        contacts: &[Contact],
         (state, drive): (&mut State, usize),
         h: f64,
     ) {
@@ -67,8 +61,8 @@ impl EngineWorld {
             way -= to_half_turn(body.rotation().angle() - known) * wheel.radius;
             speed += (state.angular_velocity - spin) * wheel.radius;
             gained += wheel.inertia * (spin - wheel.spin_before) / wheel.radius;
-            let on_it = contacts.iter().filter(|l| l.contact.part == wheel.part);
-            let moments = on_it.map(|l| cross(l.contact.point - wheel.center_before, l.force()));
+            let on_it = contacts.iter().filter(|l| l.part == wheel.part);
+            let moments = on_it.map(|l| cross(l.point - wheel.center_before, l.force()));
             traction += moments.sum::<f64>() / wheel.radius;
         }
         let drive = &mut state.drives[drive];
@@ -89,12 +83,12 @@ impl EngineWorld {
     }
 
     /// The contacts of a step of `h` [s], sorted by part and x, where they were at its beginning.
-    pub(super) fn contacts(&self, model: &Model, ground: &Ground, h: f64) -> Vec<LoadedContact> {
+    pub(super) fn contacts(&self, model: &Model, ground: &Ground, h: f64) -> Vec<Contact> {
         let pairs = self.world.narrow_phase.contact_pairs();
-        let mut found: Vec<LoadedContact> = pairs
+        let mut found: Vec<Contact> = pairs
             .flat_map(|pair| self.contacts_of(pair, model, ground, h))
             .collect();
-        let place = |l: &LoadedContact| (l.contact.part, l.contact.point.x, l.contact.normal.x);
+        let place = |l: &Contact| (l.part, l.point.x, l.normal.x);
         found.sort_by(|a, b| {
             let (a, b) = (place(a), place(b));
             a.0.cmp(&b.0)
@@ -110,7 +104,7 @@ impl EngineWorld {
         model: &'a Model,
         ground: &'a Ground,
         h: f64,
-    ) -> impl Iterator<Item = LoadedContact> + 'a {
+    ) -> impl Iterator<Item = Contact> + 'a {
         let colliders = &self.world.colliders;
         // The ground has no body.
         let ground_first = colliders[pair.collider1].parent().is_none();
@@ -153,16 +147,16 @@ impl EngineWorld {
         body: RigidBodyHandle,
         (normal_force, friction_force): (f64, f64),
         friction: f64,
-    ) -> LoadedContact {
+    ) -> Contact {
         let velocity = Motion::of(&self.world, body).at(contact.point);
-        LoadedContact {
+        Contact {
             normal_force,
             friction_force,
             surface_speed: velocity.dot(right_of(contact.normal)),
             normal_guess: normal_force,
             friction_guess: friction_force,
             grip: grip(normal_force, friction_force, friction),
-            contact,
+            ..contact
         }
     }
 }
@@ -190,25 +184,17 @@ fn contact_at(
     distance: f64,
 ) -> Contact {
     let middle = on_ground + 0.5 * distance * normal;
-    Contact {
-        part,
-        facet,
-        edge: lane.edge_at(facet, on_ground),
-        point: middle,
-        normal,
-        distance,
-        number: 0,
-        began: middle,
-    }
+    let edge = lane.edge_at(facet, on_ground);
+    Contact::new(part, (facet, edge), (middle, normal), distance)
 }
 
 /// The same contacts, with one in place of several on the same part at the same point: at a corner of the ground the
 /// engine has one for each facet, whose forces add up.
-fn merged(contacts: Vec<LoadedContact>) -> Vec<LoadedContact> {
-    let mut kept: Vec<LoadedContact> = Vec::with_capacity(contacts.len());
+fn merged(contacts: Vec<Contact>) -> Vec<Contact> {
+    let mut kept: Vec<Contact> = Vec::with_capacity(contacts.len());
     for next in contacts {
         let same = kept.iter_mut().rev().find(|last| {
-            let (a, b) = (&last.contact, &next.contact);
+            let (a, b) = (&**last, &next);
             a.part == b.part
                 && (a.point - b.point).length() < SAME_POINT
                 && 1.0 - a.normal.dot(b.normal) < SAME_DIRECTION

@@ -1,18 +1,18 @@
 //! A signature of what bears: while it is the same, the same parts bear on the same places.
 
-use crate::dynamics::LoadedContact;
+use crate::contact::Contact;
 
 /// The signature of the loaded contacts; their order does not matter.
-pub(super) fn signature(loaded: &[LoadedContact]) -> u64 {
+pub(super) fn signature(loaded: &[Contact]) -> u64 {
     let bearing = loaded.iter().filter(|l| l.normal_force > 0.0);
     sum(bearing.map(|l| {
         // Nor does it matter on which side of a vertex an edge was found.
-        let place = if l.contact.edge >= 0 {
-            l.contact.edge as u64 + (1 << 32)
+        let place = if l.edge >= 0 {
+            l.edge as u64 + (1 << 32)
         } else {
-            l.contact.facet as u64
+            l.facet as u64
         };
-        (l.contact.part as u64, place)
+        (l.part as u64, place)
     }))
 }
 
@@ -37,27 +37,12 @@ mod tests {
     use super::*;
     use crate::contact::Contact;
     use crate::geometry::Vector;
-    use crate::solver::Grip;
 
     /// Parts that bear on facets, each with this force [N].
-    fn on_facets(bearing: &[(usize, usize)], force: f64) -> Vec<LoadedContact> {
-        let loaded = |(part, facet): &(usize, usize)| LoadedContact {
-            contact: Contact {
-                part: *part,
-                facet: *facet,
-                edge: -1,
-                point: Vector::ZERO,
-                normal: Vector::Y,
-                distance: 0.0,
-                number: 0,
-                began: Vector::ZERO,
-            },
+    fn on_facets(bearing: &[(usize, usize)], force: f64) -> Vec<Contact> {
+        let loaded = |(part, facet): &(usize, usize)| Contact {
             normal_force: force,
-            friction_force: 0.0,
-            surface_speed: 0.0,
-            normal_guess: 0.0,
-            friction_guess: 0.0,
-            grip: Grip::Sticks,
+            ..Contact::new(*part, (*facet, -1), (Vector::ZERO, Vector::Y), 0.0)
         };
         bearing.iter().map(loaded).collect()
     }
@@ -82,7 +67,7 @@ mod tests {
     fn edges_are_told_from_facets_but_not_by_the_facet_they_were_found_on() {
         let on_edge = |facet| {
             let mut loaded = on_facets(&[(3, facet)], 1.0);
-            loaded[0].contact.edge = 7;
+            loaded[0].edge = 7;
             signature(&loaded)
         };
         assert_eq!(on_edge(6), on_edge(7));

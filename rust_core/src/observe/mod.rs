@@ -11,7 +11,7 @@ mod seen;
 mod shaking;
 mod signals;
 
-pub(crate) use contacts::{Load, Loads};
+pub(crate) use contacts::Loads;
 pub(crate) use events::IntrusionWatch;
 pub use events::{Event, EventKind};
 pub(crate) use monitor::Monitor;

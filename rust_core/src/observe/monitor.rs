@@ -6,9 +6,10 @@ mod tests;
 use std::sync::Arc;
 
 use super::seen::{Anchor, LOOK, Seen};
-use super::{Event, Load, Outcome, Reading, Signals, Stance, bearing};
+use super::{Event, Outcome, Reading, Signals, Stance, bearing};
+use crate::contact::Contact;
 use crate::contact::TrackEnvelope;
-use crate::dynamics::{ChainReading, DriveState, LoadedContact};
+use crate::dynamics::{ChainReading, DriveState};
 use crate::geometry::{Pose, Vector, end_discs};
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
@@ -76,7 +77,7 @@ impl Monitor {
         &mut self,
         (now, forward_speed): (&Reading, f64),
         command: f64,
-        loaded: &[LoadedContact],
+        loaded: &[Contact],
         drives: impl Iterator<Item = (DriveState, f64)> + Clone,
         running: &Running,
     ) {
@@ -93,7 +94,7 @@ impl Monitor {
         seen.max_angle = seen.max_angle.max(now.chassis_angle);
         seen.min_angle = seen.min_angle.min(now.chassis_angle);
         for l in loaded {
-            seen.max_penetration = seen.max_penetration.max(-l.contact.distance);
+            seen.max_penetration = seen.max_penetration.max(-l.distance);
         }
         let length = 2.0 * self.half_length;
         seen.progress.advance(now, command, length, dt);
@@ -182,9 +183,9 @@ impl Monitor {
                 Vec::new()
             }
         });
-        let loads: Vec<Load> = self.seen.loads.drain().collect();
+        let loads: Vec<Contact> = self.seen.loads.drain().collect();
         let with_force = inside.filter(|i| i.edge >= 0).map(|i| {
-            let bears = |l: &&Load| i.bears(lanes, &self.parts, &l.contact);
+            let bears = |l: &&Contact| i.bears(lanes, &self.parts, l);
             let force = loads.iter().filter(bears).map(|l| l.normal_force).sum();
             (i, force)
         });
@@ -219,7 +220,7 @@ impl Monitor {
     }
 
     /// If the state does not change at all, it will not change later either: the run may end.
-    fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[LoadedContact]) {
+    fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[Contact]) {
         let here = Anchor {
             since: now.time,
             x: now.position.x,

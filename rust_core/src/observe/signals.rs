@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Reading;
 use crate::contact::Contact;
-use crate::dynamics::{DriveState, LoadedContact};
+use crate::dynamics::DriveState;
 use crate::geometry::Vector;
 use crate::robot::Model;
 use crate::terrain::Profile;
@@ -54,14 +54,8 @@ struct Summed {
 /// Means of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bearing {
-    /// The contact, with mean point and normal.
+    /// The contact, with mean point, normal, forces and surface speed.
     pub contact: Contact,
-    /// [N] Mean normal force.
-    pub normal_force: f64,
-    /// [N] Mean friction on the robot, along the normal turned by -90 degrees.
-    pub friction_force: f64,
-    /// [m/s] Mean slip velocity of the surface over the ground, in the same direction.
-    pub slip: f64,
     /// Share of the time during which it carried a load.
     pub duration: f64,
 }
@@ -95,7 +89,7 @@ impl Signals {
     pub(crate) fn add(
         &mut self,
         (now, dt): (&Reading, f64),
-        loaded: &[LoadedContact],
+        loaded: &[Contact],
         drives: impl Iterator<Item = (DriveState, f64)>,
         window: f64,
     ) {
@@ -151,7 +145,7 @@ impl Block {
     fn add(
         &mut self,
         (now, dt): (&Reading, f64),
-        loaded: &[LoadedContact],
+        loaded: &[Contact],
         drives: impl Iterator<Item = (DriveState, f64)>,
     ) {
         let here = [now.position.x, now.position.y, now.chassis_angle];
@@ -171,8 +165,7 @@ impl Block {
             self.drives[k].force += drive.force * dt;
             self.drives[k].speed += speed * dt;
         }
-        let bears =
-            |l: &&LoadedContact| l.normal_force > 0.0 || l.contact.distance < TOUCHES.value();
+        let bears = |l: &&Contact| l.normal_force > 0.0 || l.distance < TOUCHES.value();
         for l in loaded.iter().filter(bears) {
             self.gather(&Summed::new(l, dt));
         }
@@ -227,17 +220,17 @@ impl Summed {
             && sums.iter().all(|sum| sum.is_finite())
     }
 
-    fn new(l: &LoadedContact, dt: f64) -> Self {
+    fn new(l: &Contact, dt: f64) -> Self {
         /// [N] Less than any force that counts: a contact without one has a position all the same.
         const FAINT: f64 = 1e-30;
 
         let weight = l.normal_force.max(FAINT) * dt;
         Self {
-            last: l.contact,
+            last: *l,
             normal_force: l.normal_force * dt,
             friction_force: l.friction_force * dt,
-            point: l.contact.point * weight,
-            normal: l.contact.normal * weight,
+            point: l.point * weight,
+            normal: l.normal * weight,
             slip: l.surface_speed * weight,
             weight,
             loaded: if l.normal_force > 0.0 { dt } else { 0.0 },
@@ -260,11 +253,11 @@ impl Summed {
             contact: Contact {
                 point: self.point / self.weight,
                 normal: self.normal.normalize(),
+                normal_force: self.normal_force * share,
+                friction_force: self.friction_force * share,
+                surface_speed: self.slip / self.weight,
                 ..self.last
             },
-            normal_force: self.normal_force * share,
-            friction_force: self.friction_force * share,
-            slip: self.slip / self.weight,
             duration: self.loaded * share,
         }
     }

@@ -81,21 +81,20 @@ impl ContactTable {
     pub(crate) fn append(&mut self, simulation: &Simulation, time: f64, loads: &mut Loads) {
         for r in loads.drain() {
             self.time.push(time);
-            self.contact.push(r.contact.number as i64);
-            self.lane.push(simulation.side(r.contact.part) as i64);
-            self.body.push(r.contact.part as i64);
-            self.body_kind
-                .push(simulation.part_kind(r.contact.part) as i64);
-            self.segment.push(r.contact.facet as i64);
-            self.edge.push(i64::from(r.contact.edge));
-            self.x.push(r.contact.point.x);
-            self.y.push(r.contact.point.y);
-            self.normal_x.push(r.contact.normal.x);
-            self.normal_y.push(r.contact.normal.y);
+            self.contact.push(r.number as i64);
+            self.lane.push(simulation.side(r.part) as i64);
+            self.body.push(r.part as i64);
+            self.body_kind.push(simulation.part_kind(r.part) as i64);
+            self.segment.push(r.facet as i64);
+            self.edge.push(i64::from(r.edge));
+            self.x.push(r.point.x);
+            self.y.push(r.point.y);
+            self.normal_x.push(r.normal.x);
+            self.normal_y.push(r.normal.y);
             self.normal_force.push(r.normal_force);
             self.friction_force.push(r.friction_force);
             self.surface_speed.push(r.surface_speed);
-            self.penetration.push((-r.contact.distance).max(0.0));
+            self.penetration.push((-r.distance).max(0.0));
         }
     }
 }

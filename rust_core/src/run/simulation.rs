@@ -23,7 +23,7 @@ use super::record::Columns;
 use super::step_length::{StepControl, StepRule};
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Balance, Diagnosis, Scene};
-use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};
+use crate::dynamics::{ChainReading, DriveState, Dynamics, Shoe, State};
 use crate::engine::EngineWorld;
 use crate::error::Error;
 use crate::geometry::{Pose, Vector};
@@ -335,7 +335,7 @@ impl Simulation {
         &self.state.drives
     }
 
-    pub(crate) fn loaded(&self) -> &[LoadedContact] {
+    pub(crate) fn loaded(&self) -> &[Contact] {
         self.dynamics.loaded()
     }
 

@@ -49,7 +49,7 @@ pub fn tip_over(scenario: &Checked, cancel: &Cancel) -> Result<Option<TipOver>, 
 fn standing(robot: &Simulation, backwards: bool) -> Option<TipOver> {
     let sign = if backwards { 1.0 } else { -1.0 };
     let bearing = robot.loaded().iter().filter(|l| l.normal_force > 0.0);
-    let points = bearing.map(|l| l.contact.point);
+    let points = bearing.map(|l| l.point);
     let pivot = points.min_by(|a: &Vector, b| (sign * a.x).total_cmp(&(sign * b.x)))?;
     let center = robot.center_of_mass();
     (sign * (center.x - pivot.x) >= 0.0).then(|| TipOver {

@@ -56,15 +56,11 @@ impl Touch {
     /// The touch as a contact of a part.
     pub(in crate::contact) fn contact(&self, part: usize) -> Contact {
         let point = self.place + self.normal * (0.5 * self.distance);
-        Contact {
+        Contact::new(
             part,
-            facet: self.facet,
-            edge: self.edge,
-            point,
-            normal: self.normal,
-            distance: self.distance,
-            number: 0,
-            began: point,
-        }
+            (self.facet, self.edge),
+            (point, self.normal),
+            self.distance,
+        )
     }
 }

@@ -5,7 +5,6 @@
 use super::RestMemory;
 use super::rest::{Bearing, Rest};
 use crate::contact;
-use crate::dynamics::LoadedContact;
 use crate::dynamics::state::State;
 use crate::dynamics::touch::Touch;
 use crate::geometry::{Vector, cross, right_of};
@@ -16,7 +15,7 @@ impl Touch {
     /// A shoe's contact with the ground, found half a step (`time` [s]) from now.
     pub(in crate::dynamics) fn of_shoe(
         contact: &contact::Contact,
-        last: Option<LoadedContact>,
+        last: Option<contact::Contact>,
         state: &State,
         model: &Model,
         (shoe, time): (usize, f64),

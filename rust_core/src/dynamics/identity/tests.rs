@@ -11,24 +11,14 @@ const STEP: f64 = 0.001;
 
 /// A contact of a part with level ground at x [m].
 fn at(part: usize, x: f64) -> Contact {
-    let point = Vector::new(x, 0.0);
-    Contact {
-        part,
-        facet: 0,
-        edge: -1,
-        point,
-        normal: Vector::Y,
-        distance: 0.0,
-        number: 0,
-        began: point,
-    }
+    Contact::new(part, (0, -1), (Vector::new(x, 0.0), Vector::Y), 0.0)
 }
 
 /// A robot's steps, with contacts made up by a test.
 #[derive(Default)]
 struct Steps {
     identity: Identity,
-    last: Vec<LoadedContact>,
+    last: Vec<Contact>,
 }
 
 impl Steps {
@@ -37,7 +27,7 @@ impl Steps {
         let mut contacts = contacts.to_vec();
         self.identity.recognise(&self.last, &mut contacts, 0.0);
         self.identity.keep(&self.last, STEP);
-        self.last = contacts.iter().copied().map(LoadedContact::open).collect();
+        self.last = contacts.to_vec();
         contacts.iter().map(|contact| contact.number).collect()
     }
 
@@ -166,12 +156,10 @@ fn of_two_contacts_that_move_on_each_keeps_its_own_number() {
 
 #[test]
 fn a_contact_that_comes_back_starts_without_its_forces() {
-    let loaded = |x: f64, number: u64| {
-        let contact = Contact { number, ..at(0, x) };
-        LoadedContact {
-            normal_guess: number as f64,
-            ..LoadedContact::open(contact)
-        }
+    let loaded = |x: f64, number: u64| Contact {
+        number,
+        normal_guess: number as f64,
+        ..at(0, x)
     };
     let last = [loaded(0.0, 7), loaded(0.1, 3), loaded(0.2, 5)];
     let mut numbered = Numbered::new(&last);
@@ -193,7 +181,7 @@ fn contacts_that_open_by_the_thousand_are_not_all_remembered() {
 
 #[test]
 fn numbers_that_no_step_gave_do_not_fit() {
-    type Spoil = fn(&mut Identity, &mut Vec<LoadedContact>);
+    type Spoil = fn(&mut Identity, &mut Vec<Contact>);
 
     let ground = Ground::new(&engineer().terrain, engineer().robot.gauge).expect("a ground");
     let (dynamics, _) = setup(|_| {});
@@ -208,12 +196,12 @@ fn numbers_that_no_step_gave_do_not_fit() {
     };
     assert!(fits(|_, _| {}));
     let all: [(&str, Spoil); 10] = [
-        ("not numbered", |_, last| last[0].contact.number = 0),
+        ("not numbered", |_, last| last[0].number = 0),
         ("one that was not given", |_, last| {
-            last[0].contact.number = 4;
+            last[0].number = 4;
         }),
-        ("twice", |_, last| last[0].contact.number = 2),
-        ("one that is lost", |_, last| last[0].contact.number = 3),
+        ("twice", |_, last| last[0].number = 2),
+        ("one that is lost", |_, last| last[0].number = 3),
         ("too few given", |identity, _| identity.given = 2),
         ("too many given", |identity, _| identity.given = u64::MAX),
         ("of no time", |identity, _| identity.lost[0].age = f64::NAN),

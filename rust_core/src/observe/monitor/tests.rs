@@ -42,24 +42,11 @@ fn ground(points: &[[f64; 2]]) -> Terrain {
 }
 
 /// A contact of the first part of a robot with a facet of the ground.
-fn on_facet(facet: usize, normal_force: f64) -> LoadedContact {
-    LoadedContact {
-        contact: Contact {
-            part: 0,
-            facet,
-            edge: -1,
-            point: Vector::ZERO,
-            normal: Vector::Y,
-            distance: 0.0,
-            number: 0,
-            began: Vector::ZERO,
-        },
+fn on_facet(facet: usize, normal_force: f64) -> Contact {
+    Contact {
         normal_force,
-        friction_force: 0.0,
-        surface_speed: 0.0,
-        normal_guess: 0.0,
-        friction_guess: 0.0,
         grip: Grip::Open,
+        ..Contact::new(0, (facet, -1), (Vector::ZERO, Vector::Y), 0.0)
     }
 }
 
@@ -69,7 +56,7 @@ struct Watched {
     now: Reading,
     steps: u32,
     command: f64,
-    loaded: Vec<LoadedContact>,
+    loaded: Vec<Contact>,
     drives: Vec<(DriveState, f64)>,
     running: Running,
 }
@@ -182,7 +169,7 @@ fn angles_and_penetrations_are_remembered_at_their_extremes() {
     let mut robot = Watched::with(|_| {});
     let sunk = |distance: f64| {
         let mut contact = on_facet(0, 1.0);
-        contact.contact.distance = distance;
+        contact.distance = distance;
         contact
     };
     robot.loaded = vec![sunk(0.5), sunk(-0.002), sunk(-0.001)];

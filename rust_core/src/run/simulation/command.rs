@@ -95,8 +95,8 @@ impl Simulation {
         let pivot = self.state.pose(model).transform_point(flipper.pivot);
         let along = end.sign() * direction(self.state.flippers[k].angle);
         self.loaded().iter().any(|l| {
-            let beyond = (l.contact.point - pivot).dot(along) > flipper.root_radius;
-            let mount = model.parts[l.contact.part].mount;
+            let beyond = (l.point - pivot).dot(along) > flipper.root_radius;
+            let mount = model.parts[l.part].mount;
             beyond && l.normal_force > 0.0 && mount == Mount::Flipper(k)
         })
     }

@@ -275,8 +275,7 @@ impl Simulation {
         self.contact.find(middle, running, prediction, contacts);
         self.dynamics.recognise(contacts, travel);
         attempt.dents.clone_from(&self.dents);
-        let last = self.dynamics.loaded().iter().map(|l| &l.contact);
-        attempt.dents.forgive(contacts, &last);
+        attempt.dents.forgive(contacts, self.dynamics.loaded());
         let push = self.commands.push.at(self.time + half);
         self.dynamics.outer_force = Vector::new(push, 0.0);
         self.dynamics.prepare(&self.state, contacts, (h, travel));
@@ -306,8 +305,7 @@ impl Simulation {
             self.dynamics
                 .keep(&self.state, &attempt.contacts, h, strikes);
             std::mem::swap(&mut self.dents, &mut attempt.dents);
-            let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
-            self.dents.heal(contacts);
+            self.dents.heal(self.dynamics.loaded());
         }
         Ok(())
     }

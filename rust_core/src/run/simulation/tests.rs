@@ -1,7 +1,7 @@
 //! Which outcome counts if several apply, what counts as ground inside the track, and what holds in every step.
 
 use super::*;
-use crate::dynamics::LoadedContact;
+use crate::contact::Contact;
 use crate::geometry::direction;
 use crate::observe::Outcome;
 use crate::scenario::{
@@ -198,7 +198,7 @@ fn a_robot_that_is_pushed_by_a_force_keeps_the_balance_in_every_step() {
             let loaded = simulation.dynamics.loaded().iter();
             let push = simulation.state.drives[0].traction;
             let along = direction(simulation.state.angle);
-            let forces = loaded.map(LoadedContact::force).sum::<Vector>() + along * push;
+            let forces = loaded.map(Contact::force).sum::<Vector>() + along * push;
             let gained = (simulation.momentum() - before) / simulation.last_step();
             let off = forces - Vector::new(0.0, weight) - gained;
             worst = worst.max(off.length() / (weight + forces.length()));

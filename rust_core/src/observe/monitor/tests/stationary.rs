@@ -75,15 +75,15 @@ fn a_move_within_the_tolerance_is_none_and_one_beyond_it_begins_anew() {
 fn a_contact_that_moves_to_another_place_begins_anew() {
     let edge = |edge: i32, facet: usize| {
         let mut contact = on_facet(facet, 10.0);
-        contact.contact.edge = edge;
+        contact.edge = edge;
         contact
     };
     let of_part = |part: usize| {
         let mut contact = on_facet(2, 10.0);
-        contact.contact.part = part;
+        contact.part = part;
         contact
     };
-    let changes = |from: &[LoadedContact], to: &[LoadedContact]| {
+    let changes = |from: &[Contact], to: &[Contact]| {
         let mut standing = robot(|_| {});
         standing.loaded = from.to_vec();
         !is_over_early(standing, |robot| robot.loaded = to.to_vec())

@@ -17,9 +17,9 @@ pub(super) fn astride() -> Watched {
 }
 
 /// Its belt bears on the top of the step with a force [N].
-fn on_top(force: f64) -> LoadedContact {
+fn on_top(force: f64) -> Contact {
     let mut contact = on_facet(2, force);
-    contact.contact.point = Vector::new(0.05, 0.125);
+    contact.point = Vector::new(0.05, 0.125);
     contact
 }
 
@@ -134,7 +134,11 @@ fn what_is_remembered_of_a_stop_is_its_own() {
         stance.position
     );
     assert!(stance.range[0] < 0.01, "it knows of the first stop");
-    assert_relative_eq!(stance.bearings[0].normal_force, 50.0, max_relative = 1e-9);
+    assert_relative_eq!(
+        stance.bearings[0].contact.normal_force,
+        50.0,
+        max_relative = 1e-9
+    );
 }
 
 #[test]
@@ -142,7 +146,7 @@ fn an_edge_inside_the_track_is_an_event_with_the_force_on_it() {
     let mut robot = astride();
     robot.loaded = vec![on_top(60.0), on_top(40.0), on_facet(0, 500.0)];
     for (number, loaded) in (1..).zip(&mut robot.loaded) {
-        loaded.contact.number = number;
+        loaded.number = number;
     }
     robot.stands_until(0.5);
     let events = robot.monitor.events(0.5);

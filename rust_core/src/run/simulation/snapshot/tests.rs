@@ -104,7 +104,7 @@ fn the_number_is_the_same_after_a_snapshot() {
         let mut look = || {
             simulation.step().expect("the state stays finite");
             let loaded = simulation.loaded().iter();
-            loaded.map(|l| l.contact.number).collect::<Vec<u64>>()
+            loaded.map(|l| l.number).collect::<Vec<u64>>()
         };
         (0..300).map(|_| look()).collect::<Vec<_>>()
     };

@@ -37,14 +37,8 @@ impl Genuine {
 /// A contact that no robot here has.
 fn of_nobody() -> Contact {
     Contact {
-        part: 0,
-        facet: 0,
-        edge: -1,
-        point: Vector::ZERO,
-        normal: Vector::Y,
-        distance: -0.001,
         number: 999,
-        began: Vector::ZERO,
+        ..Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), -0.001)
     }
 }
 
