@@ -1,14 +1,130 @@
-//! The choice between the methods that find contacts.
+//! Finds the contacts of a robot: by the project's own method, the outline of every part against faces and corners of the
+//! lane, exactly, or by the reference method.
+//!
+//! Contacts depend on the current pose only: nothing is kept, and only the list of contacts is allocated.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
 use super::Contact;
-use super::own::OwnContact;
+use super::gear::GearContact;
+use super::hull::{HullContact, SHALLOW};
+use super::lane::Lane;
+use super::redundant::{thin_out, without_redundant};
 use super::reference::ReferenceContact;
-use crate::geometry::Pose;
-use crate::robot::{Part, Running};
+use crate::geometry::{Disc, Grouser, Pose, Vector};
+use crate::robot::{Mount, Part, Running, Shape};
 use crate::scenario::ContactMethod;
 use crate::terrain::Profile;
+
+#[cfg(test)]
+mod tests;
+
+/// The outlines of one robot and the lanes of one ground.
+pub(crate) struct OwnContact {
+    lanes: Vec<Lane>,
+    /// Each with the index of its lane and its mount.
+    outlines: Vec<(usize, Mount, Outline)>,
+}
+
+/// A part as contacts see it.
+enum Outline {
+    Disc {
+        part: usize,
+        center: Vector,
+        radius: f64,
+    },
+    Gear {
+        drive: usize,
+        gear: GearContact,
+    },
+    Grouser {
+        drive: usize,
+        grouser: Grouser,
+        /// The hull in its own frame.
+        hull: HullContact,
+    },
+    Hull(HullContact),
+}
+
+impl OwnContact {
+    /// Prepares the outlines of a robot's parts and the lanes under them.
+    pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
+        let outline = |i: usize, part: &Part| match (&part.shape, part.drive) {
+            (Shape::Gear { center, gear }, Some(drive)) => Outline::Gear {
+                drive,
+                gear: GearContact::new(i, *center, *gear),
+            },
+            (Shape::Grouser(grouser), Some(drive)) => Outline::Grouser {
+                drive,
+                grouser: grouser.clone(),
+                hull: HullContact::new(i, part),
+            },
+            (Shape::Disc { center, radius }, _) => Outline::Disc {
+                part: i,
+                center: *center,
+                radius: *radius,
+            },
+            _ => Outline::Hull(HullContact::new(i, part)),
+        };
+        Self {
+            lanes: lanes.iter().map(Lane::new).collect(),
+            outlines: parts
+                .iter()
+                .enumerate()
+                .map(|(i, part)| (part.lane, part.mount, outline(i, part)))
+                .collect(),
+        }
+    }
+
+    /// Adds every contact with a gap below `prediction` to `contacts`.
+    pub(crate) fn find(
+        &self,
+        pose: Pose,
+        running: &Running,
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        contacts.clear();
+        for (lane, mount, outline) in &self.outlines {
+            let (lane, pose) = (&self.lanes[*lane], running.mounted(*mount, pose));
+            match outline {
+                Outline::Disc {
+                    part,
+                    center,
+                    radius,
+                } => {
+                    let (center, radius) = (pose.transform_point(*center), *radius);
+                    let (reach, first) = ((prediction, SHALLOW.value()), contacts.len());
+                    let far = radius + prediction;
+                    let region = lane.region(center.x - far, center.x + far);
+                    lane.touches_of_disc(&region, center, radius, reach, |touch| {
+                        contacts.push(touch.contact(*part));
+                    });
+                    thin_out(contacts, first, lane, &Disc { center, radius }, prediction);
+                }
+                Outline::Gear { drive, gear } => {
+                    gear.find(
+                        lane,
+                        pose,
+                        running.run(*mount, *drive),
+                        prediction,
+                        contacts,
+                    );
+                }
+                Outline::Grouser {
+                    drive,
+                    grouser,
+                    hull,
+                } => {
+                    let place = pose * grouser.place(running.run(*mount, *drive));
+                    hull.find(lane, place, prediction, contacts);
+                }
+                Outline::Hull(hull) => hull.find(lane, pose, prediction, contacts),
+            }
+        }
+        without_redundant(contacts);
+    }
+}
 
 /// Finds the contacts of one robot on one ground.
 pub(crate) enum ContactFinder {

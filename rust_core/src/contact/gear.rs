@@ -8,8 +8,7 @@
 
 use super::Contact;
 use super::lane::{Lane, On, Region, Touch};
-use super::overlap::{self, Tip};
-use super::reach::thin_out;
+use super::redundant::{Tip, run_yields, thin_out, tip_yields};
 use crate::geometry::{Disc, Gear, Pose, Rotation, Vector, direction, right_of};
 use crate::units::Metres;
 
@@ -160,7 +159,7 @@ impl GearContact {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real =
                     touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);
-                if is_real && tip.may_bear(&touch) && !overlap::tip_yields(lane, &tip, &touch) {
+                if is_real && tip.may_bear(&touch) && !tip_yields(lane, &tip, &touch) {
                     contacts.push(touch.contact(self.part));
                 }
             });
@@ -189,7 +188,7 @@ impl GearContact {
                 let mut tips = (i.max(1)..=(i + 1).min(2)).map(|k| grouser.tip(k));
                 let is_real = touch.distance >= 0.0
                     || (grouser.holds(touch.place) && !grouser.is_left_opposite(lane, i, &touch));
-                if is_real && !tips.any(|tip| overlap::run_yields(lane, outward, &tip, &touch)) {
+                if is_real && !tips.any(|tip| run_yields(lane, outward, &tip, &touch)) {
                     contacts.push(touch.contact(self.part));
                 }
             });

@@ -2,16 +2,13 @@
 //!
 //! The equations: docs/physics.md, "Contacts", and what a step has found: docs/physics.md, "State".
 
-mod dents;
-mod depth;
 mod finder;
 mod gear;
 mod hull;
 mod intrusion;
 mod lane;
-mod overlap;
-mod own;
-mod reach;
+mod penetration;
+mod redundant;
 mod reference;
 
 use serde::{Deserialize, Serialize};
@@ -21,12 +18,10 @@ use crate::robot::Model;
 use crate::solver::Grip;
 use crate::terrain::Profile;
 
-use crate::units::Metres;
-pub(crate) use dents::Dents;
-pub(crate) use depth::depth;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
+pub(crate) use penetration::{Dents, depth};
 pub(crate) use reference::solids_of;
 
 /// A place where a part is on the ground or about to be, and what a step has found there.
@@ -109,45 +104,4 @@ impl Contact {
                 self.friction_guess,
             ])
     }
-}
-
-/// Removes redundant contacts: duplicates on the same part, and contacts that lie between two others with
-/// the same normal and are no deeper than these, since a rigid part comes down on its outer contacts
-/// first.
-pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
-    /// Normals closer than this count as equal; f64 resolves about 1e-16.
-    const SAME_DIRECTION: f64 = 1e-12;
-
-    // A stable order: by part, then from the left, so that neighbours are adjacent.
-    contacts.sort_by(|a, b| a.part.cmp(&b.part).then(a.point.x.total_cmp(&b.point.x)));
-    let same = |a: &Contact, b: &Contact| {
-        a.part == b.part && 1.0 - a.normal.dot(b.normal) < SAME_DIRECTION
-    };
-    contacts.dedup_by(|b, a| same(a, b) && (a.point - b.point).length() < 1e-9);
-    let is_covered = |first: &Contact, middle: &Contact, last: &Contact| {
-        same(first, middle) && same(middle, last) && lies_above(first, middle, last)
-    };
-    let mut kept = 0;
-    for i in 0..contacts.len() {
-        while kept >= 2 && is_covered(&contacts[kept - 2], &contacts[kept - 1], &contacts[i]) {
-            kept -= 1;
-        }
-        contacts[kept] = contacts[i];
-        kept += 1;
-    }
-    contacts.truncate(kept);
-}
-
-/// Whether the middle gap is at least that of the chord between its neighbours.
-fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
-    /// [m] A gap this close to the chord is on the same face.
-    const SAME_FACE: Metres = Metres(1e-9);
-
-    let along = right_of(middle.normal);
-    let (a, b) = (
-        (middle.point - first.point).dot(along),
-        (last.point - middle.point).dot(along),
-    );
-    let chord = (first.distance * b + last.distance * a) / (a + b);
-    a * b > 0.0 && middle.distance > chord - SAME_FACE.value()
 }

@@ -11,9 +11,10 @@ use rapier2d_f64::parry::query::{
 use rapier2d_f64::parry::shape::{Polyline, PolylineFlags};
 use rapier2d_f64::prelude::SharedShape;
 
+use super::Contact;
 use super::hull::HullContact;
 use super::lane::Lane;
-use super::{Contact, without_redundant};
+use super::redundant::without_redundant;
 use crate::geometry::{Gear, Pose, Vector};
 use crate::robot::{Part, Running, Shape};
 use crate::terrain::Profile;

@@ -6,9 +6,8 @@
 use std::f64::consts::TAU;
 
 use super::Disc;
-use super::hull::{Arc, SAME_TURN, arcs_round};
+use super::hull::{Arc, Form, SAME_TURN, Stretch, arcs_round};
 use super::search::maximise;
-use super::stretch::{Form, Stretch};
 use super::{Vector, direction};
 use crate::units::Metres;
 

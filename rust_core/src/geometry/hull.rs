@@ -1,8 +1,8 @@
-//! The convex hull of discs, found by rolling a tangent once round.
+//! The convex hull of discs: found by rolling a tangent once round, and made of arcs and straight runs.
 
 use std::f64::consts::TAU;
 
-use super::Disc;
+use super::{Disc, Vector, cross, direction};
 
 /// [rad] Smaller turns are rounding errors of collinear tangents.
 pub(super) const SAME_TURN: f64 = 1e-12;
@@ -80,4 +80,160 @@ fn turn_to(disc: &Disc, other: &Disc, outward: f64) -> Option<f64> {
     let tangent = libm::atan2(way.y, way.x) + libm::acos(smaller / distance);
     let turn = (outward - tangent).rem_euclid(TAU);
     Some(if turn > TAU - SAME_TURN { 0.0 } else { turn })
+}
+
+/// [m, rad] Stretches overlap by this, so that no line can slip between two of them.
+const JOINT: f64 = 1e-9;
+
+/// One stretch of the hull.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch {
+    /// [m] Position of its start along the hull.
+    pub start: f64,
+    /// [m] Its length.
+    pub length: f64,
+    pub shape: Form,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// An arc of disc `disc`, clockwise from the outward direction `from` [rad]; `ends` are its
+    /// first and last outward directions.
+    Arc {
+        disc: usize,
+        center: Vector,
+        radius: f64,
+        from: f64,
+        sweep: f64,
+        ends: [Vector; 2],
+    },
+    /// A straight run from `begin` along `along`.
+    Run {
+        begin: Vector,
+        along: Vector,
+        outward: Vector,
+    },
+}
+
+impl Stretch {
+    pub(super) fn point_at(&self, way: f64) -> Vector {
+        match self.shape {
+            Form::Arc {
+                center,
+                radius,
+                from,
+                sweep,
+                ..
+            } => {
+                let share = if self.length > 0.0 {
+                    way / self.length
+                } else {
+                    0.0
+                };
+                center + direction(from - sweep * share) * radius
+            }
+            Form::Run { begin, along, .. } => begin + along * way,
+        }
+    }
+
+    /// [m] Position of the point ahead of `from` at a straight `distance` from it.
+    pub(super) fn at_distance(&self, from: Vector, distance: f64) -> f64 {
+        match self.shape {
+            Form::Run { begin, along, .. } => {
+                let offset = begin - from;
+                let back = offset.dot(along);
+                let root = back * back - offset.length_squared() + distance * distance;
+                root.max(0.0).sqrt() - back
+            }
+            Form::Arc {
+                center,
+                radius,
+                from: start,
+                ..
+            } => {
+                let spoke = from - center;
+                let reach = spoke.length();
+                let cosine = (radius * radius + reach * reach - distance * distance)
+                    / (2.0 * radius * reach);
+                let angle = libm::atan2(spoke.y, spoke.x) - libm::acos(cosine.clamp(-1.0, 1.0));
+                (start - angle).rem_euclid(TAU) * radius
+            }
+        }
+    }
+
+    /// [m] Depth of a point below this stretch, if the point is within its extent.
+    pub(super) fn depth(&self, point: Vector) -> Option<f64> {
+        match self.shape {
+            Form::Run { begin, outward, .. } => Some((begin - point).dot(outward)),
+            Form::Arc {
+                center,
+                radius,
+                sweep,
+                ends,
+                ..
+            } => {
+                let spoke = point - center;
+                is_on_arc(spoke, ends, sweep, 0.0).then(|| radius - spoke.length())
+            }
+        }
+    }
+
+    /// Calls `cut` with the fractions of the segment at which it crosses this stretch.
+    pub(super) fn crossings(&self, a: Vector, b: Vector, cut: &mut impl FnMut(f64)) {
+        let way = b - a;
+        match self.shape {
+            Form::Run {
+                begin,
+                along,
+                outward,
+            } => {
+                let towards = way.dot(outward);
+                let t = (begin - a).dot(outward) / towards;
+                let along = (a + way * t - begin).dot(along);
+                let on_run = (-JOINT..=self.length + JOINT).contains(&along);
+                if (0.0..=1.0).contains(&t) && on_run {
+                    cut(t);
+                }
+            }
+            Form::Arc {
+                center,
+                radius,
+                sweep,
+                ends,
+                ..
+            } => {
+                let (offset, square) = (a - center, way.length_squared());
+                let half = offset.dot(way) / square;
+                let rest = half * half - (offset.length_squared() - radius * radius) / square;
+                if rest < 0.0 {
+                    return;
+                }
+                for t in [-half - rest.sqrt(), -half + rest.sqrt()] {
+                    let spoke = offset + way * t;
+                    if (0.0..=1.0).contains(&t) && is_on_arc(spoke, ends, sweep, JOINT * radius) {
+                        cut(t);
+                    }
+                }
+            }
+        }
+    }
+
+    /// [m^2] Twice the signed area between the origin and this stretch between two positions.
+    pub(super) fn swept(&self, from: f64, to: f64) -> f64 {
+        let (p, q) = (self.point_at(from), self.point_at(to));
+        match self.shape {
+            Form::Run { .. } => cross(p, q),
+            Form::Arc { center, radius, .. } => cross(center, q - p) - radius * (to - from),
+        }
+    }
+}
+
+/// Whether a vector from the centre points through a clockwise arc, with a margin at its ends.
+fn is_on_arc(spoke: Vector, [first, last]: [Vector; 2], sweep: f64, margin: f64) -> bool {
+    let (after_first, before_last) = (cross(spoke, first), cross(last, spoke));
+    if sweep > 0.5 * TAU {
+        after_first >= -margin || before_last >= -margin
+    } else {
+        after_first >= -margin && before_last >= -margin
+    }
 }

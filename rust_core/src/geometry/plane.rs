@@ -1,4 +1,7 @@
-//! Vectors and poses of the plane: the engine's types, which no other file names.
+//! Vectors and poses of the plane, which are the engine's and named by no other file, discs and their tangents, and bounds of
+//! what is plausible.
+
+use crate::scenario::TrackOutline;
 
 /// A point or a direction in the plane.
 pub use rapier2d_f64::math::Vector;
@@ -23,4 +26,104 @@ pub(crate) fn right_of(v: Vector) -> Vector {
 pub(crate) fn direction(angle: f64) -> Vector {
     let (sine, cosine) = libm::sincos(angle);
     Vector::new(cosine, sine)
+}
+
+/// In any SI unit: a thousand times the weight of the heaviest robot. What is formed of such numbers is finite.
+const MOST: f64 = 1e18;
+
+/// Whether a run can have produced these numbers; NaN is implausible.
+pub(crate) fn plausible(numbers: &[f64]) -> bool {
+    numbers.iter().all(|number| number.abs() < MOST)
+}
+
+/// The same for vectors.
+pub(crate) fn plausible_vectors(vectors: &[Vector]) -> bool {
+    vectors.iter().all(|v| plausible(&[v.x, v.y]))
+}
+
+/// A disc in the chassis frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// [m] Centre.
+    pub center: Vector,
+    /// [m] Radius.
+    pub radius: f64,
+}
+
+impl Disc {
+    /// A disc of radius 0.
+    pub(crate) fn point(center: Vector) -> Self {
+        Self {
+            center,
+            radius: 0.0,
+        }
+    }
+}
+
+impl From<[f64; 3]> for Disc {
+    fn from([x, y, radius]: [f64; 3]) -> Self {
+        Self {
+            center: Vector::new(x, y),
+            radius,
+        }
+    }
+}
+
+/// The end discs of an outline, the rear one first.
+pub(crate) fn end_discs(outline: &TrackOutline) -> [Disc; 2] {
+    outline.end_discs().map(Disc::from)
+}
+
+/// The discs of an outline: the rear end, the front end, and those between them from the rear to the front.
+pub(crate) fn outline_discs(outline: &TrackOutline) -> Vec<Disc> {
+    let between = outline.discs_between();
+    outline
+        .end_discs()
+        .into_iter()
+        .chain(between)
+        .map(Disc::from)
+        .collect()
+}
+
+/// The lower outer tangent of two discs as a segment from the left disc to the right one.
+pub(crate) fn lower_tangent(left: Disc, right: Disc) -> [Vector; 2] {
+    let along = right.center - left.center;
+    let distance = along.length();
+    let u = along / distance;
+    // The tangent's outward normal makes the same angle with the line of centres at both discs.
+    let sine = (left.radius - right.radius) / distance;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let down = Vector::new(u.y, -u.x);
+    let normal = u * sine + down * cosine;
+    [
+        left.center + normal * left.radius,
+        right.center + normal * right.radius,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(x: f64, radius: f64) -> Disc {
+        Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        }
+    }
+
+    #[test]
+    fn tangent_touches_both_discs_and_cuts_neither() {
+        for (r1, r2) in [(0.1, 0.1), (0.1, 0.05), (0.03, 0.08)] {
+            let (left, right) = (disc(-0.2, r1), disc(0.3, r2));
+            let [a, b] = lower_tangent(left, right);
+            let d = (b - a).normalize();
+            for (point, circle) in [(a, left), (b, right)] {
+                let spoke = point - circle.center;
+                assert!((spoke.length() - circle.radius).abs() < 1e-15);
+                assert!(spoke.dot(d).abs() < 1e-15);
+                assert!(spoke.y < 0.0);
+            }
+        }
+    }
 }

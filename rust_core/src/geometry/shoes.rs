@@ -6,9 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::hull::arcs_round;
+use super::hull::{Form, arcs_round};
 use super::search::zero;
-use super::stretch::Form;
 use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
 use super::{Pose, Rotation, Vector, direction, right_of};
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
 use super::fields::{Fields, Range, one_of};
-use super::flippers::ANGLE;
+use super::robot::ANGLE;
 
 const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
 /// Largest number of entries of a schedule.

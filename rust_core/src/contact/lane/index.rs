@@ -11,8 +11,8 @@ use std::cell::Cell;
 use std::ops::{Range, RangeInclusive};
 
 use super::Corner;
+use super::features::{Face, ROUNDING};
 use super::roof::{Roof, roof};
-use super::touch::{Face, ROUNDING};
 use crate::geometry::{Vector, cross};
 use crate::terrain::{FINE, Profile};
 

@@ -5,14 +5,13 @@
 //!
 //! The equations: docs/physics.md, "Contacts".
 
-mod corner;
+mod features;
 mod index;
 mod roof;
 #[cfg(test)]
 mod tests;
-mod touch;
 
-use corner::corners_of;
+use features::{Face, corners_of};
 use index::Index;
 use roof::{Chord, SAME_FACE};
 
@@ -20,10 +19,8 @@ use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::{Profile, facet_along};
 
 use crate::units::Metres;
-pub(super) use corner::Corner;
+pub(super) use features::{Corner, On, ROUNDING, Touch};
 pub(super) use index::{Region, Stretch};
-use touch::Face;
-pub(super) use touch::{On, ROUNDING, Touch};
 
 /// Corners at either end of finely divided ground that are searched for one that bears.
 const NEAR_END: usize = 16;

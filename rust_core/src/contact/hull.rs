@@ -6,16 +6,12 @@
 //!
 //! The equations: docs/physics.md, "Contacts".
 
-mod near;
-mod sector;
-
-use sector::Sector;
+use std::f64::consts::{PI, TAU};
 
 use super::Contact;
 use super::lane::{Corner, Lane, On, Region, Stretch, Touch};
-use super::overlap::{self, NEARLY, Tip};
-use super::reach::thin_out;
-use crate::geometry::{Disc, Envelope, Pose, Vector, direction};
+use super::redundant::{NEARLY, Tip, thin_out, tip_yields};
+use crate::geometry::{Disc, Envelope, Pose, Vector, cross, direction};
 use crate::robot::{Part, Shape};
 use crate::units::Metres;
 
@@ -103,8 +99,7 @@ impl HullContact {
                 let is_real = touch.distance >= -SHALLOW.value()
                     || lane.holds(center(arc) - touch.normal * arc.disc.radius);
                 let on_face = is_real && matches!(touch.on, On::Face(_));
-                let yields =
-                    || arc.disc.radius == 0.0 && overlap::tip_yields(lane, &arc.tip(pose), &touch);
+                let yields = || arc.disc.radius == 0.0 && tip_yields(lane, &arc.tip(pose), &touch);
                 if on_face && arc.nearly.holds(pose.rotation.inverse() * -touch.normal) && !yields()
                 {
                     contacts.push(touch.contact(self.part));
@@ -219,5 +214,115 @@ impl HullContact {
             || (self.hull.outward_at(place), true),
             |outward| (outward, false),
         )
+    }
+}
+
+impl HullContact {
+    /// [m] Range of x of the run that follows an arc.
+    fn run_behind(&self, i: usize, pose: Pose) -> [f64; 2] {
+        let outward = self.arcs[i].runs[0];
+        let x = |arc: &Arc| {
+            let end = arc.disc.center + outward * arc.disc.radius;
+            pose.transform_point(end).x
+        };
+        let (a, b) = (x(&self.arcs[i]), x(&self.arcs[(i + 1) % self.arcs.len()]));
+        [a.min(b), a.max(b)]
+    }
+
+    /// [m] Range of x of the lowest run.
+    fn lowest_run(&self, pose: Pose) -> [f64; 2] {
+        let fall = |i: &usize| (pose.rotation * self.arcs[*i].runs[0]).y;
+        let lowest = (0..self.arcs.len()).min_by(|a, b| fall(a).total_cmp(&fall(b)));
+        self.run_behind(lowest.unwrap_or_default(), pose)
+    }
+
+    /// Whether a corner in a stretch of the ground may bear on the hull.
+    fn may_bear(&self, stretch: &Stretch, pose: Pose, prediction: f64) -> bool {
+        let room = self.room_above(stretch, pose);
+        let is_faced = |i: usize| {
+            let arc = &self.arcs[i];
+            let (outward, reach) = (pose.rotation * arc.runs[0], arc.disc.radius + prediction);
+            (stretch.reaches(self.run_behind(i, pose), prediction) && stretch.may_have(-outward))
+                || stretch.may_face(pose.transform_point(arc.disc.center), reach)
+        };
+        room < prediction && (room < 0.0 || (0..self.arcs.len()).any(is_faced))
+    }
+
+    /// [m] Lower bound of the distance to the ground below a roof: how far the roof lies beyond a tangent
+    /// of the hull's underside.
+    fn room_above(&self, stretch: &Stretch, pose: Pose) -> f64 {
+        let beyond = |arc: &Arc, center: Vector, outward: Vector| {
+            let gap = |end: &Vector| (*end - center).dot(outward) - arc.disc.radius;
+            stretch.roof.iter().map(gap).fold(f64::INFINITY, f64::min)
+        };
+        let mut room = f64::NEG_INFINITY;
+        for arc in &self.arcs {
+            let center = pose.transform_point(arc.disc.center);
+            let outward = pose.rotation * arc.runs[0];
+            if outward.y < 0.0 {
+                room = room.max(beyond(arc, center, outward));
+            }
+            for end in &stretch.roof {
+                let outward = (*end - center).normalize_or_zero();
+                if outward.y < 0.0 && arc.sector.holds(pose.rotation.inverse() * outward) {
+                    room = room.max(beyond(arc, center, outward));
+                }
+            }
+        }
+        room
+    }
+}
+
+/// A range of directions.
+struct Sector {
+    /// The first and the last direction, counter-clockwise.
+    ends: [Vector; 2],
+    /// Whether it spans more than half a turn.
+    is_wide: bool,
+}
+
+impl Sector {
+    /// The range that starts at an angle [rad] and sweeps another, counter-clockwise.
+    fn new(from: f64, sweep: f64) -> Self {
+        let sweep = sweep.min(TAU);
+        Self {
+            ends: [from, from + sweep].map(direction),
+            is_wide: sweep > PI,
+        }
+    }
+
+    /// Whether a direction lies in the range, ends included.
+    fn holds(&self, d: Vector) -> bool {
+        let [first, last] = self.ends;
+        if self.is_wide {
+            cross(last, d) <= 0.0 || cross(d, first) <= 0.0
+        } else {
+            cross(first, d) >= 0.0 && cross(d, last) >= 0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sector_holds_what_lies_between_its_ends_however_wide_it_is() {
+        for sweep in [0.1, 1.5, 3.0, 3.3, 5.0, 6.2] {
+            for from in [-3.0, -0.4, 1.0, 2.9] {
+                let sector = Sector::new(from, sweep);
+                for i in 0..100 {
+                    let angle = TAU * (f64::from(i) + 0.37) / 100.0;
+                    let is_between = (angle - from).rem_euclid(TAU) < sweep;
+                    assert_eq!(sector.holds(direction(angle)), is_between);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_holds_every_direction() {
+        let sector = Sector::new(0.3, 7.0);
+        assert!((0..100).all(|i| sector.holds(direction(0.0628 * f64::from(i)))));
     }
 }
