@@ -711,7 +711,7 @@ def _two(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
         held = frozen_rows(discs, "robot.outline.discs", rows=True, columns=3)
         if not is_short(held):
             name, value = next(iter(given.items()))
-            rule = "must not be given beside discs, which it follows from"
+            rule = "must not be given together with discs, which determine it"
             raise ScenarioError(f"robot.outline.{name}", value, rule)
         (_, _, rear), (half, _, front) = held
         own = {"axle_distance": 2.0 * half, "front_radius": front, "rear_radius": rear}

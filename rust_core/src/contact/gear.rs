@@ -47,17 +47,17 @@ impl Grouser {
     }
 
     /// Whether a point lies in the grouser.
-    fn holds(&self, point: Vector) -> bool {
+    fn contains(&self, point: Vector) -> bool {
         let mut sides = self.corners.iter().zip(&self.normals);
         sides.all(|(corner, normal)| (point - *corner).dot(*normal) <= 0.0)
     }
 
     /// Whether a corner of the ground inside flank 0 or 2 lies less deep in the opposite flank.
-    fn is_left_opposite(&self, lane: &Lane, flank: usize, touch: &Touch) -> bool {
+    fn is_shallower_opposite(&self, lane: &Lane, flank: usize, touch: &Touch) -> bool {
         let opposite = 2 - flank;
         let normal = self.normals[opposite];
         let gap = (touch.place - self.corners[opposite]).dot(normal);
-        let is_met = || matches!(touch.on, On::Corner(i) if lane.corner(i).faces(-normal));
+        let is_met = || matches!(touch.on, On::Corner(i) if lane.corner(i).has_normal(-normal));
         opposite != flank && gap > touch.distance && is_met()
     }
 
@@ -74,8 +74,8 @@ impl GearContact {
     pub(super) fn new(part: usize, center: Vector, gear: Gear) -> Self {
         let corners = gear.corners(0.0);
         // A tip may be thinner than rounding errors; its normal still points outwards.
-        let way = |i: usize| (corners[i + 1] - corners[i]).try_normalize();
-        let side = |i: usize| way(i).map_or(Vector::X, right_of);
+        let edge = |i: usize| (corners[i + 1] - corners[i]).try_normalize();
+        let side = |i: usize| edge(i).map_or(Vector::X, right_of);
         Self {
             part,
             center,
@@ -139,7 +139,7 @@ impl GearContact {
                 continue;
             }
             self.find_tips((lane, &near), &grouser, prediction, contacts);
-            if lane.may_stand_out(&near) {
+            if lane.may_be_convex(&near) {
                 self.find_runs((lane, &near), &grouser, prediction, contacts);
             }
         }
@@ -157,8 +157,9 @@ impl GearContact {
             let (reach, first) = ((prediction, self.height()), contacts.len());
             lane.touches_of_disc(region, tip.place, 0.0, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
-                let is_real =
-                    touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);
+                let is_real = touch.distance >= 0.0
+                    || lane.contains(tip.place)
+                    || grouser.contains(touch.place);
                 if is_real && tip.may_bear(&touch) && !tip_yields(lane, &tip, &touch) {
                     contacts.push(touch.contact(self.part));
                 }
@@ -187,7 +188,8 @@ impl GearContact {
                 // A flank has one end at the tip; the tip itself has two.
                 let mut tips = (i.max(1)..=(i + 1).min(2)).map(|k| grouser.tip(k));
                 let is_real = touch.distance >= 0.0
-                    || (grouser.holds(touch.place) && !grouser.is_left_opposite(lane, i, &touch));
+                    || (grouser.contains(touch.place)
+                        && !grouser.is_shallower_opposite(lane, i, &touch));
                 if is_real && !tips.any(|tip| run_yields(lane, outward, &tip, &touch)) {
                     contacts.push(touch.contact(self.part));
                 }

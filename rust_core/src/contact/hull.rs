@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::Contact;
 use super::lane::{Corner, Lane, On, Region, Stretch, Touch};
-use super::redundant::{NEARLY, Tip, thin_out, tip_yields};
+use super::redundant::{NEARLY_PARALLEL, Tip, thin_out, tip_yields};
 use crate::geometry::{Disc, Envelope, Pose, Vector, cross, direction};
 use crate::robot::{Part, Shape};
 use crate::units::Metres;
@@ -30,8 +30,8 @@ struct Arc {
     disc: Disc,
     /// Its outward directions.
     sector: Sector,
-    /// These and all directions within `NEARLY` of one: with them, an arc reaches less than 0.1 mm out of the hull.
-    nearly: Sector,
+    /// These and all directions within `NEARLY_PARALLEL` of one: with them, an arc reaches less than 0.1 mm out of the hull.
+    widened: Sector,
     /// Outward normals of the two runs that it joins, counter-clockwise.
     runs: [Vector; 2],
 }
@@ -58,7 +58,10 @@ impl HullContact {
         let arc = |(disc, from, sweep)| Arc {
             disc,
             sector: Sector::new(from - sweep, sweep),
-            nearly: Sector::new(from - sweep - NEARLY, sweep + 2.0 * NEARLY),
+            widened: Sector::new(
+                from - sweep - NEARLY_PARALLEL,
+                sweep + 2.0 * NEARLY_PARALLEL,
+            ),
             runs: [from - sweep, from].map(direction),
         };
         Self {
@@ -97,10 +100,14 @@ impl HullContact {
             lane.touches_of_disc(&region, center(arc), arc.disc.radius, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real = touch.distance >= -SHALLOW.value()
-                    || lane.holds(center(arc) - touch.normal * arc.disc.radius);
+                    || lane.contains(center(arc) - touch.normal * arc.disc.radius);
                 let on_face = is_real && matches!(touch.on, On::Face(_));
                 let yields = || arc.disc.radius == 0.0 && tip_yields(lane, &arc.tip(pose), &touch);
-                if on_face && arc.nearly.holds(pose.rotation.inverse() * -touch.normal) && !yields()
+                if on_face
+                    && arc
+                        .widened
+                        .contains(pose.rotation.inverse() * -touch.normal)
+                    && !yields()
                 {
                     contacts.push(touch.contact(self.part));
                 }
@@ -126,7 +133,7 @@ impl HullContact {
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        if !lane.may_stand_out(region) {
+        if !lane.may_be_convex(region) {
             return;
         }
         let may_bear = |stretch: &Stretch| self.may_bear(stretch, pose, prediction);
@@ -151,7 +158,7 @@ impl HullContact {
         pose: Pose,
         prediction: f64,
     ) -> Option<Touch> {
-        if !corner.stands_out {
+        if !corner.is_convex {
             return None;
         }
         let place = pose.inverse_transform_point(corner.center);
@@ -163,17 +170,19 @@ impl HullContact {
         let (outward, is_run) = self.outward_at(place, inside);
         let normal = -(pose.rotation * outward);
         // Deep inside, every corner bears on the hull by itself.
-        if depth > SHALLOW.value() || corner.faces(normal) || (is_run && corner.faces_side(normal))
+        if depth > SHALLOW.value()
+            || corner.has_normal(normal)
+            || (is_run && corner.nearly_has_normal(normal))
         {
             return Some(corner.touch(i, normal, -depth));
         }
-        let (depth, normal) = self.way_out(corner, place, pose)?;
+        let (depth, normal) = self.entered_run(corner, place, pose)?;
         Some(corner.touch(i, normal, -depth))
     }
 
     /// Depth and normal of the run through which a corner of the ground has entered, if the corner does
     /// not face the nearest run; none if the hull is less deep below a face next to the corner.
-    fn way_out(&self, corner: &Corner, place: Vector, pose: Pose) -> Option<(f64, Vector)> {
+    fn entered_run(&self, corner: &Corner, place: Vector, pose: Pose) -> Option<(f64, Vector)> {
         let of_run = |arc: &Arc| {
             let [outward, _] = arc.runs;
             let inside = (arc.disc.center - place).dot(outward) + arc.disc.radius;
@@ -193,7 +202,7 @@ impl HullContact {
             .arcs
             .iter()
             .map(of_run)
-            .filter(|(_, normal)| corner.faces(*normal));
+            .filter(|(_, normal)| corner.has_normal(*normal));
         let (inside, normal) = met.min_by(|a, b| a.0.total_cmp(&b.0))?;
         // Where two sharp corners overlap, the ground corner lies outside the hull, by less than that.
         let is_met = 0.0 < inside && inside < limit && -self.hull.depth(place) < inside;
@@ -206,7 +215,8 @@ impl HullContact {
         // Near the end of an arc its run is equally near within rounding, but has another normal.
         let of_arc = |arc: &Arc| {
             let spoke = place - arc.disc.center;
-            let is_nearest = arc.disc.radius - spoke.length() <= depth && arc.sector.holds(spoke);
+            let is_nearest =
+                arc.disc.radius - spoke.length() <= depth && arc.sector.contains(spoke);
             spoke.try_normalize().filter(|_| is_nearest)
         };
         let outward = self.arcs.iter().find_map(of_arc);
@@ -242,7 +252,8 @@ impl HullContact {
         let is_faced = |i: usize| {
             let arc = &self.arcs[i];
             let (outward, reach) = (pose.rotation * arc.runs[0], arc.disc.radius + prediction);
-            (stretch.reaches(self.run_behind(i, pose), prediction) && stretch.may_have(-outward))
+            (stretch.reaches(self.run_behind(i, pose), prediction)
+                && stretch.may_have_normal(-outward))
                 || stretch.may_face(pose.transform_point(arc.disc.center), reach)
         };
         room < prediction && (room < 0.0 || (0..self.arcs.len()).any(is_faced))
@@ -264,7 +275,7 @@ impl HullContact {
             }
             for end in &stretch.roof {
                 let outward = (*end - center).normalize_or_zero();
-                if outward.y < 0.0 && arc.sector.holds(pose.rotation.inverse() * outward) {
+                if outward.y < 0.0 && arc.sector.contains(pose.rotation.inverse() * outward) {
                     room = room.max(beyond(arc, center, outward));
                 }
             }
@@ -292,7 +303,7 @@ impl Sector {
     }
 
     /// Whether a direction lies in the range, ends included.
-    fn holds(&self, d: Vector) -> bool {
+    fn contains(&self, d: Vector) -> bool {
         let [first, last] = self.ends;
         if self.is_wide {
             cross(last, d) <= 0.0 || cross(d, first) <= 0.0
@@ -314,7 +325,7 @@ mod tests {
                 for i in 0..100 {
                     let angle = TAU * (f64::from(i) + 0.37) / 100.0;
                     let is_between = (angle - from).rem_euclid(TAU) < sweep;
-                    assert_eq!(sector.holds(direction(angle)), is_between);
+                    assert_eq!(sector.contains(direction(angle)), is_between);
                 }
             }
         }
@@ -323,6 +334,6 @@ mod tests {
     #[test]
     fn a_whole_turn_holds_every_direction() {
         let sector = Sector::new(0.3, 7.0);
-        assert!((0..100).all(|i| sector.holds(direction(0.0628 * f64::from(i)))));
+        assert!((0..100).all(|i| sector.contains(direction(0.0628 * f64::from(i)))));
     }
 }

@@ -112,7 +112,7 @@ impl TrackEnvelope {
 
     /// Whether a convex edge is inside.
     pub(crate) fn holds_edge(&self, profile: &Profile, pose: Pose) -> bool {
-        let stands_out = |i: &usize| {
+        let is_convex = |i: &usize| {
             let edge = profile.edge_of_point[*i];
             edge >= 0 && profile.edges[edge as usize].angle > 0.0
         };
@@ -128,7 +128,7 @@ impl TrackEnvelope {
         self.points_under(profile, pose)
             .iter()
             .map(|i| *i as usize)
-            .filter(stands_out)
+            .filter(is_convex)
             .any(inside)
     }
 
@@ -169,20 +169,20 @@ impl TrackEnvelope {
     }
 
     /// Whether a point inside the envelope lies in a piece.
-    fn holds(&self, profile: &Profile, pose: Pose, piece: &Piece, point: Vector) -> bool {
+    fn contains(&self, profile: &Profile, pose: Pose, piece: &Piece, point: Vector) -> bool {
         // Straight down from a point in the ground everything is ground, so the rim below it bounds its piece.
         let down = pose.rotation.inverse() * -Vector::Y;
         let far = point + down * self.tips.hull.length();
         let hull = &self.tips.hull;
         let inside = hull.clip([point, far], [point, far].map(|p| hull.depth(p)));
-        let (_, share) = inside.unwrap_or_default();
-        let below = hull.way_of(point + (far - point) * share);
+        let (_, fraction) = inside.unwrap_or_default();
+        let below = hull.position_of(point + (far - point) * fraction);
         below_ground(profile, pose, point) && piece.reaches(hull, below)
     }
 
     /// The point of a piece that lies deepest below a belt.
     fn deepest(&self, profile: &Profile, pose: Pose, piece: &Piece, belt: &Belt) -> Vector {
-        if self.holds(profile, pose, piece, belt.middle) {
+        if self.contains(profile, pose, piece, belt.middle) {
             belt.middle
         } else {
             piece.deepest_on_chords(&belt.hull)
@@ -254,8 +254,8 @@ impl TrackEnvelope {
 
 /// The stretch of a profile along a chord, as facet index plus fraction of the facet.
 fn span(profile: &Profile, under: &[u32], chord: &Chord) -> (f64, f64) {
-    let place = |(piece, share): (usize, f64)| {
-        profile.place_along(under[piece] as usize..under[piece + 1] as usize, share)
+    let place = |(piece, fraction): (usize, f64)| {
+        profile.place_along(under[piece] as usize..under[piece + 1] as usize, fraction)
     };
     (place(chord.span[0]), place(chord.span[1]))
 }

@@ -23,13 +23,13 @@ pub(crate) fn depth(part: &Part, place: Pose, lane: &Profile) -> f64 {
     if hangs_over || lane.is_clear_of(center, bound) {
         return 0.0;
     }
-    let rounds = rounds(part).into_iter();
+    let arcs_and_corners = arcs_and_corners(part).into_iter();
     let depth = |d: Disc| depth_of_disc(place.transform_point(d.center), d.radius, lane);
-    rounds.map(depth).fold(0.0, f64::max)
+    arcs_and_corners.map(depth).fold(0.0, f64::max)
 }
 
 /// Arcs and corners of a part in its own frame.
-fn rounds(part: &Part) -> Vec<Disc> {
+fn arcs_and_corners(part: &Part) -> Vec<Disc> {
     match &part.shape {
         Shape::Disc { radius, .. } => vec![Disc {
             center: Vector::ZERO,
@@ -59,9 +59,9 @@ fn depth_of_disc(center: Vector, radius: f64, lane: &Profile) -> f64 {
     let far = if is_inside { below } else { radius };
     let distance = |facet: usize| {
         let (a, b) = (lane.points[facet], lane.points[facet + 1]);
-        let way = b - a;
-        let share = ((center - a).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-        (a + way * share - center).length()
+        let edge = b - a;
+        let fraction = ((center - a).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+        (a + edge * fraction - center).length()
     };
     let facets = lane.facets(center.x - far, center.x + far);
     let nearest = facets.map(distance).fold(far, f64::min);

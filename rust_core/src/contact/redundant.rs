@@ -14,9 +14,9 @@ use crate::units::Metres;
 
 /// Cosine of the angle within which two normals of an overlap both count: faces that are nearly parallel
 /// bear at both ends of their overlap.
-const ALIKE: f64 = 0.94;
+const ALIKE_COSINE: f64 = 0.94;
 /// [rad] If a face is parallel to a run of a part within this angle, both ends of the run bear on it.
-pub(super) const NEARLY: f64 = 0.05;
+pub(super) const NEARLY_PARALLEL: f64 = 0.05;
 
 /// A sharp corner of a part.
 #[derive(Clone, Copy)]
@@ -29,21 +29,23 @@ pub(super) struct Tip {
 
 impl Tip {
     /// Whether a direction is an outward normal of the part at the tip, within rounding.
-    pub(super) fn faces(&self, direction: Vector) -> bool {
-        self.faces_within(direction, ROUNDING)
+    pub(super) fn has_normal(&self, direction: Vector) -> bool {
+        self.has_normal_within(direction, ROUNDING)
     }
 
     /// Whether it can bear there until the part has turned on: above a face whichever way it points now, and in a face
     /// if the part lies nearly flat on it.
     pub(super) fn may_bear(&self, touch: &Touch) -> bool {
         match touch.on {
-            On::Face(_) => touch.distance > 0.0 || self.faces_within(-touch.normal, NEARLY),
-            On::Corner(_) => self.faces(-touch.normal),
+            On::Face(_) => {
+                touch.distance > 0.0 || self.has_normal_within(-touch.normal, NEARLY_PARALLEL)
+            }
+            On::Corner(_) => self.has_normal(-touch.normal),
         }
     }
 
     /// Whether a direction is an outward normal of the part at the tip, within an angle of this sine.
-    fn faces_within(&self, direction: Vector, sine: f64) -> bool {
+    fn has_normal_within(&self, direction: Vector, sine: f64) -> bool {
         let [before, behind] = self.normals;
         cross(before, direction) >= -sine
             && cross(direction, behind) >= -sine
@@ -54,13 +56,13 @@ impl Tip {
 /// Whether a tip inside a face of the ground has a shorter way out than that face.
 pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
     outer_ends(lane, touch).any(|(corner, beside)| {
-        let is_gap = |way: f64| is_gap(way, (tip.place - corner.center).length());
+        let is_gap = |depth: f64| is_gap(depth, (tip.place - corner.center).length());
         let below = (corner.center - tip.place).dot(beside) + corner.radius;
-        let leaves_face = || tip.faces(-beside);
+        let leaves_face = || tip.has_normal(-beside);
         let leaves_run = |m: &Vector| {
             let spoke = tip.place - (corner.center - *m * corner.radius);
             let beyond = spoke.dot(*m);
-            let leaves = || corner.faces(-*m);
+            let leaves = || corner.has_normal(-*m);
             let holds_corner = || tip.normals.iter().all(|m| spoke.dot(*m) > 0.0);
             (is_gap(beyond) && leaves()) || (shorter(touch, -*m, beyond, leaves) && holds_corner())
         };
@@ -81,7 +83,7 @@ fn outer_ends<'a>(lane: &'a Lane, touch: &Touch) -> impl Iterator<Item = (&'a Co
     let ends = face.into_iter().flat_map(|face| [(face, 0), (face + 1, 1)]);
     let corners = ends.map(|(i, side)| (lane.corner(i), side));
     corners
-        .filter(|(corner, _)| corner.stands_out)
+        .filter(|(corner, _)| corner.is_convex)
         .map(|(corner, side)| (corner, corner.normals[side]))
 }
 
@@ -92,33 +94,33 @@ pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch)
         return false;
     };
     let corner = lane.corner(i);
-    if touch.distance >= 0.0 || !corner.stands_out {
+    if touch.distance >= 0.0 || !corner.is_convex {
         return false;
     }
     let [before, behind] = tip.normals;
     let beside = if outward == before { behind } else { before };
     let below = (tip.place - corner.center).dot(beside) + corner.radius;
     let is_apart = is_gap(below, (tip.place - corner.center).length());
-    if is_apart && corner.faces(-beside) {
+    if is_apart && corner.has_normal(-beside) {
         return true;
     }
     let beyond = |normal: Vector| (corner.center - tip.place).dot(normal) + corner.radius;
-    shorter(touch, -beside, below, || corner.faces(-beside))
+    shorter(touch, -beside, below, || corner.has_normal(-beside))
         || corner
             .normals
             .iter()
-            .any(|n| shorter(touch, *n, beyond(*n), || tip.faces(-*n)))
+            .any(|n| shorter(touch, *n, beyond(*n), || tip.has_normal(-*n)))
 }
 
-/// Whether a way out [m] of two corners so far from each other [m] is none, so that they have not met: what faces may be
-/// out of a corner's cone by rounding, which is a gap over some distance.
-fn is_gap(way: f64, apart: f64) -> bool {
-    way < -ROUNDING * apart
+/// Whether two corners this far apart [m] have not met, because one lies outside a face of the other by more than rounding
+/// may turn that face.
+fn is_gap(depth: f64, apart: f64) -> bool {
+    depth < -ROUNDING * apart
 }
 
 /// Whether a way out of length `depth` along `normal` is shorter than that of `touch`, and open.
 fn shorter(touch: &Touch, normal: Vector, depth: f64, open: impl Fn() -> bool) -> bool {
-    0.0 < depth && depth < -touch.distance && normal.dot(touch.normal) < ALIKE && open()
+    0.0 < depth && depth < -touch.distance && normal.dot(touch.normal) < ALIKE_COSINE && open()
 }
 
 /// [m] A contact whose normal passes this close to the centre of a disc is one of the disc.
@@ -129,7 +131,7 @@ const FEW: usize = 4;
 /// Leaves, of the contacts of a disc from number `first` on, those that it can reach within `prediction` [m], if
 /// the ground there is finely divided. A corner of a part is a disc of radius 0.
 ///
-/// The normals of all contacts of a disc pass through its centre, so only the way of the centre matters.
+/// The normals of all contacts of a disc pass through its centre, so only the displacement of its centre matters.
 pub(super) fn thin_out(
     contacts: &mut Vec<Contact>,
     first: usize,
@@ -223,9 +225,9 @@ impl Displacements {
                 self.corners.push(Vertex { ..*corner });
             }
             if (gaps[i] >= 0.0) != (gaps[next] >= 0.0) {
-                let share = gaps[i] / (gaps[i] - gaps[next]);
+                let fraction = gaps[i] / (gaps[i] - gaps[next]);
                 self.corners.push(Vertex {
-                    at: corner.at + (old[next].at - corner.at) * share,
+                    at: corner.at + (old[next].at - corner.at) * fraction,
                     is_checked: false,
                 });
             }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
 use super::envelope::Envelope;
-use super::hull::{Form, Stretch};
+use super::hull::{Curve, Stretch};
 use super::{Pose, Rotation, Vector, right_of};
 use crate::scenario::{MAX_GROUSERS, ScenarioError, TrackOutline};
 
@@ -34,16 +34,16 @@ impl Motion {
         right_of(point - self.center) * self.turn + self.along
     }
 
-    /// Mixes in a share of another motion; at most one of the two turns.
-    fn mixed(self, other: Self, share: f64) -> Self {
+    /// Mixes in a fraction of another motion; at most one of the two turns.
+    fn mixed(self, other: Self, fraction: f64) -> Self {
         Self {
             center: if self.turn == 0.0 {
                 other.center
             } else {
                 self.center
             },
-            turn: self.turn * (1.0 - share) + other.turn * share,
-            along: self.along * (1.0 - share) + other.along * share,
+            turn: self.turn * (1.0 - fraction) + other.turn * fraction,
+            along: self.along * (1.0 - fraction) + other.along * fraction,
         }
     }
 }
@@ -51,13 +51,13 @@ impl Motion {
 impl Stretch {
     /// How a belt moves what it carries on this stretch.
     fn motion(&self) -> Motion {
-        match self.shape {
-            Form::Arc { center, radius, .. } => Motion {
+        match self.curve {
+            Curve::Arc { center, radius, .. } => Motion {
                 center,
                 turn: 1.0 / radius,
                 along: Vector::ZERO,
             },
-            Form::Run { along, .. } => Motion {
+            Curve::Run { along, .. } => Motion {
                 along,
                 ..Motion::default()
             },
@@ -66,54 +66,54 @@ impl Stretch {
 }
 
 impl Envelope {
-    /// The point at a position `way` [m] along the hull, and the outward normal there.
-    pub(crate) fn place_at(&self, way: f64) -> (Vector, Vector) {
-        let way = way.rem_euclid(self.length());
-        let stretch = self.stretch_at(way);
-        let point = stretch.point_at(way - stretch.start);
-        let outward = match stretch.shape {
-            Form::Arc { center, radius, .. } => (point - center) / radius,
-            Form::Run { outward, .. } => outward,
+    /// The point at a position [m] along the hull, and the outward normal there.
+    pub(crate) fn place_at(&self, position: f64) -> (Vector, Vector) {
+        let position = position.rem_euclid(self.length());
+        let stretch = self.stretch_at(position);
+        let point = stretch.point_at(position - stretch.start);
+        let outward = match stretch.curve {
+            Curve::Arc { center, radius, .. } => (point - center) / radius,
+            Curve::Run { outward, .. } => outward,
         };
         (point, outward)
     }
 
     /// [rad] Direction of belt travel at a position [m] along the hull; it counts full turns.
-    pub(crate) fn angle_at(&self, way: f64) -> f64 {
-        let inside = way.rem_euclid(self.length());
+    pub(crate) fn angle_at(&self, position: f64) -> f64 {
+        let inside = position.rem_euclid(self.length());
         // Not the floor of the quotient, which rounding may lift to the next round.
-        let rounds = ((way - inside) / self.length()).round();
-        let turned = |stretch: &Stretch| match stretch.shape {
-            Form::Arc { sweep, .. } if inside > stretch.start => {
+        let rounds = ((position - inside) / self.length()).round();
+        let turned = |stretch: &Stretch| match stretch.curve {
+            Curve::Arc { sweep, .. } if inside > stretch.start => {
                 sweep * ((inside - stretch.start) / stretch.length).min(1.0)
             }
             _ => 0.0,
         };
         let turns: f64 = self.stretches.iter().map(turned).sum();
-        let outward = match self.stretches[0].shape {
-            Form::Arc { from, .. } => from,
-            Form::Run { outward, .. } => libm::atan2(outward.y, outward.x),
+        let outward = match self.stretches[0].curve {
+            Curve::Arc { from, .. } => from,
+            Curve::Run { outward, .. } => libm::atan2(outward.y, outward.x),
         };
         outward - FRAC_PI_2 - turns - TAU * rounds
     }
 
     /// Mean motion of what a belt carries within `reach` [m] of a position along the hull; averaged because the
     /// motion of a tip would jump where an arc joins a run.
-    pub(crate) fn motion_at(&self, way: f64, reach: f64) -> Motion {
-        let way = way.rem_euclid(self.length());
-        let here = self.stretch_at(way);
+    pub(crate) fn motion_at(&self, position: f64, reach: f64) -> Motion {
+        let position = position.rem_euclid(self.length());
+        let here = self.stretch_at(position);
         // The nearer joint of the stretch, and how much of the span lies beyond it.
-        let (behind, ahead) = (way - here.start, here.start + here.length - way);
+        let (behind, ahead) = (position - here.start, here.start + here.length - position);
         let (gap, beyond) = if behind < ahead {
             (behind, here.start - behind)
         } else {
-            (ahead, way + 2.0 * ahead)
+            (ahead, position + 2.0 * ahead)
         };
         let mut motion = here.motion();
         if gap < reach && self.stretches.len() > 1 {
-            let share = 0.5 * (1.0 - gap / reach);
+            let fraction = 0.5 * (1.0 - gap / reach);
             let beyond = beyond.rem_euclid(self.length());
-            motion = motion.mixed(self.stretch_at(beyond).motion(), share);
+            motion = motion.mixed(self.stretch_at(beyond).motion(), fraction);
         }
         motion
     }
@@ -125,20 +125,20 @@ pub struct Grouser {
     /// The line of the belt.
     belt: Arc<Envelope>,
     /// [m] Position along the line at the start.
-    way: f64,
+    position: f64,
     /// [m] Corners, counter-clockwise, x along the belt's travel and y outwards from its line.
     corners: [Vector; 4],
 }
 
 impl Grouser {
-    /// A grouser of a height and thickness [m] that starts at the position `way` [m] of the belt's line.
-    pub(crate) fn new(belt: &Arc<Envelope>, way: f64, height: f64, thickness: f64) -> Self {
+    /// A grouser of a height and thickness [m] that starts at a position [m] of the belt's line.
+    pub(crate) fn new(belt: &Arc<Envelope>, position: f64, height: f64, thickness: f64) -> Self {
         let half = 0.5 * thickness;
         // It reaches into the belt, so that no corner of the ground can slip under it where the belt bends.
         let corner = |x: f64, y: f64| Vector::new(x, y);
         Self {
             belt: Arc::clone(belt),
-            way,
+            position,
             corners: [
                 corner(-half, -half),
                 corner(half, -half),
@@ -175,7 +175,7 @@ impl Grouser {
 
     /// Its frame in the chassis frame when the belt has run so far [m].
     pub fn place(&self, run: f64) -> Pose {
-        let (point, outward) = self.belt.place_at(self.way + run);
+        let (point, outward) = self.belt.place_at(self.position + run);
         // Turns +y outwards.
         let rotation = Rotation::from_cos_sin_unchecked(outward.y, -outward.x);
         Pose::from_parts(point, rotation)
@@ -183,12 +183,12 @@ impl Grouser {
 
     /// [m] Position along the belt's line at which it starts.
     pub fn start(&self) -> f64 {
-        self.way
+        self.position
     }
 
     /// [rad] Angle of that frame; it counts full turns.
     pub(crate) fn angle(&self, run: f64) -> f64 {
-        self.belt.angle_at(self.way + run)
+        self.belt.angle_at(self.position + run)
     }
 
     /// How the belt moves a point [m] of the chassis frame when it has run so far [m]: as part of this grouser, unless
@@ -202,11 +202,11 @@ impl Grouser {
         if (self.place(run).translation - point).length() <= 1.1 * reach {
             return self.motion(run, 0.0);
         }
-        self.belt.motion_at(self.belt.way_of(point), 0.0)
+        self.belt.motion_at(self.belt.position_of(point), 0.0)
     }
 
     /// How the belt moves it there, averaged while it runs from `reach` [m] before to `reach` behind.
     pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
-        self.belt.motion_at(self.way + run, reach)
+        self.belt.motion_at(self.position + run, reach)
     }
 }

@@ -14,7 +14,7 @@ pub(crate) struct Chord {
     pub points: Vec<Vector>,
     /// Indices of the polyline's points strictly inside.
     pub vertices: std::ops::Range<usize>,
-    /// Where it begins and ends on the polyline: index of the segment and a share of it.
+    /// Where it begins and ends on the polyline: index of the segment and a fraction of it.
     pub span: [(usize, f64); 2],
     /// [m] Positions along the envelope at which it enters and leaves.
     enters: f64,
@@ -35,7 +35,7 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
             open = false;
             continue;
         };
-        let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
+        let at = |fraction: f64| ends[0] + (ends[1] - ends[0]) * fraction;
         let (begin, end) = (at(from), at(to));
         match chords.last_mut() {
             Some(chord) if open && from <= 0.0 => {
@@ -59,7 +59,7 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
     });
     for chord in &mut chords {
         let ends = [chord.points[0], chord.points[chord.points.len() - 1]];
-        [chord.enters, chord.leaves] = ends.map(|end| belt.way_of(end));
+        [chord.enters, chord.leaves] = ends.map(|end| belt.position_of(end));
     }
     chords
 }
@@ -68,8 +68,8 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
 pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>> {
     // Where a chord leaves, the rim of the solid follows the envelope clockwise to the next chord that enters.
     let next = |chord: &Chord| {
-        let way = |other: &Chord| way_between(belt, chord.leaves, other.enters);
-        let order = |i: &usize, j: &usize| way(&chords[*i]).total_cmp(&way(&chords[*j]));
+        let travel = |other: &Chord| travel_between(belt, chord.leaves, other.enters);
+        let order = |i: &usize, j: &usize| travel(&chords[*i]).total_cmp(&travel(&chords[*j]));
         (0..chords.len()).min_by(order).unwrap_or_default()
     };
     let mut taken = vec![false; chords.len()];
@@ -89,13 +89,13 @@ pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>>
 }
 
 /// [m] Distance along the envelope from one position to another.
-fn way_between(belt: &Envelope, from: f64, to: f64) -> f64 {
-    let way = (to - from).rem_euclid(belt.length());
+fn travel_between(belt: &Envelope, from: f64, to: f64) -> f64 {
+    let travel = (to - from).rem_euclid(belt.length());
     // Positions in the wrong order by rounding are the same.
-    if way > belt.length() - TOUCHES.value() {
+    if travel > belt.length() - TOUCHES.value() {
         0.0
     } else {
-        way
+        travel
     }
 }
 
@@ -114,9 +114,10 @@ impl Piece<'_> {
             .map(|(c, d)| (c.leaves, d.enters))
     }
 
-    /// Whether the rim includes the point of the envelope at `way`.
-    pub(crate) fn reaches(&self, belt: &Envelope, way: f64) -> bool {
-        let passes = |(from, to)| way_between(belt, from, way) <= way_between(belt, from, to);
+    /// Whether the rim includes the point of the envelope at a position [m].
+    pub(crate) fn reaches(&self, belt: &Envelope, position: f64) -> bool {
+        let passes =
+            |(from, to)| travel_between(belt, from, position) <= travel_between(belt, from, to);
         self.rim().any(passes)
     }
 
@@ -129,7 +130,7 @@ impl Piece<'_> {
             .sum();
         let along_rim: f64 = self
             .rim()
-            .map(|(from, to)| belt.swept(from, from + way_between(belt, from, to)))
+            .map(|(from, to)| belt.swept(from, from + travel_between(belt, from, to)))
             .sum();
         -0.5 * (along_chords + along_rim)
     }
@@ -146,7 +147,7 @@ impl Piece<'_> {
             rest = others;
             for ends in of_chord.windows(2) {
                 let [(of_a, a), (of_b, b)] = [ends[0], ends[1]];
-                let at = |share: f64| a + (b - a) * share;
+                let at = |fraction: f64| a + (b - a) * fraction;
                 // Depth changes by no more than the distance moved, so most segments cannot have the deepest
                 // point; on others it is that of one straight run all along.
                 let most = 0.5 * (of_a + of_b + (b - a).length());

@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::Disc;
-use super::hull::{Arc, Form, SAME_TURN, Stretch, arcs_round};
+use super::hull::{Arc, Curve, SAME_TURN, Stretch, arcs_round};
 use super::search::maximise;
 use super::{Vector, direction};
 use crate::units::Metres;
@@ -52,7 +52,7 @@ impl Envelope {
 
     fn push_arc(&mut self, discs: &[Disc], arc: &Arc) {
         let Disc { center, radius } = discs[arc.disc];
-        let shape = Form::Arc {
+        let curve = Curve::Arc {
             disc: arc.disc,
             center,
             radius,
@@ -60,27 +60,27 @@ impl Envelope {
             sweep: arc.sweep,
             ends: [direction(arc.from), direction(arc.from - arc.sweep)],
         };
-        self.push(radius * arc.sweep, shape);
+        self.push(radius * arc.sweep, curve);
     }
 
     fn push_run(&mut self, from: &Disc, to: &Disc, outward: f64) {
         let outward = direction(outward);
         let begin = from.center + outward * from.radius;
-        let way = to.center + outward * to.radius - begin;
-        let length = way.length();
-        let shape = Form::Run {
+        let run = to.center + outward * to.radius - begin;
+        let length = run.length();
+        let curve = Curve::Run {
             begin,
-            along: way / length,
+            along: run / length,
             outward,
         };
-        self.push(length, shape);
+        self.push(length, curve);
     }
 
-    fn push(&mut self, length: f64, shape: Form) {
+    fn push(&mut self, length: f64, curve: Curve) {
         self.stretches.push(Stretch {
             start: self.length(),
             length,
-            shape,
+            curve,
         });
     }
 
@@ -89,27 +89,30 @@ impl Envelope {
         self.stretches.last().map_or(0.0, |p| p.start + p.length)
     }
 
-    /// The point at a distance `way` [m] along the hull, which may be more than once round.
-    pub(crate) fn point_at(&self, way: f64) -> Vector {
-        let way = way.rem_euclid(self.length());
-        let stretch = self.stretch_at(way);
-        stretch.point_at(way - stretch.start)
+    /// The point at a distance `position` [m] along the hull, which may be more than once round.
+    pub(crate) fn point_at(&self, position: f64) -> Vector {
+        let position = position.rem_euclid(self.length());
+        let stretch = self.stretch_at(position);
+        stretch.point_at(position - stretch.start)
     }
 
     /// The stretch at a distance [m] along the hull, from 0 to its length.
-    pub(super) fn stretch_at(&self, way: f64) -> &Stretch {
-        let next = self.stretches.partition_point(|p| p.start <= way);
+    pub(super) fn stretch_at(&self, position: f64) -> &Stretch {
+        let next = self.stretches.partition_point(|p| p.start <= position);
         &self.stretches[next.saturating_sub(1)]
     }
 
-    /// [m] Position of the next point, along belt travel, at a straight distance from the point at `way`; one
+    /// [m] Position of the next point, along belt travel, at a straight distance from the point at `position`; one
     /// whole round further if there is none.
-    pub(crate) fn way_to_distance(&self, way: f64, distance: f64) -> f64 {
+    pub(crate) fn position_at_distance(&self, position: f64, distance: f64) -> f64 {
         let length = self.length();
-        let (from, rounds) = (self.point_at(way), (way / length).floor() * length);
+        let (from, rounds) = (
+            self.point_at(position),
+            (position / length).floor() * length,
+        );
         let first = self
             .stretches
-            .partition_point(|p| p.start <= way - rounds)
+            .partition_point(|p| p.start <= position - rounds)
             .saturating_sub(1);
         for k in first..first + self.stretches.len() {
             let stretch = &self.stretches[k % self.stretches.len()];
@@ -124,7 +127,7 @@ impl Envelope {
                 return behind + stretch.start + inner.clamp(0.0, stretch.length);
             }
         }
-        way + length
+        position + length
     }
 
     /// [m] Depth of a point inside the hull; negative outside.
@@ -135,7 +138,7 @@ impl Envelope {
 
     /// [m] No point of a segment is deeper than this: the depth of its deeper end below a straight run.
     pub(super) fn depth_below_runs(&self, ends: [Vector; 2]) -> f64 {
-        let is_run = |s: &&Stretch| matches!(s.shape, Form::Run { .. });
+        let is_run = |s: &&Stretch| matches!(s.curve, Curve::Run { .. });
         let runs = self.stretches.iter().filter(is_run);
         let depths = runs.filter_map(|s| Some(s.depth(ends[0])?.max(s.depth(ends[1])?)));
         depths.fold(f64::INFINITY, f64::min)
@@ -154,23 +157,24 @@ impl Envelope {
 
     /// The arcs of the hull: disc, outward direction [rad] at the start, and how far it turns clockwise.
     pub(crate) fn arcs(&self) -> Vec<(Disc, f64, f64)> {
-        let arc = |stretch: &Stretch| match stretch.shape {
-            Form::Arc {
+        let arc = |stretch: &Stretch| match stretch.curve {
+            Curve::Arc {
                 center,
                 radius,
                 from,
                 sweep,
                 ..
             } => Some((Disc { center, radius }, from, sweep)),
-            Form::Run { .. } => None,
+            Curve::Run { .. } => None,
         };
         self.stretches.iter().filter_map(arc).collect()
     }
 
     /// The ends of its straight runs.
     pub(crate) fn runs(&self) -> impl Iterator<Item = [Vector; 2]> {
-        let is_run = |stretch: &&Stretch| matches!(stretch.shape, Form::Run { .. });
-        let ends = |stretch: &Stretch| [0.0, stretch.length].map(|way| stretch.point_at(way));
+        let is_run = |stretch: &&Stretch| matches!(stretch.curve, Curve::Run { .. });
+        let ends =
+            |stretch: &Stretch| [0.0, stretch.length].map(|position| stretch.point_at(position));
         self.stretches.iter().filter(is_run).map(ends)
     }
 
@@ -178,7 +182,7 @@ impl Envelope {
     pub(crate) fn bends(&self, count: usize) -> Vec<f64> {
         let mut bends = vec![0.0; count];
         for stretch in &self.stretches {
-            if let Form::Arc { disc, sweep, .. } = stretch.shape {
+            if let Curve::Arc { disc, sweep, .. } = stretch.curve {
                 bends[disc] += sweep;
             }
         }
@@ -192,16 +196,16 @@ impl Envelope {
     }
 
     /// [m] Ways along the hull to these points.
-    pub(crate) fn ways(&self, turn: f64) -> impl Iterator<Item = f64> {
+    pub(crate) fn positions(&self, turn: f64) -> impl Iterator<Item = f64> {
         self.cuts(turn)
             .map(|(stretch, inner)| stretch.start + inner)
     }
 
     fn cuts(&self, turn: f64) -> impl Iterator<Item = (&Stretch, f64)> {
         self.stretches.iter().flat_map(move |stretch| {
-            let cuts = match stretch.shape {
-                Form::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0) as usize,
-                Form::Run { .. } => 1,
+            let cuts = match stretch.curve {
+                Curve::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0) as usize,
+                Curve::Run { .. } => 1,
             };
             (0..cuts).map(move |i| (stretch, stretch.length * i as f64 / cuts as f64))
         })
@@ -209,9 +213,9 @@ impl Envelope {
 
     /// The outward normal of the hull at the place nearest to a point.
     pub(crate) fn outward_at(&self, point: Vector) -> Vector {
-        match self.stretches[self.nearest(point).stretch].shape {
-            Form::Arc { center, .. } => (point - center).normalize_or(Vector::NEG_Y),
-            Form::Run { outward, .. } => outward,
+        match self.stretches[self.nearest(point).stretch].curve {
+            Curve::Arc { center, .. } => (point - center).normalize_or(Vector::NEG_Y),
+            Curve::Run { outward, .. } => outward,
         }
     }
 
@@ -219,9 +223,9 @@ impl Envelope {
     ///
     /// They are the nearest discs along the belt that reach at least as far out as the point.
     pub(crate) fn neighbours(&self, point: Vector, nearest: Nearest, discs: &[Disc]) -> [usize; 2] {
-        match self.stretches[nearest.stretch].shape {
-            Form::Arc { disc, .. } => [disc, disc],
-            Form::Run {
+        match self.stretches[nearest.stretch].curve {
+            Curve::Arc { disc, .. } => [disc, disc],
+            Curve::Run {
                 begin,
                 along,
                 outward,
@@ -270,10 +274,10 @@ impl Envelope {
     }
 
     /// [m] Position along the hull of its point nearest to `point`.
-    pub(crate) fn way_of(&self, point: Vector) -> f64 {
+    pub(crate) fn position_of(&self, point: Vector) -> f64 {
         let stretch = &self.stretches[self.nearest(point).stretch];
-        let inner = match stretch.shape {
-            Form::Arc {
+        let inner = match stretch.curve {
+            Curve::Arc {
                 center,
                 radius,
                 from,
@@ -290,7 +294,9 @@ impl Envelope {
                 };
                 turn.min(sweep) * radius
             }
-            Form::Run { begin, along, .. } => (point - begin).dot(along).clamp(0.0, stretch.length),
+            Curve::Run { begin, along, .. } => {
+                (point - begin).dot(along).clamp(0.0, stretch.length)
+            }
         };
         stretch.start + inner
     }
@@ -356,7 +362,7 @@ mod tests {
     fn walk_starts_at_the_rear_of_the_lower_run_and_follows_the_belt() {
         let belt = stadium();
         let arc = 0.05 * TAU;
-        for (way, x, y) in [
+        for (position, x, y) in [
             (0.0, -0.2, -0.1),
             (0.5 * arc, -0.3, 0.0),
             (arc, -0.2, 0.1),
@@ -364,12 +370,15 @@ mod tests {
             (1.5 * arc + 0.5, 0.4, 0.0),
             (2.0 * arc + 0.6, 0.2, -0.1),
         ] {
-            let point = belt.point_at(way);
+            let point = belt.point_at(position);
             assert!(
                 (point - Vector::new(x, y)).length() < 1e-12,
-                "{way}: {point}"
+                "{position}: {point}"
             );
-            assert!((belt.way_of(point) - way).abs() < 1e-9, "{way}");
+            assert!(
+                (belt.position_of(point) - position).abs() < 1e-9,
+                "{position}"
+            );
         }
     }
 
@@ -414,13 +423,16 @@ mod tests {
     fn distances_along_the_belt_come_back_as_distances() {
         let belt = Envelope::new(&[disc(-0.2, 0.0, 0.1), disc(0.3, 0.05, 0.04)]);
         for i in 0..100 {
-            let way = 0.017 * f64::from(i);
+            let position = 0.017 * f64::from(i);
             for distance in [0.01, 0.05, 0.07] {
-                let next = belt.way_to_distance(way, distance);
-                let apart = (belt.point_at(next) - belt.point_at(way)).length();
-                assert!((apart - distance).abs() < 1e-9, "{way} {distance} {apart}");
+                let next = belt.position_at_distance(position, distance);
+                let apart = (belt.point_at(next) - belt.point_at(position)).length();
+                assert!(
+                    (apart - distance).abs() < 1e-9,
+                    "{position} {distance} {apart}"
+                );
                 // No arc within a half circle is longer than pi / 2 of its chord.
-                assert!(next > way && next - way < 0.26 * TAU * distance);
+                assert!(next > position && next - position < 0.26 * TAU * distance);
             }
         }
     }

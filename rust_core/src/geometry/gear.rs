@@ -146,8 +146,8 @@ impl Gear {
         let room = self.angle() - 2.0 * base;
         let of_grouser = |angle: f64| {
             let arc = (0..points).map(move |i| {
-                let share = i as f64 / points.saturating_sub(1).max(1) as f64;
-                direction(angle - base - (1.0 - share) * room) * self.root_radius
+                let fraction = i as f64 / points.saturating_sub(1).max(1) as f64;
+                direction(angle - base - (1.0 - fraction) * room) * self.root_radius
             });
             let [_, tip, other, _] = self.corners(angle);
             arc.chain([tip, other])

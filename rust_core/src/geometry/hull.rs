@@ -7,7 +7,7 @@ use super::{Disc, Vector, cross, direction};
 /// [rad] Smaller turns are rounding errors of collinear tangents.
 pub(super) const SAME_TURN: f64 = 1e-12;
 
-/// One disc's share of the hull.
+/// One disc's fraction of the hull.
 pub(super) struct Arc {
     pub disc: usize,
     /// [rad] Outward direction at its start.
@@ -51,7 +51,7 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
         let (to, turn) = next.unwrap_or((disc, TAU));
         let left = TAU - turned;
         if turn > left + SAME_TURN && !arcs.is_empty() {
-            // Once round: the rest belongs to the first arc, which began half-way.
+            // Once round: the rest belongs to the first arc, which began half-line.
             arcs[0].from += left;
             arcs[0].sweep += left;
             break;
@@ -71,13 +71,13 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
 
 /// [rad] How far the outward direction turns clockwise on `disc` until `other` reaches as far out.
 fn turn_to(disc: &Disc, other: &Disc, outward: f64) -> Option<f64> {
-    let way = other.center - disc.center;
-    let distance = way.length();
+    let axis = other.center - disc.center;
+    let distance = axis.length();
     let smaller = disc.radius - other.radius;
     if distance <= smaller.abs() {
         return None;
     }
-    let tangent = libm::atan2(way.y, way.x) + libm::acos(smaller / distance);
+    let tangent = libm::atan2(axis.y, axis.x) + libm::acos(smaller / distance);
     let turn = (outward - tangent).rem_euclid(TAU);
     Some(if turn > TAU - SAME_TURN { 0.0 } else { turn })
 }
@@ -92,11 +92,11 @@ pub(super) struct Stretch {
     pub start: f64,
     /// [m] Its length.
     pub length: f64,
-    pub shape: Form,
+    pub curve: Curve,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Form {
+pub(super) enum Curve {
     /// An arc of disc `disc`, clockwise from the outward direction `from` [rad]; `ends` are its
     /// first and last outward directions.
     Arc {
@@ -116,36 +116,36 @@ pub(super) enum Form {
 }
 
 impl Stretch {
-    pub(super) fn point_at(&self, way: f64) -> Vector {
-        match self.shape {
-            Form::Arc {
+    pub(super) fn point_at(&self, inner: f64) -> Vector {
+        match self.curve {
+            Curve::Arc {
                 center,
                 radius,
                 from,
                 sweep,
                 ..
             } => {
-                let share = if self.length > 0.0 {
-                    way / self.length
+                let fraction = if self.length > 0.0 {
+                    inner / self.length
                 } else {
                     0.0
                 };
-                center + direction(from - sweep * share) * radius
+                center + direction(from - sweep * fraction) * radius
             }
-            Form::Run { begin, along, .. } => begin + along * way,
+            Curve::Run { begin, along, .. } => begin + along * inner,
         }
     }
 
     /// [m] Position of the point ahead of `from` at a straight `distance` from it.
     pub(super) fn at_distance(&self, from: Vector, distance: f64) -> f64 {
-        match self.shape {
-            Form::Run { begin, along, .. } => {
+        match self.curve {
+            Curve::Run { begin, along, .. } => {
                 let offset = begin - from;
                 let back = offset.dot(along);
                 let root = back * back - offset.length_squared() + distance * distance;
                 root.max(0.0).sqrt() - back
             }
-            Form::Arc {
+            Curve::Arc {
                 center,
                 radius,
                 from: start,
@@ -163,9 +163,9 @@ impl Stretch {
 
     /// [m] Depth of a point below this stretch, if the point is within its extent.
     pub(super) fn depth(&self, point: Vector) -> Option<f64> {
-        match self.shape {
-            Form::Run { begin, outward, .. } => Some((begin - point).dot(outward)),
-            Form::Arc {
+        match self.curve {
+            Curve::Run { begin, outward, .. } => Some((begin - point).dot(outward)),
+            Curve::Arc {
                 center,
                 radius,
                 sweep,
@@ -180,36 +180,36 @@ impl Stretch {
 
     /// Calls `cut` with the fractions of the segment at which it crosses this stretch.
     pub(super) fn crossings(&self, a: Vector, b: Vector, cut: &mut impl FnMut(f64)) {
-        let way = b - a;
-        match self.shape {
-            Form::Run {
+        let line = b - a;
+        match self.curve {
+            Curve::Run {
                 begin,
                 along,
                 outward,
             } => {
-                let towards = way.dot(outward);
+                let towards = line.dot(outward);
                 let t = (begin - a).dot(outward) / towards;
-                let along = (a + way * t - begin).dot(along);
+                let along = (a + line * t - begin).dot(along);
                 let on_run = (-JOINT..=self.length + JOINT).contains(&along);
                 if (0.0..=1.0).contains(&t) && on_run {
                     cut(t);
                 }
             }
-            Form::Arc {
+            Curve::Arc {
                 center,
                 radius,
                 sweep,
                 ends,
                 ..
             } => {
-                let (offset, square) = (a - center, way.length_squared());
-                let half = offset.dot(way) / square;
+                let (offset, square) = (a - center, line.length_squared());
+                let half = offset.dot(line) / square;
                 let rest = half * half - (offset.length_squared() - radius * radius) / square;
                 if rest < 0.0 {
                     return;
                 }
                 for t in [-half - rest.sqrt(), -half + rest.sqrt()] {
-                    let spoke = offset + way * t;
+                    let spoke = offset + line * t;
                     if (0.0..=1.0).contains(&t) && is_on_arc(spoke, ends, sweep, JOINT * radius) {
                         cut(t);
                     }
@@ -221,9 +221,9 @@ impl Stretch {
     /// [m^2] Twice the signed area between the origin and this stretch between two positions.
     pub(super) fn swept(&self, from: f64, to: f64) -> f64 {
         let (p, q) = (self.point_at(from), self.point_at(to));
-        match self.shape {
-            Form::Run { .. } => cross(p, q),
-            Form::Arc { center, radius, .. } => cross(center, q - p) - radius * (to - from),
+        match self.curve {
+            Curve::Run { .. } => cross(p, q),
+            Curve::Arc { center, radius, .. } => cross(center, q - p) - radius * (to - from),
         }
     }
 }

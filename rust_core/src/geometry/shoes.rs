@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::hull::{Form, arcs_round};
+use super::hull::{Curve, arcs_round};
 use super::search::zero;
 use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
 use super::{Pose, Rotation, Vector, direction, right_of};
@@ -68,16 +68,20 @@ impl ShoeLoop {
         if ![least, most].into_iter().all(|pitch| self.has_runs(pitch)) {
             return None;
         }
-        let share = |phase: u32| f64::from(phase) / f64::from(PHASES);
+        let fraction = |phase: u32| f64::from(phase) / f64::from(PHASES);
         // Shoes that bend round many small discs may make it longer still.
         let is_between = |phase: u32| {
-            let excess = |p: f64| self.excess(p, share(phase) * p, 0.0);
+            let excess = |p: f64| self.excess(p, fraction(phase) * p, 0.0);
             excess(least) < 0.0 && 0.0 < excess(most)
         };
         if self.discs.len() > 2 && !(0..PHASES).all(is_between) {
             return None;
         }
-        let taut = |phase: u32| zero(least, most, |p: f64| self.excess(p, share(phase) * p, 0.0));
+        let taut = |phase: u32| {
+            zero(least, most, |p: f64| {
+                self.excess(p, fraction(phase) * p, 0.0)
+            })
+        };
         let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
         Some(Self { pitch, ..self })
     }
@@ -85,9 +89,9 @@ impl ShoeLoop {
     /// Whether a shoe of a pitch [m] fits on the runs between all discs, even with the front end as far in or out as
     /// `travel` searches.
     fn has_runs(&self, pitch: f64) -> bool {
-        [-0.5, 0.5].into_iter().all(|share| {
+        [-0.5, 0.5].into_iter().all(|fraction| {
             let mut discs = self.ends(pitch);
-            discs[1].center.x += share * pitch;
+            discs[1].center.x += fraction * pitch;
             let arcs = arcs_round(&discs);
             let fits = |[from, to]: [&Disc; 2]| {
                 let (apart, step) = (to.center - from.center, to.radius - from.radius);
@@ -110,9 +114,9 @@ impl ShoeLoop {
 
     /// [rad] Angle of a seat of the sprocket relative to the chassis at the start.
     pub(crate) fn first_seat(&self) -> f64 {
-        match self.path(self.pitch, 0.0).stretches[0].shape {
-            Form::Arc { from, .. } => from,
-            Form::Run { .. } => 0.0,
+        match self.path(self.pitch, 0.0).stretches[0].curve {
+            Curve::Arc { from, .. } => from,
+            Curve::Run { .. } => 0.0,
         }
     }
 
@@ -145,8 +149,8 @@ impl ShoeLoop {
     pub(crate) fn places(&self, run: f64) -> Vec<Pose> {
         let phase = run.rem_euclid(self.pitch);
         let path = self.path(self.pitch, self.travel(run));
-        let ways = self.walk(&path, self.pitch, self.first_way(phase));
-        let mut pins: Vec<Vector> = ways.map(|way| path.point_at(way)).collect();
+        let positions = self.walk(&path, self.pitch, self.first_position(phase));
+        let mut pins: Vec<Vector> = positions.map(|position| path.point_at(position)).collect();
         pins.pop();
         // Each shoe keeps its number as the chain runs.
         let passed = (run.div_euclid(self.pitch) as i64).rem_euclid(self.count as i64);
@@ -164,20 +168,20 @@ impl ShoeLoop {
     /// How the chain moves a shoe whose origin is there, per metre of chain travel, averaged while the shoe passes.
     pub(crate) fn motion_at(&self, origin: Vector) -> Motion {
         let path = Envelope::new(&self.ends(self.pitch));
-        path.motion_at(path.way_of(origin), 0.5 * self.pitch)
+        path.motion_at(path.position_of(origin), 0.5 * self.pitch)
     }
 
     /// [m] By how much a chain of a pitch is too long, with the front end so far out and a pin so far from the
     /// beginning of the path.
     fn excess(&self, pitch: f64, phase: f64, out: f64) -> f64 {
         let path = self.path(pitch, out);
-        let first = self.first_way(phase);
+        let first = self.first_position(phase);
         let last = self.walk(&path, pitch, first).last().unwrap_or(first);
         last - first - path.length()
     }
 
     /// [m] Position on the path of a pin that has run so far from its beginning; a sprocket turns its pins evenly.
-    fn first_way(&self, phase: f64) -> f64 {
+    fn first_position(&self, phase: f64) -> f64 {
         match self.teeth {
             Some(teeth) => {
                 let step = TAU / teeth as f64;
@@ -194,7 +198,7 @@ impl ShoeLoop {
         pitch: f64,
         phase: f64,
     ) -> impl Iterator<Item = f64> + use<'a> {
-        let next = move |way: &f64| Some(path.way_to_distance(*way, pitch));
+        let next = move |position: &f64| Some(path.position_at_distance(*position, pitch));
         std::iter::successors(Some(phase), next).take(self.count + 1)
     }
 
@@ -207,8 +211,8 @@ impl ShoeLoop {
         let mut start = 0.0;
         for stretch in &mut path.stretches {
             stretch.start = start;
-            match &mut stretch.shape {
-                Form::Arc {
+            match &mut stretch.curve {
+                Curve::Arc {
                     radius,
                     from,
                     sweep,
@@ -222,7 +226,7 @@ impl ShoeLoop {
                     *ends = [direction(*from), direction(*from - *sweep)];
                     stretch.length = *radius * *sweep;
                 }
-                Form::Run { begin, along, .. } => {
+                Curve::Run { begin, along, .. } => {
                     *begin += *along * half;
                     stretch.length -= pitch;
                 }

@@ -78,11 +78,11 @@ impl Teeth {
             normal: here / out,
         };
         let flank = |seat: Vector| {
-            let way = here - seat;
-            let length = way.length();
+            let spoke = here - seat;
+            let length = spoke.length();
             Flank {
                 gap: length - self.pitch,
-                normal: way / length,
+                normal: spoke / length,
             }
         };
         let radial = |seat: Vector, sideways: Vector| {

@@ -181,7 +181,7 @@ impl Part {
             let [x, y] = belt.point_at(*way).into();
             [x, y, belt.angle_at(*way)]
         };
-        let ways: Vec<f64> = belt.ways(BELT_TURN).chain([belt.length()]).collect();
+        let ways: Vec<f64> = belt.positions(BELT_TURN).chain([belt.length()]).collect();
         let poses = ways.iter().map(pose).collect();
         Some(Circuit { ways, poses })
     }

@@ -1,4 +1,4 @@
-//! What is legal but unlikely to be meant: a size in the wrong unit, an angle in degrees, a field without effect.
+//! Legal values that are probably mistakes: a size in the wrong unit, an angle in degrees, a field without effect.
 //!
 //! Where possible, bounds are lengths of the robot itself, and lie far beyond what anyone builds or drives over.
 
@@ -173,14 +173,14 @@ impl Robot {
             let path = format!("robot.center_of_mass[{i}]");
             doubts.at_most(path, value, (length, "m"), "the robot's length");
         }
-        // Limits of mass are those of the arithmetic; a robot in grams or tonnes is told by its density.
+        // Limits of mass are those of the arithmetic; a robot in grams or tonnes is recognised by its density.
         let box_round = length * 2.0 * o.largest_radius() * length.max(self.gauge);
         let [least, most] = [AIR, GOLD].map(|density| density * box_round);
-        let what = "what gold of its length and height would weigh";
+        let what = "the mass of gold of its length and height";
         doubts.at_most("robot.mass".into(), self.mass, (most, "kg"), what);
         if self.mass < least {
             let reason = format!(
-                "is usually at least {least:.3} kg, what air of its length and height weighs"
+                "is usually at least {least:.3} kg, the mass of air of its length and height"
             );
             doubts.add("robot.mass", self.mass, reason);
         }

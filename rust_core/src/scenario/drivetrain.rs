@@ -154,7 +154,7 @@ fn read_curve(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
     for (i, pair) in curve.windows(2).enumerate() {
         let ([speed, torque], [next, left]) = (pair[0], pair[1]);
         if next <= speed {
-            let rule = format!("must be faster than the pair before, {speed} m/s");
+            let rule = format!("must exceed the speed of the pair before, {speed} m/s");
             return Err(f.error(&format!("torque_curve[{}][0]", i + 1), next, rule));
         }
         if left > torque {

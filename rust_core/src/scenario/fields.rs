@@ -33,7 +33,7 @@ impl Range {
         }
     }
 
-    fn holds(self, x: f64) -> bool {
+    fn contains(self, x: f64) -> bool {
         let above = if self.low_included {
             x >= self.low
         } else {
@@ -62,11 +62,11 @@ impl Range {
 /// many. `tests/physics/test_scale.py` has robots near both ends.
 const LIGHTEST: f64 = 1e-12;
 const HEAVIEST: f64 = 1e12;
-/// Least mass of a moving part as a share of the robot's.
+/// Least mass of a moving part as a fraction of the robot's.
 ///
 /// Forces on light parts are found beside those on heavy ones, and as many of the sixteen digits of float64 are lost as
 /// the ratio has: eleven are left. At a ratio of 1e-13 the Engineer slips where it otherwise climbs.
-pub(super) const LEAST_SHARE: f64 = 1e-5;
+pub(super) const LEAST_FRACTION: f64 = 1e-5;
 /// [m] Smallest and largest size of a part, and where it may be.
 ///
 /// Contacts overlap by a fraction of a micrometre, and a step may be off by 0.3 um at the default accuracy: for parts of
@@ -370,7 +370,7 @@ fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioErro
             .as_f64()
             .ok_or_else(|| ScenarioError::new(path, other, "must be a number"))?,
     };
-    if !range.holds(x) {
+    if !range.contains(x) {
         return Err(ScenarioError::new(path, value, range.rule()));
     }
     // Subnormal inputs are surely mistakes, and would silently lose digits.

@@ -164,7 +164,7 @@ impl TrackOutline {
         let short = SHORT.into_iter().find(|name| f.has(name));
         let discs = match short {
             Some(name) if f.has("discs") => {
-                let rule = "must not be given beside discs, which it follows from";
+                let rule = "must not be given together with discs, which determine it";
                 let value = f.value(name)?;
                 return Err(f.error(name, value, rule));
             }
@@ -213,7 +213,7 @@ impl TrackOutline {
         let [rear, front] = self.end_discs().map(|disc| disc[0]);
         if self.axle_distance() < SMALLEST {
             let rule = format!(
-                "must have its rearmost and its foremost disc, those that reach farthest, at least {SMALLEST} m apart along x"
+                "must have its rearmost and foremost discs at least {SMALLEST} m apart along x"
             );
             let value = format!("discs at x = {rear} and {front} m");
             return Err(f.error("discs", value, rule));

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
 use super::fields::{
-    COORDINATE, Fields, INERTIA, LEAST_SHARE, MASS, ROTOR, Range, SIZE, TORQUE, is_false, is_zero,
+    COORDINATE, Fields, INERTIA, LEAST_FRACTION, MASS, ROTOR, Range, SIZE, TORQUE, is_false,
+    is_zero,
 };
 use super::outline::TrackOutline;
 use super::track::Track;
@@ -77,7 +78,7 @@ impl Robot {
                 format!("must be less than robot.mass = {} kg", self.mass),
             ));
         }
-        let least = LEAST_SHARE * self.mass;
+        let least = LEAST_FRACTION * self.mass;
         if self.track_mass < least {
             let rule = format!("must be at least a hundred-thousandth of robot.mass, {least} kg");
             return Err(f.error("track_mass", self.track_mass, rule));
@@ -102,7 +103,7 @@ impl Robot {
 
     /// Checks that the digits of the chassis are not lost beside a motor's rotor.
     fn check_rotor(&self, of: &str, inertia: f64) -> Result<(), ScenarioError> {
-        let most = self.moment_of_inertia / LEAST_SHARE;
+        let most = self.moment_of_inertia / LEAST_FRACTION;
         if inertia <= most {
             return Ok(());
         }
@@ -123,7 +124,7 @@ impl Robot {
             let rule = format!("must exceed robot.outline.grouser_height = {height} m");
             return error("tip_radius", smallest, rule);
         }
-        let least = LEAST_SHARE * self.mass;
+        let least = LEAST_FRACTION * self.mass;
         if flippers.mass < least {
             let rule = format!("must be at least a hundred-thousandth of robot.mass, {least} kg");
             return error("mass", flippers.mass, rule);
@@ -157,7 +158,7 @@ impl Robot {
                 refused("must not be closed, because a closed robot.track closes the arms' too")
             }
             Some(track) if is_force(track) != is_force(own) => {
-                refused("must be a force track if robot.track is one, and only then")
+                refused("must be a force track exactly when robot.track is one")
             }
             Some(track) => track.check(self.drivetrain.torque_sharing),
             None => Ok(()),
@@ -198,7 +199,7 @@ fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
         (by, bx) > (ay, ax)
     };
     if (0..n).filter(|i| !is_up(*i) && is_up(i + 1)).count() != 1 {
-        let rule = "must be a convex counter-clockwise polygon, which goes round only once";
+        let rule = "must be a convex counter-clockwise polygon that goes round once";
         return Err(f.error("belly", format!("{n} points"), rule));
     }
     Ok(Some(points))

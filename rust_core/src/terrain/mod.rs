@@ -253,9 +253,9 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
             let ahead = [a, b].map(|profile| heights_at(profile, *next)[0]);
             let (here, there) = (sides[0][1] - sides[1][1], ahead[0] - ahead[1]);
             if here * there < 0.0 {
-                let share = here / (here - there);
-                let y = sides[0][1] + share * (ahead[0] - sides[0][1]);
-                points.push([x + share * (next - x), y]);
+                let fraction = here / (here - there);
+                let y = sides[0][1] + fraction * (ahead[0] - sides[0][1]);
+                points.push([x + fraction * (next - x), y]);
             }
         }
     }

@@ -198,8 +198,8 @@ pub(super) fn stepfield(field: &Stepfield, gauge: f64) -> Lanes {
         return rows;
     }
     let across = |start: f64| {
-        let form = (field.barrier_height, field.barrier_thickness);
-        barrier(form, field.barrier_yaw, start, gauge)
+        let size = (field.barrier_height, field.barrier_thickness);
+        barrier(size, field.barrier_yaw, start, gauge)
     };
     let length = |lanes: &Lanes| lanes[2].end();
     let barriers = across(0.5 * (length(&rows) - length(&across(0.0))));

@@ -395,23 +395,23 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
 const AT_VERTEX: Metres = Metres(1e-7);
 
 impl Profile {
-    /// Position along the profile of a point on a facet, as the index of the facet plus a share of it, and the
+    /// Position along the profile of a point on a facet, as the index of the facet plus a fraction of it, and the
     /// length [m] of the facet.
     pub(crate) fn place_on(&self, facet: usize, point: Vector) -> (f64, f64) {
         let (a, b) = (self.points[facet], self.points[facet + 1]);
-        let (way, length) = (b - a, (b - a).length());
-        let share = (point - a).dot(way) / (length * length);
-        (facet as f64 + share.clamp(0.0, 1.0), length)
+        let (chord, length) = (b - a, (b - a).length());
+        let fraction = (point - a).dot(chord) / (length * length);
+        (facet as f64 + fraction.clamp(0.0, 1.0), length)
     }
 
-    /// The same for a share of a straight piece of facets.
-    pub(crate) fn place_along(&self, facets: Range<usize>, share: f64) -> f64 {
+    /// The same for a fraction of a straight piece of facets.
+    pub(crate) fn place_along(&self, facets: Range<usize>, fraction: f64) -> f64 {
         if facets.len() == 1 {
-            return facets.start as f64 + share;
+            return facets.start as f64 + fraction;
         }
         let (begin, end) = (self.points[facets.start], self.points[facets.end]);
-        let point = begin + (end - begin) * share;
-        self.place_on(facet_along(&self.points, facets, share), point)
+        let point = begin + (end - begin) * fraction;
+        self.place_on(facet_along(&self.points, facets, fraction), point)
             .0
     }
 
@@ -429,17 +429,17 @@ impl Profile {
     }
 }
 
-/// The facet at a share of the way along a straight piece of facets.
-pub(crate) fn facet_along(points: &[Vector], facets: Range<usize>, share: f64) -> usize {
+/// The facet at a fraction of the way along a straight piece of facets.
+pub(crate) fn facet_along(points: &[Vector], facets: Range<usize>, fraction: f64) -> usize {
     let Range { start, end } = facets;
     if end <= start + 1 {
         return start;
     }
-    let way = points[end] - points[start];
-    let far = share * way.length_squared();
-    let is_behind = |i: usize| (points[i] - points[start]).dot(way) <= far;
+    let chord = points[end] - points[start];
+    let far = fraction * chord.length_squared();
+    let is_behind = |i: usize| (points[i] - points[start]).dot(chord) <= far;
     // Pieces are often equally long.
-    let guess = start + ((share * (end - start) as f64).max(0.0) as usize).min(end - start - 1);
+    let guess = start + ((fraction * (end - start) as f64).max(0.0) as usize).min(end - start - 1);
     let is_first = guess == start || is_behind(guess);
     if is_first && (guess + 1 == end || !is_behind(guess + 1)) {
         return guess;

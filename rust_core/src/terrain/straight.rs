@@ -44,8 +44,11 @@ impl Lines {
         if far <= STRAIGHT.value() {
             return;
         }
-        let (way, sine) = (point / far, STRAIGHT.value() / far);
-        let (along, across) = (way * (1.0 - sine * sine).sqrt(), left_of(way) * sine);
+        let (direction, sine) = (point / far, STRAIGHT.value() / far);
+        let (along, across) = (
+            direction * (1.0 - sine * sine).sqrt(),
+            left_of(direction) * sine,
+        );
         let [mut right, mut left] = [along - across, along + across];
         if let Some([known_right, known_left]) = self.0 {
             if cross(right, known_right) > 0.0 {
@@ -110,9 +113,11 @@ mod tests {
             for ends in bends.windows(2) {
                 let [a, b] = [ends[0], ends[1]].map(|i| points[i as usize]);
                 for point in &points[ends[0] as usize..ends[1] as usize] {
-                    let share = (*point - a).dot(b - a) / (b - a).length_squared();
-                    let off = (*point - a - (b - a) * share).length();
-                    assert!((0.0..1.0).contains(&share) && off < STRAIGHT.value() * (1.0 + 1e-6));
+                    let fraction = (*point - a).dot(b - a) / (b - a).length_squared();
+                    let off = (*point - a - (b - a) * fraction).length();
+                    assert!(
+                        (0.0..1.0).contains(&fraction) && off < STRAIGHT.value() * (1.0 + 1e-6)
+                    );
                 }
             }
             (given, left) = (given + points.len(), left + bends.len());

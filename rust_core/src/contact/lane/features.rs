@@ -12,7 +12,7 @@ use crate::terrain::{Edge, Profile};
 
 /// Sine of the angle by which a side of the robot may turn in a step: beyond its last normal by this angle, the arc of
 /// a rounded corner reaches out of the ground by less than 4 um.
-const NEARLY: f64 = 0.02;
+const TURN_IN_A_STEP: f64 = 0.02;
 
 /// Where two faces meet.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ pub(crate) struct Corner {
     /// Normals of the faces before and behind it; the arc turns clockwise from the first to the second.
     pub normals: [Vector; 2],
     /// Whether it is convex, so that something can bear on it.
-    pub stands_out: bool,
+    pub is_convex: bool,
     /// Its edge id.
     pub edge: i32,
     /// First facet of its arc, or the facet that begins at a sharp corner.
@@ -40,18 +40,25 @@ impl Corner {
     }
 
     /// Whether a direction is a normal of the ground at the corner, within rounding.
-    pub(crate) fn faces(&self, direction: Vector) -> bool {
-        self.is_normal(direction, ROUNDING)
+    pub(crate) fn has_normal(&self, direction: Vector) -> bool {
+        self.has_normal_within(direction, ROUNDING)
     }
 
     /// Whether a straight side with this opposite normal bears on the corner, or would after a small turn: at an edge,
     /// where no other ground would bear in its place.
-    pub(crate) fn faces_side(&self, direction: Vector) -> bool {
-        self.is_normal(direction, if self.edge >= 0 { NEARLY } else { ROUNDING })
+    pub(crate) fn nearly_has_normal(&self, direction: Vector) -> bool {
+        self.has_normal_within(
+            direction,
+            if self.edge >= 0 {
+                TURN_IN_A_STEP
+            } else {
+                ROUNDING
+            },
+        )
     }
 
     /// Whether a direction is within an angle, of this sine, of the normals of the ground at the corner.
-    fn is_normal(&self, direction: Vector, within: f64) -> bool {
+    fn has_normal_within(&self, direction: Vector, within: f64) -> bool {
         let [before, behind] = self.normals;
         cross(direction, before) >= -within
             && cross(behind, direction) >= -within
@@ -64,8 +71,8 @@ impl Corner {
             return self.facet;
         }
         let [from, to] = self.normals;
-        let share = turn(from, normal) / turn(from, to);
-        self.facet + ((share * self.facets as f64).max(0.0) as usize).min(self.facets - 1)
+        let fraction = turn(from, normal) / turn(from, to);
+        self.facet + ((fraction * self.facets as f64).max(0.0) as usize).min(self.facets - 1)
     }
 
     /// A touch on the corner along one of its normals.
@@ -86,7 +93,7 @@ fn turn(from: Vector, to: Vector) -> f64 {
     libm::atan2(cross(to, from), from.dot(to))
 }
 
-/// The corners of a profile from left to right, both ends included. Two that share a point have no face between them.
+/// The corners of a profile from left to right, both ends included. Two that fraction a point have no face between them.
 pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
     let bends = profile.bends();
     let mut edges = profile.edges.iter().peekable();
@@ -134,7 +141,7 @@ fn sharp(profile: &Profile, bend: usize, edge: i32) -> Corner {
     Corner {
         center: point(bend),
         radius: 0.0,
-        stands_out: 0 < bend && bend < last && cross(normals[1], normals[0]) > 0.0,
+        is_convex: 0 < bend && bend < last && cross(normals[1], normals[0]) > 0.0,
         normals,
         edge,
         facet: bends[bend] as usize,
@@ -150,7 +157,7 @@ fn rounded(profile: &Profile, edge: &Edge) -> Corner {
     Corner {
         center: edge.center,
         radius: edge.radius,
-        stands_out: cross(normals[1], normals[0]) > 0.0,
+        is_convex: cross(normals[1], normals[0]) > 0.0,
         normals,
         edge: edge.id,
         facet: first,

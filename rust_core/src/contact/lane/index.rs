@@ -84,7 +84,7 @@ pub(crate) struct Stretch {
     normals: [Vector; 2],
     pub roof: Roof,
     /// Whether any of its corners is convex.
-    pub stands_out: bool,
+    pub is_convex: bool,
 }
 
 impl Stretch {
@@ -109,7 +109,7 @@ impl Stretch {
                 },
             ],
             roof: self.roof,
-            stands_out: self.stands_out || other.stands_out,
+            is_convex: self.is_convex || other.is_convex,
         }
     }
 
@@ -144,7 +144,7 @@ impl Stretch {
     }
 
     /// Whether the stretch may have this normal.
-    pub(crate) fn may_have(&self, normal: Vector) -> bool {
+    pub(crate) fn may_have_normal(&self, normal: Vector) -> bool {
         let [right, left] = self.normals;
         cross(right, normal) >= -ROUNDING && cross(normal, left) >= -ROUNDING
     }
@@ -309,7 +309,7 @@ impl Index {
                 highest.set((rise, Some(i)));
             }
         };
-        let matters = |stretch: &Stretch| stretch.stands_out && bound(stretch) > highest.get().0;
+        let matters = |stretch: &Stretch| stretch.is_convex && bound(stretch) > highest.get().0;
         self.descend(region, matters, |pieces| pieces.for_each(meet));
         highest.get().1
     }
@@ -358,7 +358,7 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
             high: *point,
             normals: [face.normal; 2],
             roof: [*point; 2],
-            stands_out: corner.stands_out || next.stands_out,
+            is_convex: corner.is_convex || next.is_convex,
         };
         // The closing corner is visited together with the piece before it.
         let normals = corner.normals.into_iter().chain(next.normals);

@@ -46,9 +46,9 @@ impl Lane {
             .map(|ends| {
                 let begin = end_of(&ends[0]);
                 let facets = ends[0].facet + ends[0].facets..ends[1].facet;
-                let way = profile.points[facets.end] - begin;
-                let length = way.length();
-                let normal = left_of(way.normalize_or(Vector::X));
+                let chord = profile.points[facets.end] - begin;
+                let length = chord.length();
+                let normal = left_of(chord.normalize_or(Vector::X));
                 let adjoining = length == 0.0;
                 let normal = if adjoining {
                     ends[0].normals[1]
@@ -100,8 +100,8 @@ impl Lane {
     }
 
     /// Whether a region may have a convex corner.
-    pub(super) fn may_stand_out(&self, region: &Region) -> bool {
-        region.is_long() || region.corners().any(|i| self.corners[i].stands_out)
+    pub(super) fn may_be_convex(&self, region: &Region) -> bool {
+        region.is_long() || region.corners().any(|i| self.corners[i].is_convex)
     }
 
     /// Finds everything in a region that a disc bears on with a gap below `prediction`; a corner of a part is a disc of
@@ -112,7 +112,7 @@ impl Lane {
         center: Vector,
         radius: f64,
         (prediction, depth): (f64, f64),
-        mut found: impl FnMut(Touch),
+        mut add: impl FnMut(Touch),
     ) {
         let reach = radius + prediction;
         let mut region = self
@@ -134,13 +134,13 @@ impl Lane {
                 if is_face {
                     let touch = self.face_under_disc(i, center, radius);
                     let near = |t: &Touch| t.distance < prediction && t.distance + radius > -depth;
-                    touch.filter(near).into_iter().for_each(&mut found);
+                    touch.filter(near).into_iter().for_each(&mut add);
                 }
                 let touch = self.corner_under_disc(i, center, radius);
                 touch
                     .filter(|t| t.distance < prediction)
                     .into_iter()
-                    .for_each(&mut found);
+                    .for_each(&mut add);
             },
         );
     }
@@ -154,16 +154,16 @@ impl Lane {
         let corner = &self.corners[i];
         let [before, behind] = corner.normals;
         let spoke = point - corner.center;
-        !corner.stands_out
+        !corner.is_convex
             && cross(before, spoke) <= 0.0
             && cross(behind, spoke) >= 0.0
             && spoke.dot(before + behind) < 0.0
             && spoke.length() < self.faces[i - 1].extent.min(self.faces[i].extent)
-            && self.holds(point)
+            && self.contains(point)
     }
 
     /// Whether a point is in the ground.
-    pub(super) fn holds(&self, point: Vector) -> bool {
+    pub(super) fn contains(&self, point: Vector) -> bool {
         let under = self.region(point.x, point.x);
         under.pieces().all(|i| {
             let (corner, face) = (&self.corners[i], &self.faces[i]);
@@ -205,13 +205,13 @@ impl Lane {
     /// The touch of a disc on a corner, if its centre lies in the corner's cone.
     fn corner_under_disc(&self, i: usize, center: Vector, radius: f64) -> Option<Touch> {
         let corner = &self.corners[i];
-        if !corner.stands_out {
+        if !corner.is_convex {
             return None;
         }
         let spoke = center - corner.center;
         let far = spoke.length();
         let normal = spoke / far;
-        (far > 0.0 && corner.faces(normal))
+        (far > 0.0 && corner.has_normal(normal))
             .then(|| corner.touch(i, normal, far - radius - corner.radius))
     }
 
@@ -246,7 +246,7 @@ impl Lane {
         (begin, end): (Vector, Vector),
         outward: Vector,
         (prediction, depth): (f64, f64),
-        mut found: impl FnMut(Touch),
+        mut add: impl FnMut(Touch),
     ) {
         // The ground has no overhangs, so none of its normals points down.
         if outward.y > ROUNDING {
@@ -258,18 +258,18 @@ impl Lane {
         let region = self.narrow_of_runs(within, [low, high], prediction);
         self.visit_corners_below_run(
             &region,
-            |stretch| stretch.may_have(-outward),
+            |stretch| stretch.may_have_normal(-outward),
             |i| {
                 let corner = &self.corners[i];
                 let spoke = corner.center - begin;
                 let gap = spoke.dot(outward) - corner.radius;
-                let bears = corner.stands_out
+                let bears = corner.is_convex
                     && gap < prediction
                     && gap > -depth
                     && (0.0..=length).contains(&spoke.dot(along))
-                    && corner.faces_side(-outward);
+                    && corner.nearly_has_normal(-outward);
                 let touch = bears.then(|| corner.touch(i, -outward, gap));
-                touch.inspect(|touch| found(*touch))
+                touch.inspect(|touch| add(*touch))
             },
         );
     }
@@ -281,7 +281,7 @@ impl Lane {
         matters: impl Fn(&Stretch) -> bool,
         mut meet: impl FnMut(usize),
     ) {
-        let matters = |stretch: &Stretch| stretch.stands_out && matters(stretch);
+        let matters = |stretch: &Stretch| stretch.is_convex && matters(stretch);
         self.index.visit(region, matters, |i, _| meet(i));
     }
 
@@ -295,7 +295,7 @@ impl Lane {
     ) {
         let mut corners = region.corners();
         let mut chord = None;
-        if region.is_long() && self.index.any(region, |s| s.stands_out && matters(s)) {
+        if region.is_long() && self.index.any(region, |s| s.is_convex && matters(s)) {
             let first = corners.by_ref().take(NEAR_END).find_map(&mut meet);
             // The last corner may lie beyond the run.
             let joins = |last: &Touch| first.as_ref().is_some_and(|f| Chord::joins(f, last));

@@ -17,9 +17,9 @@ pub(super) type Roof = [Vector; 2];
 /// The roof of a few neighbouring corners.
 pub(super) fn roof(corners: &[Corner]) -> Roof {
     let (first, last) = (corners[0].center, corners[corners.len() - 1].center);
-    let (way, steepest) = (last - first, 10.0);
-    let slope = if way.y.abs() < steepest * way.x {
-        way.y / way.x
+    let (line, steepest) = (last - first, 10.0);
+    let slope = if line.y.abs() < steepest * line.x {
+        line.y / line.x
     } else {
         0.0
     };

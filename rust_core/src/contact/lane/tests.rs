@@ -184,7 +184,7 @@ fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
         let profile = Profile::new("terrain", &points.collect::<Vec<_>>(), 0.0, 0.9, false);
         let rough = Lane::new(&profile.unwrap());
         let arc = Vector::new(1e-3, 1.0).normalize();
-        let bears = |i: &usize| rough.corners[*i].stands_out && rough.corners[*i].faces(arc);
+        let bears = |i: &usize| rough.corners[*i].is_convex && rough.corners[*i].has_normal(arc);
         let last = (0..rough.corners.len()).rev().find(bears).unwrap();
         let region = Region::between(100, last);
         let (mut visited, mut bearing) = (0, Vec::new());
@@ -193,7 +193,7 @@ fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
             let corner = &rough.corners[i];
             // The last one lies below the arc behind the run.
             let normal = if i == last { arc } else { Vector::Y };
-            let bears = corner.stands_out && corner.faces(normal);
+            let bears = corner.is_convex && corner.has_normal(normal);
             if bears && i != last {
                 bearing.push(corner.center);
             }

@@ -85,7 +85,7 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
     // Larger wheels leave a shorter path for their centres, and need more of it.
     let overlap = |radius: f64| {
         let path = path_of_centers(outline, radius);
-        let next = |at, _| path.way_to_distance(at, 2.0 * radius);
+        let next = |at, _| path.position_at_distance(at, 2.0 * radius);
         (0..count).fold(0.0, next) - path.length()
     };
     if overlap(largest) < 0.0 {
@@ -99,7 +99,7 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
     let mut at = 0.0;
     let centers = (0..count).map(|_| {
         let center = path.point_at(at);
-        at = path.way_to_distance(at, 2.0 * radius);
+        at = path.position_at_distance(at, 2.0 * radius);
         center
     });
     Ok((radius, centers.collect()))

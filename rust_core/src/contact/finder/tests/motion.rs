@@ -27,7 +27,11 @@ fn the_smallest_distance_follows_the_motion_without_a_jump() {
             let distances = contacts.iter().map(|c| c.distance);
             let now = distances.fold(PREDICTION, f64::min);
             let is_jump = (now - before).abs() > bound + 1e-9;
-            assert!(!is_jump, "{before} to {now} {contacts:?} {}", scene.tell());
+            assert!(
+                !is_jump,
+                "{before} to {now} {contacts:?} {}",
+                scene.describe()
+            );
             judged += 1;
             // Driven into an upright face.
             if now < -SHALLOW {

@@ -171,15 +171,15 @@ fn no_penetration_is_missed_and_that_of_two_features_has_its_depth_and_normal() 
         let contacts = scene.contacts(1e-3);
         let distances = contacts.iter().map(|c| c.distance);
         let deepest = distances.fold(f64::INFINITY, f64::min);
-        assert!(deepest < 0.0, "{depth} {contacts:?} {}", scene.tell());
+        assert!(deepest < 0.0, "{depth} {contacts:?} {}", scene.describe());
         if let Some(overlap) = only_overlap(&judge) {
             judged += 1;
             let is_it = |c: &Contact| {
                 (c.distance + overlap.depth).abs() < SAME
                     && (c.normal - overlap.normal).length() < 1e-6
             };
-            let is_told = contacts.iter().any(is_it) && (deepest + overlap.depth).abs() < SAME;
-            assert!(is_told, "{overlap:?} {contacts:?} {}", scene.tell());
+            let is_reported = contacts.iter().any(is_it) && (deepest + overlap.depth).abs() < SAME;
+            assert!(is_reported, "{overlap:?} {contacts:?} {}", scene.describe());
         }
     }
     println!("seed {SEED}: {count} poses, {judged} of two features");
@@ -224,8 +224,8 @@ fn a_part_leaves_the_ground_along_its_contacts() {
             draw.between(-depth, depth),
         ));
         scene.turn(draw.between(-depth, depth) / scene.outline.reach);
-        let before = scene.tell();
-        let least = 1e-8 + scene.untold();
+        let before = scene.describe();
+        let least = 1e-8 + scene.unreported();
         let mut is_free = true;
         // A second time, in case the adjacent face is deeper than the one it was in.
         for _ in 0..2 {

@@ -88,7 +88,7 @@ impl Scene {
 
     /// [m] How far ground may rise above the chord of two contacts without being reported: rounding, or a
     /// micrometre where it is finely divided.
-    pub(super) fn untold(&self) -> f64 {
+    pub(super) fn unreported(&self) -> f64 {
         if self.ground.curves.len() > 16 {
             1e-6
         } else {
@@ -116,7 +116,7 @@ impl Scene {
     }
 
     /// Everything needed to reproduce the scene.
-    pub(super) fn tell(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         let points = &self.ground.profile.points;
         let at = self.pose.transform_point(self.outline.center).x;
         let near = |p: &&Vector| (p.x - at).abs() < 1.2 * self.outline.reach;

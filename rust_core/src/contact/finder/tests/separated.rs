@@ -35,7 +35,7 @@ fn reached(approach: &Approach, contacts: &[Contact], far: f64) -> f64 {
 
 /// Whether the place is a contact, or, on finely divided ground, others keep the part off it, or it lies between two
 /// others with the same normal and is no nearer than these.
-fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction: f64) -> bool {
+fn is_reported(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction: f64) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
     // If the gap is mere rounding, so is its direction; contacts count as parallel up to 1.4e-6 rad.
@@ -47,7 +47,7 @@ fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction:
         let along = left_of(approach.normal());
         let share = (middle - a.point).dot(along) / (b.point - a.point).dot(along);
         let chord = a.distance + (b.distance - a.distance) * share;
-        (0.0..=1.0).contains(&share) && distance > chord - scene.untold()
+        (0.0..=1.0).contains(&share) && distance > chord - scene.unreported()
     };
     let is_fine = scene.ground.curves.len() > 16;
     alike.iter().any(|c| is_it(c))
@@ -78,7 +78,7 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
         };
         let prediction = gap + ahead;
         let judge = scene.judge(1.5 * prediction.max(gap));
-        assert!(judge.is_clear(), "{}", scene.tell());
+        assert!(judge.is_clear(), "{}", scene.describe());
         let contacts = scene.contacts(prediction);
         let least = judge.nearest(1.0).map_or(f64::INFINITY, |a| a.distance());
         let told = contacts
@@ -88,14 +88,14 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
         assert!(
             told > least - SAME,
             "{told}, not {least} {contacts:?} {}",
-            scene.tell()
+            scene.describe()
         );
         let approaches = judge.approaches(prediction - SAME);
         for approach in &approaches {
             assert!(
-                is_told(approach, &contacts, &scene, prediction),
+                is_reported(approach, &contacts, &scene, prediction),
                 "{approach:?} {prediction} {contacts:?} {}",
-                scene.tell()
+                scene.describe()
             );
         }
         places += approaches.len();
