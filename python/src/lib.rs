@@ -13,6 +13,8 @@ use pyo3::prelude::*;
 /// The compiled module; its signatures are in `python/crawler2d/_core.pyi`.
 #[pymodule]
 mod _core {
+    use std::collections::HashMap;
+
     use crawler2d_core::{Cancel, Checked, Finished, Progress, Record};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
@@ -73,6 +75,20 @@ mod _core {
             crawler2d_core::poses(&checked, &trace, &asked)
         })?;
         pictures::poses(py, found)
+    }
+
+    /// Name, unit and meaning of every metric of a run, in the order of the tables.
+    #[pyfunction]
+    fn metrics() -> Vec<(&'static str, &'static str, &'static str)> {
+        let all = crawler2d_core::Metrics::ALL.iter();
+        all.map(|each| (each.name, each.unit, each.meaning))
+            .collect()
+    }
+
+    /// Settings of the core's own contacts that rapier does not have, with their defaults.
+    #[pyfunction]
+    fn own_settings() -> HashMap<&'static str, f64> {
+        crawler2d_core::OWN_SETTINGS.into()
     }
 
     /// Names that tables use, as text or as codes.

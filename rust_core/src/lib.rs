@@ -37,6 +37,7 @@ pub use diagnosis::{
     Balance, Change, Diagnosis, LoadedIntrusion, Mechanism, Pull, StopContact, Trial, Wanted,
 };
 pub use dynamics::ChainReading;
+pub use engine::OWN_SETTINGS;
 pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
 pub use limits::{Cancel, check_rounding};
@@ -46,7 +47,7 @@ pub use robot::{
     Shape, Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    Checked, ContactTable, EscapeForce, Finished, Metrics, Poses, Progress, Record, Run,
+    Checked, ContactTable, EscapeForce, Finished, Metric, Metrics, Poses, Progress, Record, Run,
     Simulation, TipOver, Trace, balance, branch, diagnose, escape_force, make_trials, outcome_of,
     poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
 };

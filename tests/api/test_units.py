@@ -6,6 +6,7 @@ import re
 import pytest
 
 import crawler2d as c2d
+from crawler2d import _core
 from crawler2d.common.units import METRICS, unit_of
 from crawler2d.parameters import (
     drivetrain,
@@ -17,10 +18,23 @@ from crawler2d.parameters import (
     track,
 )
 from crawler2d.parameters.fields import Parameters
+from crawler2d.pictures import page
 
 
 def test_every_metric_has_a_unit(run: c2d.Run) -> None:
     assert set(run.metrics) == set(METRICS)
+
+
+def test_a_page_shows_figures_of_the_core_in_its_units() -> None:
+    shown = {"s": {"s"}, "m": {"m", "mm"}, "rad": {"°"}, "J": {"J"}, "N": {"N"}}
+    for name, _, factor, unit, _ in page._FIGURES:
+        assert unit in shown[METRICS[name]]
+        assert (abs(factor) == 1.0) == (unit == METRICS[name])
+
+
+def test_settings_that_rapier_does_not_have_are_refused_unless_they_have_their_defaults() -> None:
+    own = c2d.Solver()
+    assert {name: getattr(own, name) for name in _core.own_settings()} == _core.own_settings()
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-__all__ = ["FIELDS", "METRICS", "unit_of"]
+import textwrap
+
+from crawler2d import _core
+
+__all__ = ["FIELDS", "METRICS", "table_of_metrics", "unit_of"]
 
 _FIELDS_BY_UNIT = {
     "m": (
@@ -60,36 +64,16 @@ def unit_of(path: str) -> str | None:
     return _FIELDS_BY_PLACE.get(field, FIELDS.get(field.rpartition(".")[2]))
 
 
-METRICS = {
-    "time": "s",
-    "time_to_clear": "s",
-    "final_x": "m",
-    "final_y": "m",
-    "final_angle": "rad",
-    "distance": "m",
-    "track_distance": "m",
-    "path_length": "m",
-    "max_angle": "rad",
-    "min_angle": "rad",
-    "max_penetration": "m",
-    "drive_work": "J",
-    "stopped_time": "s",
-    "time_to_free": "s",
-    "progress": "1",
-    "vertical_acceleration": "m/s^2",
-    "angular_velocity": "rad/s",
-    "intrusion_depth": "m",
-    "intrusion_root_depth": "m",
-    "intrusion_force": "N",
-    "max_track_tension": "N",
-    "max_pin_gap": "m",
-    "max_guide_penetration": "m",
-    "max_sprocket_slip": "m",
-    "steps": "1",
-    "repeated_steps": "1",
-    "solves": "1",
-    "solve_rounds": "1",
-    "lowerings": "1",
-    "unresolved_solves": "1",
-}
+METRICS = {name: unit for name, unit, _ in _core.metrics()}
 """Unit of every metric of a run."""
+
+
+def table_of_metrics() -> str:
+    """Write name, unit and meaning of every metric as a table for a docstring."""
+    rule = f"{'=' * 23}  {'=' * 5}  {'=' * 63}"
+    rows = [rule, f"{'name':23}  {'unit':5}  meaning", rule]
+    for name, unit, meaning in _core.metrics():
+        first, *more = textwrap.wrap(meaning, 63)
+        rows.append(f"{f'`{name}`':23}  {unit.replace('1', '-'):5}  {first}")
+        rows += [f"{'':32}{line}" for line in more]
+    return "\n".join([*rows, rule])

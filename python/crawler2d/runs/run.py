@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from textwrap import indent
 from typing import TYPE_CHECKING, Literal, overload
 
 from crawler2d import _core
 from crawler2d.common.keywords import takes_keywords
+from crawler2d.common.units import table_of_metrics
 from crawler2d.errors import ScenarioError
 from crawler2d.results.record import Record
 from crawler2d.results.tip_over import TipOver, tip_over_of
@@ -77,45 +79,7 @@ class Run(Record):
     -----
     The metrics:
 
-    =======================  =====  ===============================================================
-    name                     unit   meaning
-    =======================  =====  ===============================================================
-    `time`                   s      simulated time
-    `time_to_clear`          s      when the goal was reached and then held; inf if it was not
-    `final_x`, `final_y`     m      last position of the chassis frame
-    `final_angle`            rad    last chassis angle
-    `distance`               m      final x minus initial x
-    `track_distance`         m      how far the track surface has run: for wheels, what odometry
-                                    with the circumscribed radius reads; for belts, the belt travel
-    `path_length`            m      how far the chassis frame has moved along its own axis
-    `max_angle`,             rad    of the chassis
-    `min_angle`
-    `max_penetration`        m      deepest overlap of any part with the ground
-    `drive_work`             J      work of the motors
-    `stopped_time`           s      time spent in stops
-    `time_to_free`           s      longest stop that the robot got out of by itself, 0 if none
-    `progress`               -      share of the commanded distance made in the last stop window
-    `vertical_acceleration`  m/s^2  of the chassis frame, averaged over 10 ms; root mean square
-    `angular_velocity`       rad/s  rate of change of the chassis angle, root mean square
-    `intrusion_depth`        m      largest depth, below the circumscribed circles, of the most
-                                    loaded intrusion that lasts to the end; 0 if there is none
-    `intrusion_root_depth`   m      the same, below the root circles
-    `intrusion_force`        N      its mean normal force
-    `max_track_tension`      N      largest force in a pin of a chain of shoes; 0 without one
-    `max_pin_gap`            m      largest gap of a pin
-    `max_guide_penetration`  m      deepest overlap of a shoe with guide, wheels or teeth
-    `max_sprocket_slip`      m      largest slip between a chain and its sprocket, ahead or behind;
-                                    some hundredths of a pitch are the play of the teeth
-    `steps`                  -      steps of the solver
-    `repeated_steps`         -      steps tried that were too inaccurate, and taken again shorter
-    `solves`                 -      searches for forces that satisfy all contacts, motors and pins
-    `solve_rounds`           -      linear systems solved in them: one per solve if the first guess
-                                    of what sticks and what slides is right
-    `lowerings`              -      how often no guess was right, so that the robot was lifted off
-                                    and lowered onto its contacts
-    `unresolved_solves`      -      solves that found no consistent forces: contacts close a little
-                                    faster in them than they should
-    =======================  =====  ===============================================================
+    {metrics}
 
     On level ground the track distance exceeds the path length by the slip; on gear wheels also
     because they roll on less than their circumscribed circle. On uneven ground the two differ even
@@ -643,6 +607,9 @@ class Run(Record):
         from crawler2d.pictures.page import embedded  # noqa: PLC0415 - costs nothing until used
 
         return embedded(self)
+
+
+Run.__doc__ = (Run.__doc__ or "").replace("    {metrics}", indent(table_of_metrics(), "    "))
 
 
 def _with_history(scenario: Scenario) -> Run:

@@ -4,8 +4,14 @@ use crate::scenario::{
     ContactMethod, Drivetrain, Engine, ForceSupport, Scenario, ScenarioError, Track,
 };
 
-/// Defaults of the settings of our own contacts, in the order in which they are checked.
-const OF_OUR_OWN: [f64; 5] = [1000.0, 5.0, 0.5, 2e-4, 0.0];
+/// Settings of our own contacts, which the engine does not have, with their defaults.
+pub const OWN_SETTINGS: [(&str, f64); 5] = [
+    ("contact_frequency", 1000.0),
+    ("contact_damping_ratio", 5.0),
+    ("max_push_speed", 0.5),
+    ("prediction_distance", 2e-4),
+    ("restitution", 0.0),
+];
 
 /// Checks that the engine of a scenario can hold its robot and its settings; our own can hold all.
 ///
@@ -78,17 +84,17 @@ fn check_settings(scenario: &Scenario) -> Result<(), ScenarioError> {
         let reason = "has a number of its own";
         return refused("iterations", &iterations, "null", reason);
     }
-    let own = [
-        ("contact_frequency", solver.contact_frequency),
-        ("contact_damping_ratio", solver.contact_damping_ratio),
-        ("max_push_speed", solver.max_push_speed),
-        ("prediction_distance", solver.prediction_distance),
-        ("restitution", solver.restitution),
+    let values = [
+        solver.contact_frequency,
+        solver.contact_damping_ratio,
+        solver.max_push_speed,
+        solver.prediction_distance,
+        solver.restitution,
     ];
-    for ((name, value), default) in own.iter().zip(OF_OUR_OWN) {
+    for ((name, default), value) in OWN_SETTINGS.iter().zip(values) {
         if value.to_bits() != default.to_bits() {
             let rule = format!("its default, {default},");
-            return refused(name, value, &rule, "has a value of its own");
+            return refused(name, &value, &rule, "has a value of its own");
         }
     }
     Ok(())

@@ -25,6 +25,7 @@ use crate::terrain::Ground;
 
 use motion::Motion;
 
+pub use limits::OWN_SETTINGS;
 pub(crate) use limits::check;
 
 /// A robot on its ground in rapier.

@@ -3,73 +3,79 @@
 use super::Simulation;
 use crate::observe::{Event, EventKind, Reading};
 
-/// Metrics of a whole run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metrics {
-    /// [s] Simulated time.
-    pub time: f64,
-    /// [s] Time at which the goal was reached and then held; infinite if it was not.
-    pub time_to_clear: f64,
-    /// [m] Final position of the chassis frame.
-    pub final_x: f64,
-    /// [m] Final position of the chassis frame.
-    pub final_y: f64,
-    /// [rad] Final chassis angle.
-    pub final_angle: f64,
-    /// [m] Final x minus initial x.
-    pub distance: f64,
-    /// [m] How far the track surface has run: what odometry with the circumscribed radius reads.
-    pub track_distance: f64,
-    /// [m] How far the chassis frame has moved along its own axis.
-    pub path_length: f64,
-    /// [rad] Largest chassis angle.
-    pub max_angle: f64,
-    /// [rad] Smallest chassis angle.
-    pub min_angle: f64,
-    /// [m] Deepest penetration of the ground by any part.
-    pub max_penetration: f64,
-    /// [J] Work of the motors.
-    pub drive_work: f64,
-    /// [s] Time spent in stops.
-    pub stopped_time: f64,
-    /// [s] Longest stop that the robot got out of by itself; 0 if there was none.
-    pub time_to_free: f64,
-    /// Share of the commanded distance made in the last stop window.
-    pub progress: f64,
-    /// [m/s^2] Root mean square of the vertical acceleration, averaged over 10 ms.
-    pub vertical_acceleration: f64,
-    /// [rad/s] Root mean square of the rate of change of the chassis angle.
-    pub angular_velocity: f64,
-    /// [m] Depth of the most loaded intrusion at the end of the run, below the circumscribed circles;
-    /// 0 if there is none.
-    pub intrusion_depth: f64,
-    /// [m] The same, below the root circles.
-    pub intrusion_root_depth: f64,
-    /// [N] Its mean normal force.
-    pub intrusion_force: f64,
-    /// [N] Largest force in a pin of a chain; 0 without chains.
-    pub max_track_tension: f64,
-    /// [m] Largest gap of a pin.
-    pub max_pin_gap: f64,
-    /// [m] Deepest penetration of a chain's guide, wheels or teeth by a shoe.
-    pub max_guide_penetration: f64,
-    /// [m] Largest slip between a chain and its sprocket, ahead or behind; 0 without a sprocket.
-    pub max_sprocket_slip: f64,
-    /// Steps taken.
-    pub steps: f64,
-    /// Steps taken again with a shorter one, because their error was too large.
-    pub repeated_steps: f64,
-    /// Searches for forces that satisfy all contacts, motors and pins.
-    pub solves: f64,
-    /// Linear systems solved in them; one per solve if every first guess is right.
-    pub solve_rounds: f64,
-    /// How often no guess was right, so that the robot was lowered onto its contacts.
-    pub lowerings: f64,
-    /// Solves that found no consistent forces: they let contacts sink in a little faster than they should.
-    pub unresolved_solves: f64,
+/// What one metric is.
+#[derive(Clone, Copy, Debug)]
+pub struct Metric {
+    /// Its name in tables and files.
+    pub name: &'static str,
+    /// Its unit; "1" if it has none.
+    pub unit: &'static str,
+    /// What it says.
+    pub meaning: &'static str,
+    value: fn(&Metrics) -> f64,
+}
+
+/// Makes the fields of [`Metrics`], and what is said of them elsewhere, of one table.
+macro_rules! metrics {
+    ($($name:ident [$unit:literal] $meaning:literal)*) => {
+        /// Metrics of a whole run; counts, too, are `f64`, as in the tables of sweeps.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Metrics {
+            $(#[doc = concat!("[", $unit, "] ", $meaning)] pub $name: f64,)*
+        }
+
+        impl Metrics {
+            /// All metrics, in the order of the tables.
+            pub const ALL: &[Metric] = &[$(Metric {
+                name: stringify!($name),
+                unit: $unit,
+                meaning: $meaning,
+                value: |metrics| metrics.$name,
+            }),*];
+        }
+    };
+}
+
+metrics! {
+    time ["s"] "simulated time"
+    time_to_clear ["s"] "when the robot reached the goal for good; inf if it did not"
+    final_x ["m"] "final position of the chassis frame, forward"
+    final_y ["m"] "the same, upward"
+    final_angle ["rad"] "final angle of the chassis, nose up > 0"
+    distance ["m"] "final x minus initial x"
+    track_distance ["m"] "how far the track surface has run: for wheels what odometry with the circumscribed radius reads, for belts and chains the travel of the belt"
+    path_length ["m"] "how far the chassis frame has actually moved, along its own axis"
+    max_angle ["rad"] "largest angle of the chassis, nose up > 0"
+    min_angle ["rad"] "smallest angle of the chassis"
+    max_penetration ["m"] "deepest overlap of any part with the ground; more than softness explains is doubted"
+    drive_work ["J"] "work of the motors of the tracks, without those of the flippers"
+    stopped_time ["s"] "time spent in stops"
+    time_to_free ["s"] "longest stop from which the robot freed itself; 0 if there was none"
+    progress ["1"] "share of the commanded distance covered in the last stop window; 1 until the first window is over"
+    vertical_acceleration ["m/s^2"] "of the chassis frame, averaged over 10 ms; root mean square"
+    angular_velocity ["rad/s"] "rate of change of the chassis angle, root mean square"
+    intrusion_depth ["m"] "greatest depth, below the circumscribed circles, of the most loaded intrusion that lasts to the end; 0 if there is none"
+    intrusion_root_depth ["m"] "the same, measured from the root circles"
+    intrusion_force ["N"] "its mean normal force"
+    max_track_tension ["N"] "largest force in a pin of a chain of shoes; 0 without one"
+    max_pin_gap ["m"] "largest distance by which the two halves of a pin were apart"
+    max_guide_penetration ["m"] "deepest overlap of a shoe with guide, wheels or teeth"
+    max_sprocket_slip ["m"] "farthest that a chain ran ahead of its sprocket or behind it; some hundredths of a pitch are the play of the teeth"
+    steps ["1"] "steps of the solver, all together"
+    repeated_steps ["1"] "attempts at a step whose local error exceeded `solver.accuracy`; each was taken again with a shorter one"
+    solves ["1"] "searches for the forces that all contacts, motors and pins agree on"
+    solve_rounds ["1"] "linear systems solved in these: one per solve if the first guess of what sticks and what slides is right"
+    lowerings ["1"] "how often correcting the guesses did not succeed, so that the robot was lifted off and lowered onto its contacts"
+    unresolved_solves ["1"] "solves that ended without agreement: contacts close a little faster in them than they should"
 }
 
 impl Metrics {
+    /// Names and values, in the order of the tables.
+    pub fn entries(&self) -> Vec<(&'static str, f64)> {
+        let entry = |metric: &Metric| (metric.name, (metric.value)(self));
+        Self::ALL.iter().map(entry).collect()
+    }
+
     /// Metrics of a run that began at `start` and had these events.
     pub(super) fn of(simulation: &Simulation, start: &Reading, events: &[Event]) -> Self {
         let end = simulation.reading();
@@ -111,41 +117,5 @@ impl Metrics {
             lowerings: seen.effort.lowerings as f64,
             unresolved_solves: seen.effort.unresolved as f64,
         }
-    }
-
-    /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 30] {
-        [
-            ("time", self.time),
-            ("time_to_clear", self.time_to_clear),
-            ("final_x", self.final_x),
-            ("final_y", self.final_y),
-            ("final_angle", self.final_angle),
-            ("distance", self.distance),
-            ("track_distance", self.track_distance),
-            ("path_length", self.path_length),
-            ("max_angle", self.max_angle),
-            ("min_angle", self.min_angle),
-            ("max_penetration", self.max_penetration),
-            ("drive_work", self.drive_work),
-            ("stopped_time", self.stopped_time),
-            ("time_to_free", self.time_to_free),
-            ("progress", self.progress),
-            ("vertical_acceleration", self.vertical_acceleration),
-            ("angular_velocity", self.angular_velocity),
-            ("intrusion_depth", self.intrusion_depth),
-            ("intrusion_root_depth", self.intrusion_root_depth),
-            ("intrusion_force", self.intrusion_force),
-            ("max_track_tension", self.max_track_tension),
-            ("max_pin_gap", self.max_pin_gap),
-            ("max_guide_penetration", self.max_guide_penetration),
-            ("max_sprocket_slip", self.max_sprocket_slip),
-            ("steps", self.steps),
-            ("repeated_steps", self.repeated_steps),
-            ("solves", self.solves),
-            ("solve_rounds", self.solve_rounds),
-            ("lowerings", self.lowerings),
-            ("unresolved_solves", self.unresolved_solves),
-        ]
     }
 }

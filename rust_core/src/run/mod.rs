@@ -21,7 +21,7 @@ mod trials;
 pub use batch::{Finished, Progress, simulate_many};
 pub use checked::Checked;
 pub use contact_table::ContactTable;
-pub use metrics::Metrics;
+pub use metrics::{Metric, Metrics};
 pub use poses::{Poses, poses};
 pub use record::Record;
 pub use simulate::{
