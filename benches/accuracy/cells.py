@@ -1,19 +1,251 @@
-"""A cell: robot, ground and start, at a height at which some runs clear and some do not."""
+"""The cells: robot, obstacle and start, at a height at which some runs clear and some do not.
+
+Robots are the Engineer with different track models, motors and flippers.
+"""
 
 from __future__ import annotations
 
 import json
 import os
 import zlib
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
+
+import numpy as np
 
 import crawler2d as c2d
-from benches.accuracy import grounds
-from benches.accuracy.kinds import KINDS, Kind
-from crawler2d.parameters.scenario import Scenario
+from crawler2d import Robot, Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.track import Track
+
+ONE_LANE = ("step", "barrier", "knife edge", "stairs")
+TWO_LANES = ("two steps", "diagonal barrier", "step field")
+
+# Their names, and those of their heights.
+_TERRAINS = {
+    "step": ("step", "height"),
+    "barrier": ("barrier", "height"),
+    "knife edge": ("knife_edge", "height"),
+    "stairs": ("stairs", "rise"),
+    "diagonal barrier": ("diagonal_barrier", "height"),
+}
+
+# Share of the drawn obstacles with rounded edges.
+_ROUNDED = 0.3
+
+
+def draw_obstacle(kind: str, random: np.random.Generator) -> dict[str, Any]:
+    """Draw everything about an obstacle but its height and friction.
+
+    Parameters
+    ----------
+    kind : str
+        One of `ONE_LANE` or `TWO_LANES`.
+    random : numpy.random.Generator
+        Source of the numbers.
+
+    Returns
+    -------
+    dict
+        Plain numbers, for a file; lengths [m], angles [rad].
+    """
+
+    def between(low: float, high: float, digits: int = 3) -> float:
+        return round(float(random.uniform(low, high)), digits)
+
+    drawn: dict[str, Any] = {"kind": kind}
+    match kind:
+        case "step":
+            pass
+        case "barrier":
+            drawn |= {"thickness": between(0.05, 0.3)}
+        case "knife edge":
+            drawn |= {"thickness": between(0.002, 0.01)}
+        case "stairs":
+            drawn |= {"count": int(random.integers(2, 5)), "run": between(0.15, 0.35)}
+        case "two steps":
+            drawn |= {"lower": between(0.3, 0.9, 2)}
+        case "diagonal barrier":
+            drawn |= {"yaw": between(0.2, 1.0, 2), "thickness": between(0.05, 0.3)}
+        case "step field":
+            drawn |= {"seed": int(random.integers(2**32)), "posts": 8, "levels": 4}
+        case _:
+            raise ValueError(f"kind must be one of {ONE_LANE + TWO_LANES}, got {kind!r}")
+    if kind in ("step", "barrier", "stairs") and random.random() < _ROUNDED:
+        drawn["edge_radius"] = between(0.001, 0.005)
+    return drawn
+
+
+def terrain_of(obstacle: Mapping[str, Any], height: float, friction: float) -> Terrain:
+    """Return the terrain of an obstacle.
+
+    Parameters
+    ----------
+    obstacle : mapping
+        As `draw_obstacle` returns it.
+    height : float
+        [m] Of the step, the barrier, each stair, the higher of two steps, or the highest post of a
+        step field.
+    friction : float
+        [-] Coulomb friction.
+    """
+    kind = obstacle["kind"]
+    fields = {name: value for name, value in obstacle.items() if name != "kind"}
+    if kind == "two steps":
+        heights = (height, fields["lower"] * height)
+        return c2d.terrains.lanes(*(c2d.terrains.step(h, friction=friction) for h in heights))
+    if kind == "step field":
+        rise = height / fields["levels"]
+        return c2d.terrains.random_stepfield(rise=rise, friction=friction, **fields)
+    name, path = _TERRAINS[kind]
+    make: Callable[..., Terrain] = getattr(c2d.terrains, name)
+    return make(**{path: height}, friction=friction, **fields)
+
+
+def length_of(obstacle: Mapping[str, Any]) -> float:
+    """[m] About how far the obstacle reaches."""
+    match obstacle["kind"]:
+        case "stairs":
+            return float((obstacle["count"] - 1) * obstacle["run"])
+        case "diagonal barrier":
+            # The Engineer's tracks are 0.2 m apart.
+            return float(0.2 * np.tan(obstacle["yaw"]) + obstacle["thickness"])
+        case "step field":
+            return float(obstacle["posts"] * 0.1)
+        case _:
+            return float(obstacle.get("thickness", 0.0))
+
+
+# [m] Axle distance of the Engineer; in a line of four, wheels of a sixth of it touch.
+_AXLES = 0.365
+_GEAR = c2d.GearWheel()
+
+_SUPPORTS: tuple[Literal["skids", "wheels"], ...] = ("skids", "wheels")
+_MECHANISMS: tuple[Literal["guide", "sprocket"], ...] = ("guide", "sprocket")
+_GAITS: tuple[Literal["climb", "hold"], ...] = ("climb", "hold")
+
+Ends = Literal["front", "rear", "both"]
+_ENDS: dict[Ends, str] = {"front": "in front", "rear": "behind", "both": "at both ends"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A kind of robot, of which cells are drawn."""
+
+    name: str
+    model: str
+    """Kinds of one model have one verdict."""
+    track: Track
+    sharing: Literal["track", "wheel"] = "track"
+    """Whether a track has one motor or each wheel a servo."""
+    ends: Ends | None = None
+    """Where flippers are."""
+    gait: Literal["climb", "hold"] | None = None
+    obstacles: tuple[str, ...] = ONE_LANE
+    heights: tuple[float, float] = (0.01, 0.3)
+    """[m] Between these the search takes place."""
+
+    def robot(self, center_of_mass: tuple[float, float], max_torque: float) -> Robot:
+        """Build the robot.
+
+        Parameters
+        ----------
+        center_of_mass : (float, float)
+            [m] Without flippers.
+        max_torque : float
+            [N m] Of one sprocket.
+        """
+        arms = c2d.robots.engineer().flippers if self.ends else None
+        if arms is not None and self.ends is not None:
+            arms = replace(arms, ends=self.ends)
+        robot = c2d.robots.engineer(center_of_mass=center_of_mass, flippers=arms, track=self.track)
+        drivetrain = replace(robot.drivetrain, max_torque=max_torque, torque_sharing=self.sharing)
+        return replace(robot, drivetrain=drivetrain).without_rotors()
+
+
+def _lines() -> Iterator[Kind]:
+    for wheel, word in ((c2d.RoundWheel(), "round"), (_GEAR, "gears")):
+        for count in (3, 4, 5, 9):
+            radius = _AXLES / 6.0 if count == 4 else None
+            track = c2d.LineOfWheels(count, wheel_radius=radius, wheel=wheel)
+            name = f"line of {count} {word}"
+            model = f"lines of {'gear' if word == 'gears' else 'round'} wheels"
+            yield Kind(name=name, model=model, track=track)
+            yield Kind(name=f"{name}, servos", model=model, track=track, sharing="wheel")
+
+
+def _closed() -> Iterator[Kind]:
+    small = c2d.CircumferentialWheels(24)
+    low = -0.034
+    middle = tuple((x, low, 0.03) for x in (-0.07, 0.0, 0.07))
+    ends = ((-0.5 * _AXLES, 0.0, 0.064), (0.5 * _AXLES, 0.0, 0.064))
+    hybrid = c2d.HybridWheels((ends[0], *middle, ends[1]))
+    tracks: dict[str, Track] = {
+        "24 round all round": small,
+        "24 gears all round": replace(small, wheel=_GEAR),
+        "belt": c2d.BeltTrack(),
+        "belt with grousers": c2d.GrouserBeltTrack(),
+    }
+    for letter in "ab":
+        for name, track in tracks.items():
+            yield Kind(name=f"{name} ({letter})", model=name, track=track)
+    yield Kind(name="hybrid round", model="hybrid", track=hybrid)
+    yield Kind(name="hybrid gears", model="hybrid", track=replace(hybrid, wheel=_GEAR))
+    for support in _SUPPORTS:
+        yield Kind(
+            name=f"force on {support}",
+            model="force",
+            track=c2d.ForceTrack(support=support),
+            heights=(0.003, 0.2),
+        )
+
+
+def _lanes() -> Iterator[Kind]:
+    tracks: dict[str, Track] = {
+        "belt": c2d.BeltTrack(),
+        "line of 5 round": c2d.LineOfWheels(5),
+        "line of 3 gears": c2d.LineOfWheels(3, wheel=_GEAR),
+        "belt with grousers": c2d.GrouserBeltTrack(),
+        "24 gears all round": c2d.CircumferentialWheels(24, wheel=_GEAR),
+    }
+    for name, track in tracks.items():
+        yield Kind(name=f"{name}, two lanes", model="two lanes", track=track, obstacles=TWO_LANES)
+
+
+def _chains() -> Iterator[Kind]:
+    for count in (22, 44):
+        for mechanism in _MECHANISMS:
+            yield Kind(
+                name=f"chain of {count}, {mechanism}",
+                model="chains",
+                track=c2d.SegmentalTrack(shoe_count=count, mechanism=mechanism),
+            )
+
+
+def _arms() -> Iterator[Kind]:
+    tracks: dict[str, Track] = {
+        "belt": c2d.BeltTrack(),
+        "line of 5 round": c2d.LineOfWheels(5),
+        "line of 3 gears": c2d.LineOfWheels(3, wheel=_GEAR),
+    }
+    for name, track in tracks.items():
+        for ends, place in _ENDS.items():
+            for gait in _GAITS:
+                yield Kind(
+                    name=f"{name}, flippers {place}, {gait}",
+                    model=f"{name}, flippers",
+                    track=track,
+                    ends=ends,
+                    gait=gait,
+                    heights=(0.03, 0.45),
+                )
+
+
+KINDS = {kind.name: kind for part in (_lines, _closed, _lanes, _chains, _arms) for kind in part()}
+"""All kinds by name, those that cost little first."""
+
 
 FOLDER = Path(__file__).parent / "sets"
 
@@ -23,7 +255,7 @@ Setting = Mapping[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """What all runs of a cell share."""
+    """What all runs of a cell have in common."""
 
     name: str
     kind: str
@@ -36,7 +268,7 @@ class Cell:
     speed: float
     """[m/s]"""
     obstacle: Mapping[str, Any]
-    """What `grounds.draw` made."""
+    """What `draw_obstacle` made."""
     height: float
     """[m] Of the obstacle."""
     duration: float
@@ -57,7 +289,7 @@ class Cell:
         return 2 * zlib.crc32(f"{self.name} {self.friction}".encode())
 
     def scenario(self, setting: Setting) -> Scenario:
-        """Make the scenario that the runs vary.
+        """Return the scenario that the runs vary.
 
         Parameters
         ----------
@@ -67,7 +299,7 @@ class Cell:
         gaits = {None: None, "climb": c2d.Climb(), "hold": c2d.Hold(self.hold_angle)}
         return Scenario(
             self.what.robot(self.center_of_mass, self.max_torque),
-            grounds.terrain(self.obstacle, self.height, self.friction),
+            terrain_of(self.obstacle, self.height, self.friction),
             drive=c2d.Drive(speed=self.speed, gait=gaits[self.what.gait]),
             duration=self.duration,
             solver=c2d.Solver(**setting),
@@ -88,7 +320,7 @@ def read(path: Path) -> list[Cell]:
 
 
 def write(path: Path, cells: Sequence[Cell]) -> None:
-    """Write a set of cells, one line each; the file is whole at any time."""
+    """Write a set of cells, one line each; the file is complete at any time."""
     lines = ",\n".join(json.dumps(asdict(cell)) for cell in cells)
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_suffix(".new")

@@ -1,14 +1,158 @@
-"""What the stored runs say of each cell with each setting."""
+"""What the stored runs show: paired differences of rates, intervals, tests, and verdicts.
+
+A verdict says whether a difference lies within a bound: of a cell, of a model, of all cells.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
+
+import numpy as np
 
 from benches.accuracy.cells import Cell, Setting
-from benches.accuracy.ensemble import FAILED, Row
-from benches.accuracy.statistics import Pairs, pair, path_error
-from benches.accuracy.store import Store
+from benches.accuracy.runs import FAILED, Row, Store
+from crawler2d import newcombe_paired
+from crawler2d.sweeps.statistics import Interval, bootstrap_mean, mcnemar
+
+LOOKS = (400, 1600)
+"""Runs of a cell at which it gets a verdict; it gets more only while its interval is open."""
+
+CURVE = 100
+"""Runs of a cell with the settings that only draw the curve of error against cost."""
+
+CELL_BOUND, MODEL_BOUND, MEAN_BOUND = 0.08, 0.05, 0.02
+"""[-] Differences of rates that are small enough: of a cell, of a model, of the mean."""
+
+CELL_CONFIDENCE, CONFIDENCE = 0.90, 0.95
+"""[-] Of a cell, over all its looks together; of models and of the mean."""
+
+Verdict = Literal["inside", "outside", "open"]
+
+# [-] From this share of the pairs that would differ if runs were drawn anew, a cell is chaotic.
+_CHAOTIC = 0.5
+
+
+class Pairs(NamedTuple):
+    """How many pairs of runs with equal draws cleared in which way."""
+
+    both: int
+    only: int
+    """Only the one with the setting."""
+    reference: int
+    """Only the one with the reference."""
+    neither: int
+
+    @property
+    def runs(self) -> int:
+        """Number of pairs."""
+        return sum(self)
+
+    @property
+    def difference(self) -> float:
+        """[-] Rate of the setting less that of the reference."""
+        return (self.only - self.reference) / self.runs
+
+    @property
+    def by_chance(self) -> float:
+        """[-] Mean size that the difference would have if the rates were equal."""
+        return math.sqrt(2.0 / math.pi * (self.only + self.reference)) / self.runs
+
+    @property
+    def p_value(self) -> float:
+        """[-] Of the hypothesis of equal rates, McNemar's exact test."""
+        return mcnemar(self.only, self.reference)
+
+    @property
+    def is_chaotic(self) -> bool:
+        """Whether pairs differ in both directions, almost as often as if drawn anew.
+
+        Where all differ in one direction, the rate has moved, but the runs are not chaotic.
+        """
+        first, second = self.both + self.only, self.both + self.reference
+        anew = (first * (self.runs - second) + second * (self.runs - first)) / self.runs
+        return 2 * min(self.only, self.reference) >= _CHAOTIC * anew > 0.0
+
+    def interval(self, confidence: float) -> Interval:
+        """Estimate the difference with Newcombe's interval for paired data."""
+        return newcombe_paired(*self, confidence)
+
+
+def pair(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Pairs:
+    """Count the repeats that both have; a run without a result has not cleared."""
+    counts = {(True, True): 0, (True, False): 0, (False, True): 0, (False, False): 0}
+    for repeat in rows.keys() & reference.keys():
+        counts[_cleared(rows[repeat]), _cleared(reference[repeat])] += 1
+    return Pairs(*counts.values())
+
+
+def path_error(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: float) -> float:
+    """[m] Median distance, at one time, between pairs that both cleared; NaN if there are none.
+
+    Runs end at the same place beyond the obstacle, at different times; from there on both drive at
+    the commanded speed. Where both stop, they end in the same equilibrium whatever happened before.
+    """
+    apart = []
+    for repeat in rows.keys() & reference.keys():
+        ours, theirs = rows[repeat], reference[repeat]
+        if _cleared(ours) and _cleared(theirs):
+            lead = ours.x - theirs.x - speed * (ours.time - theirs.time)
+            apart.append(math.hypot(lead, ours.y - theirs.y))
+    return float(np.median(apart)) if apart else math.nan
+
+
+def cell_interval(pairs: Pairs, looks: int) -> Interval:
+    """Interval of a cell that may be looked at several times.
+
+    Each look gets its share of the error, so that all intervals of a cell together hold with
+    `CELL_CONFIDENCE`, whenever the looking ended.
+    """
+    return pairs.interval(1.0 - (1.0 - CELL_CONFIDENCE) / looks)
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Correct p-values for their number: Holm's step-down procedure.
+
+    References
+    ----------
+    Holm, S. (1979). A simple sequentially rejective multiple test procedure. Scandinavian Journal
+    of Statistics 6, 65-70.
+    """
+    corrected = [0.0] * len(p_values)
+    largest = 0.0
+    for rank, index in enumerate(np.argsort(p_values, kind="stable")):
+        largest = max(largest, min(1.0, (len(p_values) - rank) * p_values[index]))
+        corrected[index] = largest
+    return corrected
+
+
+def mean(intervals: Sequence[Interval]) -> Interval:
+    """Estimate the mean of independent estimates: the sides of their intervals, square and add.
+
+    References
+    ----------
+    Zou, G. Y. and Donner, A. (2008). Construction of confidence limits about effect measures: a
+    general approach. Statistics in Medicine 27, 1693-1702.
+    """
+    count = len(intervals)
+    center = sum(each.rate for each in intervals) / count
+    below = math.hypot(*(each.rate - each.low for each in intervals)) / count
+    above = math.hypot(*(each.high - each.rate for each in intervals)) / count
+    return Interval(center, center - below, center + above)
+
+
+def verdict_of(interval: Interval, bound: float) -> Verdict:
+    """Return whether an interval lies within -bound to bound, beyond it, or neither."""
+    if -bound <= interval.low and interval.high <= bound:
+        return "inside"
+    if interval.high < -bound or interval.low > bound:
+        return "outside"
+    return "open"
+
+
+def _cleared(row: Row) -> bool:
+    return row.outcome == "cleared"
 
 
 class Figures(NamedTuple):
@@ -25,7 +169,7 @@ class Figures(NamedTuple):
     pairs: Pairs
     """With the runs of the reference."""
     path: float
-    """[m] See `statistics.path_error`."""
+    """[m] See `path_error`."""
 
 
 class Finding(NamedTuple):
@@ -38,7 +182,7 @@ class Finding(NamedTuple):
 
 
 class Study(NamedTuple):
-    """All that a report needs."""
+    """What the page is made of."""
 
     number: int
     """Of the set of cells."""
@@ -48,13 +192,13 @@ class Study(NamedTuple):
     reference: str
     """Name of the setting that the others are compared with, the finest."""
     default: str
-    """Name of the setting that is judged."""
+    """Name of the setting that gets the verdicts."""
     looks: tuple[int, ...]
-    """See `statistics.LOOKS`."""
+    """See `LOOKS`."""
     builds: list[str]
 
-    def judged(self) -> list[Finding]:
-        """List the cells that have runs with the setting that is judged."""
+    def with_default(self) -> list[Finding]:
+        """List the cells that have runs with the default."""
         return [each for each in self.findings if self.default in each.by_setting]
 
 
@@ -90,3 +234,70 @@ def _figures(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: float
         pairs=pair(rows, reference),
         path=path_error(rows, reference, speed),
     )
+
+
+class CellVerdict(NamedTuple):
+    """The verdict on a cell with the default setting."""
+
+    finding: Finding
+    figures: Figures
+    interval: Interval
+    verdict: Verdict
+    p_value: float
+    """Corrected for the number of looks and of cells."""
+
+    @property
+    def cell(self) -> Cell:
+        """What it is about."""
+        return self.finding.cell
+
+
+def cell_verdicts(study: Study) -> list[CellVerdict]:
+    """Return the verdict on each cell that has runs with the default setting."""
+    found = study.with_default()
+    looks = len(study.looks)
+    pairs = [each.by_setting[study.default].pairs for each in found]
+    p_values = holm([min(1.0, looks * own.p_value) for own in pairs])
+    intervals = [cell_interval(own, looks) for own in pairs]
+    return [
+        CellVerdict(
+            each, each.by_setting[study.default], interval, verdict_of(interval, CELL_BOUND), p
+        )
+        for each, interval, p in zip(found, intervals, p_values, strict=True)
+    ]
+
+
+def models(cells: Sequence[CellVerdict]) -> dict[str, list[CellVerdict]]:
+    """Group cells by model, in the order of the kinds."""
+    groups: dict[str, list[CellVerdict]] = {}
+    for each in cells:
+        groups.setdefault(each.cell.what.model, []).append(each)
+    return groups
+
+
+def model_difference(cells: Sequence[CellVerdict]) -> Interval:
+    """Estimate the mean difference of a model's cells; the cells themselves count as given."""
+    return mean([each.figures.pairs.interval(CONFIDENCE) for each in cells])
+
+
+def mean_difference(study: Study, setting: str) -> Interval:
+    """Estimate the mean difference over all cells.
+
+    The wider of two intervals counts at each end: that of the given cells, whose runs vary, and
+    the bootstrap over cells, which were drawn themselves.
+    """
+    own = [each.by_setting[setting].pairs for each in study.findings if setting in each.by_setting]
+    given = mean([pairs.interval(CONFIDENCE) for pairs in own])
+    drawn = bootstrap_mean([pairs.difference for pairs in own], CONFIDENCE)
+    return Interval(given.rate, min(given.low, drawn.low), max(given.high, drawn.high))
+
+
+def size_of_difference(findings: Sequence[Finding], setting: str) -> Interval:
+    """Estimate the mean size of the differences: bootstrap over cells."""
+    sizes = [abs(each.by_setting[setting].pairs.difference) for each in findings]
+    return bootstrap_mean(sizes, CONFIDENCE)
+
+
+def undecided(study: Study) -> list[Cell]:
+    """List the cells that need more runs: their interval is neither inside nor outside."""
+    return [each.cell for each in cell_verdicts(study) if each.verdict == "open"]

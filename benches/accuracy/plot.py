@@ -14,12 +14,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from benches.accuracy.findings import Finding, Study
-from benches.accuracy.verdicts import size_of_difference
+from benches.accuracy.findings import Finding, Study, size_of_difference
+from benches.shared.figures import COLORS, GREY, light_grid, save
 
 _COLUMNS = 5
-# Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
-_GREY, _BLUE, _RED = "#666666", "#0072B2", "#D55E00"
+_BLUE, _RED, *_ = COLORS
 _COST = "processor time per simulated time [ms/s]"
 _ERRORS = {"rates": "mean size of the difference of rates", "paths": "median path error [mm]"}
 
@@ -36,17 +35,9 @@ class _Family(NamedTuple):
 
 _FAMILIES = (
     _Family(
-        "time_step",
-        "fixed time step",
-        {"color": _GREY, "marker": "s", "linestyle": "--"},
-        "right",
+        "time_step", "fixed time step", {"color": GREY, "marker": "s", "linestyle": "--"}, "right"
     ),
-    _Family(
-        "accuracy",
-        "error control",
-        {"color": _BLUE, "marker": "o", "linestyle": "-"},
-        "left",
-    ),
+    _Family("accuracy", "error control", {"color": _BLUE, "marker": "o", "linestyle": "-"}, "left"),
 )
 
 
@@ -60,7 +51,7 @@ class Point(NamedTuple):
     low: float
     high: float
     chance: float
-    """What the error would be if all rates were equal; nan for paths."""
+    """What the error would be if all rates were equal; NaN for paths."""
 
 
 _Points = Callable[[Sequence[Finding], str], Iterator[Point]]
@@ -69,11 +60,10 @@ _Points = Callable[[Sequence[Finding], str], Iterator[Point]]
 def plot(study: Study, folder: Path) -> None:
     """Write ``all.svg``, ``rates.svg`` and ``paths.svg`` into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    # Text stays text, and equal figures give equal files.
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "crawler2d", "font.size": 8.0}):
+    with mpl.rc_context({"font.size": 8.0}):
         figures = {"all": _all(study)} | {name: _models(study, name) for name in _ERRORS}
         for name, figure in figures.items():
-            figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+            save(figure, folder / f"{name}.svg")
 
 
 def _all(study: Study) -> Figure:
@@ -138,8 +128,7 @@ def _panel(
         axis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ax.minorticks_off()
-    ax.grid(alpha=0.25)
-    ax.spines[["top", "right"]].set_visible(False)
+    light_grid(ax)
 
 
 def _points(
@@ -154,7 +143,7 @@ def _points(
 
 
 def _rate(findings: Sequence[Finding], setting: str) -> Iterator[Point]:
-    """Make the point of the error of the rates, if there are runs."""
+    """Yield the point of the error of the rates, if there are runs."""
     own = [each for each in findings if setting in each.by_setting]
     if own:
         size = size_of_difference(own, setting)
@@ -163,7 +152,7 @@ def _rate(findings: Sequence[Finding], setting: str) -> Iterator[Point]:
 
 
 def _path(findings: Sequence[Finding], setting: str) -> Iterator[Point]:
-    """Make the point of the error of the path, from the cells that are not chaotic."""
+    """Yield the point of the error of the path, from the cells that are not chaotic."""
     own = [each for each in findings if setting in each.by_setting and not each.is_chaotic]
     paths = [1e3 * each.by_setting[setting].path for each in own]
     paths = [path for path in paths if path > 0.0]  # neither nan nor off the scale
@@ -193,7 +182,7 @@ def _curve(ax: Axes, points: Sequence[Point], family: _Family) -> None:
 
 
 def _name(ax: Axes, point: Point, side: Literal["left", "right"]) -> None:
-    """Write the name of a setting beside its point: at the top right or at the bottom left."""
+    """Write the name of a setting next to its point: at the top right or at the bottom left."""
     place, offset = (point.cost, point.error), {"right": (5, 5), "left": (-5, -11)}[side]
     anchor: Literal["left", "right"] = "left" if side == "right" else "right"
     ax.annotate(point.setting, place, xytext=offset, textcoords="offset points", ha=anchor)

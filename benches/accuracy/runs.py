@@ -1,12 +1,201 @@
-"""Make the runs that a study lacks, in batches, and store each batch."""
+"""The runs: planned as `crawler2d.sweep` plans them, stored in SQLite, run where they are missing.
+
+All settings of the solver have the same draws. Nothing is lost on Ctrl-C, and no run is repeated.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import hashlib
+import json
+import sqlite3
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import asdict
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple, Self
 
-from benches.accuracy import ensemble
+import crawler2d as c2d
 from benches.accuracy.cells import Cell, Setting
-from benches.accuracy.store import Store
+from benches.shared.results import progress
+from crawler2d import ScenarioError
+from crawler2d._core import Passed
+from crawler2d.results.record import Row as SweepRow
+from crawler2d.runs.progress import thread_count
+from crawler2d.sweeps.collect import Collector, RowsInterrupted
+from crawler2d.sweeps.plan import Planner, plan_runs
+from crawler2d.variation.draws import Variation
+
+FAILED = "failed"
+"""Outcome of a run without a result; its figures are 0."""
+
+
+class Row(NamedTuple):
+    """What is kept of a run."""
+
+    repeat: int
+    outcome: str
+    x: float
+    """[m] Final position and angle of the chassis."""
+    y: float
+    angle: float
+    time: float
+    """[s] Simulated time."""
+    solves: float
+    processor: float
+    """[s] Processor time."""
+
+
+_METRICS = ("final_x", "final_y", "final_angle", "time", "solves")
+_FAILED = Row(0, FAILED, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C; `rows` are those of the runs that were finished."""
+
+    def __init__(self, rows: list[Row]) -> None:
+        super().__init__()
+        self.rows = rows
+
+
+def plan(cell: Cell, setting: Setting, count: int, seed: int) -> list[Passed]:
+    """Draw the first runs of a cell, as a sweep does."""
+    base = cell.scenario(setting)
+    planner = Planner(Variation.of(base, None, ()), Variation({}), seed)
+    (plan,) = plan_runs(base, (), planner, repeats=count)
+    for each in plan.checked:
+        if isinstance(each, ScenarioError):
+            raise each
+    return [each for each in plan.checked if isinstance(each, Passed)]
+
+
+def simulate(plans: Sequence[Passed], repeats: Sequence[int], threads: int | None) -> list[Row]:
+    """Simulate some repeats.
+
+    Parameters
+    ----------
+    plans : sequence of Passed
+        All repeats of the cell.
+    repeats : sequence of int
+        Those to simulate.
+    threads : int or None
+        See `crawler2d.simulate_many`.
+
+    Returns
+    -------
+    list of Row
+        In the order of `repeats`.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C, with the rows of the runs that were finished.
+    """
+    chosen = [plans[repeat] for repeat in repeats]
+    begin = time.process_time()
+    try:
+        with Collector((), threads=thread_count(threads)) as collector:
+            rows = collector.rows(collector.batch(chosen), lambda _: None)
+    except RowsInterrupted as stopped:
+        spent = time.process_time() - begin
+        kept = _rows(repeats, stopped.rows, spent, interrupted=True)
+        raise Interrupted(kept) from None
+    return _rows(repeats, rows, time.process_time() - begin, interrupted=False)
+
+
+def _rows(
+    repeats: Sequence[int], runs: Sequence[SweepRow], spent: float, *, interrupted: bool
+) -> list[Row]:
+    """Return what is stored; the processor time of the batch is split by wall time."""
+    total = sum(run.wall_time for run in runs if run.error is None)
+    rows = []
+    for repeat, run in zip(repeats, runs, strict=True):
+        if run.error is None:
+            x, y, angle, duration, solves = (run.metrics[name] for name in _METRICS)
+            processor = spent * run.wall_time / total
+            rows.append(Row(repeat, run.outcome, x, y, angle, duration, solves, processor))
+        elif not interrupted:
+            rows.append(_FAILED._replace(repeat=repeat))
+    return rows
+
+
+_TABLE = """
+create table if not exists runs (
+    build text, cell text, name text, setting text, repeat integer, outcome text,
+    x real, y real, angle real, time real, solves real, processor real,
+    primary key (build, cell, setting, repeat)
+)
+"""
+
+
+class Store:
+    """The runs of any cells with any settings.
+
+    Parameters
+    ----------
+    path : Path
+        The file; it is made if it is not there.
+    any_build : bool
+        Whether runs of other builds of the core count as well, for a build that moves no run.
+    """
+
+    def __init__(self, path: Path, *, any_build: bool = False) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = sqlite3.connect(path)
+        self._build = str(c2d.build_info()["build_id"])
+        self._builds = "%" if any_build else self._build
+        with self._file as transaction:
+            transaction.execute(_TABLE)
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def rows(self, cell: Cell, setting: Setting) -> dict[int, Row]:
+        """Read the runs of a cell with a setting, by repeat."""
+        asked = (
+            "select repeat, outcome, x, y, angle, time, solves, processor from runs"
+            " where build like ? and cell = ? and setting = ? order by build = ?, repeat"
+        )
+        wanted = (self._builds, key(cell), _text(setting), self._build)
+        with closing(self._file.execute(asked, wanted)) as found:
+            return {row[0]: Row(*row) for row in found}
+
+    def add(self, cell: Cell, setting: Setting, rows: Iterable[Row]) -> None:
+        """Keep finished runs, all of them or none."""
+        place = (self._build, key(cell), cell.name, _text(setting))
+        with self._file as transaction:
+            transaction.executemany(
+                f"insert or replace into runs values ({', '.join('?' * 12)})",
+                [(*place, *row) for row in rows],
+            )
+
+    def builds(self) -> list[str]:
+        """List the builds whose runs count."""
+        asked = "select distinct build from runs where build like ? order by build"
+        with closing(self._file.execute(asked, (self._builds,))) as found:
+            return [build for (build,) in found]
+
+
+def key(cell: Cell) -> str:
+    """Return a hash of all that the runs of a cell depend on."""
+    fields = {name: value for name, value in asdict(cell).items() if name != "found"}
+    return hashlib.sha256(_text(fields).encode()).hexdigest()[:16]
+
+
+def _text(fields: Setting) -> str:
+    return json.dumps(fields, sort_keys=True)
+
 
 # Ctrl-C keeps the finished runs of a batch; a process that is killed loses one batch.
 _BATCH = 100
@@ -17,11 +206,9 @@ def complete(
     cells: Sequence[Cell],
     settings: Mapping[str, Setting],
     count: int,
-    *,
     threads: int | None,
-    tell: Callable[[str], None],
 ) -> None:
-    """Make the first runs of each cell with each setting, except those in the store.
+    """Add the first runs of each cell with each setting, except those in the store.
 
     Parameters
     ----------
@@ -35,8 +222,6 @@ def complete(
         Runs of a cell with a setting; repeat i has the same draws with every setting.
     threads : int or None
         See `crawler2d.simulate_many`.
-    tell : callable
-        Takes a line about each cell and setting.
 
     Raises
     ------
@@ -49,13 +234,13 @@ def complete(
             missing = [repeat for repeat in range(count) if repeat not in finished]
             if not missing:
                 continue
-            plans = ensemble.plans(cell, setting, count, cell.seed)
+            planned = plan(cell, setting, count, cell.seed)
             for first in range(0, len(missing), _BATCH):
                 batch = missing[first : first + _BATCH]
                 try:
-                    rows = ensemble.simulate(plans, batch, threads)
-                except ensemble.Interrupted as stopped:
+                    rows = simulate(planned, batch, threads)
+                except Interrupted as stopped:
                     store.add(cell, setting, stopped.rows)
                     raise
                 store.add(cell, setting, rows)
-            tell(f"{number} of {len(cells)}: {cell.name}, {name}: {len(missing)} runs")
+            progress(f"{number} of {len(cells)}: {cell.name}, {name}: {len(missing)} runs")

@@ -1,4 +1,4 @@
-"""Draw cells, and search the height of each: cheaply first, then finely."""
+"""Draw cells, and search the height of each: first at a coarse setting, then at a fine one."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from benches.accuracy import ensemble, grounds
-from benches.accuracy.cells import Cell, Setting, read, write
-from benches.accuracy.kinds import KINDS, Kind
+from benches.accuracy.cells import KINDS, Cell, Kind, Setting, draw_obstacle, length_of, read, write
+from benches.accuracy.runs import plan, simulate
+from benches.shared.results import progress
 
 RATES = (0.15, 0.85)
 """[-] Rates of clearing of a cell, as the search sees them."""
@@ -47,7 +47,7 @@ def draw(name: str, seed: int, attempt: int) -> Cell:
     shift, rise = random.uniform((-0.03, 0.0), (0.03, 0.03))
     torque = float(random.choice((6.0, 60.0)))
     friction, speed, angle = random.uniform((0.5, 0.2, -0.2), (0.95, 0.6, 0.8))
-    obstacle = grounds.draw(str(random.choice(kind.obstacles)), random)
+    obstacle = draw_obstacle(str(random.choice(kind.obstacles)), random)
     speed = round(float(speed), 2)
     return Cell(
         name=name,
@@ -65,11 +65,11 @@ def draw(name: str, seed: int, attempt: int) -> Cell:
 
 def _duration(kind: Kind, speed: float, obstacle: Mapping[str, Any]) -> float:
     """[s] Twice what an unhindered robot takes, with seconds to start, to stop and to move arms."""
-    way = 0.7 + grounds.length(obstacle)
+    way = 0.7 + length_of(obstacle)
     return float(round(5.0 + (5.0 if kind.ends else 0.0) + 2.0 * way / speed))
 
 
-def find(name: str, seed: int, threads: int | None, tell: Callable[[str], None]) -> Cell | None:
+def find(name: str, seed: int, threads: int | None) -> Cell | None:
     """Draw cells of a kind until one has a height at which some runs clear and some do not.
 
     Returns
@@ -79,18 +79,18 @@ def find(name: str, seed: int, threads: int | None, tell: Callable[[str], None])
     """
     for attempt in range(DRAWS):
         cell = draw(name, seed, attempt)
-        found = search(cell, threads, tell)
+        found = find_height(cell, threads)
         if found is not None:
             return replace(found, found={**found.found, "redrawn": attempt})
     return None
 
 
-def search(cell: Cell, threads: int | None, tell: Callable[[str], None]) -> Cell | None:
+def find_height(cell: Cell, threads: int | None) -> Cell | None:
     """Search the height of a drawn cell."""
 
     def rate(height: float, setting: Setting, count: int) -> float:
         share, made = _rate(replace(cell, height=height), setting, count, threads)
-        tell(f"{cell.name}: {1e3 * height:.1f} mm, {setting}: {share:.2f} of {made}")
+        progress(f"{cell.name}: {1e3 * height:.1f} mm, {setting}: {share:.2f} of {made}")
         return share
 
     coarse = bisect(lambda h: rate(h, _COARSE, _COARSE_RUNS), *cell.what.heights)
@@ -100,8 +100,8 @@ def search(cell: Cell, threads: int | None, tell: Callable[[str], None]) -> Cell
     fine = bisect(lambda h: rate(h, _CONFIRM, _RUNS), low, high)
     if fine is None:
         return None
-    told = {"rate": round(fine[1], 3), "runs": _RUNS, "setting": dict(_CONFIRM)}
-    return replace(cell, height=fine[0], found=told)
+    result = {"rate": round(fine[1], 3), "runs": _RUNS, "setting": dict(_CONFIRM)}
+    return replace(cell, height=fine[0], found=result)
 
 
 def bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[float, float] | None:
@@ -126,10 +126,10 @@ def bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[flo
 def _rate(cell: Cell, setting: Setting, count: int, threads: int | None) -> tuple[float, int]:
     """Rate of clearing, and the number of runs; few if all of the first end alike."""
     # Not the draws of the study: a cell that was found by chance must not keep that chance.
-    plans = ensemble.plans(cell, setting, count, cell.seed + 1)
+    planned = plan(cell, setting, count, cell.seed + 1)
     cleared: list[bool] = []
     for part in _parts(count):
-        cleared += [row.outcome == "cleared" for row in ensemble.simulate(plans, part, threads)]
+        cleared += [row.outcome == "cleared" for row in simulate(planned, part, threads)]
         if len(set(cleared)) == 1:
             break
     return sum(cleared) / len(cleared), len(cleared)
@@ -141,9 +141,7 @@ def _parts(count: int) -> Iterator[range]:
         yield range(_FIRST, count)
 
 
-def complete(
-    path: Path, seed: int, names: Iterable[str], threads: int | None, tell: Callable[[str], None]
-) -> list[str]:
+def complete_cells(path: Path, seed: int, names: Iterable[str], threads: int | None) -> list[str]:
     """Add a drawn cell of every kind that a set lacks, and write the set after each.
 
     Parameters
@@ -156,8 +154,6 @@ def complete(
         Kinds, names in `KINDS`.
     threads : int or None
         See `crawler2d.simulate_many`.
-    tell : callable
-        Takes a line about each height that was tried.
 
     Returns
     -------
@@ -169,7 +165,7 @@ def complete(
         cells = read(path)
         if any(cell.name == name for cell in cells):
             continue
-        cell = find(name, seed, threads, tell)
+        cell = find(name, seed, threads)
         if cell is None:
             without.append(name)
         else:

@@ -8,19 +8,27 @@ Usage, from the repository root: ``python -m benches.agreement run``,
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 
-from benches.agreement.ensembles import ensembles, ensembles_table
-from benches.agreement.one_by_one import one_by_one, one_by_one_table
-from benches.agreement.pairs import RESULTS, read, run
-from benches.agreement.pinched import pinched, pinched_table
-from benches.agreement.study import study, study_shares, study_table
-from benches.agreement.table import parts
-from benches.agreement.third import ask, read_third
-from benches.engines.telling import tell
-from benches.peers import dots
-from research.markdown import spliced
+from benches.agreement.pairs import RESULTS, parts, read_pairs, run, run_third
+from benches.agreement.study import (
+    ensembles,
+    ensembles_table,
+    one_by_one,
+    one_by_one_table,
+    pinched,
+    pinched_table,
+    read_cells,
+    study,
+    study_percentages,
+    study_table,
+)
+from benches.shared.figures import draw_dots
+from benches.shared.measuring import write_parts
+from benches.shared.results import read, table_of
 
+_FILES = ("pairs", "third", "study", "one_by_one", "ensembles", "pinched")
 _PAGE = Path(__file__).parents[2] / "docs" / "studies" / "agreement.md"
 
 
@@ -28,46 +36,53 @@ def main() -> None:
     """Parse the arguments and run."""
     parser = argparse.ArgumentParser(prog="python -m benches.agreement", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    runs = verbs.add_parser("run", help="make the pairs, on from where it stopped")
+    runs = verbs.add_parser("run", help="run the pairs that are missing")
     runs.add_argument("--robots", type=int, default=300)
-    cells = verbs.add_parser("study", help="make the cells of the seizure study")
+    cells = verbs.add_parser("study", help="run the cells of the seizure study")
     cells.add_argument("--repeats", type=int, default=8)
-    verbs.add_parser("one-by-one", help="make the study's that end unlike on round wheels again")
-    many = verbs.add_parser("ensembles", help="make cells that end unlike over many starts")
+    again = verbs.add_parser("one-by-one", help="repeat those of round wheels whose ends differ")
+    many = verbs.add_parser("ensembles", help="run cells with unequal ends over many starts")
     many.add_argument("--starts", type=int, default=24)
-    edge = verbs.add_parser("pinched", help="make the runs of 24 wheels on a knife edge")
+    edge = verbs.add_parser("pinched", help="run 24 wheels on a knife edge")
     edge.add_argument("--starts", type=int, default=12)
-    third = verbs.add_parser("third", help="make those that end unlike in Chipmunk, too")
+    third = verbs.add_parser("third", help="run those with unequal ends in Chipmunk, too")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
-    for verb in (runs, third, tables):
-        verb.add_argument("--output", type=Path, default=RESULTS, help="default: %(default)s")
+    for verb in (runs, cells, again, many, edge, third, tables):
+        verb.add_argument(
+            "--output", type=Path, default=RESULTS, help="folder; default: %(default)s"
+        )
     given = parser.parse_args()
+    files = {name: given.output / f"{name}.json.xz" for name in _FILES}
     match given.verb:
         case "run":
-            run(given.robots, given.output)
+            run(given.robots, files["pairs"])
         case "third":
-            ask(read(given.output))
+            run_third(files["pairs"], files["third"])
         case "study":
-            study(given.repeats)
+            study(given.repeats, files["study"])
         case "one-by-one":
-            one_by_one()
+            one_by_one(files["study"], files["one_by_one"])
         case "ensembles":
-            ensembles(given.starts)
+            ensembles(given.starts, files["study"], files["ensembles"])
         case "pinched":
-            pinched(given.starts)
+            pinched(given.starts, files["pinched"])
         case _:
-            _tell_tables(given.output)
+            is_kept = given.output == RESULTS
+            write_parts(all_tables(files), _PAGE if is_kept else None)
+            if is_kept:
+                over = study_percentages(read_cells(files["study"]))
+                draw_dots(over, "runs [%]", _PAGE.with_suffix(".svg"))
 
 
-def _tell_tables(output: Path) -> None:
-    made = {**parts(read(output), read_third()), "study": study_table()}
-    made.update({"one by one": one_by_one_table(), "ensembles": ensembles_table()})
-    made["pinched"] = pinched_table()
-    tell("\n\n".join(made.values()))
-    if output == RESULTS:
-        page = _PAGE.read_text(encoding="utf-8")
-        _PAGE.write_text(spliced(page, made), encoding="utf-8", newline="\n")
-        dots.draw(study_shares(), "runs [%]", _PAGE.with_suffix(".svg"))
+def all_tables(files: Mapping[str, Path]) -> dict[str, str]:
+    """Return the tables by their names on the page."""
+    return {
+        **parts(read_pairs(files["pairs"]), read(files["third"], {})),
+        "study": table_of(files["study"], study_table),
+        "one by one": table_of(files["one_by_one"], one_by_one_table),
+        "ensembles": table_of(files["ensembles"], ensembles_table),
+        "pinched": table_of(files["pinched"], pinched_table),
+    }
 
 
 if __name__ == "__main__":

@@ -1,24 +1,108 @@
-"""One pair of runs a robot, kept in a file as they end."""
+"""Pairs of runs of random robots in both engines, and in Chipmunk where their ends differ."""
 
 from __future__ import annotations
 
-import json
+import math
 import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import crawler2d as c2d
-from benches.agreement.drawing import drawn
-from benches.engines.telling import tell
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Solver
+from benches.adapters.space import drive, load
+from benches.shared.measuring import quantiles, table
+from benches.shared.results import Results, progress, read
+from crawler2d import Run, Scenario, ScenarioError, Solver, wilson
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.track import Track
 from crawler2d.results.findings import Balance
-from crawler2d.runs.run import Run
 
-__all__ = ["RESULTS", "finer", "read", "run"]
+MODELS = ("line", "row", "gears", "small wheels", "placed wheels", "free wheels")
+"""Lines with gaps; rows that touch or overlap; gear wheels; small round wheels all round; wheels of
+unlike radii; a force along the chassis on free wheels."""
 
-RESULTS = Path(__file__).with_name("results.jsonl")
-_TOLD = 10  # robots between two lines of progress
+
+def random_scenario(number: int) -> tuple[str, Scenario]:
+    """Draw a robot and an obstacle that rapier holds; the same number gives the same ones.
+
+    The models take turns. Masses are 5 to 80 kg, axle distances 0.25 to 0.8 m, radii 0.12 to 0.24
+    of these; obstacles are steps, barriers and ridges of 0.2 to 1.2 radii, friction 0.4 to 1.0.
+    """
+    model = MODELS[number % len(MODELS)]
+    rng = np.random.default_rng([24, number])
+    while True:
+        scenario = _scenario(model, rng)
+        try:
+            scenario.replace({"solver": Solver(engine="rapier")}).validate()
+        except ScenarioError:
+            continue  # the next draws
+        return model, scenario
+
+
+def _scenario(model: str, rng: np.random.Generator) -> Scenario:
+    length = float(rng.uniform(0.25, 0.8))
+    radius = float(rng.uniform(0.12, 0.24)) * length
+    mass = float(rng.uniform(5.0, 80.0))
+    robot = c2d.Robot.simple(mass, axle_distance=length, radius=radius)
+    x, y = robot.center_of_mass
+    x += float(rng.uniform(-0.1, 0.1)) * length
+    y += float(rng.uniform(0.0, 0.1)) * length
+    sharing = str(rng.choice(["track", "wheel"]))
+    torque = float(rng.uniform(0.2, 2.0)) * mass * 9.81 * radius
+    robot = replace(robot, center_of_mass=(x, y), track=_track(model, rng, robot))
+    if rng.random() < 0.5:
+        robot = replace(robot, belly=None)
+    height = float(rng.uniform(0.2, 1.2)) * radius
+    friction = float(rng.uniform(0.4, 1.0))
+    grounds: dict[str, Terrain] = {
+        "step": c2d.terrains.step(height, friction=friction),
+        "barrier": c2d.terrains.barrier(height, 0.5 * length, friction=friction),
+        "ridge": c2d.terrains.ridge(height, float(rng.uniform(1.0, 2.0)), friction=friction),
+    }
+    ground = grounds[str(rng.choice(list(grounds)))]
+    return Scenario(
+        robot,
+        ground,
+        drive=c2d.Drive(speed=float(rng.uniform(0.05, 0.4))),
+        start=c2d.Start(approach=float(rng.uniform(0.05, 0.05 + 0.25 * length))),
+    ).replace({"robot.drivetrain.torque_sharing": sharing, "robot.drivetrain.max_torque": torque})
+
+
+def _track(model: str, rng: np.random.Generator, robot: c2d.Robot) -> Track:
+    outline = robot.outline
+    length, radius = outline.axle_distance, outline.front_radius
+    touching = 1 + math.ceil(length / (2.0 * radius))
+    if model == "line":
+        return c2d.LineOfWheels(int(rng.integers(2, touching + 1)))
+    if model == "row":
+        return c2d.LineOfWheels(touching + int(rng.integers(0, 4)))
+    if model == "gears":
+        return c2d.LineOfWheels(
+            int(rng.integers(2, touching + 3)),
+            wheel=c2d.GearWheel(
+                grouser_count=int(rng.integers(7, 13)), grouser_height=0.18 * radius
+            ),
+        )
+    if model == "small wheels":
+        around = 2.0 * (math.pi * radius + length)
+        return c2d.CircumferentialWheels(max(int(around / radius * rng.uniform(1.0, 1.6)), 14))
+    if model == "placed wheels":
+        count = int(rng.integers(1, 4))
+        small = float(rng.uniform(0.4, 0.7)) * radius
+        between = np.linspace(-0.5, 0.5, count + 2)[1:-1] * length
+        ends = [(-0.5 * length, 0.0, radius), (0.5 * length, 0.0, radius)]
+        return c2d.HybridWheels(
+            (ends[0], *((float(x), small - radius, small) for x in between), ends[1])
+        )
+    return c2d.ForceTrack(support="wheels")
+
+
+RESULTS = Path(__file__).with_name("results")
+"""Folder of the results of all verbs."""
+
 _FINER = {
     "own": Solver(accuracy=1e-8),
     "fixed": Solver(time_step=5e-5),
@@ -27,27 +111,16 @@ _FINER = {
 """A thirtieth of the default accuracy, short fixed steps, and a quarter of the default step."""
 
 
-def read(path: Path) -> list[dict[str, Any]]:
-    """Read the pairs that were made."""
-    if not path.exists():
-        return []
-    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-
-
 def run(robots: int, path: Path) -> None:
-    """Make the pairs that a file does not have yet."""
-    done = len(read(path))
-    with path.open("a", encoding="utf-8") as file:
-        for number in range(done, robots):
-            file.write(json.dumps(_pair(number)) + "\n")
-            file.flush()
-            if number % _TOLD == _TOLD - 1:
-                tell(f"{number + 1} of {robots} robots")
+    """Run the pairs that a file does not have yet."""
+    results = Results(path)
+    missing = range(len(results.at("pairs")), robots)
+    results.add(((("pairs",), number) for number in missing), _pair)
 
 
 def _pair(number: int) -> dict[str, Any]:
-    """Make a pair; one that ends unlike is made again, finer."""
-    model, scenario = drawn(number)
+    """Run a pair; one with unequal ends is run again, finer."""
+    model, scenario = random_scenario(number)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", c2d.ScenarioWarning)
         check = c2d.simulate(scenario, record="summary", trials=None).cross_check()
@@ -58,7 +131,7 @@ def _pair(number: int) -> dict[str, Any]:
             "apart": check.distance,
             "turn": check.turn,
             "parted_at": check.parted_at,
-            "balances": [_held(balance) for balance in check.balances],
+            "balances": [_holds(balance) for balance in check.balances],
         }
         if len({end["gets_over"] for end in pair["ends"]}) == 2:
             pair["finer"] = finer(scenario)
@@ -75,7 +148,7 @@ def _end(run: Run) -> dict[str, Any]:
 
 
 def finer(scenario: Scenario) -> dict[str, str]:
-    """Say how a scenario ends in each engine, finer."""
+    """Return how a scenario ends in each engine, finer."""
     solved = {name: scenario.replace({"solver": solver}) for name, solver in _FINER.items()}
     return {
         name: str(c2d.simulate(each, record="summary", trials=None).outcome)
@@ -83,5 +156,99 @@ def finer(scenario: Scenario) -> dict[str, str]:
     }
 
 
-def _held(balance: Balance | None) -> bool | None:
+def _holds(balance: Balance | None) -> bool | None:
     return None if balance is None else balance.holds
+
+
+_CHIPMUNK = {"time_step": 5e-5, "iterations": 100}
+"""A tenth of the fine step of benches/engines: steps at which impacts have converged there."""
+
+
+def run_third(pairs: Path, path: Path) -> None:
+    """Run pairs with unequal ends in Chipmunk, except those that are there."""
+    results = Results(path)
+    for number in (pair["number"] for pair in read_pairs(pairs) if "finer" in pair):
+        if str(number) not in results.data:
+            results.data[str(number)] = in_chipmunk(random_scenario(number)[1])
+            results.save()
+            progress(f"robot {number}: {results.data[str(number)]}")
+
+
+def read_pairs(path: Path) -> list[dict[str, Any]]:
+    """Read the pairs."""
+    pairs: list[dict[str, Any]] = read(path, {"pairs": []})["pairs"]
+    return pairs
+
+
+def in_chipmunk(scenario: Scenario) -> str:
+    """Return how a scenario ends in Chipmunk, finely."""
+    try:
+        return str(drive(load("Chipmunk", **_CHIPMUNK), scenario)["end"])
+    except ScenarioError:  # a ridge, which is not drawn there
+        return "not held"
+
+
+_NEAR = 1e-3  # [m]
+Pair = dict[str, Any]
+
+
+def parts(pairs: Sequence[Pair], third: Mapping[str, str]) -> dict[str, str]:
+    """Write the tables of a page, by name; a third engine's ends are by the robot's number."""
+    return {"models": _by_model(pairs), "unlike": _unlike(pairs, third)}
+
+
+def _by_model(pairs: Sequence[Pair]) -> str:
+    groups = [(model, [p for p in pairs if p["model"] == model]) for model in MODELS]
+    return table(_row(*group) for group in [*groups, ("all", list(pairs))])
+
+
+def _row(name: str, pairs: list[Pair]) -> dict[str, str]:
+    alike = sum(_same(pair, "gets_over") for pair in pairs)
+    named = sum(_same(pair, "outcome") for pair in pairs)
+    stops = [pair for pair in pairs if all(end["stops"] for end in pair["ends"])]
+    near = sum(pair["apart"] < _NEAR for pair in stops)
+    unheld = [sum(pair["balances"][k] is False for pair in pairs) for k in (0, 1)]
+    return {
+        "model": name,
+        "robots": str(len(pairs)),
+        "same: gets over or not": _rate(alike, len(pairs)),
+        "same outcome": _rate(named, len(pairs)),
+        "both stop": str(len(stops)),
+        "within 1 mm": str(near),
+        "apart [mm]: median, 90th": quantiles([1e3 * pair["apart"] for pair in stops]),
+        "turned [mrad]: median, 90th": quantiles([1e3 * abs(pair["turn"]) for pair in stops]),
+        "no equilibrium: own, rapier": ", ".join(map(str, unheld)),
+    }
+
+
+def _same(pair: Pair, what: str) -> bool:
+    one, other = (end[what] for end in pair["ends"])
+    return bool(one == other)
+
+
+def _rate(count: int, of: int) -> str:
+    if not of:
+        return ""
+    found = wilson(count, of)
+    return f"{count} ({100 * found.low:.0f} to {100 * found.high:.0f} %)"
+
+
+def _unlike(pairs: Sequence[Pair], third: Mapping[str, str]) -> str:
+    return table(
+        {
+            "robot": str(pair["number"]),
+            "model": pair["model"],
+            "own": pair["ends"][0]["outcome"],
+            "own, finer": pair["finer"]["own"],
+            "own, fixed steps": pair["finer"]["fixed"],
+            "rapier": pair["ends"][1]["outcome"],
+            "rapier, finer": pair["finer"]["rapier"],
+            "Chipmunk": third.get(str(pair["number"]), ""),
+            "the stop is an equilibrium": ", ".join(
+                "yes" if holds else "no" for holds in pair["balances"] if holds is not None
+            ),
+            "rapier sinks in by [mm]": f"{1e3 * pair['ends'][1]['penetration']:.2g}",
+        }
+        for pair in pairs
+        if "finer" in pair
+    )

@@ -1,51 +1,56 @@
-"""The cells of the seizure study that rapier holds, in both engines with the same draws."""
+"""The cells of the seizure study that rapier can represent, in both engines with the same draws.
+
+Where their ends differ, round wheels are repeated one by one, gears and small wheels over many
+starts; and 24 wheels meet a knife edge.
+"""
 
 from __future__ import annotations
 
-import json
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import crawler2d as c2d
-from crawler2d.parameters.scenario import Scenario
+from benches.adapters.space import drive, load
+from benches.agreement.pairs import finer, in_chipmunk
+from benches.shared.measuring import quantiles, table
+from benches.shared.results import Results, progress, read, write
+from crawler2d import Scenario, Solver, Start, newcombe_paired
 from crawler2d.parameters.track import Track
-from crawler2d.sweeps.statistics import newcombe_paired
 from research.markdown import markdown_table
 from research.models import study_models
 from research.sweeps import FULL
 
-__all__ = ["STUDY", "at_height", "read_cells", "study", "study_shares", "study_table"]
-
-STUDY = Path(__file__).with_name("study.json")
 _ENGINES = ["own", "rapier"]
 _FRICTION = 0.9  # of the study
-_THICKNESS = {"barrier": 0.1, "knife edge": 0.01}  # [m] likewise
+_THICKNESS = {"barrier": 0.1, "knife edge": 0.01}  # [m] of the study
 
 
-def study(repeats: int, path: Path = STUDY) -> None:
-    """Make the runs of every obstacle, and keep what came of each cell."""
+def study(repeats: int, path: Path) -> None:
+    """Run the cells of every obstacle in both engines."""
     robot = c2d.robots.engineer(flippers=None).without_rotors()
-    found = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
-    for obstacle, heights in list(FULL.heights.items())[len(found) :]:
+    results = Results(path, [])
+    for obstacle, heights in list(FULL.heights.items())[len(results.data) :]:
         base = _on(robot, obstacle, heights[0])
         over = {
             "robot.track": _tracks(robot.outline.axle_distance),
             "terrain.height": list(heights),
             "solver.engine": _ENGINES,
         }
-        found.append(_cells(obstacle, c2d.sweep(base, over, repeats=repeats)))
-        path.write_text(json.dumps(found) + "\n", encoding="utf-8")
+        results.data.append(_cells(obstacle, c2d.sweep(base, over, repeats=repeats)))
+        results.save()
 
 
-def read_cells(path: Path = STUDY) -> list[dict[str, Any]]:
-    """Read what came of each cell."""
-    return [cell for part in json.loads(path.read_text(encoding="utf-8")) for cell in part]
+def read_cells(path: Path) -> list[dict[str, Any]]:
+    """Read the results of each cell."""
+    return [cell for part in read(path) for cell in part]
 
 
 def at_height(model: str, obstacle: str, height: float) -> Scenario:
-    """Give the scenario of a cell, before its draws."""
+    """Return the scenario of a cell, before its draws."""
     robot = c2d.robots.engineer(flippers=None).without_rotors()
     track = _tracks(robot.outline.axle_distance)[model]
     return _on(robot.with_track(track), obstacle, height)
@@ -99,41 +104,32 @@ def _cells(obstacle: str, table: Any) -> list[dict[str, Any]]:
     return cells
 
 
-def study_table(path: Path = STUDY) -> str:
+def study_table(found: list[Any]) -> str:
     """Write how runs ended alike, and how far stops are apart, by model."""
-    if not path.exists():
-        return "Not tried."
-    cells = read_cells(path)
-    head = (
-        *("model", "runs", "same: gets over or not", "same outcome", "get over: own, rapier"),
-        *("difference of rates [%]", "both stop", "apart [mm]: median, 90th"),
-    )
+    cells = [cell for part in found for cell in part]
     models = list(dict.fromkeys(cell["model"] for cell in cells))
     groups = [(model, [c for c in cells if c["model"] == model]) for model in models]
-    return markdown_table(head, [_row(*group) for group in [*groups, ("all", cells)]])
+    return table(_study_row(*group) for group in [*groups, ("all", cells)])
 
 
-def study_shares(path: Path = STUDY) -> dict[str, dict[str, float]]:
+def study_percentages(cells: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
     """Return by model in how many runs [%] each engine gets over, and how many end alike."""
     found = {}
-    cells = read_cells(path)
     for model in dict.fromkeys(cell["model"] for cell in cells):
-        runs = [
-            [end == "cleared" for end in ends]
-            for cell in cells
-            if cell["model"] == model
-            for ends in zip(*cell["ends"], strict=True)
-        ]
-        over = {
-            f"get over in {name}": 100.0 * sum(column) / len(runs)
-            for name, column in zip(("crawler2d", "rapier"), zip(*runs, strict=True), strict=True)
+        own, other = (
+            np.array([e == "cleared" for c in cells if c["model"] == model for e in c["ends"][k]])
+            for k in (0, 1)
+        )
+        percent = {
+            "get over in crawler2d": own,
+            "get over in rapier": other,
+            "end alike": own == other,
         }
-        alike = 100.0 * sum(own == other for own, other in runs) / len(runs)
-        found[model] = {**over, "end alike": alike}
+        found[model] = {name: 100.0 * float(of.sum()) / len(of) for name, of in percent.items()}
     return found
 
 
-def _row(name: str, cells: list[dict[str, Any]]) -> tuple[str, ...]:
+def _study_row(name: str, cells: list[dict[str, Any]]) -> dict[str, str]:
     runs = [
         (own, other, apart)
         for cell in cells
@@ -141,20 +137,228 @@ def _row(name: str, cells: list[dict[str, Any]]) -> tuple[str, ...]:
     ]
     stops = [1e3 * apart for own, other, apart in runs if _stops(own) and _stops(other)]
     gets = [(own == "cleared", other == "cleared") for own, other, _ in runs]
-    both, neither = gets.count((True, True)), gets.count((False, False))
-    gap = newcombe_paired(both, gets.count((False, True)), gets.count((True, False)), neither)
-    spread = "{:.2g}, {:.2g}".format(*np.quantile(stops, (0.5, 0.9))) if stops else ""
-    return (
-        name,
-        str(len(runs)),
-        str(sum(own == other for own, other in gets)),
-        str(sum(own == other for own, other, _ in runs)),
-        f"{sum(own for own, _ in gets)}, {sum(other for _, other in gets)}",
-        f"{100 * gap.low:+.0f} to {100 * gap.high:+.0f}",
-        str(len(stops)),
-        spread,
-    )
+    return {
+        "model": name,
+        "runs": str(len(runs)),
+        "same: gets over or not": str(sum(own == other for own, other in gets)),
+        "same outcome": str(sum(own == other for own, other, _ in runs)),
+        "get over: own, rapier": f"{sum(o for o, _ in gets)}, {sum(o for _, o in gets)}",
+        "difference of rates [%]": _gap([(other, own) for own, other in gets]),
+        "both stop": str(len(stops)),
+        "apart [mm]: median, 90th": quantiles(stops),
+    }
 
 
 def _stops(outcome: str) -> bool:
     return outcome in ("seized", "stalled", "slipping", "hung_up", "cycling")
+
+
+def one_by_one(study: Path, path: Path) -> None:
+    """Repeat the runs of lines of round wheels whose ends differ, one by one, also finer."""
+    results = Results(path, [])
+    results.data = []
+    results.save()
+    for cell in read_cells(study):
+        ends = list(zip(*cell["ends"], strict=True))
+        unlike = [k for k, end in enumerate(ends) if end.count("cleared") == 1]
+        if not unlike or not _is_round_line(cell["model"]):
+            continue
+        base = at_height(cell["model"], cell["obstacle"], cell["height"])
+        draws = _draws(base, cell["height"], len(ends))
+        for k in unlike:
+            drawn = base.replace({field: v[k] for field, v in draws.items()})
+            results.data.append(_again(cell, k, drawn))
+            results.save()
+            progress(
+                f"{cell['model']}, {cell['obstacle']} of {1e3 * cell['height']:.0f} mm, run {k}"
+            )
+
+
+def _is_round_line(model: str) -> bool:
+    return model.startswith("line") and "gear" not in model
+
+
+def _draws(base: Scenario, height: float, repeats: int) -> dict[str, list[float]]:
+    """Return what a sweep draws, by path: it depends on the repeat alone."""
+    table = c2d.sweep(base, {"terrain.height": [height]}, repeats=repeats)
+    drawn = [column for name, column in table.data_vars.items() if str(name).startswith("drawn_")]
+    return {column.attrs["path"]: column.values.ravel().tolist() for column in drawn}
+
+
+def _again(cell: dict[str, Any], number: int, scenario: Scenario) -> dict[str, Any]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+        check = c2d.simulate(scenario, record="summary", trials=None).cross_check()
+        return {
+            **{name: cell[name] for name in ("model", "obstacle", "height")},
+            "run": number,
+            "own": str(check.run.outcome),
+            "rapier": str(check.other.outcome),
+            "finer": finer(scenario),
+            "Chipmunk": in_chipmunk(scenario),
+            "holds": [None if each is None else each.holds for each in check.balances],
+        }
+
+
+def one_by_one_table(found: list[Any]) -> str:
+    """Write these runs, one a row."""
+    head = (
+        *("model", "obstacle", "mm", "own", "own, finer", "own, steps of 0.05 ms", "rapier"),
+        *("rapier, finer", "Chipmunk", "the stop is an equilibrium"),
+    )
+    return markdown_table(head, [_one_row(each) for each in found])
+
+
+def _one_row(each: dict[str, Any]) -> tuple[str, ...]:
+    held = [hold for hold in each["holds"] if hold is not None]
+    return (
+        *(each["model"], each["obstacle"], f"{1e3 * each['height']:.0f}"),
+        *(each["own"], each["finer"]["own"], each["finer"]["fixed"]),
+        *(each["rapier"], each["finer"]["rapier"], each["Chipmunk"]),
+        ", ".join("yes" if hold else "no" for hold in held),
+    )
+
+
+_CHIPMUNK_USUAL = {"time_step": 5e-4, "iterations": 100}
+
+
+def who_gets_over(
+    scenarios: Iterable[Scenario], solvers: Mapping[str, Solver]
+) -> dict[str, list[bool]]:
+    """Return in which scenarios the robot clears with each solver, and in Chipmunk."""
+    gets: dict[str, list[bool]] = {name: [] for name in (*solvers, "Chipmunk")}
+    for scenario in scenarios:
+        for name, solver in solvers.items():
+            gets[name].append(_gets_over(scenario.replace({"solver": solver})))
+        gets["Chipmunk"].append(_gets_over_in_chipmunk(scenario))
+    return gets
+
+
+def counts(gets_over: Mapping[str, list[bool]]) -> dict[str, str]:
+    """Write how many clear, by solver."""
+    return {name: f"{sum(each)} of {len(each)}" for name, each in gets_over.items()}
+
+
+def _gets_over(scenario: Scenario) -> bool:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+        run = c2d.simulate(scenario, record="summary", trials=None)
+    return run.outcome is c2d.Outcome.CLEARED
+
+
+def _gets_over_in_chipmunk(scenario: Scenario) -> bool:
+    return bool(drive(load("Chipmunk", **_CHIPMUNK_USUAL), scenario)["end"] == "cleared")
+
+
+_ENSEMBLE_SOLVERS = {
+    "own": Solver(),
+    "own, finer": Solver(accuracy=3e-8),
+    "rapier": Solver(engine="rapier"),
+}
+"""The default accuracy and a tenth of it, and rapier's usual step."""
+_APPROACH = 0.1  # [m]
+_PITCH = 0.048  # [m] of the Engineer's grousers
+
+
+def ensembles(starts: int, study: Path, path: Path) -> None:
+    """Run cells with unequal ends from starts that are spread evenly over a grouser pitch.
+
+    Nothing else is drawn: the pairs differ by how the robot meets the edge.
+    """
+    results = Results(path, [])
+    there = [_key(each) for each in results.data]
+    for cell in read_cells(study):
+        if _key(cell) in there or not _has_unequal_ends(cell):
+            continue
+        base = at_height(cell["model"], cell["obstacle"], cell["height"])
+        spread = _PITCH * (np.arange(starts) + 0.5) / starts
+        over = [base.replace({"start": Start(approach=float(a))}) for a in _APPROACH + spread]
+        gets = who_gets_over(over, _ENSEMBLE_SOLVERS)
+        results.data.append({**dict(zip(_KEY, _key(cell), strict=True)), "gets_over": gets})
+        results.save()
+        progress(f"{_key(cell)}: {[sum(each) for each in gets.values()]} of {starts}")
+
+
+_KEY = ("model", "obstacle", "height")
+
+
+def _key(cell: dict[str, Any]) -> tuple[Any, ...]:
+    return tuple(cell[name] for name in _KEY)
+
+
+def _has_unequal_ends(cell: dict[str, Any]) -> bool:
+    own, other = ([end == "cleared" for end in ends] for ends in cell["ends"])
+    return own != other
+
+
+def ensembles_table(found: list[Any]) -> str:
+    """Write how many runs of each cell get over, and how far the rates are apart."""
+    return table(
+        {
+            "model": cell["model"],
+            "obstacle": cell["obstacle"],
+            "mm": f"{1e3 * cell['height']:.0f}",
+            **counts(cell["gets_over"]),
+            **{
+                f"{name} less own [%]": _gap(
+                    list(zip(cell["gets_over"][name], cell["gets_over"]["own"], strict=True))
+                )
+                for name in ("rapier", "Chipmunk")
+            },
+        }
+        for cell in found
+    )
+
+
+def _gap(pairs: Sequence[tuple[bool, bool]]) -> str:
+    """[%] Write the interval of the first rate of clearing less the second."""
+    kinds = (True, True), (True, False), (False, True), (False, False)
+    gap = newcombe_paired(*(pairs.count(kind) for kind in kinds))
+    return f"{100 * gap.low:+.0f} to {100 * gap.high:+.0f}"
+
+
+_PINCHED_SOLVERS = {
+    "own": Solver(),
+    "own, fixed steps": Solver(time_step=5e-5),
+    "own, restitution 0.5": Solver(restitution=0.5),
+    "own, restitution 1": Solver(restitution=1.0),
+    "rapier": Solver(engine="rapier"),
+}
+_HEIGHTS = (0.02, 0.04, 0.06)  # [m]
+_SPEEDS = (0.4, 0.05)  # [m/s]
+_SPREAD = 0.03  # [m] over which the starts are drawn
+_SEED = 3
+
+
+def pinched(starts: int, path: Path) -> None:
+    """Run 24 wheels on a knife edge that gets between two of them, solved in six ways."""
+    rng = np.random.default_rng(_SEED)
+    found = []
+    for height in _HEIGHTS:
+        for speed in _SPEEDS:
+            starting = _APPROACH + _SPREAD * rng.random(starts)
+            over = [_on_knife_edge(height, speed, float(approach)) for approach in starting]
+            gets = who_gets_over(over, _PINCHED_SOLVERS)
+            found.append({"height": height, "speed": speed, "gets_over": gets})
+            progress(f"knife edge of {1e3 * height:.0f} mm at {speed} m/s")
+    write(path, found)
+
+
+def _on_knife_edge(height: float, speed: float, approach: float) -> Scenario:
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
+    edge = c2d.terrains.knife_edge(height, thickness=0.01, friction=0.9)
+    start = c2d.Start(approach=approach)
+    small_wheels = robot.with_track(c2d.CircumferentialWheels(24))
+    return Scenario(small_wheels, edge, drive=c2d.Drive(speed=speed), start=start)
+
+
+def pinched_table(found: list[Any]) -> str:
+    """Write how many runs of each cell get over."""
+    return table(
+        {
+            "knife edge [mm]": f"{1e3 * cell['height']:.0f}",
+            "speed [m/s]": str(cell["speed"]),
+            **counts(cell["gets_over"]),
+        }
+        for cell in found
+    )

@@ -1,31 +1,97 @@
-"""What is driven over what, and how the runs of a cell differ."""
+"""The cells of the comparison: which robot over what, and how the runs of a cell differ.
+
+`find_cells` searches heights at which some runs clear and some do not.
+"""
 
 from __future__ import annotations
 
 import json
 import os
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import product
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
-from benches.engines.robots import robot_of
-from crawler2d.parameters.robot import Robot
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, Start
-from crawler2d.parameters.terrain import (
-    Barrier,
-    DiagonalBarrier,
-    Flat,
-    Lanes,
-    RandomStepfield,
-    Step,
-    Terrain,
-)
+import crawler2d as c2d
+from crawler2d.parameters.terrain import RandomStepfield, Terrain
+from crawler2d.parameters.track import Track
 
-__all__ = ["CELLS", "GROUNDS", "STARTS", "Cell", "read", "write"]
+_AHEAD = (0.026, 0.02)  # [m] 26 mm ahead of the preset's
+
+ROBOTS: dict[str, Callable[[Track], c2d.Robot]] = {
+    "engineer": lambda track: c2d.robots.engineer(flippers=None, track=track),
+    "engineer, ahead": lambda track: c2d.robots.engineer(
+        flippers=None, center_of_mass=_AHEAD, track=track
+    ),
+    "absolem": lambda track: c2d.robots.absolem(flippers=None, track=track),
+    "marv": lambda track: c2d.robots.marv(flippers=None, track=track),
+}
+"""Robots without flippers; "ahead" has its centre of mass 26 mm farther ahead."""
+
+_THREE = tuple((x, 0.0, 0.08) for x in (-0.186, 0.0, 0.186))
+
+MODELS: dict[str, Track] = {
+    "line of 3": c2d.LineOfWheels(3),
+    "line of 5": c2d.LineOfWheels(5),
+    "line of 9": c2d.LineOfWheels(9),
+    "3 gears": c2d.LineOfWheels(3, wheel=c2d.GearWheel()),
+    "5 gears": c2d.LineOfWheels(5, wheel=c2d.GearWheel()),
+    "24 all round": c2d.CircumferentialWheels(24),
+    "24 gears": c2d.CircumferentialWheels(24, wheel=c2d.GearWheel()),
+    "public 3": c2d.HybridWheels(_THREE),
+}
+"""Wheels in a track's place; "public 3" are those of the Engineer's public model."""
+
+DRIVES: dict[str, tuple[float, Literal["track", "wheel"]]] = {
+    "6 N m, track": (6.0, "track"),
+    "6 N m, servos": (6.0, "wheel"),
+    "60 N m, track": (60.0, "track"),
+    "60 N m, servos": (60.0, "wheel"),
+    "100 N m a wheel": (100.0, "wheel"),
+}
+"""Torque and its sharing: [N m] of a sprocket, in the last one of every wheel."""
+
+_ACCELERATION = 1.0  # [m/s^2] The same for all, so that the approach does not set the speed.
+
+
+def robot_of(robot: str, model: str, drive: str) -> c2d.Robot:
+    """Return a robot by its names.
+
+    Parameters
+    ----------
+    robot, model, drive : str
+        In `ROBOTS`, `MODELS` and `DRIVES`.
+
+    Examples
+    --------
+    >>> robot_of("marv", "line of 5", "6 N m, servos").drivetrain.torque_sharing
+    'wheel'
+    """
+    return with_motors(ROBOTS[robot](MODELS[model]), drive)
+
+
+def with_motors(base: c2d.Robot, drive: str) -> c2d.Robot:
+    """Return a robot with motors by their name in `DRIVES`, without rotors: rapier holds none."""
+    torque, sharing = DRIVES[drive]
+    if drive == "100 N m a wheel":
+        # The sprocket's torque acts at the belt, each wheel's at its own radius.
+        wheels = base.wheels()
+        belt = base.outline.rear_radius - base.outline.grouser_height
+        torque *= 0.5 * len(wheels) * belt / float(wheels["radius"].max())
+    return replace(
+        base,
+        drivetrain=replace(
+            base.drivetrain,
+            max_torque=torque,
+            torque_sharing=sharing,
+            max_acceleration=_ACCELERATION,
+        ),
+    ).without_rotors()
+
 
 CELLS = Path(__file__).with_name("cells.json")
 STARTS = 16
@@ -45,7 +111,7 @@ _HEIGHT, _FRICTION = 0.03, 0.05  # [-] by which they vary, either way
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cell:
-    """What the runs of a cell share.
+    """What the runs of a cell have in common.
 
     Parameters
     ----------
@@ -86,11 +152,11 @@ class Cell:
         """Whether the limit of one motor a track counts: it has less than makes wheels slip."""
         return self.drive == "6 N m, track"
 
-    def built(self) -> Robot:
+    def built(self) -> c2d.Robot:
         """Return its robot."""
         return robot_of(self.robot, self.model, self.drive)
 
-    def scenarios(self, count: int = STARTS) -> list[Scenario]:
+    def scenarios(self, count: int = STARTS) -> list[c2d.Scenario]:
         """Return its first runs.
 
         They differ in approach (a quarter of the axle distance), phase of the wheels (a turn),
@@ -110,11 +176,11 @@ class Cell:
             if isinstance(ground, RandomStepfield):
                 ground = replace(ground, seed=int(draw(0.0, _SEEDS)))
             found.append(
-                Scenario(
+                c2d.Scenario(
                     robot,
                     ground,
-                    drive=Drive(speed=_SPEED),
-                    start=Start(approach=float(far), track_phase=float(along)),
+                    drive=c2d.Drive(speed=_SPEED),
+                    start=c2d.Start(approach=float(far), track_phase=float(along)),
                     duration=round(way / _SPEED, 2),
                 )
             )
@@ -125,27 +191,154 @@ def terrain_of(ground: str, height: float, friction: float) -> Terrain:
     """Return a ground by its name; on one that is not the same across, roll and yaw are held."""
     match ground:
         case "step":
-            return Step(height, friction=friction)
+            return c2d.terrains.step(height, friction=friction)
         case "knife edge":
-            return Barrier(height, _THICK, friction=friction)
+            return c2d.terrains.barrier(height, _THICK, friction=friction)
         case "oblique edge":
-            return DiagonalBarrier(_YAW, height=height, thickness=_THICK, friction=friction)
+            return c2d.terrains.diagonal_barrier(
+                _YAW, height=height, thickness=_THICK, friction=friction
+            )
         case "one-sided edge":
-            edge = Barrier(height, _THICK, friction=friction)
-            return Lanes(left=edge, right=Flat(length=_THICK, friction=friction))
+            edge = c2d.terrains.barrier(height, _THICK, friction=friction)
+            return c2d.terrains.lanes(
+                left=edge, right=c2d.terrains.flat(length=_THICK, friction=friction)
+            )
         case "step field":
-            return RandomStepfield(rise=height, friction=friction)
-    raise ValueError(f"{ground}: must be one of {', '.join(GROUNDS)}")
+            return c2d.terrains.random_stepfield(rise=height, friction=friction)
+    raise ValueError(f"no ground {ground!r}; grounds: {', '.join(GROUNDS)}")
 
 
-def read(path: Path = CELLS) -> list[Cell]:
+def read_cells(path: Path = CELLS) -> list[Cell]:
     """Read cells."""
     return [Cell(**row) for row in json.loads(path.read_text(encoding="utf-8"))]
 
 
-def write(cells: Sequence[Cell], path: Path = CELLS) -> None:
-    """Write cells, one line each; the file is whole at any time."""
+def write_cells(cells: Sequence[Cell], path: Path = CELLS) -> None:
+    """Write cells, one line each; the file is complete at any time."""
     lines = ",\n".join(json.dumps(asdict(cell)) for cell in cells)
     new = path.with_suffix(".new")
     new.write_text(f"[\n{lines}\n]\n", encoding="utf-8")
     os.replace(new, path)
+
+
+_HEIGHTS = (0.4, 0.55, 0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8)
+"""[-] times the radius, for a first look."""
+
+_RUNS = 8
+_FEW, _MANY = 0.2, 0.8
+_HALVINGS = 4
+_FRICTIONS = (0.7, 0.85, 0.55, 1.0)
+
+_GIVEN = {
+    ("step", "6 N m, track"): (0.0496, 0.7),
+    ("step", "6 N m, servos"): (0.0256, 0.85),
+    ("step", "60 N m, track"): (0.052, 0.55),
+    ("step", "60 N m, servos"): (0.0256, 1.0),
+    ("knife edge", "6 N m, servos"): (0.0256, 0.7),
+    ("knife edge", "60 N m, servos"): (0.03, 1.0),
+    ("oblique edge", "60 N m, track"): (0.03, 0.7),
+    ("one-sided edge", "60 N m, track"): (0.03, 0.7),
+}
+"""Height [m] and friction of 24 gears, whose runs take too long for a search: those of the steps
+were found by one with the first of the robots, the others are given."""
+
+_SLOW = "24 gears"
+_OTHERS = ("line of 3", "line of 5", "line of 9", "5 gears")
+_PAPER_GROUNDS = (
+    ("knife edge", 0.04),
+    ("step", 0.05),
+    ("step", 0.075),
+    ("step", 0.1),
+    ("step field", 0.025),
+)
+"""Grounds, and [m] their heights, at the settings of the public model."""
+
+
+def _wanted() -> Iterator[Cell]:
+    """Yield what cells are to be found for, their height and friction still open.
+
+    On two lanes 24 gears are on one motor a track: with servos their runs take minutes there.
+    """
+    usual = [model for model in MODELS if model != "public 3"]
+    for model, robot in product(usual, ("engineer", "engineer, ahead")):
+        for drive in ("6 N m, track", "6 N m, servos", "60 N m, track", "60 N m, servos"):
+            yield _open("plane", robot, model, drive, "step")
+        for drive in ("6 N m, servos", "60 N m, servos"):
+            yield _open("plane", robot, model, drive, "knife edge")
+    for robot, model, ground in product(("absolem", "marv"), _OTHERS, ("step", "knife edge")):
+        yield _open("plane", robot, model, "60 N m, servos", ground)
+    for model, ground in product(usual, ("oblique edge", "one-sided edge")):
+        drive = "60 N m, track" if model == _SLOW else "60 N m, servos"
+        yield _open("space", "engineer", model, drive, ground)
+
+
+def _paper() -> Iterator[Cell]:
+    """Yield the cells at the settings of the public simulation model.
+
+    24 gears are on one motor a track of 60 N m, in other engines 74 N m a wheel: with such servos
+    their runs take minutes.
+    """
+    for model in MODELS:
+        drive = "60 N m, track" if model == _SLOW else "100 N m a wheel"
+        for ground, height in _PAPER_GROUNDS:
+            cell = _open("paper", "engineer", model, drive, ground)
+            yield replace(cell, height=height, friction=1.0)
+
+
+def find_cells() -> Iterator[tuple[Cell, float]]:
+    """Yield each cell with its rate of clearing; a friction further where a first one has none."""
+    for number, cell in enumerate(_wanted()):
+        if cell.model == _SLOW:
+            height, friction = _GIVEN[cell.ground, cell.drive]
+            given = replace(cell, height=height, friction=friction)
+            yield given, _rate(given)
+            continue
+        first = number % len(_FRICTIONS)
+        order = _FRICTIONS[first:] + _FRICTIONS[:first]
+        found = [_search(replace(cell, friction=friction)) for friction in order[:1]]
+        for friction in order[1:]:
+            if _FEW <= found[-1][1] <= _MANY:
+                break
+            found.append(_search(replace(cell, friction=friction)))
+        yield min(found, key=lambda each: abs(each[1] - 0.5))
+    for cell in _paper():
+        yield cell, _rate(cell)
+
+
+def _open(group: str, robot: str, model: str, drive: str, ground: str) -> Cell:
+    return Cell(
+        group=group, robot=robot, model=model, drive=drive, ground=ground, height=0.0, friction=0.0
+    )
+
+
+def _search(cell: Cell) -> tuple[Cell, float]:
+    """Return the cell at the height whose rate is nearest to one half, and that rate."""
+    radius = cell.built().outline.front_radius
+    looked: list[tuple[Cell, float]] = []
+    for share in _HEIGHTS:
+        looked.append(_look(cell, share * radius))
+        if _FEW <= looked[-1][1] <= _MANY or looked[0][1] == 0.0:
+            return looked[-1]  # what the lowest one stops is not tried at higher ones
+        if len(looked) > 1 and _crosses(looked[-2:]):
+            low, high = looked[-2:]
+            for _ in range(_HALVINGS):
+                middle = _look(cell, 0.5 * (low[0].height + high[0].height))
+                looked.append(middle)
+                if _FEW <= middle[1] <= _MANY:
+                    return middle
+                low, high = (low, middle) if _crosses((low, middle)) else (middle, high)
+    return min(looked, key=lambda each: abs(each[1] - 0.5))
+
+
+def _crosses(pair: Sequence[tuple[Cell, float]]) -> bool:
+    return (pair[0][1] > 0.5) != (pair[1][1] > 0.5)
+
+
+def _look(cell: Cell, height: float) -> tuple[Cell, float]:
+    cell = replace(cell, height=round(height, 4))
+    return cell, _rate(cell)
+
+
+def _rate(cell: Cell) -> float:
+    runs = c2d.simulate_many(cell.scenarios(_RUNS), record="summary", threads=1)
+    return sum(str(run.outcome) == "cleared" for run in runs) / _RUNS

@@ -3,21 +3,68 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benches.engines import convergence, costs, momentum, refining, yaw
-from benches.engines.agreement import Run, Runs, apart, cleared, pairs, rate, share
-from benches.engines.cells import GROUNDS, Cell
-from benches.engines.engines import ENGINES, holds
-from benches.engines.predict import hash_of, read
-from benches.engines.robots import MODELS
-from benches.engines.running import results_of
+from benches.engines import yaw
+from benches.engines.cells import GROUNDS, MODELS, Cell
+from benches.engines.runs import (
+    ENGINES,
+    MODELS_TIMED,
+    SPEEDS,
+    Run,
+    Runs,
+    cleared,
+    distance,
+    hash_of,
+    holds,
+    pairs,
+    predictions,
+)
+from benches.shared.measuring import quantiles
+from benches.shared.results import read, table_of
+from crawler2d import newcombe, wilson
 from research.markdown import markdown_table
 
-__all__ = ["agreeing", "load", "parts"]
+
+def apart(one: Sequence[Run], other: Sequence[Run]) -> bool:
+    """Whether Newcombe's 95 % interval of the difference of two rates is without zero.
+
+    Examples
+    --------
+    >>> stops, clears = [{"end": "stopped"}] * 8, [{"end": "cleared"}] * 8
+    >>> apart(stops, clears), apart(stops, stops[:6] + clears[:2])
+    (True, False)
+    """
+    gap = newcombe(cleared(one), len(one), cleared(other), len(other))
+    return gap.low > 0.0 or gap.high < 0.0
+
+
+def same_outcome(of: Iterable[tuple[Cell, Run, Run]]) -> str:
+    """Return in how many pairs both clear or both do not."""
+    same = [(one["end"] == "cleared") == (other["end"] == "cleared") for _, one, other in of]
+    return f"{sum(same)} of {len(same)}" if same else ""
+
+
+def rate(runs: Sequence[Run]) -> str:
+    """Return how many runs clear, and Wilson's 95 % interval of that rate in percent.
+
+    Examples
+    --------
+    >>> rate([{"end": "cleared"}, {"end": "stopped"}])
+    '1/2 (9 to 91)'
+    """
+    if not runs:
+        return ""
+    if runs[0]["end"].startswith("refused"):
+        return "refused"
+    interval = wilson(cleared(runs), len(runs))
+    low, high = (100.0 * end for end in (interval.low, interval.high))
+    return f"{cleared(runs)}/{len(runs)} ({low:.0f} to {high:.0f})"
+
 
 Results = Mapping[str, Runs]
 """Runs by engine."""
@@ -36,7 +83,7 @@ def load(folder: Path) -> tuple[dict[str, dict[str, list[Run]]], dict[str, str]]
     results, versions = {}, {}
     now = hash_of()
     for name in ENGINES:
-        data = results_of(name, folder)
+        data = read(folder / f"{name}.json.xz")
         if data is not None:
             if data["predictions"] != now:
                 raise ValueError(f"{name} has results for other predictions")
@@ -47,7 +94,7 @@ def load(folder: Path) -> tuple[dict[str, dict[str, list[Run]]], dict[str, str]]
 def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
     """Return the parts of the page by name, in Markdown."""
     results, versions = load(folder)
-    predicted = read()
+    predicted = predictions()
     groups = {
         group: [cell for cell in cells if cell.group == group]
         for group in ("plane", "space", "paper")
@@ -61,19 +108,19 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
         "ends": _ends(plane, predicted, results),
         "space": _space(groups["space"], predicted, results),
         "paper": _paper(groups["paper"], predicted, results),
-        "costs": costs.table(folder),
-        "convergence": convergence.table(folder / convergence.USUAL),
-        "jam": convergence.table(folder / convergence.JAM),
-        "speeds": momentum.table(folder),
-        "refined": refining.table(folder),
-        "yaw": yaw.table(folder),
+        "costs": table_of(folder / "costs.json.xz", _costs),
+        "convergence": table_of(folder / "convergence.json.xz", _convergence),
+        "jam": table_of(folder / "jam.json.xz", _convergence),
+        "speeds": table_of(folder / "momentum.json.xz", _speeds),
+        "refined": table_of(folder / "refined.json.xz", _refined),
+        "yaw": table_of(folder / "yaw.json.xz", yaw.table),
         "cells": _cells(plane, predicted, results),
     }
 
 
 def agreeing(cells: Sequence[Cell], folder: Path) -> dict[str, dict[str, float]]:
     """Return by engine in how many runs [%] it agrees with each predicted outcome."""
-    plane, predicted = [cell for cell in cells if cell.group == "plane"], read()
+    plane, predicted = [cell for cell in cells if cell.group == "plane"], predictions()
     found: dict[str, dict[str, float]] = {}
     for name, runs in load(folder)[0].items():
         ends = [[b["end"] == "cleared" for b in pair[1:]] for pair in pairs(plane, predicted, runs)]
@@ -95,7 +142,7 @@ def _engines(
         tried = [cell for cell in cells if runs.get(cell.label) and holds(name, cell)]
         far = sum(apart(predicted[c.label][: len(runs[c.label])], runs[c.label]) for c in tried)
         what = f"{ENGINES[name].what} ({versions[name]})"
-        agree = [share(found), share(stops), share(clears)]
+        agree = [same_outcome(found), same_outcome(stops), same_outcome(clears)]
         rows.append([name, what, *agree, f"{far} of {len(tried)}"])
     head = ["column", "engine", "same outcome", "predicted to stop", "predicted to clear"]
     return markdown_table([*head, "cells apart"], rows)
@@ -106,7 +153,7 @@ def _models(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     rows = []
     for model in MODELS:
         mine = [cell for cell in cells if cell.model == model]
-        row = [share(pairs(mine, predicted, runs)) for runs in results.values()]
+        row = [same_outcome(pairs(mine, predicted, runs)) for runs in results.values()]
         if any(row):
             rows.append([model, *row])
     return markdown_table(["model", *results], rows)
@@ -122,12 +169,11 @@ def _poses(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
             away, turned = [], []
             for _, one, other in pairs(kind, predicted, runs):
                 if other["end"] != "cleared" and one["end"] not in ("cleared", "tipped_over"):
-                    away.append(1e3 * np.hypot(one["x"] - other["x"], one["y"] - other["y"]))
+                    away.append(1e3 * distance(one, other))
                     turned.append(np.degrees(abs(one["angle"] - other["angle"])))
             row.append(str(len(away)))
             for values in (away, turned):
-                quantiles = np.quantile(values, (0.5, 0.9)) if values else ()
-                row.append(", ".join(f"{each:.2f}" for each in quantiles))
+                row.append(quantiles(values, ".2f"))
         rows.append(row)
     head = [f"{of}: {what}" for of in ("round", _GEARS) for what in ("runs", "mm", "degrees")]
     return markdown_table(["engine", *head], rows)
@@ -177,3 +223,68 @@ def _cells(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
         rows.append([*row, *(rate(runs.get(cell.label, ())) for runs in results.values())])
     head = ["robot", "model", "motors", "ground", "mm", "friction", "crawler2d"]
     return markdown_table([*head, *results], rows)
+
+
+def _convergence(found: dict[str, Any]) -> str:
+    """Return rates, poses against crawler2d's and costs by engine and setting."""
+    predicted = predictions()
+    rows: list[list[str]] = []
+    for name, settings in found.items():
+        for number, (setting, cells) in enumerate(settings.items()):
+            if number == 0:
+                own = [predicted[label][: len(runs)] for label, runs in cells.items()]
+                rows.append(["crawler2d", f"the runs of {name}", _rates(own), "", ""])
+            away = [
+                1e3 * distance(one, other)
+                for label, runs in cells.items()
+                for one, other in zip(predicted[label], runs, strict=False)
+                if "cleared" not in (one["end"], other["end"])
+            ]
+            cost = np.median([run["cost"] for runs in cells.values() for run in runs])
+            median = f"{np.median(away):.2f}" if away else ""
+            rows.append([name, setting, _rates(cells.values()), median, f"{1e3 * cost:.3g}"])
+    head = ["engine", "setting", "runs that clear, by cell", "stops apart [mm]", "ms a second"]
+    return markdown_table(head, rows)
+
+
+def _rates(cells: Iterable[Sequence[Run]]) -> str:
+    return ", ".join(f"{cleared(runs)}/{len(runs)}" for runs in cells)
+
+
+def _costs(found: dict[str, Any]) -> str:
+    """Return the costs in milliseconds a simulated second."""
+    rows = [
+        [name, *(f"{1e3 * costs[model]:.3g}" if model in costs else "" for model in MODELS_TIMED)]
+        for name, costs in found.items()
+    ]
+    return markdown_table(["ms a simulated second", *MODELS_TIMED], rows)
+
+
+def _speeds(found: dict[str, Any]) -> str:
+    """Return how many runs clear at each speed, and where the others stop."""
+    rows = []
+    for label, engines in found.items():
+        for name, speeds in engines.items():
+            row = [label, name]
+            for runs in speeds.values():
+                places = sorted(1e3 * run["x"] for run in runs if run["end"] != "cleared")
+                where = f", {places[0]:.1f} to {places[-1]:.1f} mm" if places else ""
+                row.append(f"{cleared(runs)}/{len(runs)}{where}")
+            rows.append(row)
+    return markdown_table(["cell", "engine", *(f"{speed:g} m/s" for speed in SPEEDS)], rows)
+
+
+def _refined(found: dict[str, Any]) -> str:
+    """Return whose outcome changed, by engine."""
+    rows = []
+    for name, cells in found.items():
+        kept = [ends for refined in cells.values() for ends in refined.values()]
+        runs = [[end == "cleared" for end in ends[:4]] for ends in kept]
+        placed = [ends[4] for ends in kept if ends[4]]
+        now = sum(own == again for _, _, own, again in runs)
+        ours = sum(own != before for before, _, own, _ in runs)
+        theirs = sum(again != before for _, before, _, again in runs)
+        stays = f"{placed.count('stays')} of {len(placed)}" if placed else ""
+        rows.append([name, str(len(runs)), str(now), str(theirs), str(ours), stays])
+    head = ["engine", "differing runs refined", "equal then", "the engine changed"]
+    return markdown_table([*head, "crawler2d changed", "stays in crawler2d's stop"], rows)

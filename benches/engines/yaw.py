@@ -1,68 +1,55 @@
-"""Jams found in side view, put into space before edges that are not square to the robot."""
+"""Jams of the side view, put into space before edges that are not square to the robot."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from benches.engines.driving import driven, scene_of
-from benches.engines.ground import turned
-from benches.engines.robots import DRIVES, ROBOTS, motorized
-from benches.engines.telling import tell
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, SeizureCriteria, Start
-from crawler2d.parameters.terrain import Barrier, Step, Terrain
-from crawler2d.parameters.track import CircumferentialWheels, LineOfWheels, Track
-from crawler2d.results.diagnosis import Diagnosis
-from crawler2d.runs.batch import simulate_many
-from crawler2d.sweeps.statistics import wilson
+import crawler2d as c2d
+from benches.adapters.ground import turned
+from benches.adapters.space import load, scene_of
+from benches.engines.cells import DRIVES, ROBOTS, with_motors
+from benches.engines.runs import run_in
+from benches.shared.results import Results, progress
+from crawler2d import Diagnosis, Scenario, simulate_many, wilson
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.track import Track
 from research.markdown import markdown_table
-
-if TYPE_CHECKING:
-    from benches.engines.engine_bullet import Bullet
-
-__all__ = ["drawn", "fails", "holds", "table", "turn"]
 
 Jam = Mapping[str, Any]
 """A jam with its runs by yaw."""
 
-_FILE = "yaw.json"
 _SEED = 1
 _EACH = 20  # jams of a model
 _YAWS = (0, 1, 3, 5)  # degrees
 _MODELS: dict[str, Track] = {
-    "line of 2": LineOfWheels(2),
-    "line of 3": LineOfWheels(3),
-    "line of 5": LineOfWheels(5),
-    "24 all round": CircumferentialWheels(24),
+    "line of 2": c2d.LineOfWheels(2),
+    "line of 3": c2d.LineOfWheels(3),
+    "line of 5": c2d.LineOfWheels(5),
+    "24 all round": c2d.CircumferentialWheels(24),
 }
 _DRIVES = tuple(name for name in DRIVES if name != "6 N m, track")  # which takes gears in between
 _THICK = {"knife edge": 0.01, "barrier": 0.1}  # [m]
 _SPEED = 0.2  # [m/s]
 _LENGTHS = 5.5  # axle distances at that speed: the longest time
-_ESCAPE = SeizureCriteria().escape_distance
+_ESCAPE = c2d.SeizureCriteria().escape_distance
 _PUSH = 0.15  # [-] weights
 
 
-def turn(folder: Path) -> None:
-    """Drive jams of each model in Bullet at its fine setting, at each yaw; go on where it stopped.
+def turn(path: Path) -> None:
+    """Run jams of each model in Bullet at its fine setting, at each yaw, those that are missing.
 
     Each one is driven from the pose of the stop, and from the start of the run.
     """
-    from benches.engines.engine_bullet import FINE, Bullet  # noqa: PLC0415 - loads Bullet
-
-    path, engine = folder / _FILE, Bullet(FINE)
-    found: dict[str, Any] = {"engine": engine.version, "jams": {model: [] for model in _MODELS}}
-    if path.exists():
-        found = json.loads(path.read_text(encoding="utf-8"))
-    for model, jams in found["jams"].items():
-        for label, scenario, stop, push in list(drawn(model))[len(jams) :]:
+    engine: Any = load("Bullet")
+    results = Results(path, {"engine": engine.version, "jams": {model: [] for model in _MODELS}})
+    for model, jams in results.data["jams"].items():
+        for label, scenario, stop, push in list(draw_jams(model))[len(jams) :]:
             jam = {
                 "label": label,
                 "mechanism": str(stop.mechanism),
@@ -72,11 +59,11 @@ def turn(folder: Path) -> None:
                 "start": {str(yaw): _started(engine, scenario, yaw) for yaw in _YAWS},
             }
             jams.append(jam)
-            tell(f"{model}; {label}: {', '.join(_told(jam, yaw) for yaw in _YAWS)}")
-            path.write_text(json.dumps(found) + "\n", encoding="utf-8")
+            progress(f"{model}; {label}: {', '.join(_verdict(jam, yaw) for yaw in _YAWS)}")
+            results.save()
 
 
-def drawn(model: str) -> Iterator[tuple[str, Scenario, Diagnosis, float]]:
+def draw_jams(model: str) -> Iterator[tuple[str, Scenario, Diagnosis, float]]:
     """Yield drawn runs of a model that seize in crawler2d: label, scenario, stop and push.
 
     The push, in weights, is the largest level of the escape force that does not move the robot on.
@@ -96,7 +83,7 @@ def drawn(model: str) -> Iterator[tuple[str, Scenario, Diagnosis, float]]:
 
 
 def holds(jam: Jam, yaw: int) -> bool:
-    """Whether a robot that was set into its jam gets no farther than crawler2d asks of an escape.
+    """Whether a robot that starts in its jam stays within crawler2d's distance of an escape.
 
     Examples
     --------
@@ -108,16 +95,13 @@ def holds(jam: Jam, yaw: int) -> bool:
 
 
 def fails(jam: Jam, yaw: int) -> bool:
-    """Whether a robot that drove from the start does not clear."""
+    """Whether a robot that starts where the scenario says does not clear."""
     return bool(jam["start"][str(yaw)]["end"] != "cleared")
 
 
-def table(folder: Path) -> str:
+def table(found: dict[str, Any]) -> str:
     """Return how many hold, or fail, square to the edge, and how many of these at each yaw."""
-    path = folder / _FILE
-    if not path.exists():
-        return "Not tried."
-    jams = json.loads(path.read_text(encoding="utf-8"))["jams"]
+    jams = found["jams"]
     every = [jam for mine in jams.values() for jam in mine]
     groups = {
         **jams,
@@ -128,15 +112,15 @@ def table(folder: Path) -> str:
         "all others": [jam for jam in every if jam["push"] < _PUSH],
     }
     rows = [
-        [kind, model, *_row(mine, said)]
-        for kind, said in (("set into the jam", holds), ("from the start", fails))
+        [kind, model, *_row(mine, rule)]
+        for kind, rule in (("set into the jam", holds), ("from the start", fails))
         for model, mine in groups.items()
     ]
     head = ["robot", "jams", "stays at 0 degrees", *(f"of these at {yaw}" for yaw in _YAWS[1:])]
     return markdown_table(head, rows)
 
 
-def _set(engine: Bullet, scenario: Scenario, stop: Diagnosis, yaw: int) -> dict[str, Any]:
+def _set(engine: Any, scenario: Scenario, stop: Diagnosis, yaw: int) -> dict[str, Any]:
     """Drive from rest in the pose of a stop, or close by where no ground is inside the robot.
 
     The ground is turned about the vertical through the edge in the pocket, between the tracks.
@@ -146,47 +130,47 @@ def _set(engine: Bullet, scenario: Scenario, stop: Diagnosis, yaw: int) -> dict[
     ground = turned(start.ground, math.radians(yaw), edge)
     scene = engine.clear(replace(start, ground=ground, x=x, z=z, angle=stop.chassis_angle))
     moved = round(scene.x - x, 5), round(scene.z - z, 5)
-    return {**driven(engine, scenario, scene), "moved": moved}
+    return {**run_in(engine, scenario, scene), "moved": moved}
 
 
-def _started(engine: Bullet, scenario: Scenario, yaw: int) -> dict[str, Any]:
+def _started(engine: Any, scenario: Scenario, yaw: int) -> dict[str, Any]:
     """Drive from the start, the ground turned about the vertical through x = 0."""
     start = scene_of(scenario)
-    return driven(engine, scenario, replace(start, ground=turned(start.ground, math.radians(yaw))))
+    return run_in(engine, scenario, replace(start, ground=turned(start.ground, math.radians(yaw))))
 
 
-def _told(jam: Jam, yaw: int) -> str:
+def _verdict(jam: Jam, yaw: int) -> str:
     return f"{'holds' if holds(jam, yaw) else 'gets on'}/{'fails' if fails(jam, yaw) else 'clears'}"
 
 
-def _row(jams: Sequence[Jam], said: Callable[[Jam, int], bool]) -> list[str]:
-    base = [jam for jam in jams if said(jam, 0)]
-    counts = [sum(said(jam, yaw) for jam in base) for yaw in _YAWS[1:]]
-    return [_share(len(base), len(jams)), *(_share(count, len(base)) for count in counts)]
+def _row(jams: Sequence[Jam], counts: Callable[[Jam, int], bool]) -> list[str]:
+    base = [jam for jam in jams if counts(jam, 0)]
+    numbers = [sum(counts(jam, yaw) for jam in base) for yaw in _YAWS[1:]]
+    return [_rate(len(base), len(jams)), *(_rate(count, len(base)) for count in numbers)]
 
 
 def _draw(track: Track, draw: np.random.Generator) -> tuple[str, Scenario]:
     name, drive = str(draw.choice(list(ROBOTS))), str(draw.choice(_DRIVES))
-    robot = motorized(ROBOTS[name](track), drive)
+    robot = with_motors(ROBOTS[name](track), drive)
     length, radius = robot.outline.axle_distance, robot.outline.front_radius
     ground = str(draw.choice(["step", *_THICK]))
     height, friction = radius * draw.uniform(0.4, 1.6), draw.uniform(0.5, 1.0)
-    terrain: Terrain = Step(height, friction=friction)
+    terrain: Terrain = c2d.terrains.step(height, friction=friction)
     if ground in _THICK:
-        terrain = Barrier(height, _THICK[ground], friction=friction)
+        terrain = c2d.terrains.barrier(height, _THICK[ground], friction=friction)
     approach = length * draw.uniform(0.075, 0.325)
     phase = draw.uniform(0.0, 2.0 * np.pi * radius)
     scenario = Scenario(
         robot,
         terrain,
-        drive=Drive(speed=_SPEED),
-        start=Start(approach=approach, track_phase=phase),
+        drive=c2d.Drive(speed=_SPEED),
+        start=c2d.Start(approach=approach, track_phase=phase),
         duration=round(_LENGTHS * length / _SPEED, 2),
     )
     where = f"{ground} of {1e3 * height:.4g} mm, friction {friction:.3g}"
     return f"{name}; {drive}; {where}", scenario
 
 
-def _share(count: int, of: int) -> str:
+def _rate(count: int, of: int) -> str:
     interval = wilson(count, of)
     return f"{count}/{of} ({100.0 * interval.low:.0f} to {100.0 * interval.high:.0f})"

@@ -1,1 +1,1 @@
-"""Files of models in two other engines, in three dimensions, over the same obstacles."""
+"""Model files in three other engines, in three dimensions, over the same obstacles."""

@@ -1,4 +1,4 @@
-"""Drive files of models over obstacles in other engines, beside what crawler2d predicted.
+"""Run model files over obstacles in other engines, for comparison with crawler2d's predictions.
 
 Usage, from the repository root: ``python -m benches.models predict``, ``run`` or ``table``.
 """
@@ -6,16 +6,15 @@ Usage, from the repository root: ``python -m benches.models predict``, ``run`` o
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from itertools import product
 from pathlib import Path
 
 from benches.models.cases import CASES, STARTS
-from benches.models.predict import PREDICTIONS, predicted
-from benches.models.running import ENGINES, FILES, RESULTS, engine_of, run
-from benches.models.table import parts
-from research.markdown import spliced
+from benches.models.files import FILES
+from benches.models.runs import ENGINES, PREDICTIONS, RESULTS, engine_of, parts, predict, run
+from benches.shared.measuring import write_parts
+from benches.shared.results import read, write
 
 _PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
 
@@ -28,7 +27,7 @@ def main() -> None:
         "predict", help="search for repairs, and write the predictions down"
     )
     predictions.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
-    runs = verbs.add_parser("run", help="drive; starts that the output has are not driven again")
+    runs = verbs.add_parser("run", help="run; starts that the output has are not repeated")
     runs.add_argument("engine", choices=ENGINES)
     runs.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
     runs.add_argument("--files", nargs="+", choices=FILES, default=list(FILES))
@@ -41,16 +40,16 @@ def main() -> None:
     tables.add_argument("results", nargs="*", type=Path, help="others: only print these")
     given = parser.parse_args()
     if given.verb == "predict":
-        found = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
-        found |= {name: predicted(CASES[name], threads=1) for name in given.cases}
-        PREDICTIONS.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+        found = read(PREDICTIONS)
+        found |= {name: predict(CASES[name], threads=1) for name in given.cases}
+        write(PREDICTIONS, found)
     elif given.verb == "run":
         try:
             engine_of(given.engine)
         except ImportError as error:
             sys.stdout.write(f"{given.engine} is left out: {error}\n")
             return
-        path = given.output or RESULTS / f"{given.engine}.json"
+        path = given.output or RESULTS / f"{given.engine}.json.xz"
         for case, file in product(given.cases, given.files):
             if file not in CASES[case].files:
                 continue
@@ -65,12 +64,9 @@ def main() -> None:
                 jobs=given.jobs,
             )
     else:
-        paths = given.results or [RESULTS / f"{engine}.json" for engine in ENGINES]
+        paths = given.results or [RESULTS / f"{engine}.json.xz" for engine in ENGINES]
         found = parts([path for path in paths if path.exists()])
-        sys.stdout.write("\n\n".join(found.values()) + "\n")
-        if not given.results:
-            page = spliced(_PAGE.read_text(encoding="utf-8"), found)
-            _PAGE.write_text(page, encoding="utf-8")
+        write_parts(found, None if given.results else _PAGE)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What is driven over what: robots of public files, flippers held, friction known."""
+"""The cases: robots of public files with their flippers held, and what they drive over."""
 
 from __future__ import annotations
 
@@ -10,16 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from crawler2d import Drive, Hold, Reading, Robot, Scenario, ScenarioWarning, Start, read_robot
 from crawler2d.audits.runs import scenario_of
 from crawler2d.audits.subject import standard_obstacles
-from crawler2d.errors import ScenarioWarning
-from crawler2d.parameters.robot import Robot
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, Hold, Start
 from crawler2d.parameters.terrain import Terrain
-from crawler2d.reading.reading import Reading, read_robot
-
-__all__ = ["CASES", "ROBOTS", "STARTS", "Case", "Cell"]
 
 ROBOTS = Path(__file__).parents[2] / "tests" / "robots"
 STARTS = 20
@@ -67,7 +61,7 @@ class Case:
     cells : mapping of str to Cell
         What it drives over, by label.
     files : tuple of str
-        Which of the files of `running.FILES` there are of it.
+        Which of the files of `files.FILES` there are of it.
     how : mapping
         Keywords for `read_robot`.
     """
@@ -84,17 +78,17 @@ class Case:
         return "sdf" if self.file.endswith(".sdf") else "urdf"
 
     def reading(self) -> Reading:
-        """Read the public file; what is doubted in it is in its audit."""
+        """Read the public file without its warnings, which are in its audit."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ScenarioWarning)
             return read_robot(ROBOTS / self.file, **self.how)
 
     def robot(self) -> Robot:
         """Return the robot with motors that hold their speeds, and its flippers held."""
-        return self.held(self.reading().robot)
+        return self.with_firm_flippers(self.reading().robot)
 
-    def held(self, robot: Robot) -> Robot:
-        """Hold the flippers of a robot, and let its motors hold their speeds."""
+    def with_firm_flippers(self, robot: Robot) -> Robot:
+        """Return a robot whose flippers keep their angle and whose motors keep their speed."""
         torque = _AMPLE * robot.drivetrain.max_torque
         drivetrain = replace(robot.drivetrain, max_torque=torque, torque_sharing="track")
         flippers = robot.flippers
@@ -103,7 +97,7 @@ class Case:
         return replace(robot, drivetrain=drivetrain, flippers=flippers)
 
     def firm(self, robot: Robot) -> Robot:
-        """Let the motors of a robot hold their speeds through impacts, too, as those of engines do.
+        """Return a robot whose motors keep their speed through impacts, too, as in engines.
 
         A blow takes no time in crawler2d, so only a rotor carries a speed through it; in an engine
         a motor that holds a speed has a whole step for it, or gives it as a constraint.

@@ -1,113 +1,100 @@
-"""The files that the engines load, and what in them turns."""
+"""The model files that the engines load: public, exported, patched, and changed ones."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from benches.models.cases import Case
-from crawler2d.model_tree import Tree
-from crawler2d.parameters.robot import Robot
-from crawler2d.reading.reading import Reading, read_robot
+from benches.adapters.robots import RobotModel, Wheel, cleaned, rigid_bodies
+from benches.models.cases import CASES, Case
+from crawler2d import Reading, Robot, read_robot
+from crawler2d.model_tree import Link, Shape, Tree
+from crawler2d.patching.patch import patched
+from crawler2d.reading.wheels import below
 from crawler2d.writing.formats import document, urdf_of
-
-__all__ = ["ModelFile", "cleaned", "exported", "of_reading", "public"]
 
 _LEFT = np.array([0.0, 1.0, 0.0])
 _SURFACE = 1.0  # [-] friction of robots in exported files: that of the ground decides
+_NO_LIMIT = 1e4  # [N m], [rad/s] far more than any wheel here needs
+
+FILES = {
+    "public": "original",
+    "export": "original",
+    "repair": "repair",
+    "patch": "repair",
+    "balanced": "original",
+    "on-axles": "original",
+    "balanced-on-axles": "original",
+}
+"""The files of a case, each with the prediction that it is to be compared with: the public one,
+crawler2d's of the same robot, and of the repaired one, the public one with the wheels of the
+repair, and variants of the public one."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class ModelFile:
-    """A model file as an engine needs it; all robots here have +x forward and z up.
+def model_of(engine: str, case: str, file: str, robot: Robot) -> RobotModel:
+    """Return one of the files of a case; the public ones do not depend on the robot.
+
+    Bullet has true cylinders from URDF alone.
+    """
+    own = CASES[case]
+    form = "urdf" if engine in ("bullet", "bullet-pyramid") else own.form
+    if file == "public":
+        return loaded(own.reading(), form, own.angle)
+    if file == "patch":
+        return patch(own, robot, form)
+    return variant(own, file) if file in VARIANTS else exported(own, robot, form, f"{case}_{file}")
+
+
+def exported(case: Case, robot: Robot, form: str, name: str) -> RobotModel:
+    """Return crawler2d's file of a robot."""
+    text = robot.to_sdf(friction=_SURFACE) if form == "sdf" else robot.to_urdf(friction=_SURFACE)
+    return loaded(_reread(text, f"{name}.{form}"), form, case.angle)
+
+
+def patch(case: Case, robot: Robot, form: str) -> RobotModel:
+    """Return the public file with only its wheels changed to those of a robot: `Audit.patch`.
 
     Parameters
     ----------
-    path : Path
-        The file, without pictures, sensors and plugins.
-    tree : Tree
-        What was read from it, for engines that read no files.
-    mass : float
-        [kg] Of all of its links.
-    wheels : mapping of str to float
-        [1/m] By link, the angle by which its joint turns for each metre that its surface runs.
-    held : mapping of str to float
-        [rad] By link, the angle at which the joint of a flipper is held.
-    axles : mapping of str to ndarray, shape (3,)
-        [m] Of the wheels, flippers held, in the chassis frame.
-    radii : mapping of str to float
-        [m] Of the wheels.
-    origin : ndarray, shape (3,)
-        [m] Of the chassis frame, in the frame of the model.
+    case : Case
+        Whose file.
+    robot : Robot
+        Has the wheels; that its flippers are held and its motors firm is not in the file.
+    form : str
+        Format that the engine needs, "sdf" or "urdf".
     """
-
-    path: Path
-    tree: Tree
-    mass: float
-    wheels: dict[str, float]
-    held: dict[str, float]
-    axles: dict[str, NDArray[np.float64]]
-    radii: dict[str, float]
-    origin: NDArray[np.float64]
-
-    @property
-    def foremost(self) -> float:
-        """[m] Of its wheels, in the chassis frame."""
-        return float(max(axle[0] + self.radii[name] for name, axle in self.axles.items()))
-
-    @property
-    def lowest(self) -> float:
-        """[m] Of its wheels, in the chassis frame."""
-        return float(min(axle[2] - self.radii[name] for name, axle in self.axles.items()))
+    reading = case.reading()
+    own, flippers = reading.robot, reading.robot.flippers
+    if flippers is not None and robot.flippers is not None:
+        flippers = replace(flippers, track=robot.flippers.track)
+    text = patched(reading, replace(own, track=robot.track, flippers=flippers)).text
+    file = f"{Path(case.file).stem}_patch.{case.form}"
+    return loaded(_reread(text, file, **case.how), form, case.angle)
 
 
-def cleaned(text: str) -> str:
-    """Take out of a file what no engine needs to drive: pictures, sensors, plugins, meshes.
-
-    Joints of links that are not in the file go, too, and SDF gets the zeros for missing damping
-    that Bullet's reader asks for. All masses, shapes but meshes, joints and their places stay.
-    """
-    root = ElementTree.fromstring(text)
-    for parent in list(root.iter()):
-        for tag in ("visual", "sensor", "plugin", "gazebo", "transmission"):
-            for child in parent.findall(tag):
-                parent.remove(child)
-        for child in parent.findall("collision"):
-            if child.find("geometry/mesh") is not None:
-                parent.remove(child)
-    if root.tag == "robot":
-        links = {link.get("name") for link in root.findall("link")}
-        for joint in root.findall("joint"):
-            ends = [joint.find(tag) for tag in ("parent", "child")]
-            if any(end is None or end.get("link") not in links for end in ends):
-                root.remove(joint)
-    else:
-        for dynamics in root.iter("dynamics"):
-            for tag in ("damping", "friction"):
-                if dynamics.find(tag) is None:
-                    ElementTree.SubElement(dynamics, tag).text = "0"
-    return ElementTree.tostring(root, encoding="unicode")
+def variant(case: Case, name: str) -> RobotModel:
+    """Return the robot of a public file with the changes of a variant, as URDF for all engines."""
+    reading = case.reading()
+    for change in VARIANTS[name]:
+        text = document(urdf_of(_limited(change(reading))), case.file)
+        reading = _reread(text, f"{Path(case.file).stem}_{name}.urdf", **case.how)
+    return loaded(reading, "urdf", case.angle)
 
 
-def public(case: Case, form: str, folder: Path) -> ModelFile:
-    """Return the public file of a case."""
-    return of_reading(case.reading(), form, case.angle, folder)
+def _reread(text: str, file: str, **how: Any) -> Reading:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / file
+        path.write_text(text, encoding="utf-8")
+        return read_robot(path, **how)
 
 
-def exported(case: Case, robot: Robot, form: str, name: str, folder: Path) -> ModelFile:
-    """Return crawler2d's file of a robot."""
-    path = folder / f"{name}.{form}"
-    text = robot.to_sdf(friction=_SURFACE) if form == "sdf" else robot.to_urdf(friction=_SURFACE)
-    path.write_text(text, encoding="utf-8")
-    return of_reading(read_robot(path), form, case.angle, folder)
-
-
-def of_reading(reading: Reading, form: str, angle: float, folder: Path) -> ModelFile:
-    """Write what was read from a file for an engine, and say what turns in it.
+def loaded(reading: Reading, form: str, angle: float) -> RobotModel:
+    """Return a file as an engine loads it, in which all robots have +x forward and z up.
 
     In another format than its own it has the same links, joints, shapes and inertias: those of the
     tree that was read.
@@ -117,50 +104,40 @@ def of_reading(reading: Reading, form: str, angle: float, folder: Path) -> Model
     reading : Reading
         Of the file.
     form : str
-        Format that the engine is to have, "sdf" or "urdf".
+        Format that the engine needs, "sdf" or "urdf".
     angle : float
         [rad] At which flippers are held.
-    folder : Path
-        Where to write; a file of the same name there is written over.
     """
-    tree = reading.tree
+    tree, table, origin = reading.tree, reading.wheels, reading.frame.place
     is_own = tree.format.lower().startswith(form)
     text = reading.text if is_own else document(urdf_of(tree), tree.file)
-    path = folder / f"{reading.path.stem}.{form}"
-    path.write_text(cleaned(text), encoding="utf-8")
-    return _model_file(path, reading, angle)
-
-
-def _model_file(path: Path, reading: Reading, angle: float) -> ModelFile:
-    tree, wheels = reading.tree, reading.wheels
-    names = [str(name) for name in wheels["name"]]
-    places = np.column_stack([wheels["x"], wheels["z"], wheels["y"]])
-    radii = dict(zip(names, wheels["radius"].tolist(), strict=True))
-    carriers = dict(zip(names, wheels["carrier"].tolist(), strict=True))
-    axles = dict(zip(names, places, strict=True))
-    origin = reading.frame.place
     flippers = reading.robot.flippers
     turn = 0.0 if flippers is None else angle - flippers.angle
-    held, moved = {}, {}
-    for name in names:
-        axle = axles[name]
-        if carriers[name] != "chassis":
-            link, pivot = _flipper(tree, name)
-            end = 1.0 if carriers[name].startswith("front") else -1.0
+    held, wheels = {}, []
+    columns = (table[name].tolist() for name in ("name", "x", "y", "z", "radius", "carrier"))
+    for name, x, y, z, radius, carrier in zip(*columns, strict=True):
+        axle = np.array([x, z, y])
+        if carrier != "chassis":
+            link = tree.joints[name].parent
+            pivot = tree.joints[link].place
+            end = 1.0 if carrier.startswith("front") else -1.0
             held[link] = -end * turn / _sense(tree, link)
             cos, sin = np.cos(turn), end * np.sin(turn)
-            x, _, z = axle - pivot
-            axle = pivot + np.array([cos * x - sin * z, axle[1] - pivot[1], sin * x + cos * z])
-        moved[name] = axle - origin
-    return ModelFile(
-        path=path,
+            along, _, up = axle - pivot
+            arm = [cos * along - sin * up, axle[1] - pivot[1], sin * along + cos * up]
+            axle = pivot + np.array(arm)
+        place = tuple((axle - origin).tolist())
+        wheels.append(Wheel(link=name, axle=place, radius=radius, rate=_sense(tree, name) / radius))
+    return RobotModel(
+        file=f"{reading.path.stem}.{form}",
         tree=tree,
-        mass=sum(link.mass for link in tree.links),
-        wheels={name: _sense(tree, name) / radii[name] for name in names},
+        wheels=tuple(wheels),
+        bodies=rigid_bodies(tree, wheels, held, origin),
+        text=cleaned(text),
+        height=min(wheel.axle[2] - wheel.radius for wheel in wheels),
         held=held,
-        axles=moved,
-        radii=radii,
         origin=origin,
+        holds_speed=True,
     )
 
 
@@ -169,7 +146,80 @@ def _sense(tree: Tree, link: str) -> float:
     return float(np.sign(tree.joints[link].axis @ _LEFT))
 
 
-def _flipper(tree: Tree, wheel: str) -> tuple[str, NDArray[np.float64]]:
-    """Return the link that carries a wheel, and where it pivots."""
-    link = tree.joints[wheel].parent
-    return link, tree.joints[link].place
+def balanced(reading: Reading) -> Tree:
+    """Return a robot with the centres of mass of its wheels on their axles.
+
+    The hull's moves the other way, so that the centre of mass of the robot stays where it is.
+    """
+    tree = reading.tree
+    wheels = set(reading.wheels["name"].tolist())
+    off = {
+        link.name: link.center - tree.joints[link.name].place
+        for link in tree.links
+        if link.name in wheels
+    }
+    moment = sum(
+        (link.mass * off[link.name] for link in tree.links if link.name in off), np.zeros(3)
+    )
+    root = tree.links[0]
+    shifts = {name: -each for name, each in off.items()} | {root.name: moment / root.mass}
+    links = [replace(link, center=link.center + shifts.get(link.name, 0.0)) for link in tree.links]
+    return replace(tree, links=tuple(links))
+
+
+def on_axles(reading: Reading) -> Tree:
+    """Return a robot whose flippers, with everything attached to them, pivot on the end axles."""
+    tree, height = reading.tree, reading.frame.place[2]
+    hanging = below(tree)
+    table = reading.wheels
+    arms = {
+        tree.joints[wheel].parent
+        for wheel, carrier in zip(table["name"].tolist(), table["carrier"].tolist(), strict=True)
+        if carrier != "chassis"
+    }
+    down = {
+        name: np.array([0.0, 0.0, height - tree.joints[arm].place[2]])
+        for arm in arms
+        for name in hanging[arm]
+    }
+    joints = {
+        name: replace(joint, place=joint.place + down.get(name, 0.0))
+        for name, joint in tree.joints.items()
+    }
+    links = tuple(
+        _moved(link, down[link.name]) if link.name in down else link for link in tree.links
+    )
+    return replace(tree, links=links, joints=joints)
+
+
+def _limited(tree: Tree) -> Tree:
+    """State the limits of motors that a file leaves out: DART's reader of URDF asks for them."""
+
+    def or_ample(limit: float | None) -> float:
+        return _NO_LIMIT if limit is None else limit
+
+    joints = {
+        name: replace(joint, effort=or_ample(joint.effort), velocity=or_ample(joint.velocity))
+        for name, joint in tree.joints.items()
+    }
+    return replace(tree, joints=joints)
+
+
+def _moved(link: Link, by: np.ndarray) -> Link:
+    def shape(each: Shape) -> Shape:
+        return replace(each, pose=replace(each.pose, place=each.pose.place + by))
+
+    return replace(
+        link,
+        pose=replace(link.pose, place=link.pose.place + by),
+        center=link.center + by,
+        shapes=tuple(shape(each) for each in link.shapes),
+    )
+
+
+VARIANTS: dict[str, tuple[Callable[[Reading], Tree], ...]] = {
+    "balanced": (balanced,),
+    "on-axles": (on_axles,),
+    "balanced-on-axles": (balanced, on_axles),
+}
+"""Changes of the robot that a public file states, each after the other."""

@@ -18,15 +18,187 @@ accuracy in the grid. crawler2d has to do with its one default accuracy in every
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
-from benches.peers.engine import Engine, Setting
-from benches.peers.errors import PATH, judge
-from benches.peers.motion import Motion
-from benches.peers.scenes import Draw, Scene
-from benches.peers.timing import progress
-from crawler2d.sweeps.statistics import wilson
+import numpy as np
+
+from benches.adapters.planar import (
+    Array,
+    Body,
+    Draw,
+    Engine,
+    Motion,
+    Scene,
+    Setting,
+    draws,
+    load_engine,
+    load_engines,
+    load_scene,
+)
+from benches.shared.measuring import Key, Time, interleaved
+from benches.shared.results import progress
+from crawler2d import wilson
+
+PENETRATION = 1e-3
+"""[m] Largest accurate overlap with the ground."""
+JOINT_GAP = 0.2e-3
+"""[m] Largest accurate gap of a pin."""
+PATH = 0.01
+"""[m] Largest accurate distance from the limit's path."""
+
+# [s] Time between samples.
+_INTERVAL = 0.002
+
+
+class Errors(NamedTuple):
+    """A run and its errors.
+
+    Attributes
+    ----------
+    motion : Motion
+        The recorded motion.
+    penetration, gap : float
+        [m] Deepest overlap with the ground, largest gap of a pin; infinite if the robot flew off.
+    cleared : bool
+        Whether the rear axle passed the last edge.
+    """
+
+    motion: Motion
+    penetration: float
+    gap: float
+    cleared: bool
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the bodies stay out of the ground and on their pins."""
+        return self.penetration <= PENETRATION and self.gap <= JOINT_GAP
+
+
+def measure(engine: Engine, scene: Scene, setting: Setting) -> Errors:
+    """Run an engine and measure its errors, by the same geometry for all."""
+    motion = engine.record(scene, setting, scene.duration, _INTERVAL)
+    if not scene.keeps_course(motion):
+        return Errors(motion, math.inf, math.inf, cleared=False)
+    return Errors(
+        motion,
+        max(deepest_overlap(scene, motion), motion.penetration),
+        joint_gap(scene, motion),
+        scene.cleared(motion),
+    )
+
+
+def deepest_overlap(scene: Scene, motion: Motion) -> float:
+    """[m] Deepest overlap of any part with the ground, over all samples."""
+    ground = _Ground(scene.profile())
+    deepest = 0.0
+    for index, body in enumerate(scene.bodies):
+        poses = motion.poses[:, index]
+        if body.radius > 0.0:
+            deepest = max(deepest, ground.circle_depth(poses[:, :2], body.radius))
+        if body.polygons:
+            deepest = max(deepest, _corner_depth(ground, body, poses))
+            deepest = max(deepest, _edge_depth(ground, body, poses))
+    return deepest
+
+
+def joint_gap(scene: Scene, motion: Motion) -> float:
+    """[m] Largest distance between the two points that a pin holds together."""
+    gaps = [
+        np.linalg.norm(
+            _to_world(motion.poses[:, joint.a], joint.pa)
+            - _to_world(motion.poses[:, joint.b], joint.pb),
+            axis=1,
+        ).max()
+        for joint in scene.joints
+    ]
+    return float(max(gaps))
+
+
+class _Ground:
+    """The region below a profile of level tops and vertical faces."""
+
+    def __init__(self, profile: Array) -> None:
+        self._starts = profile[:-1]
+        self._spans = np.diff(profile, axis=0)
+        level = self._spans[:, 0] > 0.0
+        self._lefts, self._tops = profile[:-1][level].T
+        before, after = self._spans[:-1], self._spans[1:]
+        convex = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0.0
+        self.edges = profile[1:-1][convex]
+
+    def inside(self, points: Array) -> Array:
+        """Which points, shape (n, 2), lie below the profile."""
+        column = np.searchsorted(self._lefts, points[:, 0], side="right") - 1
+        return np.asarray(points[:, 1] < self._tops[np.maximum(column, 0)])
+
+    def distance(self, points: Array) -> Array:
+        """[m] Distance from points, shape (n, 2), to the profile."""
+        away = points[:, None, :] - self._starts
+        along = (away * self._spans).sum(-1) / (self._spans**2).sum(-1)
+        nearest = away - np.clip(along, 0.0, 1.0)[..., None] * self._spans
+        return np.asarray(np.sqrt((nearest**2).sum(-1)).min(axis=1))
+
+    def circle_depth(self, centers: Array, radius: float) -> float:
+        """[m] Deepest overlap of a circle, over all its centres."""
+        centers = centers[centers[:, 1] < self._tops.max() + radius]
+        if len(centers) == 0:
+            return 0.0
+        distance = self.distance(centers)
+        depth = radius + np.where(self.inside(centers), distance, -distance)
+        return float(max(depth.max(), 0.0))
+
+
+def _corner_depth(ground: _Ground, body: Body, poses: Array) -> float:
+    """[m] Largest depth of a body's corners in the ground, except those within its circle."""
+    corners = np.concatenate(body.polygons)
+    corners = corners[np.hypot(*corners.T) > body.radius]
+    points = np.concatenate([_to_world(poses, corner) for corner in corners])
+    points = points[ground.inside(points)]
+    return float(ground.distance(points).max()) if len(points) else 0.0
+
+
+def _edge_depth(ground: _Ground, body: Body, poses: Array) -> float:
+    """[m] Largest depth of the ground's edges in the polygons of a body."""
+    reach = max(float(np.hypot(*polygon.T).max()) for polygon in body.polygons)
+    deepest = 0.0
+    for edge in ground.edges:
+        away = edge - poses[:, :2]
+        near = (away**2).sum(1) < reach**2
+        cosine, sine = np.cos(poses[near, 2]), np.sin(poses[near, 2])
+        x, y = away[near].T
+        local = np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=1)
+        for polygon in body.polygons:
+            if len(local):
+                deepest = max(deepest, float(_depth_in(polygon, body.radius, local).max()))
+    return deepest
+
+
+def _depth_in(polygon: Array, radius: float, points: Array) -> Array:
+    """[m] How deep points lie in a convex polygon, negative outside.
+
+    The side within the body's circle, the base of a grouser, does not count as a way out.
+    """
+    ends = np.roll(polygon, -1, axis=0)
+    spans = ends - polygon
+    covered = (np.hypot(*polygon.T) <= radius) & (np.hypot(*ends.T) <= radius)
+    normals = np.stack([-spans[:, 1], spans[:, 0]], axis=1)
+    normals /= np.hypot(*spans.T)[:, None]
+    depths = ((points[:, None, :] - polygon) * normals).sum(-1)
+    is_inside = (depths > 0.0).all(axis=1)
+    return np.asarray(np.where(is_inside, depths[:, ~covered].min(axis=1), -1.0))
+
+
+def _to_world(poses: Array, point: tuple[float, float] | Array) -> Array:
+    """[m] A point of a body in the world, shape (n, 2)."""
+    cosine, sine = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+    x, y = point
+    offset = np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
+    return np.asarray(poses[:, :2] + offset)
+
 
 COST_SPAN = 2.5
 """[s] Simulated time of the first measurement of cost: up to the obstacle and onto it."""
@@ -102,19 +274,22 @@ def search(engine: Engine, scene: Scene, draws: list[Draw], effort: Effort) -> d
             break
     outcome = tried[-1]["setting"] if found else "nothing"
     progress(f"  {engine.name}: {outcome} after {len(tried)} settings")
-    return {"limit": _plain(limit), "tried": tried, "found": found}
+    kept = ("spread", "is_chaotic", "cleared", "count", "penetration", "gap")
+    data = {name: getattr(limit, name) for name in kept}
+    data["final_x"] = float(limit.paths[0].poses[-1, 0, 0])
+    return {"limit": data, "tried": tried, "found": found}
 
 
 def find_limit(engine: Engine, variants: list[Scene], effort: Effort) -> Limit:
     """Run the two finest settings, and the ensemble only if they differ."""
-    first = [judge(engine, scene, engine.finest) for scene in variants[: effort.paths]]
+    first = [measure(engine, scene, engine.finest) for scene in variants[: effort.paths]]
     spread = max(
-        judge(engine, scene, engine.next_finest).motion.distance(run.motion)
+        measure(engine, scene, engine.next_finest).motion.distance(run.motion)
         for scene, run in zip(variants, first, strict=False)
     )
     runs = list(first)
     if spread > PATH:
-        runs += [judge(engine, scene, engine.finest) for scene in variants[effort.paths :]]
+        runs += [measure(engine, scene, engine.finest) for scene in variants[effort.paths :]]
     return Limit(
         spread,
         [run.motion for run in first],
@@ -136,44 +311,46 @@ def by_cost(engine: Engine, scene: Scene, effort: Effort) -> list[tuple[float, S
 def _verdict(
     engine: Engine, variants: list[Scene], setting: Setting, limit: Limit, effort: Effort
 ) -> dict[str, Any]:
-    """Judge a setting; stop at the first broken rule."""
-    penetration = gap = distance = 0.0
-    cleared = 0
-    count = effort.ensemble if limit.is_chaotic else effort.paths
+    """Try a setting; stop at the first broken rule."""
+    worst = {"penetration": 0.0, "gap": 0.0, "distance": 0.0}
+    cleared, count = 0, effort.ensemble if limit.is_chaotic else effort.paths
     for index, scene in enumerate(variants[:count]):
-        run = judge(engine, scene, setting)
-        penetration, gap = max(penetration, run.penetration), max(gap, run.gap)
+        run = measure(engine, scene, setting)
+        distance = run.motion.distance(limit.paths[index]) if index < effort.paths else 0.0
+        for name, error in zip(worst, (run.penetration, run.gap, distance), strict=True):
+            worst[name] = max(worst[name], error)
         cleared += run.cleared
-        if index < effort.paths:
-            distance = max(distance, run.motion.distance(limit.paths[index]))
-        if not run.is_sound or (distance > PATH and not limit.is_chaotic):
-            return _row(penetration, gap, distance, accepted=False)
+        if not run.is_sound or (worst["distance"] > PATH and not limit.is_chaotic):
+            return {**worst, "accepted": False}
     if not limit.is_chaotic:
-        return _row(penetration, gap, distance, accepted=True)
+        return {**worst, "accepted": True}
     _, low, high = wilson(cleared, count)
     accepted = low <= limit.cleared / limit.count <= high
-    return _row(penetration, gap, distance, accepted=accepted) | {
-        "cleared": cleared,
-        "count": count,
+    return {**worst, "accepted": accepted, "cleared": cleared, "count": count}
+
+
+def wall_times(cases: Mapping[Key, tuple[Engine, Scene, Setting]], repeats: int) -> dict[Key, Time]:
+    """Time whole runs of several engines, scenes and settings in turns."""
+    jobs = {
+        key: partial(engine.wall_time, scene, setting, scene.duration)
+        for key, (engine, scene, setting) in cases.items()
     }
+    return interleaved(jobs, repeats)
 
 
-def _row(penetration: float, gap: float, distance: float, *, accepted: bool) -> dict[str, Any]:
-    return {
-        "penetration": penetration,
-        "gap": gap,
-        "distance": distance,
-        "accepted": accepted,
-    }
-
-
-def _plain(limit: Limit) -> dict[str, Any]:
-    return {
-        "spread": limit.spread,
-        "is_chaotic": limit.is_chaotic,
-        "cleared": limit.cleared,
-        "count": limit.count,
-        "penetration": limit.penetration,
-        "gap": limit.gap,
-        "final_x": float(limit.paths[0].poses[-1, 0, 0]),
-    }
+def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, Any]]:
+    """Find each engine's cheapest accurate setting on a scene, then time them together."""
+    progress(f"equal accuracy: {name}")
+    scene, varied = load_scene(name), draws(effort.ensemble)
+    found = {each.name: search(each, scene, varied, effort) for each in load_engines()}
+    settings = {name: Setting(**each["found"]) for name, each in found.items() if each["found"]}
+    cases = {name: (load_engine(name), scene, setting) for name, setting in settings.items()}
+    times = wall_times(cases, repeats)
+    rows = []
+    for each, search in found.items():
+        row = {"scene": name, "engine": each, **search}
+        if each in times:
+            row["per_second"] = times[each].least / scene.duration
+            row["setting"] = str(settings[each])
+        rows.append(row)
+    return rows

@@ -1,7 +1,15 @@
-"""A chain of shoes in pymunk and in crawler2d: what it costs, and how well the chain holds.
+"""A chain of shoes in pymunk and in crawler2d: what it costs, and how far its pins open.
+
+The robot depends on no engine: two toothed ends, a hull, shoes on pins. The pins of the straight
+runs lie one radius below and above the axles, a whole number of pitches apart. Round an end they
+are the corners of a polygon with as many corners as the sprocket has teeth. So the pitch follows
+from the counts and the axle distance, and the chain closes without slack. Hull and discs leave it a
+clearance of one millimetre. In crawler2d it is a `SegmentalTrack` on its guide: the outer faces of
+the shoes run along the same outline, the drive pulls along the shoes of the rear end, with the
+force of the same torque, and hull, sprockets and shoes have the same weights.
 
 Times are of blocks of half a second: the lower quartile of a run's blocks, and of that the minimum
-of several rounds in which all jobs take turns. Also judged:
+of several rounds in which all jobs take turns. Also measured:
 
 - the largest gap of a pin, from half a second on, because the robot first falls by 2 mm;
 - whether the chain stayed on: no pin gap larger than the thickness of a plate, the chassis above
@@ -16,26 +24,233 @@ other scenes of this benchmark allow, and crawler2d's own gap at its defaults.
 
 from __future__ import annotations
 
+import math
 import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from itertools import product
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import crawler2d as c2d
-from benches.peers import chain_crawler2d, chain_pymunk, chain_robot, scenes
-from benches.peers.chain_robot import ChainRobot
-from benches.peers.engine import Setting
-from benches.peers.errors import JOINT_GAP
-from benches.peers.motion import Array
-from benches.peers.timing import interleaved, progress
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive, Solver
+from benches.adapters.planar import Array, Setting, load_engine, load_scene, seconds
+from benches.peers.accuracy import JOINT_GAP
+from benches.shared.measuring import interleaved, machine
+from benches.shared.results import progress
+from crawler2d import Scenario, Solver
 from crawler2d.parameters.terrain import Points, Terrain
-from crawler2d.parameters.track import GrouserBeltTrack, SegmentalTrack, Track
+from crawler2d.parameters.track import Track
+
+if TYPE_CHECKING:
+    from benches.adapters.chipmunk import Chain
+
+TEETH = {22: 8, 36: 12, 44: 16}
+"""Teeth of one sprocket, by the number of shoes."""
+SPEED, TORQUE, FRICTION, DROP = 0.4, 30.0, 0.9, 0.002
+"""[m/s] Of the chain, [N m] limit of the only motor, at the rear sprocket, [-] between shoes and
+ground, [m] from which the robot falls at the start."""
+
+_SLACK = 0.001  # [m]
+# [m] Depth below the pins at which the teeth begin and end, and the lugs end.
+_TOOTH_ROOT, _TOOTH_TIP, _LUG_TIP = 0.0396, 0.0146, 0.0253
+# [-] Widths, in pitches.
+_TOOTH_BASE, _TOOTH_END, _LUG_BASE, _LUG_END = 0.333, 0.229, 0.292, 0.167
+
+
+@dataclass(frozen=True)
+class ChainRobot:
+    """The robot with a number of shoes.
+
+    Attributes
+    ----------
+    shoe_count : int
+        Shoes of the chain.
+    """
+
+    shoe_count: int
+
+    axle_distance, plate_thickness = 0.576, 0.0146
+    """[m]"""
+    hull_mass, sprocket_mass, chain_mass = 13.0, 1.5, 3.96
+    """[kg] The sprocket is one of two."""
+    hull_inertia, sprocket_inertia = 0.4008, 0.0048
+    """[kg m^2] Of a box 0.6 m long, and of a disc."""
+    torque, friction, drop = TORQUE, FRICTION, DROP
+    hull_friction, disc_friction, tooth_friction = 0.1, 0.3, 0.1
+    """[-] Between shoes and the robot."""
+
+    @property
+    def tooth_count(self) -> int:
+        """Number of teeth of one sprocket."""
+        return TEETH[self.shoe_count]
+
+    @property
+    def pitch(self) -> float:
+        """[m] Distance from pin to pin."""
+        return 2.0 * self.axle_distance / (self.shoe_count - self.tooth_count)
+
+    @property
+    def pin_radius(self) -> float:
+        """[m] Distance from an axle to the pins round it."""
+        return self.pitch / (2.0 * math.sin(math.pi / self.tooth_count))
+
+    @property
+    def radius(self) -> float:
+        """[m] Distance from an axle to the ground."""
+        return self.pin_radius + self.plate_thickness / 2.0
+
+    @property
+    def mass(self) -> float:
+        """[kg] Mass of the whole robot."""
+        return self.hull_mass + 2.0 * self.sprocket_mass + self.chain_mass
+
+    @property
+    def shoe_mass(self) -> float:
+        """[kg] Mass of one shoe."""
+        return self.chain_mass / self.shoe_count
+
+    @property
+    def shoe_inertia(self) -> float:
+        """[kg m^2] Moment of inertia of a shoe, taken as a plate."""
+        return self.shoe_mass * (self.pitch**2 + self.plate_thickness**2) / 12.0
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """[kg m^2] Moment of inertia of the whole robot about its middle."""
+        x, y, _ = self.shoes().T
+        ends = 2.0 * (self.sprocket_inertia + self.sprocket_mass * (self.axle_distance / 2.0) ** 2)
+        shoes = self.shoe_count * self.shoe_inertia + self.shoe_mass * float((x**2 + y**2).sum())
+        return self.hull_inertia + ends + shoes
+
+    @property
+    def sprocket_speed(self) -> float:
+        """[rad/s] Speed at which the teeth move the chain at the commanded speed."""
+        return -SPEED * 2.0 * math.pi / (self.tooth_count * self.pitch)
+
+    def pins(self) -> Array:
+        """[m] Pins relative to the robot's middle, each at the rear end of a shoe; (shoes, 2)."""
+        half, count = self.axle_distance / 2.0, self.tooth_count // 2
+        straight = (self.shoe_count - self.tooth_count) // 2
+        lower = [(-half + i * self.pitch, -self.pin_radius) for i in range(straight)]
+        turn = [-math.pi / 2.0 + math.pi * i / count for i in range(count)]
+        front = [
+            (half + self.pin_radius * math.cos(a), self.pin_radius * math.sin(a)) for a in turn
+        ]
+        ahead = np.array([*lower, *front])
+        return np.concatenate([ahead, -ahead])
+
+    def shoes(self) -> Array:
+        """[m], [m], [rad] Poses relative to the middle of the robot, shape (shoes, 3)."""
+        rear = self.pins()
+        front = np.roll(rear, -1, axis=0)
+        angle = np.arctan2(*(front - rear).T[::-1])
+        return np.column_stack([(rear + front) / 2.0, angle])
+
+    def plate(self) -> Array:
+        """[m] Corners of a plate in the shoe's frame; 6 % short, so neighbours do not touch."""
+        x, y = 0.47 * self.pitch, self.plate_thickness / 2.0
+        return np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
+
+    def lug(self) -> Array:
+        """[m] Corners of the lug that goes between the teeth, in the shoe's frame."""
+        base, tip = 0.5 * _LUG_BASE * self.pitch, 0.5 * _LUG_END * self.pitch
+        low = self.plate_thickness / 4.0
+        return np.array([(base, low), (tip, _LUG_TIP), (-tip, _LUG_TIP), (-base, low)])
+
+    def disc_radius(self) -> float:
+        """[m] Radius of the disc that carries the plates round an end."""
+        return self._apothem() - self.plate_thickness / 2.0 - _SLACK
+
+    def teeth(self) -> list[Array]:
+        """[m] Corners of the teeth in the sprocket's frame, one tooth at each pin."""
+        root, tip = self._apothem() - _TOOTH_ROOT, self._apothem() - _TOOTH_TIP
+        base, end = 0.5 * _TOOTH_BASE * self.pitch, 0.5 * _TOOTH_END * self.pitch
+        tooth = np.array([(root, -base), (tip, -end), (tip, end), (root, base)])
+        turns = -math.pi / 2.0 + 2.0 * math.pi * np.arange(self.tooth_count) / self.tooth_count
+        return [
+            tooth @ np.array([(math.cos(a), math.sin(a)), (-math.sin(a), math.cos(a))])
+            for a in turns
+        ]
+
+    def hull(self) -> Array:
+        """[m] Corners of the hull that carries the straight runs, in the chassis frame."""
+        y = self.pin_radius - self.plate_thickness / 2.0 - _SLACK
+        below = [(-0.258, -y + 0.015), (-0.208, -y), (0.208, -y), (0.258, -y + 0.015)]
+        return np.array([*below, *((-a, -b) for a, b in below)])
+
+    def _apothem(self) -> float:
+        return self.pin_radius * math.cos(math.pi / self.tooth_count)
+
+
+# [s] Longer than any run, so that nothing ends it.
+_NEVER = 1000.0
+# [m/s^2] The motor in pymunk has no ramp.
+_AT_ONCE = 100.0
+
+
+def chain_scenario(
+    robot: ChainRobot, profile: Array, setting: Setting, duration: float, shift: float
+) -> Scenario:
+    """Return the scenario of the robot on a ground, starting `shift` [m] further back.
+
+    Parameters
+    ----------
+    robot : ChainRobot
+        The robot.
+    profile : ndarray, shape (n, 2)
+        [m] The ground from left to right; the robot stands in front of its second point.
+    setting : Setting
+        Its accuracy counts.
+    duration, shift : float
+        [s], [m]
+    """
+    return Scenario(
+        _robot(robot),
+        Points(
+            tuple(map(tuple, profile.tolist())), goal=float(profile[-1, 0]) - 1.0, friction=FRICTION
+        ),
+        drive=c2d.Drive(speed=SPEED),
+        start=c2d.Start(
+            approach=float(profile[1, 0]) - robot.axle_distance / 2.0 - robot.radius + shift
+        ),
+        duration=duration,
+        solver=Solver(accuracy=setting.accuracy),
+        criteria=c2d.SeizureCriteria(stop_window=_NEVER),
+    )
+
+
+def _robot(robot: ChainRobot) -> c2d.Robot:
+    return c2d.Robot(
+        f"chain of {robot.shoe_count}",
+        mass=robot.mass,
+        center_of_mass=(0.0, 0.0),
+        moment_of_inertia=robot.moment_of_inertia,
+        track_mass=robot.chain_mass,
+        outline=c2d.TrackOutline(
+            axle_distance=robot.axle_distance,
+            front_radius=robot.radius,
+            rear_radius=robot.radius,
+            grouser_height=0.0,
+            grouser_pitch=robot.pitch,
+            grouser_thickness=0.1 * robot.pitch,
+        ),
+        belly=tuple(map(tuple, robot.hull().tolist())),
+        gauge=0.3,
+        drivetrain=c2d.Drivetrain(
+            max_speed=1.0,
+            max_acceleration=_AT_ONCE,
+            max_deceleration=_AT_ONCE,
+            # Torque of one of two sprockets.
+            max_torque=TORQUE / 2.0,
+        ),
+        track=c2d.SegmentalTrack(
+            shoe_count=robot.shoe_count, plate_thickness=robot.plate_thickness
+        ),
+    )
+
 
 TERRAINS = ("flat", "step", "field")
 SETTINGS = {
@@ -53,10 +268,10 @@ GRID = [
 """Settings of pymunk that are tried at equal gaps."""
 
 OWN: dict[str, Track] = {
-    "belt with grousers": GrouserBeltTrack(),
-    "22 shoes": SegmentalTrack(shoe_count=22),
-    "44 shoes": SegmentalTrack(shoe_count=44),
-    "22 shoes, sprocket": SegmentalTrack(shoe_count=22, mechanism="sprocket"),
+    "belt with grousers": c2d.GrouserBeltTrack(),
+    "22 shoes": c2d.SegmentalTrack(shoe_count=22),
+    "44 shoes": c2d.SegmentalTrack(shoe_count=44),
+    "22 shoes, sprocket": c2d.SegmentalTrack(shoe_count=22, mechanism="sprocket"),
 }
 """Tracks of the Engineer."""
 
@@ -94,21 +309,23 @@ class Place:
         """[m] The ground as boxes."""
         if self.terrain == "flat":
             return [np.array([(-5.0, -0.5), (15.0, -0.5), (15.0, 0.0), (-5.0, 0.0)])]
-        return list(scenes.load(f"lwa5-round-{self.terrain}").boxes)
+        return list(load_scene(f"lwa5-round-{self.terrain}").boxes)
 
     def profile(self) -> Array:
         """[m] The ground from left to right; the second point is in front of the robot."""
         if self.terrain == "flat":
             return np.array([(-5.0, 0.0), (0.8, 0.0), (15.0, 0.0)])
-        return scenes.load(f"lwa5-round-{self.terrain}").profile()
+        return load_scene(f"lwa5-round-{self.terrain}").profile()
 
-    def world(self, setting: Setting) -> chain_pymunk.World:
+    def world(self, setting: Setting) -> Chain:
         """Build the world in pymunk."""
-        return chain_pymunk.build(self.robot, self.boxes(), setting, self.shift)
+        from benches.adapters.chipmunk import build_chain  # noqa: PLC0415 - needs pymunk
+
+        return build_chain(self.robot, self.boxes(), setting, self.shift)
 
     def scenario(self, setting: Setting) -> Scenario:
-        """Make the scenario for crawler2d."""
-        return chain_crawler2d.scenario(self.robot, self.profile(), setting, _DURATION, self.shift)
+        """Return the scenario for crawler2d."""
+        return chain_scenario(self.robot, self.profile(), setting, _DURATION, self.shift)
 
 
 @dataclass(frozen=True)
@@ -136,36 +353,40 @@ class Ride:
         """[-] Error of the mean speed."""
         steady = self.path[round(_STEADY / _INTERVAL) :, 0]
         mean = (steady[-1] - steady[0]) / ((len(steady) - 1) * _INTERVAL)
-        return float(mean / chain_robot.SPEED - 1.0)
+        return float(mean / SPEED - 1.0)
 
     def distance(self, other: Ride) -> float:
         """[m] Largest distance between the two paths at equal times."""
         return float(np.hypot(*(self.path - other.path).T).max())
 
 
+def measure_chains(
+    counts: Sequence[int], terrains: Sequence[str], repeats: int, grid: Sequence[Setting] = GRID
+) -> dict[str, Any]:
+    """Run the section on chains; it describes its own machine, because it can be run alone."""
+    versions = {name: load_engine(name).version for name in ("pymunk", "crawler2d")}
+    result: dict[str, Any] = {"machine": machine(versions)}
+    start = time.perf_counter()
+    result["side_by_side"] = side_by_side(counts, terrains, repeats)
+    result["engineer"] = engineer(repeats)
+    result["equal_gaps"] = equal_gaps(counts, terrains, grid)
+    return result | {"wall": time.perf_counter() - start}
+
+
 def side_by_side(
     counts: Sequence[int], terrains: Sequence[str], repeats: int
 ) -> list[dict[str, Any]]:
-    """Time and judge both engines."""
+    """Time both engines and measure their errors."""
     rows = []
-    for count in counts:
-        for terrain in terrains:
-            progress(f"chains: {count} shoes, {terrain}")
-            place = Place(ChainRobot(count), terrain)
-            jobs: dict[str, Callable[[], float]] = {
-                name: partial(_blocks, name, place, setting) for name, setting in SETTINGS.items()
-            }
-            times = interleaved(jobs, repeats)
-            for name, setting in SETTINGS.items():
-                rows.append(
-                    {
-                        "shoes": count,
-                        "terrain": terrain,
-                        "engine": name,
-                        "per_second": times[name].least / _BLOCK,
-                        **_judged(name, place, setting),
-                    }
-                )
+    for count, terrain in product(counts, terrains):
+        progress(f"chains: {count} shoes, {terrain}")
+        place = Place(ChainRobot(count), terrain)
+        jobs = {name: partial(_blocks, name, place, each) for name, each in SETTINGS.items()}
+        times = interleaved(jobs, repeats)
+        for name, setting in SETTINGS.items():
+            row = {"shoes": count, "terrain": terrain, "engine": name}
+            cost = {"per_second": times[name].least / _BLOCK}
+            rows.append(row | cost | _errors(name, place, setting))
     return rows
 
 
@@ -174,27 +395,25 @@ def equal_gaps(
 ) -> list[dict[str, Any]]:
     """Find pymunk's cheapest settings that keep the pin gaps below an aim, and their cost."""
     rows = []
-    for count in counts:
-        for terrain in terrains:
-            progress(f"equal gaps: {count} shoes, {terrain}")
-            place, own = Place(ChainRobot(count), terrain), SETTINGS["crawler2d"]
-            gap = max(ride("crawler2d", start, own).gap for start in place.starts())
-            costs = [_seconds(place, setting) for setting in grid]
-            by_cost = [setting for _, setting in sorted(zip(costs, grid, strict=True), key=_first)]
-            found: dict[str, Setting | None] = {}
-            for name, aim in (("allowed", JOINT_GAP), ("own", gap)):
-                is_tight = (s for s in by_cost if _widest(place, s, aim) <= aim)
-                found[name] = next(is_tight, None)
-                progress(f"  {1e3 * aim:.3g} mm: {found[name] or 'nothing'}")
-            row = {"shoes": count, "terrain": terrain, "gap": gap, "allowed": JOINT_GAP}
-            rows.append(row | _costs(place, found, grid[-2:]))
+    for count, terrain in product(counts, terrains):
+        progress(f"equal gaps: {count} shoes, {terrain}")
+        place, own = Place(ChainRobot(count), terrain), SETTINGS["crawler2d"]
+        gap = max(ride("crawler2d", start, own).gap for start in place.starts())
+        costs = {setting: _seconds(place, setting) for setting in grid}
+        by_cost = sorted(costs, key=lambda setting: costs[setting])
+        found: dict[str, Setting | None] = {}
+        for name, aim in (("allowed", JOINT_GAP), ("own", gap)):
+            found[name] = next((s for s in by_cost if _widest(place, s, aim) <= aim), None)
+            progress(f"  {1e3 * aim:.3g} mm: {found[name] or 'nothing'}")
+        row = {"shoes": count, "terrain": terrain, "gap": gap, "allowed": JOINT_GAP}
+        rows.append(row | _costs(place, found, grid[-2:]))
     return rows
 
 
 def _costs(
     place: Place, found: dict[str, Setting | None], finest: Sequence[Setting]
 ) -> dict[str, Any]:
-    """Time the settings found beside crawler2d's defaults; without one, measure the finest."""
+    """Time the cheapest settings and crawler2d's defaults; without one, measure the finest."""
     settings = {name: setting for name, setting in found.items() if setting is not None}
     jobs = {name: partial(_blocks, "pymunk", place, s) for name, s in settings.items()}
     jobs["crawler2d"] = partial(_blocks, "crawler2d", place, SETTINGS["crawler2d"])
@@ -209,10 +428,6 @@ def _costs(
     return row
 
 
-def _first(pair: tuple[float, Setting]) -> float:
-    return pair[0]
-
-
 def engineer(repeats: int) -> list[dict[str, Any]]:
     """Time the Engineer's own chains and its belt with grousers."""
     grounds: dict[str, Terrain] = {
@@ -220,18 +435,15 @@ def engineer(repeats: int) -> list[dict[str, Any]]:
         "step of 80 mm": c2d.terrains.step(0.08, friction=0.9),
         "blocks up to 60 mm": _low_blocks(),
     }
-    cases = [(name, terrain) for name in OWN for terrain in grounds]
     progress("chains: the Engineer's")
-    times = interleaved(
-        {
-            (name, terrain): partial(_own_blocks, OWN[name], grounds[terrain])
-            for name, terrain in cases
-        },
-        repeats,
-    )
+    jobs = {
+        (name, ground): partial(_own_blocks, track, terrain)
+        for name, track in OWN.items()
+        for ground, terrain in grounds.items()
+    }
     return [
-        {"track": name, "terrain": terrain, "per_second": times[name, terrain].least / _BLOCK}
-        for name, terrain in cases
+        {"track": name, "terrain": ground, "per_second": time.least / _BLOCK}
+        for (name, ground), time in interleaved(jobs, repeats).items()
     ]
 
 
@@ -241,10 +453,10 @@ def ride(engine: str, place: Place, setting: Setting, most: float = np.inf) -> R
         run = c2d.simulate(place.scenario(setting), sample_interval=_INTERVAL)
         return Ride(run.position, run.metrics["max_pin_gap"])
     world, stride = place.world(setting), setting.stride(_INTERVAL)
-    path, widest = [world.chassis_pose()[:2]], 0.0
+    path, widest = [world.position()], 0.0
     for sample in range(1, round(_DURATION / _INTERVAL) + 1):
-        world.advance(stride, setting.time_step)
-        path.append(world.chassis_pose()[:2])
+        world.advance(stride)
+        path.append(world.position())
         if sample * _INTERVAL > _SETTLED:
             widest = max(widest, pin_gap(world.shoe_poses(), place.robot.pitch))
         if not widest <= most:
@@ -259,7 +471,7 @@ def pin_gap(shoes: Array, pitch: float) -> float:
     return float(np.hypot(*(front - np.roll(rear, -1, axis=0)).T).max())
 
 
-def _judged(engine: str, place: Place, setting: Setting) -> dict[str, Any]:
+def _errors(engine: str, place: Place, setting: Setting) -> dict[str, Any]:
     """Measure the errors over a few starts, and against steps half as long."""
     half = replace(setting, time_step=setting.time_step / 2.0, accuracy=setting.accuracy / 4.0)
     runs = [ride(engine, start, setting) for start in place.starts()]
@@ -288,7 +500,7 @@ def _widest(place: Place, setting: Setting, most: float) -> float:
 def _seconds(place: Place, setting: Setting) -> float:
     """[s] Wall time of 0.1 s of simulated time in pymunk."""
     world = place.world(setting)
-    return world.advance(setting.steps(0.1), setting.time_step)
+    return seconds(world.advance, setting.steps(0.1))
 
 
 def _blocks(engine: str, place: Place, setting: Setting) -> float:
@@ -297,7 +509,7 @@ def _blocks(engine: str, place: Place, setting: Setting) -> float:
         return _of_simulation(place.scenario(setting))
     world = place.world(setting)
     steps = setting.steps(_BLOCK)
-    return _lower_quartile(lambda: world.advance(steps, setting.time_step))
+    return _lower_quartile(lambda: seconds(world.advance, steps))
 
 
 def _own_blocks(track: Track, terrain: Terrain) -> float:
@@ -305,18 +517,12 @@ def _own_blocks(track: Track, terrain: Terrain) -> float:
     robot = c2d.robots.engineer(flippers=None, track=track).without_rotors()
     drivetrain = replace(robot.drivetrain, max_acceleration=2.0, max_torque=20.0)
     built = replace(robot, drivetrain=drivetrain)
-    return _of_simulation(Scenario(built, terrain, drive=Drive(speed=chain_robot.SPEED)))
+    return _of_simulation(Scenario(built, terrain, drive=c2d.Drive(speed=SPEED)))
 
 
 def _of_simulation(scenario: Scenario) -> float:
     simulation = c2d.Simulation(scenario)
-
-    def block() -> float:
-        start = time.perf_counter()
-        simulation.advance(_BLOCK)
-        return time.perf_counter() - start
-
-    return _lower_quartile(block)
+    return _lower_quartile(lambda: seconds(lambda _: simulation.advance(_BLOCK), 1))
 
 
 def _lower_quartile(block: Callable[[], float]) -> float:
@@ -324,7 +530,7 @@ def _lower_quartile(block: Callable[[], float]) -> float:
 
 
 def _low_blocks() -> Points:
-    """Make twenty blocks, each 0.2 m long."""
+    """Return twenty blocks, each 0.2 m long."""
     heights = np.random.default_rng(7).uniform(0.0, 0.06, 20)
     points = [(-5.0, 0.0), (0.0, 0.0)]
     for index, height in enumerate(heights.tolist()):

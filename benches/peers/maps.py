@@ -1,35 +1,30 @@
-"""A map of rates, as a sweep of ours and as a loop over pymunk: what each costs.
+"""A map of rates, by a sweep of crawler2d and by a loop over pymunk: what each costs.
 
 Height of the step and friction, 12 x 12 cells, each with 20 repeats under `of_contact` for every
 sample of `of_robot`. The loop builds each of its runs from the scenario of one of ours, and ends it
 as soon as the robot has cleared or stands. Its setting is the cheapest whose runs clear or not as
 those of the finest, in all but one of a hundred.
 
-Usage, from the repository root: ``python -m benches.peers.maps [--quick]``; it writes the report.
+Usage, from the repository root: ``python -m benches.peers.maps [--quick]``; it writes the page.
 """
 
 from __future__ import annotations
 
 import argparse
-import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import crawler2d as c2d
-from benches.peers import machine, markdown, scenes
-from benches.peers.drawn_scene import scene_of
-from benches.peers.engine import Setting
-from benches.peers.engine_crawler2d import as_it_is
-from benches.peers.engines import engine
-from benches.peers.scenes import Scene
-from benches.peers.timing import progress
-from crawler2d.parameters.scenario import Scenario
-
-__all__ = ["maps", "render"]
+from benches.adapters.own import nominal
+from benches.adapters.planar import Draw, Scene, Setting, load_engine, load_scene
+from benches.shared.measuring import machine, sentence, table, write_parts
+from benches.shared.results import progress
+from crawler2d import Scenario
 
 _SCENE = "lwa5-round-step"
 _HEIGHT = ("terrain.points[2][1]", "terrain.points[3][1]")
@@ -41,7 +36,7 @@ _AGREES = 0.99
 # [s] How often the loop looks, and [m], [s] what it takes for a robot that stands.
 _LOOK, _STANDS, _WINDOW = 0.1, 1e-3, 2.0
 
-_REPORT = Path(__file__).parents[2] / "docs" / "studies" / "maps.md"
+_PAGE = Path(__file__).parents[2] / "docs" / "studies" / "maps.md"
 
 
 class Ended(NamedTuple):
@@ -53,15 +48,15 @@ class Ended(NamedTuple):
 
 
 def maps(samples: int = 5, repeats: int = 20, every: int = 100, cells: int = 12) -> dict[str, Any]:
-    """Make the map on one thread, and every hundredth of its runs with pymunk."""
-    base = as_it_is(_SCENE).replace({"criteria.clear_time": 0.5})
+    """Compute the map on one thread, and every hundredth of its runs with pymunk."""
+    base = nominal(_SCENE).replace({"criteria.clear_time": 0.5})
     heights, frictions = (np.array(v)[:cells].tolist() for v in (_HEIGHTS, _FRICTIONS))
     over = {_HEIGHT: [(h, h) for h in heights], "terrain.friction": frictions}
     unknown = c2d.unknowns.of_robot(base.robot)
     c2d.sweep(base, {}, repeats=1, progress=False)  # imports
     progress(f"map of {len(heights)} x {len(frictions)} cells")
     start = time.perf_counter()
-    table = c2d.sweep(
+    swept = c2d.sweep(
         base,
         over,
         vary=c2d.variability.of_contact(),
@@ -73,8 +68,8 @@ def maps(samples: int = 5, repeats: int = 20, every: int = 100, cells: int = 12)
         progress=False,
     )
     wall = time.perf_counter() - start
-    cleared = table["outcome"].to_numpy().ravel()[::every] == "cleared"
-    loops = _loops(base, table["scenario"].to_numpy().ravel()[::every].tolist())
+    cleared = swept["outcome"].to_numpy().ravel()[::every] == "cleared"
+    loops = _loops(base, swept["scenario"].to_numpy().ravel()[::every].tolist())
     finest = [run.cleared for run in loops[_FINEST]]
     rows = [
         {
@@ -90,11 +85,11 @@ def maps(samples: int = 5, repeats: int = 20, every: int = 100, cells: int = 12)
         "cells": [len(heights), len(frictions)],
         "samples": samples,
         "repeats": repeats,
-        "runs": int(table["outcome"].size),
+        "runs": int(swept["outcome"].size),
         "wall": wall,
-        "in_core": float(table["wall_time"].sum()),
-        "simulated": float(table["time"].mean()),
-        "outcomes": table["outcome"].to_series().value_counts().to_dict(),
+        "in_core": float(swept["wall_time"].sum()),
+        "simulated": float(swept["time"].mean()),
+        "outcomes": swept["outcome"].to_series().value_counts().to_dict(),
         "looped": int(cleared.size),
         "loops": sorted(rows, key=lambda row: row["wall"]),
         "agrees": _AGREES,
@@ -102,8 +97,8 @@ def maps(samples: int = 5, repeats: int = 20, every: int = 100, cells: int = 12)
 
 
 def _loops(base: Scenario, texts: Sequence[str]) -> dict[Setting, list[Ended]]:
-    nominal = scenes.load(_SCENE)
-    drawn = [scene_of(nominal, base, Scenario.from_json(text)) for text in texts]
+    scene = load_scene(_SCENE)
+    drawn = [scene_of(scene, base, Scenario.from_json(text)) for text in texts]
     found = {}
     for setting in (*_GRID, _FINEST):
         progress(f"the same by a loop over pymunk: {len(drawn)} runs, {setting}")
@@ -112,16 +107,15 @@ def _loops(base: Scenario, texts: Sequence[str]) -> dict[Setting, list[Ended]]:
 
 
 def _run(scene: Scene, setting: Setting, duration: float) -> Ended:
-    from benches.peers.engine_pymunk import build  # noqa: PLC0415 - needs pymunk
+    from benches.adapters.chipmunk import build  # noqa: PLC0415 - needs pymunk
 
     start = time.perf_counter()
-    space, bodies = build(scene, setting)
-    finish, dt = scene.finish(), setting.time_step
+    plane, bodies = build(scene, setting)
+    finish, advance = scene.finish(), plane.steps(setting.time_step)
     seen, looks = [bodies[0].position.x], round(_WINDOW / _LOOK)
     cleared = False
     for _ in range(round(duration / _LOOK)):
-        for _ in range(round(_LOOK / dt)):
-            space.step(dt)
+        advance(round(_LOOK / setting.time_step))
         seen.append(bodies[0].position.x)
         cleared = seen[-1] > finish
         if cleared or (len(seen) > looks and abs(seen[-1] - seen[-1 - looks]) < _STANDS):
@@ -129,68 +123,101 @@ def _run(scene: Scene, setting: Setting, duration: float) -> Ended:
     return Ended(time.perf_counter() - start, _LOOK * (len(seen) - 1), cleared)
 
 
-def render(found: dict[str, Any]) -> str:
-    """Write the report."""
-    columns, rows = found["cells"]
+def render(found: dict[str, Any]) -> dict[str, str]:
+    """Return the parts of the page."""
     agreed = found["agrees"] * found["looped"]
     cheapest = next(row for row in found["loops"] if row["as_finest"] >= agreed)
     own = found["wall"] / found["runs"]
+    columns, rows = found["cells"]
     outside = 1.0 - found["in_core"] / found["wall"]
     outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
-    head = ["pymunk's setting", "ms a run", "s simulated a run", "as the finest", "as crawler2d"]
-    table = [
-        [
-            row["setting"],
-            f"{1e3 * row['wall']:.1f}",
-            f"{row['simulated']:.2f}",
-            f"{row['as_finest']} of {found['looped']}",
-            f"{row['as_ours']} of {found['looped']}",
-        ]
+    loops = table(
+        {
+            "pymunk's setting": row["setting"],
+            "ms a run": f"{1e3 * row['wall']:.1f}",
+            "s simulated a run": f"{row['simulated']:.2f}",
+            "as the finest": f"{row['as_finest']} of {found['looped']}",
+            "as crawler2d": f"{row['as_ours']} of {found['looped']}",
+        }
         for row in found["loops"]
-    ]
-    return markdown.page(
-        [
-            "# A map of rates, and what it costs",
-            f"""
+    )
+    return {
+        "answer": f"""
 One `sweep` on one thread made a map of {columns} heights of a step by {rows} frictions at
 {1.0 / own:.0f} runs a second: {found["runs"]:,} runs in {found["wall"]:.1f} s. The cheapest loop
 over pymunk that clears or not as its finest setting in {100.0 * found["agrees"]:g} % of the runs is
 {cheapest["setting"]}: {1e3 * cheapest["wall"]:.1f} ms a run, **{cheapest["wall"] / own:.1f} times**
 crawler2d's {1e3 * own:.1f} ms.
-""",
-            markdown.table(head, table),
-            f"""
+
+{loops}
+""".strip(),
+        "runs": f"""
 The robot is on a line of five wheels, with {found["repeats"]} repeats under
 `variability.of_contact` for each of {found["samples"]} samples of `unknowns.of_robot` (centre of
 mass, torque, belly); {found["simulated"]:.2f} s are simulated a run. {100.0 * outside:.1f} % of the
 time went by outside the core. Outcomes: {outcomes}.
-""",
-            "## What limits the answer",
-            f"""
-The loop, on one thread, has {found["looped"]} of these runs, spread evenly. It ends a run as soon
-as the rear axle has passed the edge, or the robot has moved by less than {1e3 * _STANDS:g} mm in
-{_WINDOW:g} s, and finds only whether it cleared; crawler2d also says how it stopped, and tries a
-closed track where that needs it.
-""",
-            "## How to repeat it",
-            f"`make bench-map`. {machine.sentence(found['machine'], found['took'])}",
-        ]
-    )
+""".strip(),
+        "measured": sentence(found["machine"], found["took"]),
+    }
 
 
 def main() -> None:
-    """Measure, and write the report."""
+    """Measure, and write the page."""
     parser = argparse.ArgumentParser(prog="python -m benches.peers.maps", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="four cells, and no report")
+    parser.add_argument("--quick", action="store_true", help="four cells, and no page")
     quick = parser.parse_args().quick
     start = time.perf_counter()
-    versions = {name: engine(name).version for name in ("pymunk", "crawler2d")}
-    found: dict[str, Any] = {"machine": machine.describe(versions)}
+    versions = {name: load_engine(name).version for name in ("pymunk", "crawler2d")}
+    found: dict[str, Any] = {"machine": machine(versions)}
     found |= maps(samples=1, repeats=1, every=1, cells=2) if quick else maps()
-    text = render(found | {"took": time.perf_counter() - start})
-    sys.stdout.write(text)
-    if not quick:
-        _REPORT.write_text(text, encoding="utf-8", newline="\n")
+    parts = render(found | {"took": time.perf_counter() - start})
+    write_parts(parts, None if quick else _PAGE)
+
+
+def scene_of(nominal: Scene, base: Scenario, drawn: Scenario) -> Scene:
+    """Change a scene as a drawn scenario differs from the scene's own.
+
+    Centre of mass, torque, clearance of the belly, approach, speed, friction and height of the step
+    may differ.
+    """
+    chassis, *wheels = nominal.bodies
+    mass = sum(body.mass for body in nominal.bodies)
+    center = np.subtract(drawn.robot.center_of_mass, base.robot.center_of_mass)
+    moved = center * mass / chassis.mass  # of the chassis, so that of all moves by `center`
+    polygons = tuple(polygon - moved for polygon in chassis.polygons)
+    if base.robot.belly is not None and drawn.robot.belly is not None:
+        raised = np.subtract(drawn.robot.belly, base.robot.belly)
+        polygons = tuple(polygon + raised.mean(axis=0) for polygon in polygons)
+    # The nominal centre of all is that of the chassis.
+    offset, arms = moved - center, [np.subtract(joint.pa, center) for joint in nominal.joints]
+    of_wheels = sum(w.inertia + w.mass * float(a @ a) for w, a in zip(wheels, arms, strict=True))
+    inertia = drawn.robot.moment_of_inertia - of_wheels - chassis.mass * float(offset @ offset)
+    body = replace(
+        chassis,
+        x=chassis.x + float(moved[0]),
+        y=chassis.y + float(moved[1]),
+        inertia=inertia,
+        polygons=polygons,
+    )
+    ratio = drawn.robot.drivetrain.max_torque / base.robot.drivetrain.max_torque
+    joints = tuple(
+        replace(
+            joint,
+            pa=(joint.pa[0] - float(moved[0]), joint.pa[1] - float(moved[1])),
+            torque=joint.torque * ratio,
+        )
+        for joint in nominal.joints
+    )
+    low, high = nominal.boxes
+    top = high.copy()
+    top[high[:, 1] > 0.0, 1] = drawn.terrain.points[2][1]  # type: ignore[union-attr]
+    draw = Draw(
+        drawn.start.approach - base.start.approach,
+        drawn.drive.speed / base.drive.speed,
+        drawn.terrain.friction / nominal.friction,  # type: ignore[union-attr]
+    )
+    changed = replace(nominal, bodies=(body, *wheels), joints=joints, boxes=(low, top))
+    return changed.vary(draw)
 
 
 if __name__ == "__main__":

@@ -1,39 +1,59 @@
-"""The report: Markdown from the results, for the screen, `out/` and docs/studies."""
+"""The parts of the report, some of which docs/studies/peers.md shows."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-from benches.peers import chains_report, machine, markdown
-from benches.peers.accuracy import COST_SPAN
-from benches.peers.engines import NAMES
-from benches.peers.errors import JOINT_GAP, PATH, PENETRATION
+from benches.adapters.planar import ENGINES
+from benches.shared.measuring import millimetres, sentence, table
+from research.markdown import markdown_table
 
 Rows = list[dict[str, Any]]
 
 
-def render(result: dict[str, Any]) -> str:
-    """Write the report, also of unfinished results."""
-    sections: dict[str, Callable[[Any], str]] = {
-        "defaults": _defaults,
-        "accuracy": _accuracy,
-        "yardstick": _yardstick,
-        "batches": _batches,
-        "chains": chains_report.render,
-    }
-    parts = [_head(result)]
-    parts += [write(result[name]) for name, write in sections.items() if name in result]
-    parts.append(_LIMITS)
-    return markdown.page(parts)
+def render(result: dict[str, Any]) -> dict[str, str]:
+    """Return the parts by name, also of unfinished results."""
+    parts = {"measured": sentence(result["machine"], result["wall"])}
+    for kind in ("own", "common") if "defaults" in result else ():
+        rows = [row for row in result["defaults"] if row["kind"] == kind]
+        settings = {row["engine"]: row["setting"] for row in rows}
+        line = "; ".join(f"{name}: {setting}" for name, setting in settings.items())
+        parts[f"{kind} steps"] = f"{line}.\n\n{_DEFAULTS}\n\n{_by_scene(rows, _default_cell)}"
+    if "accuracy" in result:
+        rows = result["accuracy"]
+        parts["speeds"] = _by_scene(rows, _speed_cell)
+        table = _by_scene(rows, _accuracy_cell)
+        parts["equal accuracy"] = f"{_ACCURACY}\n\n{table}\n\n{_standing(rows)}"
+        parts["limits"] = f"{_ENGINE_LIMITS}\n\n{_by_scene(rows, _limit_cell)}"
+    if "yardstick" in result:
+        parts["yardstick"] = _yardstick(result["yardstick"])
+    if "batches" in result:
+        parts["batches"] = _batches(result["batches"])
+    return parts | (chain_parts(result["chains"]) if "chains" in result else {})
 
 
-def parts(result: dict[str, Any]) -> dict[str, str]:
-    """Write what the page has of the report, by name."""
-    return {
-        "measured": machine.sentence(result["machine"], result["wall"]),
-        "speeds": _by_scene(result["accuracy"], _speed_cell),
-    }
+_DEFAULTS = (
+    "Cells: real-time factor; whether it cleared, with the last x of the chassis [m]; overlap / gap"
+    " [mm]."
+)
+_ACCURACY = (
+    "Cells: real-time factor; the setting; for chaotic scenes the rate of the setting; how far its"
+    " paths deviate from those of the limit in the first draws."
+)
+_ENGINE_LIMITS = (
+    "Cells: how far the two finest settings are apart [mm]; how many runs cleared, with the last x"
+    " of the nominal run [m]; overlap / gap [mm]."
+)
+_SIDE_BY_SIDE = (
+    "Cells: wall time of a simulated second; widest gap of a pin, and how many of the starts kept"
+    " the chain on; how far the chassis got and, on flat ground, the error of its mean speed; how"
+    " far the path deviates from the one with steps half as long (crawler2d: with a quarter of the"
+    " accuracy)."
+)
+_EQUAL_GAPS = (
+    "The cheapest setting of a grid with which no pin in pymunk opens wider than 0.2 mm, or than"
+    " crawler2d's. Cells: cost of a simulated second, and how many times that of crawler2d it is."
+)
 
 
 def speeds(rows: Rows) -> dict[str, dict[str, float]]:
@@ -50,102 +70,18 @@ def _speed_cell(row: dict[str, Any]) -> str:
     return f"{1.0 / row['per_second']:.0f}x" if row["found"] else "none"
 
 
-def _head(result: dict[str, Any]) -> str:
-    return f"""
-# The same task in other engines
-
-What `make bench-peers` measures. A robot of 20 kg with 0.6 m between its end axles drives at 0.4
-m/s towards a step of 0.15 m, or over 20 blocks up to 0.15 m high, on a line of 5 wheels (`lwa5`) or
-on 24 small ones all round (`cwa24`), round or with grousers (`gear`). The scenes are files in
-`benches/peers/scenes` that do not depend on any engine; `tests/benches/test_peer_scenes.py` checks
-that crawler2d's own form of them describes the same robots and grounds.
-
-{machine.sentence(result["machine"], result["wall"])}
-
-- Times are the shortest of several rounds in which all engines took turns, on one thread. *RTF*
-  (real-time factor) is the simulated time divided by the wall time: at 100x, a simulated second
-  costs 10 ms. crawler2d chooses the length of its steps by their accuracy, and has its one default
-  accuracy throughout; the others take steps of a given length. Each engine runs the fastest loop
-  that it offers from Python (rapier2d's is in Rust), nothing is recorded, and building the world
-  does not count, except for crawler2d, where one call does everything.
-- Errors come from recorded poses, sampled every 2 ms or every longer step, with the same geometry
-  code for all engines. *Overlap* is the deepest overlap of any part with the ground, *gap* the
-  widest opening of a pin.
-- *Cleared* means that the rear axle got past the last edge, within 10 s (step) or 15 s (field).
-- Every engine has a docstring in `benches/peers` that says how it was set up, and why.
-"""
-
-
-def _defaults(rows: Rows) -> str:
-    titles = {
-        "own": "At each engine's own time step",
-        "common": "All others at steps of 2 ms, everything else at the defaults",
-    }
-    text = [
-        "## At the engines' defaults",
-        "These times come with very different errors: read each one together with its outcome."
-        " Chipmunk's slop is scaled to metres, and sleeping is off; otherwise nothing would work."
-        " Cells: RTF, outcome with the last x of the chassis [m], overlap / gap [mm].",
-    ]
-    for kind, title in titles.items():
-        text.append(f"### {title}")
-        chosen = [row for row in rows if row["kind"] == kind]
-        settings = {row["engine"]: row["setting"] for row in chosen}
-        text.append("; ".join(f"{name}: {setting}" for name, setting in settings.items()) + ".")
-        text.append(_by_scene(chosen, _default_cell))
-    return "\n\n".join(text)
-
-
 def _default_cell(row: dict[str, Any]) -> str:
     return (
         f"{1.0 / row['per_second']:.0f}x<br>"
         f"{'cleared' if row['cleared'] else 'not'} ({row['final_x']:.2f})<br>"
-        f"{_millimetres(row['penetration'])} / {_millimetres(row['gap'])}"
-    )
-
-
-def _accuracy(rows: Rows) -> str:
-    return "\n\n".join(
-        [
-            "## At equal accuracy",
-            f"""
-For each scene and each other engine, the cheapest setting of a grid that keeps these limits; for
-crawler2d its one default accuracy, if that keeps them. Overlap is at most
-{_millimetres(PENETRATION)} mm, gaps are at most {_millimetres(JOINT_GAP)} mm, and the result agrees
-with the engine's own converged one, its *limit*. The limit is its finest setting. Where its path
-differs by at most {_millimetres(PATH)} mm from that of the next finest, coarser by a factor of two
-in every respect (crawler2d: by four in accuracy, which makes its steps twice as long), the
-setting's path must be as close to it, at equal times and in each of the first draws. Otherwise the
-scene is *chaotic* for the engine: over all draws, the Wilson interval (95 %) of the
-setting's rate of clearing must contain the rate of the limit. The draws of approach (over 50 mm),
-speed and friction (2 % either way) are the same for all. Settings are tried in the order of their
-cost over the first {COST_SPAN:g} s; `out/peers.json` lists all that were tried, and why they were
-rejected. A robot that flies off counts as infinite overlap.
-
-Cells: RTF, the setting; for chaotic scenes the rate of the setting; how far its paths
-deviate from those of the limit in the first draws.
-""".strip(),
-            _by_scene(rows, _accuracy_cell),
-            _standing(rows),
-            """
-The engines' limits: how far the two finest settings are apart [mm], how many runs cleared, last x
-of the nominal run [m], overlap / gap [mm]. A chaotic scene is the *easier* case for the engine,
-because no path has to be matched; an engine that converges has to match its path.
-""".strip(),
-            _by_scene(rows, _limit_cell),
-        ]
+        f"{_short(row['penetration'])} / {_short(row['gap'])}"
     )
 
 
 def _standing(rows: Rows) -> str:
     """Compare crawler2d with the fastest of the others, scene by scene."""
     lines = []
-    for scene in dict.fromkeys(row["scene"] for row in rows):
-        found = {
-            row["engine"]: 1.0 / row["per_second"]
-            for row in rows
-            if row["scene"] == scene and row["found"]
-        }
+    for scene, found in speeds(rows).items():
         own = found.pop("crawler2d", None)
         best = max(found, key=lambda name: found[name], default=None)
         if own is None:
@@ -166,16 +102,16 @@ def _accuracy_cell(row: dict[str, Any]) -> str:
     cell = f"**{1.0 / row['per_second']:.0f}x**<br>{row['setting']}"
     if "count" in last:
         cell += f"<br>{last['cleared']}/{last['count']}"
-    return f"{cell}<br>{_millimetres(last['distance'])} mm off"
+    return f"{cell}<br>{_short(last['distance'])} mm off"
 
 
 def _limit_cell(row: dict[str, Any]) -> str:
     limit = row["limit"]
     kind = "chaotic" if limit["is_chaotic"] else "converged"
     return (
-        f"{kind}, {_millimetres(limit['spread'])}<br>"
+        f"{kind}, {_short(limit['spread'])}<br>"
         f"{limit['cleared']}/{limit['count']} ({limit['final_x']:.2f})<br>"
-        f"{_millimetres(limit['penetration'])} / {_millimetres(limit['gap'])}"
+        f"{_short(limit['penetration'])} / {_short(limit['gap'])}"
     )
 
 
@@ -193,64 +129,134 @@ def _yardstick(rows: Rows) -> str:
         for row in rows
     ]
     head = ["scene", *cases, "gear / bare round", "gear / bare round, tuned"]
-    return "\n\n".join(
-        [
-            "## Grousers against round wheels in the bare engine",
-            "The cost of crawler2d's gear wheels compared with round wheels on cuboids in a plain"
-            " loop of rapier2d, in ms of wall time per simulated second. crawler2d has its default"
-            " accuracy, the bare engine steps of 1 ms with 4 substeps, and its default tolerances"
-            " or, where it says *tuned*, those suitable for grousers. `lwa3` is `lwa5` without"
-            " its second and fourth wheel. The aim is a ratio of at most 1.25.",
-            markdown.table(head, table),
-        ]
-    )
+    return markdown_table(head, table)
 
 
 def _batches(rows: Rows) -> str:
-    table = []
+    written = []
     for row in rows:
-        rates = [f"{rate:,.0f}x" for rate in row.get("real_time", [])] or ["", ""]
-        table.append(
-            [row["scene"], row["engine"], str(row["worlds"]), *rates, f"{row['scaling']:.2f}"]
+        one, two = [f"{rate:,.0f}x" for rate in row.get("real_time", [])] or ["", ""]
+        written.append(
+            {
+                "scene": row["scene"],
+                "engine": row["engine"],
+                "worlds": str(row["worlds"]),
+                "RTF on one": one,
+                "RTF on two": two,
+                "scaling": f"{row['scaling']:.2f}",
+            }
         )
-    head = ["scene", "engine", "worlds", "RTF on one", "RTF on two", "scaling"]
-    return "\n\n".join(
-        [
-            "## Batches",
-            "Worlds with different draws: on one thread and on two, or one process and two (pymunk,"
-            " Box2D, rapier2d). The other engines take steps of 1 ms, tuned. The RTF is that of all"
-            " worlds together. *spin* is a loop that only counts: it shows what the machine itself"
-            " gains at the same time.",
-            markdown.table(head, table),
-        ]
-    )
+    return table(written)
 
 
-_LIMITS = """
-## What cannot be compared
-
-- **Accuracy is measured against an engine's own limit.** No engine is taken as the truth here; the
-  limits themselves differ, see the table of limits.
-- **Mechanics.** crawler2d solves one body and the spins of its wheels: except in chains it has no
-  pins that could open, and its wheels cannot shake on them. MuJoCo has no gaps either, but is a 3D
-  engine constrained to the plane. Box2D works in single precision.
-- **Chains.** pymunk's chain has teeth, lugs and play; crawler2d's drive has no teeth, and its guide
-  has a tensioner. Apart from that, the robots are the same.
-- **Additional work.** crawler2d's time includes building the model and monitoring for stops.
-- **The grid is coarse**, with a factor of two between settings. A cheaper setting of the other
-  engines may lie between its points, and costs that differ by less than the noise of a shared
-  machine may change places.
-- **Rates of few runs** have wide intervals: the rule for chaotic scenes only rejects gross errors.
-"""
+def _short(length: float) -> str:
+    return millimetres(length, 0.01)
 
 
 def _by_scene(rows: Rows, cell: Any) -> str:
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     cells = {(row["scene"], row["engine"]): cell(row) for row in rows}
-    table = [[scene, *(cells.get((scene, name), "") for name in NAMES)] for scene in scenes]
-    return markdown.table(["scene", *NAMES], table)
+    table = [[scene, *(cells.get((scene, name), "") for name in ENGINES)] for scene in scenes]
+    return markdown_table(["scene", *ENGINES], table)
 
 
-def _millimetres(length: float) -> str:
-    value = length * 1e3
-    return f"{value:.0f}" if value >= 100.0 else f"{value:.2g}" if value >= 0.01 else "0"
+# [ms] Largest time for a simulated second, and the better aim.
+_AIMS = {
+    "belt with grousers": (18, 10),
+    "22 shoes": (50, 35),
+    "44 shoes": (95, 75),
+    "22 shoes, sprocket": (65, 65),
+}
+
+
+def chain_parts(result: dict[str, Any]) -> dict[str, str]:
+    """Return the parts about chains of shoes."""
+    rows = result["side_by_side"]
+    return {
+        "chains": sentence(result["machine"], result["wall"]),
+        "side by side": f"{_SIDE_BY_SIDE}\n\n{_side_by_side(rows)}\n\n{_chain_standing(rows)}",
+        "equal gaps": f"{_EQUAL_GAPS}\n\n{_equal_gaps(result['equal_gaps'])}",
+        "own tracks": _engineer(result["engineer"]),
+    }
+
+
+def _side_by_side(rows: Rows) -> str:
+    engines = list(dict.fromkeys(row["engine"] for row in rows))
+    cells = {(row["shoes"], row["terrain"], row["engine"]): _chain_cell(row) for row in rows}
+    places = dict.fromkeys((row["shoes"], row["terrain"]) for row in rows)
+    table = [
+        [f"{shoes}, {terrain}", *(cells[shoes, terrain, engine] for engine in engines)]
+        for shoes, terrain in places
+    ]
+    return markdown_table(["shoes, ground", *engines], table)
+
+
+def _chain_standing(rows: Rows) -> str:
+    """Compare crawler2d with pymunk at its defaults."""
+    cells = {(row["shoes"], row["terrain"], row["engine"]): row for row in rows}
+    pairs = [
+        (own, cells[shoes, terrain, "pymunk, defaults"])
+        for (shoes, terrain, engine), own in cells.items()
+        if engine == "crawler2d"
+    ]
+    figures = {
+        name: [own[name] / theirs[name] for own, theirs in pairs]
+        for name in ("per_second", "gap", "distance")
+    }
+    dearer, tighter, nearer = figures["per_second"], figures["gap"], figures["distance"]
+    return (
+        f"Compared with pymunk at its defaults, crawler2d costs {min(dearer):.1f} to"
+        f" {max(dearer):.1f} times as much; its pins open {1.0 / max(tighter):.0f} to"
+        f" {1.0 / min(tighter):.0f} times less, and halving the steps changes its path"
+        f" {1.0 / max(nearer):.1f} to {1.0 / min(nearer):.0f} times less."
+    )
+
+
+def _chain_cell(row: dict[str, Any]) -> str:
+    speed = f", {100.0 * row['speed_error']:+.1f} %" if row["terrain"] == "flat" else ""
+    return (
+        f"**{row['per_second'] * 1e3:.1f} ms**<br>"
+        f"{millimetres(row['gap'])} mm, {row['survived']}/{row['count']}<br>"
+        f"{row['distance_gone']:.2f} m{speed}<br>"
+        f"{millimetres(row['distance'])} mm off"
+    )
+
+
+def _equal_gaps(rows: Rows) -> str:
+    table = []
+    for row in rows:
+        own = row["per_second"]["crawler2d"]
+        table.append(
+            [
+                f"{row['shoes']}, {row['terrain']}",
+                f"{millimetres(row['gap'])} mm<br>{1e3 * own:.1f} ms",
+                _equal_gap_cell(row, "allowed", own),
+                _equal_gap_cell(row, "own", own),
+            ]
+        )
+    head = ["shoes, ground", "crawler2d", "pymunk, 0.2 mm", "pymunk, as crawler2d"]
+    return markdown_table(head, table)
+
+
+def _equal_gap_cell(row: dict[str, Any], aim: str, own: float) -> str:
+    if aim not in row["found"]:
+        setting, gap = row["finest"]
+        return f"none in the grid: {millimetres(gap)} mm at {setting}"
+    cost = row["per_second"][aim]
+    return f"{row['found'][aim]}<br>{1e3 * cost:.1f} ms, **{cost / own:.2g} times**"
+
+
+def _engineer(rows: Rows) -> str:
+    grounds = list(dict.fromkeys(row["terrain"] for row in rows))
+    times = {(row["track"], row["terrain"]): row["per_second"] for row in rows}
+    table = []
+    for track in dict.fromkeys(row["track"] for row in rows):
+        own = [times[track, ground] for ground in grounds]
+        must, should = _AIMS[track]
+        most = max(own)
+        aim = f"{must}, better {should}" if should < must else f"{must}"
+        is_better = should < must and most <= 1e-3 * should
+        is_met = "no" if most > 1e-3 * must else "yes, the better" if is_better else "yes"
+        times_of = (f"{1e3 * time:.1f}" for time in own)
+        table.append([track, *times_of, aim, is_met])
+    return markdown_table(["track", *grounds, "aim", "met"], table)

@@ -7,18 +7,19 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
+import os
 import time
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import crawler2d as c2d
-from benches.peers import machine
-from benches.peers.timing import progress
 from benches.scaling import plot, report, scenes
-from benches.scaling.cost import measure
-from benches.scaling.threads import threads
-from research.markdown import spliced
+from benches.scaling.scenes import Point, line_of_gears
+from benches.shared.measuring import interleaved, machine, pools, spin, write_parts
+from benches.shared.results import progress
+from crawler2d import Scenario
 
 _ROOT = Path(__file__).parents[2]
 _PAGE = _ROOT / "docs" / "studies" / "scaling.md"
@@ -41,20 +42,16 @@ def main() -> None:
         path.parent.mkdir(exist_ok=True)
         measured = run(quick=arguments.quick)
         path.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
+    page = None if arguments.quick else _PAGE
     result = json.loads(path.read_text(encoding="utf-8"))
-    text = report.render(result)
-    path.with_suffix(".md").write_text(text, encoding="utf-8", newline="\n")
-    plot.plot(result, (path if arguments.quick else _PAGE).with_suffix(""))
-    if not arguments.quick:
-        page = spliced(_PAGE.read_text(encoding="utf-8"), report.parts(result))
-        _PAGE.write_text(page, encoding="utf-8", newline="\n")
-    sys.stdout.write(text)
+    plot.plot(result, (page or path).with_suffix(""))
+    write_parts(report.render(result), page, path.with_suffix(".md"))
 
 
 def run(*, quick: bool) -> dict[str, Any]:
     """Measure everything, panel by panel."""
     start, build = time.perf_counter(), c2d.build_info()["build_id"]
-    found = machine.describe({"crawler2d": f"{c2d.__version__}, build {build}"})
+    found = machine({"crawler2d": f"{c2d.__version__}, build {build}"})
     rows: list[dict[str, Any]] = []
     points = list(scenes.points())
     if quick:
@@ -67,6 +64,99 @@ def run(*, quick: bool) -> dict[str, Any]:
     spread = threads(*((8, 4, 1) if quick else (64, 16, _ROUNDS)))
     wall = time.perf_counter() - start
     return {"machine": found, "wall": wall, "rows": rows, "threads": spread}
+
+
+def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
+    """Time points in turns: all of them once, then all of them again.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        Points of one panel.
+    repeats : int
+        Number of rounds.
+
+    Returns
+    -------
+    list of dict
+        One per point: `per_second` [s] of wall time is the minimum over the rounds, `final_x` [m]
+        the final x.
+    """
+    ends: dict[int, float] = {}
+    jobs: dict[int, Callable[[], float]] = {
+        index: partial(_drive, point, index, ends) for index, point in enumerate(points)
+    }
+    times = interleaved(jobs, repeats)
+    return [
+        {name: value for name, value in point._asdict().items() if name != "scenario"}
+        | {"per_second": times[index].least, "final_x": ends[index]}
+        for index, point in enumerate(points)
+    ]
+
+
+def _drive(point: Point, index: int, ends: dict[int, float]) -> float:
+    """[s] Run to the scenario's end, and return the mean wall time of a simulated second."""
+    scenario = point.scenario
+    simulation = c2d.Simulation(scenario)
+    start = time.perf_counter()
+    simulation.advance(scenario.duration)
+    wall = time.perf_counter() - start
+    ends[index] = float(simulation.state().position[0])
+    return wall / scenario.duration
+
+
+# [m] Shift from world to world, so that no two are equal.
+_APPROACH = 5e-4
+
+
+def threads(worlds: int, loops: int, repeats: int) -> list[dict[str, Any]]:
+    """Time a batch of worlds, and loops that only count, on one core, two, and so on.
+
+    Parameters
+    ----------
+    worlds : int
+        Number of worlds in the batch.
+    loops : int
+        Number of loops for the pools of processes.
+    repeats : int
+        Number of rounds.
+
+    Returns
+    -------
+    list of dict
+        One per number of threads, with the simulated seconds per second of all worlds together,
+        and the speed-ups of both over one thread.
+    """
+    base = line_of_gears()
+    batch = [base.replace({"start.approach": 0.1 + _APPROACH * i}) for i in range(worlds)]
+    counts = range(1, (os.cpu_count() or 1) + 1)
+    jobs: dict[tuple[str, int], Callable[[], float]] = {}
+    with pools(counts, _warm) as opened:
+        for count, pool in opened.items():
+            jobs["worlds", count] = partial(_wall_time, batch, count)
+            jobs["loops", count] = partial(spin, pool, loops)
+        least = {job: time.least for job, time in interleaved(jobs, repeats).items()}
+    simulated = sum(run.metrics["time"] for run in c2d.simulate_many(batch, record="summary"))
+    return [
+        {
+            "threads": count,
+            "real_time": simulated / least["worlds", count],
+            "worlds": least["worlds", 1] / least["worlds", count],
+            "loops": least["loops", 1] / least["loops", count],
+        }
+        for count in counts
+    ]
+
+
+def _wall_time(batch: Sequence[Scenario], count: int) -> float:
+    """[s] Wall time of a batch, from the scenarios to the runs."""
+    start = time.perf_counter()
+    c2d.simulate_many(batch, threads=count, record="summary")
+    return time.perf_counter() - start
+
+
+def _warm(_: int) -> None:
+    time.sleep(0.1)  # so that each process of the pool gets its turn
 
 
 if __name__ == "__main__":

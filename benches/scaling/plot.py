@@ -7,16 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benches.scaling.slopes import Curve, curves, deviations
+from benches.scaling.report import Curve, curves, deviations
+from benches.shared.figures import COLORS, GREY, MARKERS, light_grid, save
 
-# Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
-_COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
-_MARKERS = ("o", "s", "^", "D")
-_GREY = "#666666"
 _LABELS = {
     "wheels": "wheels a side",
     "grousers": "grousers a wheel",
@@ -28,17 +24,10 @@ _COLUMNS = 3
 def plot(result: dict[str, Any], folder: Path) -> None:
     """Write one picture per figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    # Text stays text, and equal figures give equal files.
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "crawler2d"}):
-        for figure in _LABELS:
-            drawn = _costs(figure, curves(result["rows"], figure))
-            _save(drawn, folder / f"{figure}.svg")
-        _save(_accuracies(result["rows"]), folder / "accuracy.svg")
-        _save(_threads(result["threads"]), folder / "threads.svg")
-
-
-def _save(figure: Figure, path: Path) -> None:
-    figure.savefig(path, metadata={"Date": None})
+    for figure in _LABELS:
+        save(_costs(figure, curves(result["rows"], figure)), folder / f"{figure}.svg")
+    save(_accuracies(result["rows"]), folder / "accuracy.svg")
+    save(_threads(result["threads"]), folder / "threads.svg")
 
 
 def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
@@ -57,7 +46,7 @@ def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
         ax.set_xlabel(_LABELS[name])
         _grid(ax)
         if name != "points":
-            _plain_ticks(ax, own[0].x)
+            _decimal_ticks(ax, own[0].x)
     _whole_decades(axes)
     _proportional(axes[0])
     axes[0].set_ylabel("wall time a simulated second [ms]")
@@ -78,7 +67,7 @@ def _accuracies(rows: Sequence[dict[str, Any]]) -> Figure:
         error.loglog(x[1:], [value * 1e3 for value in deviations(rows, curve)], **style)
         for ax in (cost, error):
             ax.set_xlabel("accuracy [µm]")
-            _plain_ticks(ax, x)
+            _decimal_ticks(ax, x)
     cost.set_ylabel("wall time a simulated second [ms]")
     error.set_ylabel("final x, off the finest [mm]")
     for ax in (cost, error):
@@ -93,9 +82,9 @@ def _threads(rows: Sequence[dict[str, Any]]) -> Figure:
     figure = Figure(figsize=(4.6, 3.4), layout="constrained")
     ax = figure.subplots()
     counts = [row["threads"] for row in rows]
-    ax.plot(counts, counts, color=_GREY, linestyle=":", label="as many times as fast")
+    ax.plot(counts, counts, color=GREY, linestyle=":", label="as many times as fast")
     for kind, name, color, marker in zip(
-        ("worlds", "loops"), ("worlds", "a loop that counts"), _COLORS, _MARKERS, strict=False
+        ("worlds", "loops"), ("worlds", "a loop that counts"), COLORS, MARKERS, strict=False
     ):
         heights = [row[kind] for row in rows]
         ax.plot(counts, heights, color=color, marker=marker, markersize=5, label=name)
@@ -108,7 +97,7 @@ def _threads(rows: Sequence[dict[str, Any]]) -> Figure:
 def _styles() -> list[dict[str, Any]]:
     return [
         {"color": color, "marker": marker, "markersize": 5}
-        for color, marker in zip(_COLORS, _MARKERS, strict=True)
+        for color, marker in zip(COLORS, MARKERS, strict=True)
     ]
 
 
@@ -125,15 +114,14 @@ def _proportional(ax: Axes) -> None:
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     rise = 10.0**0.5
     x, y = (1.3 * left, 1.3 * left * rise), (0.7 * high / rise, 0.7 * high)
-    ax.plot(x, y, color=_GREY, linestyle=":", label="in proportion")
+    ax.plot(x, y, color=GREY, linestyle=":", label="in proportion")
     ax.set(xlim=(left, right), ylim=(low, high))
 
 
-def _plain_ticks(ax: Axes, values: Sequence[float]) -> None:
+def _decimal_ticks(ax: Axes, values: Sequence[float]) -> None:
     ax.set_xticks(values, [f"{value:g}" for value in values])
 
 
 def _grid(ax: Axes) -> None:
     ax.minorticks_off()
-    ax.grid(alpha=0.25)
-    ax.spines[["top", "right"]].set_visible(False)
+    light_grid(ax)

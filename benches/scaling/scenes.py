@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crawler2d as c2d
-from crawler2d.parameters.scenario import Scenario
+from crawler2d import Scenario
 from crawler2d.parameters.terrain import Lane
 from crawler2d.parameters.track import Track, Wheel
 
@@ -54,7 +54,7 @@ class Point(NamedTuple):
 
 
 def points() -> Iterator[Point]:
-    """Make every point of the study."""
+    """Yield every point of the study."""
     yield from _wheels()
     yield from _grousers()
     yield from _pieces()
@@ -70,7 +70,7 @@ def panels(points: Iterable[Point]) -> dict[tuple[str, str], list[Point]]:
 
 
 def line_of_gears() -> Scenario:
-    """Make the scene for the threads: a line of 3 gear wheels over the step."""
+    """Return the scene for the threads: a line of 3 gear wheels over the step."""
     return _over(c2d.LineOfWheels(3, wheel=c2d.GearWheel()), STEP)
 
 

@@ -9,35 +9,31 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from benches.accuracy import cells, ensemble, runs, search
+from benches.accuracy import cells, runs, search
 from benches.accuracy.__main__ import main
-from benches.accuracy.cells import Cell
-from benches.accuracy.ensemble import Row
-from benches.accuracy.findings import Study, collect
-from benches.accuracy.kinds import KINDS
-from benches.accuracy.statistics import (
+from benches.accuracy.cells import KINDS, Cell
+from benches.accuracy.findings import (
     CELL_BOUND,
     Pairs,
+    Study,
     cell_interval,
+    cell_verdicts,
+    collect,
     holm,
-    judge,
     mean,
     path_error,
+    undecided,
+    verdict_of,
 )
-from benches.accuracy.store import Store
-from benches.accuracy.verdicts import judged_cells, undecided
+from benches.accuracy.runs import Row, Store
 from crawler2d.sweeps.statistics import Interval, newcombe_paired
 
 COARSE, FINE = {"time_step": 2e-3}, {"time_step": 1e-3}
 DRAWN = replace(search.draw("line of 3 round", 1, 0), height=0.0536)
 
 
-def quiet(_: str) -> None:
-    pass
-
-
 def made(store: Store, cell: Cell, count: int) -> dict[int, Row]:
-    runs.complete(store, [cell], {"coarse": COARSE}, count, threads=1, tell=quiet)
+    runs.complete(store, [cell], {"coarse": COARSE}, count, threads=1)
     # The processor time differs each time.
     return {k: row._replace(processor=0.0) for k, row in store.rows(cell, COARSE).items()}
 
@@ -91,15 +87,15 @@ def test_draws_of_cells_repeat_and_differ_between_sets() -> None:
 
 
 def test_runs_are_those_of_a_sweep() -> None:
-    plans = ensemble.plans(DRAWN, COARSE, 3, seed=5)
-    rows = ensemble.simulate(plans, range(3), threads=1)
+    plans = runs.plan(DRAWN, COARSE, 3, seed=5)
+    rows = runs.simulate(plans, range(3), threads=1)
     table = c2d.sweep(DRAWN.scenario(COARSE), {}, repeats=3, seed=5, threads=1, progress=False)
     assert [row.outcome for row in rows] == table.outcome.values.tolist()
     assert [row.x for row in rows] == table.final_x.values.tolist()
 
 
 def test_every_setting_has_the_same_draws() -> None:
-    coarse, fine = (ensemble.plans(DRAWN, setting, 4, seed=5) for setting in (COARSE, FINE))
+    coarse, fine = (runs.plan(DRAWN, setting, 4, seed=5) for setting in (COARSE, FINE))
     one, other = ([json.loads(plan.text) for plan in plans] for plans in (coarse, fine))
     for first, second in zip(one, other, strict=True):
         assert first.pop("solver") != second.pop("solver")
@@ -121,9 +117,9 @@ def test_ctrl_c_keeps_the_finished_runs(tmp_path: Path, monkeypatch: pytest.Monk
     finished = some([True, False])
 
     def interrupted(*_: object) -> list[Row]:
-        raise ensemble.Interrupted(finished)
+        raise runs.Interrupted(finished)
 
-    monkeypatch.setattr(ensemble, "simulate", interrupted)
+    monkeypatch.setattr(runs, "simulate", interrupted)
     with Store(tmp_path / "runs.sqlite") as store:
         with pytest.raises(KeyboardInterrupt):
             made(store, DRAWN, 5)
@@ -188,7 +184,7 @@ def test_a_difference_at_the_bound_is_rarely_called_small() -> None:
             both, only = int((first & second).sum()), int((first & ~second).sum())
             reference = int((~first & second).sum())
             pairs = Pairs(both, only, reference, count - both - only - reference)
-            verdict = judge(cell_interval(pairs, 2), CELL_BOUND)
+            verdict = verdict_of(cell_interval(pairs, 2), CELL_BOUND)
             if verdict != "open":
                 wrong += verdict == "inside"
                 break
@@ -219,7 +215,7 @@ def test_only_undecided_cells_get_more_runs(tmp_path: Path) -> None:
             store.add(cell, FINE, some(fine.tolist()))
             store.add(cell, COARSE, some(coarse[cell.name].tolist()))
         found = study(store, *named)
-    assert [each.verdict for each in judged_cells(found)] == list(coarse)
+    assert [each.verdict for each in cell_verdicts(found)] == list(coarse)
     assert [cell.name for cell in undecided(found)] == ["open"]
 
 

@@ -1,24 +1,23 @@
 """The comparison of both engines on random robots: what is drawn, kept and told."""
 
 import dataclasses
-import json
 from pathlib import Path
 
 import pytest
 
 import crawler2d as c2d
-from benches.agreement import pairs, pinched, study
-from benches.agreement.drawing import MODELS, drawn
-from benches.agreement.table import parts
+from benches.agreement import pairs, study
+from benches.agreement.pairs import MODELS, parts, random_scenario
+from benches.shared.results import read
 from research.markdown import spliced
 from research.sweeps import FULL
 
 
 def test_every_model_is_drawn_and_rapier_holds_it() -> None:
     for number, expected in enumerate(MODELS):
-        model, scenario = drawn(number)
+        model, scenario = random_scenario(number)
         assert model == expected
-        assert drawn(number) == (model, scenario)
+        assert random_scenario(number) == (model, scenario)
         scenario.replace({"solver": c2d.Solver(engine="rapier")}).validate()
 
 
@@ -32,17 +31,17 @@ def test_pairs_go_on_from_where_they_stopped(
         return {"number": number}
 
     monkeypatch.setattr(pairs, "_pair", make)
-    path = tmp_path / "pairs.jsonl"
+    path = tmp_path / "pairs.json.xz"
     pairs.run(2, path)
     pairs.run(3, path)
     assert made == [0, 1, 2]
-    assert [pair["number"] for pair in pairs.read(path)] == [0, 1, 2]
+    assert [pair["number"] for pair in pairs.read_pairs(path)] == [0, 1, 2]
 
 
 def test_a_pair_has_both_ends_and_both_balances(tmp_path: Path) -> None:
-    path = tmp_path / "pairs.jsonl"
+    path = tmp_path / "pairs.json.xz"
     pairs.run(1, path)
-    (pair,) = pairs.read(path)
+    (pair,) = pairs.read_pairs(path)
     assert [end["gets_over"] for end in pair["ends"]].count(True) in (0, 2)  # it is no close call
     assert pair["apart"] < 1e-3 or pair["ends"][0]["gets_over"]
     table = parts([pair], {})["models"]
@@ -74,26 +73,27 @@ def test_pairs_that_end_unlike_are_told_one_by_one() -> None:
 def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "study.json"
+    path = tmp_path / "study.json.xz"
     monkeypatch.setattr(study, "_tracks", lambda _: {"line of 3": c2d.LineOfWheels(3)})
     few = dataclasses.replace(FULL, heights={"step": (0.04, 0.15), "knife edge": (0.02,)})
     monkeypatch.setattr(study, "FULL", few)
     study.study(1, path)
     study.study(1, path)  # nothing is left to do
-    cells = [cell for part in json.loads(path.read_text(encoding="utf-8")) for cell in part]
+    cells = [cell for part in read(path) for cell in part]
     assert [(cell["obstacle"], cell["height"]) for cell in cells] == [
         ("step", 0.04),
         ("step", 0.15),
         ("knife edge", 0.02),
     ]
-    last = study.study_table(path).splitlines()[-1]
+    last = study.study_table(read(path)).splitlines()[-1]
     assert last.startswith("| all | 3 | 3 | ")
 
 
 def test_the_page_has_the_table_of_the_results() -> None:
     page = (Path(__file__).parents[2] / "docs" / "studies" / "agreement.md").read_text("utf-8")
     assert "<!-- end of study -->" in page
-    assert spliced(page, {"study": study.study_table()}) == page
+    table = study.study_table(read(pairs.RESULTS / "study.json.xz"))
+    assert spliced(page, {"study": table}) == page
 
 
 def test_rapier_holds_rows_gears_and_wheels_all_round_of_the_study() -> None:
@@ -106,9 +106,9 @@ def test_six_solvers_meet_the_knife_edge_from_the_same_starts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("pymunk")
-    path = tmp_path / "pinched.json"
-    monkeypatch.setattr(pinched, "_HEIGHTS", (0.002,))
-    monkeypatch.setattr(pinched, "_SPEEDS", (0.4,))
-    pinched.pinched(1, path)
-    last = pinched.pinched_table(path).splitlines()[-1]
+    path = tmp_path / "pinched.json.xz"
+    monkeypatch.setattr(study, "_HEIGHTS", (0.002,))
+    monkeypatch.setattr(study, "_SPEEDS", (0.4,))
+    study.pinched(1, path)
+    last = study.pinched_table(read(path)).splitlines()[-1]
     assert last == "| 2 | 0.4 |" + 6 * " 1 of 1 |"

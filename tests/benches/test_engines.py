@@ -1,29 +1,45 @@
 """benches/engines: cells are well formed, all engines get one robot, nothing runs unpredicted."""
 
-import json
 import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from benches.engines import running, table, yaw
-from benches.engines.agreement import apart, pairs, rate, share
-from benches.engines.cells import GROUNDS, STARTS, Cell, read, write
-from benches.engines.driving import driven, scene_of
-from benches.engines.engine import Engine
-from benches.engines.engine_ode import Ode
-from benches.engines.engines import ENGINES, engine_of, holds
-from benches.engines.ground import blocks_of, goal_of, turned
-from benches.engines.predict import PREDICTIONS, check, hash_of, unlike
-from benches.engines.predict import read as predictions
-from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
-from benches.engines.solid import solid_of
-from benches.models import running as running_files
-from benches.models import table as table_of_files
-from benches.models.ode_child import GAZEBO, interpreter
+from benches.adapters.ground import blocks_of, goal_of, turned
+from benches.adapters.ode_process import GAZEBO, interpreter
+from benches.adapters.robots import model_of_robot
+from benches.adapters.space import Engine, drive, load, scene_of
+from benches.engines import runs as running
+from benches.engines import table, yaw
+from benches.engines.cells import (
+    DRIVES,
+    GROUNDS,
+    MODELS,
+    ROBOTS,
+    STARTS,
+    Cell,
+    read_cells,
+    robot_of,
+    write_cells,
+)
+from benches.engines.runs import (
+    ENGINES,
+    PREDICTIONS,
+    check,
+    compare_predictions,
+    engine_of,
+    hash_of,
+    holds,
+    pairs,
+    predictions,
+)
+from benches.engines.table import apart, rate, same_outcome
+from benches.models import runs as file_runs
+from benches.shared.results import read, write
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import (
     Barrier,
@@ -55,7 +71,7 @@ def engine(name: str) -> Engine:
 
 
 def test_there_are_cells_enough_and_half_of_those_in_the_plane_are_undecided() -> None:
-    cells = read()
+    cells = read_cells()
     assert len({cell.label for cell in cells}) == len(cells) >= 120
     assert {cell.robot for cell in cells} == set(ROBOTS)
     assert {cell.model for cell in cells} == set(MODELS)
@@ -69,12 +85,11 @@ def test_there_are_cells_enough_and_half_of_those_in_the_plane_are_undecided() -
 
 def test_the_predictions_are_for_these_cells_and_the_results_for_these_predictions() -> None:
     predicted = predictions()
-    assert list(predicted) == [cell.label for cell in read()]
+    assert list(predicted) == [cell.label for cell in read_cells()]
     assert {len(runs) for runs in predicted.values()} == {STARTS}
     for name in ENGINES:
-        path = running.RESULTS / f"{name}.json"
-        if path.exists():
-            results = json.loads(path.read_text(encoding="utf-8"))
+        results = read(running.RESULTS / f"{name}.json.xz")
+        if results is not None:
             assert results["predictions"] == hash_of(), name
             assert set(results["runs"]) <= set(predicted), name
 
@@ -84,12 +99,12 @@ def test_predictions_made_again_are_compared_run_by_run(tmp_path: Path) -> None:
         runs = [{"end": end, "x": x, "y": 0.0} for end in ends]
         cells = {"a; line of 3; b": runs, "a; 3 gears; b": runs[:1]}
         path = tmp_path / name
-        path.write_text(json.dumps({"cells": cells}), encoding="utf-8")
+        write(path, {"cells": cells})
         return path
 
     kept = write_runs("kept", "cleared", "seized", "stalled", "timed_out", x=0.0)
     now = write_runs("now", "cleared", "cleared", "slipping", "timed_out", x=0.002)
-    assert unlike(now, kept).splitlines() == [
+    assert compare_predictions(now, kept).splitlines() == [
         "round wheels, 4 runs: 1 clear in one of both, 2 have another outcome; "
         "1 of 1 that stop in both do so more than 1 mm apart",
         "gear wheels, 1 runs: 0 clear in one of both, 0 have another outcome; "
@@ -98,9 +113,9 @@ def test_predictions_made_again_are_compared_run_by_run(tmp_path: Path) -> None:
 
 
 def test_nothing_runs_without_its_prediction(tmp_path: Path) -> None:
-    cells = read()[:1]
+    cells = read_cells()[:1]
     with pytest.raises(ValueError, match="predict before"):
-        check(cells, {}, tmp_path / "predictions.json")
+        check(cells, {}, tmp_path / "predictions.json.xz")
     with pytest.raises(ValueError, match="not predicted"):
         check([replace(CELL, height=0.777)], {})
     with pytest.raises(ValueError, match="for predictions 0000"):
@@ -110,9 +125,9 @@ def test_nothing_runs_without_its_prediction(tmp_path: Path) -> None:
 
 def test_cells_are_read_as_they_were_written(tmp_path: Path) -> None:
     path = tmp_path / "cells.json"
-    write([CELL, replace(CELL, drive="6 N m, track")], path)
-    assert read(path)[0] == CELL
-    assert [cell.is_coupled for cell in read(path)] == [False, True]
+    write_cells([CELL, replace(CELL, drive="6 N m, track")], path)
+    assert read_cells(path)[0] == CELL
+    assert [cell.is_coupled for cell in read_cells(path)] == [False, True]
 
 
 def test_the_runs_of_a_cell_are_the_same_however_many_are_made() -> None:
@@ -132,25 +147,25 @@ def test_the_robot_in_space_has_the_masses_of_the_robot_and_stands_on_its_wheels
     model: str,
 ) -> None:
     robot = robot_of("engineer", model, "60 N m, servos")
-    solid = solid_of(robot)
-    links = solid.plain()
-    assert solid.mass == pytest.approx(robot.mass, rel=1e-12)
+    in_space = model_of_robot(robot)
+    links = in_space.bodies
+    assert in_space.mass == pytest.approx(robot.mass, rel=1e-12)
     center = sum(link["mass"] * np.array(link["center"]) for link in links) / robot.mass
     assert center == pytest.approx(
         [robot.center_of_mass[0], 0.0, robot.center_of_mass[1]], abs=1e-9
     )
     wheels = robot.wheels()
-    found = [(wheel.axle[0], wheel.axle[2], wheel.radius) for wheel in solid.wheels]
+    found = [(wheel.axle[0], wheel.axle[2], wheel.radius) for wheel in in_space.wheels]
     expected = np.column_stack([wheels["x"], wheels["y"], wheels["radius"]])
     assert np.array(found) == pytest.approx(expected, abs=1e-9)
     # A gear wheel between two grousers stands lower than its radius.
     low = -min(y - radius for _, y, radius in found)
-    assert 0.9 * low < -solid.lowest(0.0) <= low + 1e-12
+    assert 0.9 * low < -in_space.lowest(0.0) <= low + 1e-12
 
 
 def test_a_motor_of_a_track_has_the_torque_of_all_its_wheels() -> None:
     servos, track, strong = (
-        solid_of(robot_of("engineer", "line of 5", drive)).wheels[0].torque
+        model_of_robot(robot_of("engineer", "line of 5", drive)).wheels[0].torque
         for drive in ("60 N m, servos", "60 N m, track", "100 N m a wheel")
     )
     # The sprocket's torque acts at the belt, 52 mm from the axle, a wheel's at 64 mm.
@@ -211,9 +226,9 @@ def test_turned_ground_has_its_edge_at_the_pivot_still() -> None:
 
 
 def test_the_jams_of_the_results_are_those_that_are_drawn() -> None:
-    kept = json.loads((running.RESULTS / "yaw.json").read_text(encoding="utf-8"))["jams"]
+    kept = read(running.RESULTS / "yaw.json.xz")["jams"]
     for model, jams in kept.items():
-        label, _, stop, push = next(yaw.drawn(model))
+        label, _, stop, push = next(yaw.draw_jams(model))
         assert jams[0]["label"] == label
         assert jams[0]["x"] == pytest.approx(stop.position[0], abs=1e-5)  # as it is rounded
         assert jams[0]["push"] == pytest.approx(push, abs=1e-4)
@@ -222,14 +237,13 @@ def test_the_jams_of_the_results_are_those_that_are_drawn() -> None:
 
 def test_bullet_moves_a_robot_out_of_the_ground_by_no_more_than_it_is_in_there() -> None:
     pytest.importorskip("pybullet")
-    from benches.engines.engine_bullet import FINE, Bullet  # noqa: PLC0415 - loads Bullet
-
+    bullet: Any = load("Bullet")
     scene = scene_of(replace(CELL, model="line of 3").scenarios(1)[0])
-    moved = Bullet(FINE).clear(replace(scene, z=scene.z - 0.01))
+    moved = bullet.clear(replace(scene, z=scene.z - 0.01))
     # Out of level ground straight up; 0.05 of that on top, which keeps it from going to and fro.
     assert moved.x == pytest.approx(scene.x, abs=1e-6)
     assert 0.0 <= moved.z - scene.z <= 6e-4
-    assert Bullet(FINE).clear(moved).z == moved.z
+    assert bullet.clear(moved).z == moved.z
 
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if name != "rapier"])
@@ -241,7 +255,7 @@ def test_an_engine_drives_robots_forward_at_their_speed(name: str) -> None:
         scenario = cell.scenarios(1)[0].replace(
             {"terrain": Flat(friction=0.9), "start.track_phase": 0.013, "duration": 0.5}
         )
-        found = driven(made, scenario)
+        found = drive(made, scenario)
         assert found["end"] == "timed out"
         # 0.2 m/s, reached at 1 m/s^2: 0.08 m in half a second, less what wheels slip and grousers
         # that roll on are slower than their circles.
@@ -253,7 +267,7 @@ def test_an_engine_drives_robots_forward_at_their_speed(name: str) -> None:
 def test_ode_has_the_geometry_of_the_robot_and_pushes_it_up_no_farther_than_gazebo_does() -> None:
     scenario = replace(CELL, model="line of 3").scenarios(1)[0]
     scene = scene_of(scenario)
-    world = Ode(GAZEBO).world(scene)
+    world = load("ODE", **GAZEBO).world(scene)
     try:
         start = world.pose()
         assert start.place == pytest.approx([scene.x, 0.0, scene.z], abs=1e-12)
@@ -265,24 +279,24 @@ def test_ode_has_the_geometry_of_the_robot_and_pushes_it_up_no_farther_than_gaze
         world.close()
 
 
-def test_rates_are_told_with_their_intervals_and_pairs_by_their_draw() -> None:
+def test_rates_have_their_intervals_and_pairs_the_same_draw() -> None:
     stops, clears = {"end": "stopped"}, {"end": "cleared"}
     assert rate([clears] * 8) == "8/8 (68 to 100)"  # Wilson, 95 %
     assert rate([]) == ""
     assert rate([{"end": "refused: robot.track"}]) == "refused"
     found = list(pairs([CELL], {CELL.label: [stops, clears, clears]}, {CELL.label: [stops, stops]}))
     assert len(found) == 2
-    assert share(found) == "1 of 2"
+    assert same_outcome(found) == "1 of 2"
     assert apart([stops] * 8, [clears] * 8)
     assert not apart([stops] * 2, [clears] * 1)
 
 
 def test_the_page_has_the_tables_of_the_results() -> None:
     page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text("utf-8")
-    files = [running_files.RESULTS / f"{name}.json" for name in running_files.ENGINES]
-    made = {**table.parts(read(), running.RESULTS), **table_of_files.parts(files)}
-    assert set(re.findall("<!-- end of (.+) -->", page)) <= set(made)
-    assert spliced(page, made) == page
+    files = [file_runs.RESULTS / f"{name}.json.xz" for name in file_runs.ENGINES]
+    parts = {**table.parts(read_cells(), running.RESULTS), **file_runs.parts(files)}
+    assert set(re.findall("<!-- end of (.+) -->", page)) <= set(parts)
+    assert spliced(page, parts) == page
 
 
 def test_a_run_that_is_there_is_not_made_again(
@@ -290,15 +304,16 @@ def test_a_run_that_is_there_is_not_made_again(
 ) -> None:
     made = []
 
-    def drive(_: object) -> dict[str, str]:
+    def one_run(_: str, __: object) -> dict[str, str]:
         made.append(1)
         return {"end": "stopped"}
 
-    monkeypatch.setattr(running, "_driver", lambda _: (drive, "an engine"))
-    cells = [cell for cell in read() if holds("ode", cell)][:3]
+    monkeypatch.setattr(running, "_runner", lambda _: (None, "an engine"))
+    monkeypatch.setattr(running, "_run_by_name", one_run)
+    cells = [cell for cell in read_cells() if holds("ode", cell)][:3]
     with ThreadPoolExecutor() as threads:
         running.run("ode", cells, 1, threads, tmp_path)
         running.run("ode", cells, 2, threads, tmp_path)
     assert len(made) == 6
-    results = json.loads((tmp_path / "ode.json").read_text(encoding="utf-8"))
+    results = read(tmp_path / "ode.json.xz")
     assert {len(runs) for runs in results["runs"].values()} == {2}

@@ -1,24 +1,21 @@
 """benches/models: the ground is boxes, files are loaded as they were read, one rule judges all."""
 
-import json
 from dataclasses import replace
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from benches.models import running, table
+from benches.adapters.ground import DEPTH, WIDTH, boxes_of, profile_of
+from benches.adapters.ode_process import interpreter
+from benches.adapters.robots import RobotModel, cleaned
+from benches.adapters.space import Verdict, drive, scene_of
+from benches.models import files, runs
 from benches.models.cases import CASES, Case
-from benches.models.changed import balanced, on_axles, patch, variant
-from benches.models.driving import driven
-from benches.models.files import ModelFile, cleaned, exported, public
-from benches.models.ground import DEPTH, WIDTH, boxes_of, profile_of
-from benches.models.judge import Judge
-from benches.models.lumps import lumps
-from benches.models.ode_child import interpreter
-from benches.models.predict import PREDICTIONS, robot_of
+from benches.models.files import balanced, exported, loaded, on_axles, patch, variant
+from benches.models.runs import PREDICTIONS, robot_of
+from benches.shared.results import read
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.terrain import Barrier, Flat, Ridge, Stairs, Step
@@ -63,9 +60,9 @@ def test_slopes_and_rounded_edges_are_no_boxes() -> None:
 
 
 def ended(rear: list[float], step: float = 0.1, pitch: float = 0.0, yaw: float = 0.0) -> str:
-    judge = Judge(goal=1.0, duration=10.0)
+    verdict = Verdict(goal=1.0, duration=10.0)
     for number, x in enumerate(rear):
-        end = judge.end(step * number, x, (0.0, pitch, yaw))
+        end = verdict.end(step * number, x, (0.0, pitch, yaw))
         if end:
             return f"{end} at {step * number:.1f}"
     return ""
@@ -96,17 +93,23 @@ def wheels_of(robot: Robot) -> NDArray[np.float64]:
     return np.column_stack([wheels["x"], wheels["y"], wheels["radius"]])
 
 
-def files_of(case: Case, folder: Path) -> list[ModelFile]:
+def found_in(model: RobotModel) -> NDArray[np.float64]:
+    """[m] x, y and radius of each wheel of a file."""
+    return np.array([(wheel.axle[0], wheel.axle[2], wheel.radius) for wheel in model.wheels])
+
+
+def files_of(case: Case) -> list[RobotModel]:
     if case.file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
-    made = [exported(case, case.robot(), case.form, "export", folder)]
-    return [public(case, form, folder) for form in dict.fromkeys((case.form, "urdf"))] + made
+    made = [exported(case, case.robot(), case.form, "export")]
+    forms = dict.fromkeys((case.form, "urdf"))
+    return [loaded(case.reading(), form, case.angle) for form in forms] + made
 
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
 def test_public_file_and_export_have_the_robots_wheels_where_it_holds_them(
-    name: str, tmp_path: Path
+    name: str,
 ) -> None:
     robot = CASES[name].robot()
     expected = wheels_of(robot)
@@ -114,9 +117,9 @@ def test_public_file_and_export_have_the_robots_wheels_where_it_holds_them(
         name == "marv"
     ):  # it stands on the roots of its flippers, which count as its chassis's wheels
         expected = np.unique(expected.round(9), axis=0).repeat(2, axis=0)
-    for model in files_of(CASES[name], tmp_path):
+    for model in files_of(CASES[name]):
         assert model.mass == pytest.approx(robot.mass, rel=1e-9)
-        found = [(*model.axles[link][[0, 2]], model.radii[link]) for link in model.axles]
+        found = found_in(model)
         if name != "marv":  # the roots of its flippers count as wheels of its chassis, too
             assert len(found) == len(expected)
         for wheel in found:
@@ -128,22 +131,21 @@ def test_public_file_and_export_have_the_robots_wheels_where_it_holds_them(
 
 
 def predicted_robot(name: str, file: str) -> Robot:
-    predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
-    return robot_of(predictions[name][running.FILES[file]])
+    return robot_of(read(PREDICTIONS)[name][files.FILES[file]])
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if "patch" in case.files])
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
-def test_a_patched_file_has_the_wheels_of_the_repair(name: str, tmp_path: Path) -> None:
+def test_a_patched_file_has_the_wheels_of_the_repair(name: str) -> None:
     case, robot = CASES[name], predicted_robot(name, "repair")
     if case.file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
     expected = wheels_of(robot)
     assert len(expected) > len(case.robot().wheels())
     for form in dict.fromkeys((case.form, "urdf")):
-        model = patch(case, robot, form, tmp_path)
+        model = patch(case, robot, form)
         assert model.mass == pytest.approx(robot.mass, rel=1e-6)  # files round
-        found = [(*model.axles[link][[0, 2]], model.radii[link]) for link in model.axles]
+        found = found_in(model)
         assert len(found) == len(expected)
         for wheel in expected:
             # The flippers of Absolem's file stay 0.95 mm above the end axles.
@@ -173,7 +175,7 @@ def test_balanced_wheels_have_their_mass_on_their_axles_and_the_robot_keeps_its_
 
 
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
-def test_flippers_put_on_the_end_axles_move_with_all_their_wheels(tmp_path: Path) -> None:
+def test_flippers_put_on_the_end_axles_move_with_all_their_wheels() -> None:
     case = CASES["absolem"]
     reading = case.reading()
     was, now = reading.tree, on_axles(reading)
@@ -186,8 +188,8 @@ def test_flippers_put_on_the_end_axles_move_with_all_their_wheels(tmp_path: Path
             moved.append(was.joints[new.name].place - now.joints[new.name].place)
         assert np.allclose(moved, [0.0, 0.0, fall], atol=1e-12), new.name
     assert any("pivot" in note for note in reading.notes)
-    model = variant(case, "balanced-on-axles", tmp_path)
-    low = [axle[2] for axle in model.axles.values() if axle[2] < 0.01]
+    model = variant(case, "balanced-on-axles")
+    low = [wheel.axle[2] for wheel in model.wheels if wheel.axle[2] < 0.01]
     assert len(low) == 2 * 8 + 4  # of the chassis, and the roots of the flippers
     assert np.allclose(low, 0.0, atol=1e-9)
 
@@ -202,9 +204,9 @@ def require(engine: str) -> None:
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
-@pytest.mark.parametrize("engine", running.ENGINES)
+@pytest.mark.parametrize("engine", runs.ENGINES)
 def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
-    name: str, engine: str, tmp_path: Path
+    name: str, engine: str
 ) -> None:
     require(engine)
     if CASES[name].file.endswith(".xacro"):
@@ -213,9 +215,9 @@ def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
     label = next(iter(case.cells))
     scenario = case.scenarios(label, case.robot())[0].replace({"duration": 0.3})
     for file in case.files:
-        model = running.model_of(engine, name, file, predicted_robot(name, file), tmp_path)
+        model = files.model_of(engine, name, file, predicted_robot(name, file))
         # Building a world compares masses and axles with those that were read.
-        found = driven(running.engine_of(engine), model, scenario)
+        found = drive(runs.engine_of(engine), scenario, scene_of(scenario, model))
         assert found["end"] == "timed out"
         start = -scenario.start.approach - model.foremost
         # Half the acceleration times the square of the time, less what the wheels slip until the
@@ -227,12 +229,11 @@ def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
-def test_the_bodies_of_a_file_weigh_what_it_does_where_it_does(name: str, tmp_path: Path) -> None:
+def test_the_bodies_of_a_file_weigh_what_it_does_where_it_does(name: str) -> None:
     if CASES[name].file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
     case = replace(CASES[name], angle=0.0)  # the centre of mass of a robot is that with level arms
-    model = public(case, case.form, tmp_path)
-    bodies = lumps(model, torque=1.0)
+    bodies = loaded(case.reading(), case.form, case.angle).bodies
     mass = sum(body["mass"] for body in bodies)
     centre = np.sum([body["mass"] * np.array(body["center"]) for body in bodies], axis=0) / mass
     robot = case.robot()
@@ -273,22 +274,22 @@ def test_the_starts_of_a_cell_are_the_same_for_every_robot() -> None:
 def test_agreement_is_about_clearing_alone() -> None:
     predicted = [{"end": end} for end in ("seized", "cleared", "slipping", "cleared")]
     found = [{"end": end} for end in ("stopped", "cleared", "cleared")]
-    assert table.agreement(predicted, found) == 2
+    assert runs.agreement(predicted, found) == 2
 
 
 def test_absolems_motors_carry_it_over_the_step_if_they_are_firm_in_an_impact() -> None:
     case = CASES["absolem"]
     robot = case.robot()
-    runs = simulate_many(
+    ended = simulate_many(
         [case.scenarios("step 71 mm", each)[0] for each in (robot, case.firm(robot))],
         record="summary",
         threads=1,
     )
-    assert [str(run.outcome) for run in runs] == ["seized", "cleared"]
+    assert [str(run.outcome) for run in ended] == ["seized", "cleared"]
 
 
 def test_rows_are_of_the_files_that_a_case_has() -> None:
     end = [{"end": "cleared", "x": 0.6}]
     label = next(iter(CASES["marv"].cells))
-    runs = {f"marv | {file} | {label}": end for file in ("public", "repair")}
-    assert [row[2] for row in table.rows({"bullet": runs})] == ["public"]
+    of_marv = {f"marv | {file} | {label}": end for file in ("public", "repair")}
+    assert [row[2] for row in runs.rows({"bullet": of_marv})] == ["public"]

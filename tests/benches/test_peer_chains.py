@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benches.peers import chain_crawler2d, chain_robot, chains_report, report
-from benches.peers.chain_robot import TEETH, ChainRobot
-from benches.peers.engine import Setting
+from benches.adapters.planar import Setting
+from benches.peers import chains, report
+from benches.peers.chains import TEETH, ChainRobot
 from crawler2d.runs.simulation import Simulation
 from research.markdown import spliced
 
@@ -37,7 +37,7 @@ def test_the_chain_closes_round_both_ends(count: int) -> None:
 def test_teeth_stand_between_lugs_and_below_the_plates(count: int) -> None:
     robot = ChainRobot(count)
     for tooth in robot.teeth():
-        assert np.hypot(*tooth.T).max() < robot.disc_radius() + chain_robot.DROP
+        assert np.hypot(*tooth.T).max() < robot.disc_radius() + chains.DROP
     # A lug and a tooth share a pitch at the tip of the lug.
     reach = robot.pin_radius * np.cos(np.pi / robot.tooth_count) - robot.lug()[:, 1].max()
     room = 2.0 * np.pi * reach / robot.tooth_count
@@ -47,12 +47,12 @@ def test_teeth_stand_between_lugs_and_below_the_plates(count: int) -> None:
 @every_chain
 def test_crawler2d_has_the_same_robot(count: int) -> None:
     robot = ChainRobot(count)
-    scenario = chain_crawler2d.scenario(robot, STEP, Setting(accuracy=1e-6), 1.0, 0.0)
+    scenario = chains.chain_scenario(robot, STEP, Setting(accuracy=1e-6), 1.0, 0.0)
     built = scenario.robot
     assert built.mass == pytest.approx(19.96)
     assert built.track_mass == pytest.approx(robot.shoe_mass * count)
     # Both sprockets together pull as the one motor does at the pins.
-    assert 2.0 * built.drivetrain.max_torque == chain_robot.TORQUE
+    assert 2.0 * built.drivetrain.max_torque == chains.TORQUE
     state = Simulation(scenario).state()
     # A corner of the polygon may stand below the outline at first.
     assert state.position == pytest.approx((0.0, robot.radius), abs=0.05 * robot.radius)
@@ -62,7 +62,6 @@ def test_crawler2d_has_the_same_robot(count: int) -> None:
 
 
 def test_a_gap_is_the_distance_of_two_ends() -> None:
-    chains = pytest.importorskip("benches.peers.chains", reason="needs pymunk")
     robot = ChainRobot(36)
     shoes = robot.shoes()
     assert chains.pin_gap(shoes, robot.pitch) < 1e-12
@@ -71,7 +70,7 @@ def test_a_gap_is_the_distance_of_two_ends() -> None:
 
 
 def test_pymunks_chain_runs_and_stays_on() -> None:
-    chains = pytest.importorskip("benches.peers.chains", reason="needs pymunk")
+    pytest.importorskip("pymunk")
     place = chains.Place(ChainRobot(22), "flat")
     run = chains.ride("pymunk", place, chains.SETTINGS["pymunk, defaults"])
     assert run.survived
@@ -93,14 +92,18 @@ MACHINE = {
 
 def test_the_page_has_a_place_for_each_part_of_the_report() -> None:
     page = (Path(__file__).parents[2] / "docs" / "studies" / "peers.md").read_text("utf-8")
-    rows: list[dict[str, Any]] = [
-        {"scene": "lwa5-round-step", "engine": "pymunk", "found": {"a": 1}, "per_second": 2e-3},
-        {"scene": "lwa5-round-step", "engine": "MuJoCo", "found": None, "per_second": None},
+    zeros = dict.fromkeys(("spread", "final_x", "penetration", "gap"), 0.0)
+    limit = {"is_chaotic": False, "cleared": 1, "count": 1, **zeros}
+    step: dict[str, Any] = {"scene": "lwa5-round-step", "limit": limit, "setting": "1 ms"}
+    tried = [{"distance": 0.0}]
+    rows = [
+        {**step, "engine": "pymunk", "found": {"a": 1}, "per_second": 2e-3, "tried": tried},
+        {**step, "engine": "MuJoCo", "found": None, "per_second": None, "tried": tried},
     ]
     assert report.speeds(rows) == {"lwa5-round-step": {"pymunk": 500.0}}
-    parts = report.parts({"machine": MACHINE, "wall": 60.0, "accuracy": rows})
+    parts = report.render({"machine": MACHINE, "wall": 60.0, "accuracy": rows})
     assert "| lwa5-round-step | 500x |  | none |  |  |" in parts["speeds"]
-    assert all(text in spliced(page, parts) for text in parts.values())
+    assert all(parts[name] in spliced(page, parts) for name in ("measured", "speeds"))
 
 
 def test_the_report_says_what_is_met_and_what_is_not() -> None:
@@ -117,7 +120,7 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
         "found": {"allowed": "1 ms, 20 iterations"},
         "finest": ("0.125 ms, 160 iterations", 2e-5),
     }
-    text = chains_report.render(
+    parts = report.chain_parts(
         {
             "machine": MACHINE,
             "wall": 60.0,
@@ -129,6 +132,7 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
             "engineer": [{"track": "22 shoes", "terrain": "flat", "per_second": 4e-2}],
         }
     )
+    text = "\n".join(parts.values())
     assert "**30.0 ms**<br>0.005 mm, 3/3<br>3.16 m, -0.4 %<br>3 mm off" in text
     assert "1 ms, 20 iterations<br>100.0 ms, **2 times**" in text
     assert "none in the grid: 0.02 mm at 0.125 ms, 160 iterations" in text
@@ -145,14 +149,13 @@ def test_what_needs_a_whole_run_ends_before_anything_is_measured(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    pytest.importorskip("pymunk")
     program = importlib.import_module("benches.peers.__main__")
     result = tmp_path / "peers.json"
     if kept is not None:
         result.write_text(json.dumps(kept))
     monkeypatch.setattr(program, "_RESULT", result)
     monkeypatch.setattr(sys, "argv", ["peers", *given])
-    monkeypatch.setattr(program, "of_chains", lambda *_: pytest.fail("it measures"))
+    monkeypatch.setattr(program, "measure_chains", lambda *_: pytest.fail("it measures"))
     with pytest.raises(SystemExit):
         program.main()
     assert "must hold a whole run" in capsys.readouterr().err

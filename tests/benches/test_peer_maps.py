@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benches.peers import maps, scenes
-from benches.peers.drawn_scene import scene_of
-from benches.peers.engine_crawler2d import as_it_is
-from benches.peers.scenes import Scene
+from benches.adapters.own import nominal
+from benches.adapters.planar import Scene, load_scene
+from benches.peers import maps
+from benches.peers.maps import scene_of
 from crawler2d.parameters.scenario import Scenario
 
-NOMINAL, BASE = scenes.load("lwa5-round-step"), as_it_is("lwa5-round-step")
+NOMINAL, BASE = load_scene("lwa5-round-step"), nominal("lwa5-round-step")
 
 
 def of(changes: dict[str, Any]) -> Scene:
@@ -25,9 +25,9 @@ def center(scene: Scene) -> np.ndarray[Any, Any]:
 
 def test_an_unchanged_scenario_is_the_scene_itself() -> None:
     same = of({})
-    for own, nominal in zip(same.bodies, NOMINAL.bodies, strict=True):
-        assert (own.x, own.y, own.mass) == (nominal.x, nominal.y, nominal.mass)
-        assert own.inertia == pytest.approx(nominal.inertia, rel=1e-9)  # as it is written
+    for own, before in zip(same.bodies, NOMINAL.bodies, strict=True):
+        assert (own.x, own.y, own.mass) == (before.x, before.y, before.mass)
+        assert own.inertia == pytest.approx(before.inertia, rel=1e-9)  # as it is written
     assert same.joints == NOMINAL.joints
     assert same.friction == NOMINAL.friction
     assert all(map(np.array_equal, same.boxes, NOMINAL.boxes))
@@ -89,7 +89,7 @@ def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> 
         "loops": loops,
         "agrees": 0.99,
     }
-    text = " ".join(maps.render(found).split())
+    text = " ".join(" ".join(maps.render(found).values()).split())
     assert "100 runs a second" in text
     assert "3.0 % of the time" in text
     assert "is fine: 50.0 ms a run, **5.0 times** crawler2d's 10.0 ms" in text

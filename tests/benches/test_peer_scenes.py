@@ -7,10 +7,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from benches.peers import geometry, scenes
-from benches.peers.engine_crawler2d import Crawler2D
-from benches.peers.motion import Motion
-from benches.peers.scenes import Scene
+from benches.adapters.own import Crawler2D
+from benches.adapters.planar import SCENES, Motion, Scene, load_scene
+from benches.peers.accuracy import deepest_overlap, joint_gap
 from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
 
@@ -20,12 +19,12 @@ RELATIVE, ABSOLUTE = 1e-9, 1e-12
 # [m] Corners: the scenarios' grouser heights and thicknesses are rounded to as much.
 CORNER = 1e-9
 
-every_scene = pytest.mark.parametrize("name", scenes.NAMES)
+every_scene = pytest.mark.parametrize("name", SCENES)
 
 
 def pair(name: str) -> tuple[Scene, Scenario]:
     text = (SCENARIOS / f"peer_{name.replace('-', '_')}.json").read_text(encoding="utf-8")
-    return scenes.load(name), Scenario.from_json(text)
+    return load_scene(name), Scenario.from_json(text)
 
 
 def near(value: Any) -> Any:
@@ -170,33 +169,33 @@ def held(scene: Scene, *poses: tuple[float, float, float]) -> Motion:
 
 
 def test_overlap_and_gap_are_those_of_the_poses() -> None:
-    scene = scenes.load("lwa5-round-step")
+    scene = load_scene("lwa5-round-step")
     above = (0.0, 0.102, 0.0)
-    assert geometry.penetration(scene, held(scene, above)) == 0.0
-    assert geometry.joint_gap(scene, held(scene, above)) < 1e-12
+    assert deepest_overlap(scene, held(scene, above)) == 0.0
+    assert joint_gap(scene, held(scene, above)) < 1e-12
     sunk = held(scene, above, (-0.3, 0.099, 0.0))
-    assert geometry.penetration(scene, sunk) == pytest.approx(0.001)
-    assert geometry.joint_gap(scene, sunk) == pytest.approx(0.003)
+    assert deepest_overlap(scene, sunk) == pytest.approx(0.001)
+    assert joint_gap(scene, sunk) == pytest.approx(0.003)
     # Before the face of the step; and with the edge of the step in the belly.
     at_face = held(scene, above, (0.8 - 0.098, 0.13, 0.0))
-    assert geometry.penetration(scene, at_face) == pytest.approx(0.002)
+    assert deepest_overlap(scene, at_face) == pytest.approx(0.002)
     on_edge = held(scene, (0.7, 0.196, 0.0))
-    assert geometry.penetration(scene, on_edge) == pytest.approx(0.004)
+    assert deepest_overlap(scene, on_edge) == pytest.approx(0.004)
 
 
 def test_a_grouser_that_meets_an_edge_is_seen() -> None:
-    scene = scenes.load("lwa5-gear-step")
+    scene = load_scene("lwa5-gear-step")
     above = (0.0, 0.102, 0.0)
     # A tip, 0.1 m from the centre, level with the edge of the step and 3 mm beyond its face.
     tip = held(scene, above, (0.8 - 0.097, 0.147, 0.0))
-    assert geometry.penetration(scene, tip) == pytest.approx(0.003)
+    assert deepest_overlap(scene, tip) == pytest.approx(0.003)
     # Between two grousers, down to the root circle.
     turned = held(scene, above, (0.8 - 0.086, 0.2, math.radians(15.0)))
-    assert geometry.penetration(scene, turned) == 0.0
+    assert deepest_overlap(scene, turned) == 0.0
 
 
 def test_a_robot_that_flies_off_has_not_cleared() -> None:
-    scene = scenes.load("lwa5-round-step")
+    scene = load_scene("lwa5-round-step")
     driven = [(0.0, 0.102, 0.0), (1.0, 0.252, 0.0), (1.2, 0.252, 0.0)]
     wheels = [(0.0, 0.0, 0.0)] * 5
     assert scene.cleared(Motion.of(range(3), [[pose, *wheels] for pose in driven]))
@@ -208,9 +207,9 @@ def test_a_robot_that_flies_off_has_not_cleared() -> None:
 
 @pytest.mark.parametrize("name", ["lwa5-gear-step", "cwa24-round-field"])
 def test_it_agrees_with_what_crawler2d_sees(name: str) -> None:
-    scene, engine = scenes.load(name), Crawler2D()
+    scene, engine = load_scene(name), Crawler2D()
     motion = engine.record(scene, engine.defaults, 6.0, 1e-3)
     # A gap is followed along its normal of the middle of the step: a corner that closely turns
     # round an edge, 0.2 mm in half a step, is off by some 10 um.
-    assert geometry.penetration(scene, motion) == pytest.approx(motion.penetration, abs=2e-5)
-    assert geometry.joint_gap(scene, motion) < 1e-12
+    assert deepest_overlap(scene, motion) == pytest.approx(motion.penetration, abs=2e-5)
+    assert joint_gap(scene, motion) < 1e-12

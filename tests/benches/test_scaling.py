@@ -9,8 +9,9 @@ import pytest
 
 import crawler2d as c2d
 from benches.scaling import plot, report, scenes
+from benches.scaling.report import curves
 from benches.scaling.scenes import Point
-from benches.scaling.slopes import curves
+from benches.shared.measuring import write_parts
 from crawler2d.parameters.terrain import Points, Terrain
 from research.markdown import spliced
 
@@ -88,8 +89,14 @@ def result() -> dict[str, Any]:
     }
 
 
-def test_the_page_tells_what_it_is_given() -> None:
-    text = report.render(result())
+def test_the_report_has_what_it_is_given_and_the_page_what_it_shows(tmp_path: Path) -> None:
+    page, whole = tmp_path / "page.md", tmp_path / "report.md"
+    page.write_text("# Title\n\n<!-- wheels -->\nold\n<!-- end of wheels -->\n", encoding="utf-8")
+    write_parts(report.render(result()), page, whole)
+    text = page.read_text(encoding="utf-8")
+    assert text.startswith("# Title\n\n<!-- wheels -->\n\nCells: ms per")
+    assert "old" not in text
+    text = whole.read_text(encoding="utf-8")
     for part in ("2026-01-02", "in 2 minutes", "Abacus 7", "crawler2d (1.2.3)", "unknown"):
         assert part in text
     assert "| line, round | 3 to 96; 1.00, 1.00 |" in text
@@ -103,9 +110,9 @@ def test_the_page_tells_what_it_is_given() -> None:
 
 def test_the_page_has_a_place_for_each_part() -> None:
     page = (Path(__file__).parents[2] / "docs" / "studies" / "scaling.md").read_text("utf-8")
-    parts = report.parts(result())
-    assert "| line, round | 3 to 96; 1.00, 1.00 |" in parts["wheels"]
-    assert all(text in spliced(page, parts) for text in parts.values())
+    parts = report.render(result())
+    shown = [parts["measured"], parts["wheels"]]
+    assert all(text in spliced(page, parts) for text in shown)
 
 
 def prose(text: str) -> Sequence[str]:

@@ -1,0 +1,1 @@
+"""One adapter for each physics engine, and what the adapters are given."""

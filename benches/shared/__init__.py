@@ -1,0 +1,1 @@
+"""What several programs use: stored results, and measurements of time."""

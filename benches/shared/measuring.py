@@ -1,0 +1,153 @@
+"""Timing of several jobs in turns, pools of processes, the machine, and the parts of a page."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import platform
+import statistics
+import sys
+import textwrap
+import time
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack, contextmanager
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from research.markdown import markdown_table, spliced
+
+Key = TypeVar("Key", bound=Hashable)
+
+_SPINS = 2_000_000
+
+
+class Time(NamedTuple):
+    """[s] Times of several repeats of a job."""
+
+    least: float
+    median: float
+
+
+def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[Key, Time]:
+    """Time all jobs once, then all of them again, so that disturbances affect all of them.
+
+    Parameters
+    ----------
+    jobs : mapping of callables
+        Each does its job and returns the seconds [s] it took.
+    repeats : int
+        Number of rounds.
+    """
+    rounds = [{key: job() for key, job in jobs.items()} for _ in range(repeats)]
+    return {
+        key: Time(min(r[key] for r in rounds), statistics.median(r[key] for r in rounds))
+        for key in jobs
+    }
+
+
+@contextmanager
+def pools(
+    counts: Sequence[int], warm: Callable[[int], None]
+) -> Iterator[dict[int, ProcessPoolExecutor]]:
+    """Open one pool per number of processes; each process has run `warm`."""
+    context = get_context("spawn")
+    with ExitStack() as stack:
+        opened = {n: stack.enter_context(ProcessPoolExecutor(n, context)) for n in counts}
+        for count, pool in opened.items():
+            list(pool.map(warm, range(4 * count)))
+        yield opened
+
+
+def spread(pool: ProcessPoolExecutor, work: Callable[[Any], None], tasks: Sequence[Any]) -> float:
+    """[s] Run all tasks in a pool."""
+    start = time.perf_counter()
+    list(pool.map(work, tasks))
+    return time.perf_counter() - start
+
+
+def spin(pool: ProcessPoolExecutor, loops: int) -> float:
+    """[s] Run counting loops in a pool, which show the gain by more cores."""
+    return spread(pool, _count, [_SPINS] * loops)
+
+
+def _count(down: int) -> None:
+    while down > 0:
+        down -= 1
+
+
+def machine(versions: Mapping[str, str]) -> dict[str, Any]:
+    """Describe the processor, its load, the interpreter and the measured versions."""
+    return {
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "versions": dict(versions),
+    }
+
+
+def _processor() -> str:
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    return platform.processor() or "unknown"
+
+
+def sentence(machine: Mapping[str, Any], wall: float) -> str:
+    """Write what `machine` returned, and how long [s] the measurement took."""
+    versions = ", ".join(f"{name} ({version})" for name, version in machine["versions"].items())
+    load = "unknown" if machine["load"] is None else f"{machine['load']:.1f}"
+    return (
+        f"Measured on {machine['date']} in {wall / 60.0:.0f} minutes: {machine['processor']},"
+        f" {machine['cores']} cores, load {load} at the beginning, {machine['system']},"
+        f" Python {machine['python']}. Versions: {versions}."
+    )
+
+
+def write_parts(
+    parts: Mapping[str, str], page: Path | None = None, report: Path | None = None
+) -> None:
+    """Print the parts of a study, write all of them into a report, and some into a page.
+
+    The page has marks for those that it shows.
+    """
+    parts = {name: "\n\n".join(map(_wrapped, part.split("\n\n"))) for name, part in parts.items()}
+    text = "\n\n".join(f"## {name}\n\n{part}" for name, part in parts.items()) + "\n"
+    sys.stdout.write(text)
+    if report is not None:
+        report.write_text(text, encoding="utf-8", newline="\n")
+    if page is not None:
+        written = spliced(page.read_text(encoding="utf-8"), parts)
+        page.write_text(written, encoding="utf-8", newline="\n")
+
+
+def _wrapped(block: str) -> str:
+    """Wrap a paragraph, because figures change its length."""
+    is_paragraph = not block.startswith(("|", "#", "-", "!"))
+    return textwrap.fill(block, 100, break_on_hyphens=False) if is_paragraph else block
+
+
+def table(rows: Iterable[Mapping[str, str]]) -> str:
+    """Write a table of rows with the same keys, which are its head."""
+    rows = list(rows)
+    return markdown_table(list(rows[0]), [list(row.values()) for row in rows]) if rows else "None."
+
+
+def quantiles(values: Sequence[float], form: str = ".2g") -> str:
+    """Write the median and the 90th percentile, if there are values."""
+    found = np.quantile(values, (0.5, 0.9)) if len(values) else ()
+    return ", ".join(f"{each:{form}}" for each in found)
+
+
+def millimetres(length: float, least: float = 0.0) -> str:
+    """Write a length in mm with two digits; 0 below `least` [mm]."""
+    value = 1e3 * length
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.2g}" if value >= least else "0"
