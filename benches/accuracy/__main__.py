@@ -86,7 +86,12 @@ def main(arguments: list[str] | None = None) -> None:
             plot.plot(study, folder)
             cells = report.table_of_cells(study)
             (folder / "cells.csv").write_text(cells, encoding="utf-8", newline="\n")
-            write_parts(parts, **{"report" if given.quick else "page": given.page})
+            has_marks = given.page.exists() and not given.quick
+            write_parts(
+                parts,
+                page=given.page if has_marks else None,
+                report=None if has_marks else given.page,
+            )
 
 
 def _run(given: argparse.Namespace, store: Store) -> None:

@@ -6,7 +6,6 @@ Robots are the Engineer with different track models, motors and flippers.
 from __future__ import annotations
 
 import json
-import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -16,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 import crawler2d as c2d
+from benches.shared.results import write_rows
 from crawler2d import Robot, Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
@@ -321,8 +321,4 @@ def read(path: Path) -> list[Cell]:
 
 def write(path: Path, cells: Sequence[Cell]) -> None:
     """Write a set of cells, one line each; the file is complete at any time."""
-    lines = ",\n".join(json.dumps(asdict(cell)) for cell in cells)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_suffix(".new")
-    new.write_text(f"[\n{lines}\n]\n", encoding="utf-8")
-    os.replace(new, path)
+    write_rows(path, map(asdict, cells))

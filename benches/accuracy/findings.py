@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -267,9 +267,12 @@ def cell_verdicts(study: Study) -> list[CellVerdict]:
     ]
 
 
-def models(cells: Sequence[CellVerdict]) -> dict[str, list[CellVerdict]]:
+OfCell = TypeVar("OfCell", Finding, CellVerdict)
+
+
+def models(cells: Sequence[OfCell]) -> dict[str, list[OfCell]]:
     """Group cells by model, in the order of the kinds."""
-    groups: dict[str, list[CellVerdict]] = {}
+    groups: dict[str, list[OfCell]] = {}
     for each in cells:
         groups.setdefault(each.cell.what.model, []).append(each)
     return groups

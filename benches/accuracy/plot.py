@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from benches.accuracy.findings import Finding, Study, size_of_difference
+from benches.accuracy.findings import Finding, Study, models, size_of_difference
 from benches.shared.figures import COLORS, GREY, light_grid, save
 
 _COLUMNS = 5
@@ -80,9 +80,7 @@ def _all(study: Study) -> Figure:
 
 def _models(study: Study, name: str) -> Figure:
     """Draw one panel for each model."""
-    groups: dict[str, list[Finding]] = {}
-    for each in study.findings:
-        groups.setdefault(each.cell.what.model, []).append(each)
+    groups = models(study.findings)
     rows = max(1, math.ceil(len(groups) / _COLUMNS))
     figure = Figure(figsize=(10.0, 0.9 + 1.7 * rows), layout="constrained")
     grid = figure.subplots(rows, _COLUMNS, sharex=True, sharey=True, squeeze=False)

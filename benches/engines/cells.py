@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import json
-import os
 import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -17,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 import crawler2d as c2d
+from benches.shared.results import write_rows
 from crawler2d.parameters.terrain import RandomStepfield, Terrain
 from crawler2d.parameters.track import Track
 
@@ -215,10 +215,7 @@ def read_cells(path: Path = CELLS) -> list[Cell]:
 
 def write_cells(cells: Sequence[Cell], path: Path = CELLS) -> None:
     """Write cells, one line each; the file is complete at any time."""
-    lines = ",\n".join(json.dumps(asdict(cell)) for cell in cells)
-    new = path.with_suffix(".new")
-    new.write_text(f"[\n{lines}\n]\n", encoding="utf-8")
-    os.replace(new, path)
+    write_rows(path, map(asdict, cells))
 
 
 _HEIGHTS = (0.4, 0.55, 0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8)

@@ -24,9 +24,9 @@ from benches.engines.runs import (
     pairs,
     predictions,
 )
-from benches.shared.measuring import quantiles
+from benches.shared.measuring import quantiles, rate
 from benches.shared.results import read, table_of
-from crawler2d import newcombe, wilson
+from crawler2d import newcombe
 from research.markdown import markdown_table
 
 
@@ -49,21 +49,19 @@ def same_outcome(of: Iterable[tuple[Cell, Run, Run]]) -> str:
     return f"{sum(same)} of {len(same)}" if same else ""
 
 
-def rate(runs: Sequence[Run]) -> str:
-    """Return how many runs clear, and Wilson's 95 % interval of that rate in percent.
+def rate_of(runs: Sequence[Run]) -> str:
+    """Return the rate at which runs clear, if there are any and the engine takes their robot.
 
     Examples
     --------
-    >>> rate([{"end": "cleared"}, {"end": "stopped"}])
+    >>> rate_of([{"end": "cleared"}, {"end": "stopped"}])
     '1/2 (9 to 91)'
     """
     if not runs:
         return ""
     if runs[0]["end"].startswith("refused"):
         return "refused"
-    interval = wilson(cleared(runs), len(runs))
-    low, high = (100.0 * end for end in (interval.low, interval.high))
-    return f"{cleared(runs)}/{len(runs)} ({low:.0f} to {high:.0f})"
+    return rate(cleared(runs), len(runs))
 
 
 Results = Mapping[str, Runs]
@@ -198,8 +196,8 @@ def _space(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     rows = []
     for cell in sorted(cells, key=lambda cell: GROUNDS.index(cell.ground)):
         row = [cell.ground, cell.model, f"{1e3 * cell.height:.4g}", f"{cell.friction:g}"]
-        row.append(rate(predicted[cell.label]))
-        rows.append([*row, *(rate(runs.get(cell.label, ())) for runs in columns.values())])
+        row.append(rate_of(predicted[cell.label]))
+        rows.append([*row, *(rate_of(runs.get(cell.label, ())) for runs in columns.values())])
     head = ["ground", "model", "mm", "friction", "crawler2d: no yaw, no roll"]
     return markdown_table([*head, *columns], rows)
 
@@ -209,8 +207,8 @@ def _paper(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     rows = []
     for cell in cells:
         row = [cell.model, f"{cell.ground} of {1e3 * cell.height:g} mm"]
-        row.append(rate(predicted[cell.label]))
-        rows.append([*row, *(rate(runs.get(cell.label, ())) for runs in results.values())])
+        row.append(rate_of(predicted[cell.label]))
+        rows.append([*row, *(rate_of(runs.get(cell.label, ())) for runs in results.values())])
     return markdown_table(["model", "ground", "crawler2d", *results], rows)
 
 
@@ -219,8 +217,8 @@ def _cells(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     rows = []
     for cell in cells:
         row = [cell.robot, cell.model, cell.drive, cell.ground]
-        row += [f"{1e3 * cell.height:.4g}", f"{cell.friction:g}", rate(predicted[cell.label])]
-        rows.append([*row, *(rate(runs.get(cell.label, ())) for runs in results.values())])
+        row += [f"{1e3 * cell.height:.4g}", f"{cell.friction:g}", rate_of(predicted[cell.label])]
+        rows.append([*row, *(rate_of(runs.get(cell.label, ())) for runs in results.values())])
     head = ["robot", "model", "motors", "ground", "mm", "friction", "crawler2d"]
     return markdown_table([*head, *results], rows)
 

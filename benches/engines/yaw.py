@@ -15,8 +15,9 @@ from benches.adapters.ground import turned
 from benches.adapters.space import load, scene_of
 from benches.engines.cells import DRIVES, ROBOTS, with_motors
 from benches.engines.runs import run_in
+from benches.shared.measuring import rate
 from benches.shared.results import Results, progress
-from crawler2d import Diagnosis, Scenario, simulate_many, wilson
+from crawler2d import Diagnosis, Scenario, simulate_many
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
 from research.markdown import markdown_table
@@ -146,7 +147,7 @@ def _verdict(jam: Jam, yaw: int) -> str:
 def _row(jams: Sequence[Jam], counts: Callable[[Jam, int], bool]) -> list[str]:
     base = [jam for jam in jams if counts(jam, 0)]
     numbers = [sum(counts(jam, yaw) for jam in base) for yaw in _YAWS[1:]]
-    return [_rate(len(base), len(jams)), *(_rate(count, len(base)) for count in numbers)]
+    return [rate(len(base), len(jams)), *(rate(count, len(base)) for count in numbers)]
 
 
 def _draw(track: Track, draw: np.random.Generator) -> tuple[str, Scenario]:
@@ -169,8 +170,3 @@ def _draw(track: Track, draw: np.random.Generator) -> tuple[str, Scenario]:
     )
     where = f"{ground} of {1e3 * height:.4g} mm, friction {friction:.3g}"
     return f"{name}; {drive}; {where}", scenario
-
-
-def _rate(count: int, of: int) -> str:
-    interval = wilson(count, of)
-    return f"{count}/{of} ({100.0 * interval.low:.0f} to {100.0 * interval.high:.0f})"

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from crawler2d import wilson
 from research.markdown import markdown_table, spliced
 
 Key = TypeVar("Key", bound=Hashable)
@@ -139,6 +140,18 @@ def table(rows: Iterable[Mapping[str, str]]) -> str:
     """Write a table of rows with the same keys, which are its head."""
     rows = list(rows)
     return markdown_table(list(rows[0]), [list(row.values()) for row in rows]) if rows else "None."
+
+
+def rate(count: int, of: int) -> str:
+    """Write a rate with Wilson's 95 % interval of it in percent.
+
+    Examples
+    --------
+    >>> rate(1, 2)
+    '1/2 (9 to 91)'
+    """
+    interval = wilson(count, of)
+    return f"{count}/{of} ({100.0 * interval.low:.0f} to {100.0 * interval.high:.0f})"
 
 
 def quantiles(values: Sequence[float], form: str = ".2g") -> str:

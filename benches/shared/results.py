@@ -42,9 +42,13 @@ def read_text(path: Path) -> str:
 
 def write_text(path: Path, text: str) -> None:
     """Compress text into a file, whose old content stays until the new one is complete."""
+    _replace(path, lzma.compress(text.encode("utf-8")))
+
+
+def _replace(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_suffix(".new")
-    new.write_bytes(lzma.compress(text.encode("utf-8")))
+    new.write_bytes(data)
     os.replace(new, path)
 
 
@@ -56,6 +60,12 @@ def read(path: Path, missing: Any = None) -> Any:
 def write(path: Path, data: Any) -> None:
     """Write JSON into a file."""
     write_text(path, json.dumps(data) + "\n")
+
+
+def write_rows(path: Path, rows: Iterable[Any]) -> None:
+    """Write a list as JSON, one line each, without compression."""
+    lines = ",\n".join(map(json.dumps, rows))
+    _replace(path, f"[\n{lines}\n]\n".encode())
 
 
 def table_of(path: Path, write: Callable[[Any], str]) -> str:

@@ -37,7 +37,7 @@ from benches.engines.runs import (
     pairs,
     predictions,
 )
-from benches.engines.table import apart, rate, same_outcome
+from benches.engines.table import apart, rate_of, same_outcome
 from benches.models import runs as file_runs
 from benches.shared.results import read, write
 from crawler2d.parameters.scenario import Scenario
@@ -281,9 +281,9 @@ def test_ode_has_the_geometry_of_the_robot_and_pushes_it_up_no_farther_than_gaze
 
 def test_rates_have_their_intervals_and_pairs_the_same_draw() -> None:
     stops, clears = {"end": "stopped"}, {"end": "cleared"}
-    assert rate([clears] * 8) == "8/8 (68 to 100)"  # Wilson, 95 %
-    assert rate([]) == ""
-    assert rate([{"end": "refused: robot.track"}]) == "refused"
+    assert rate_of([clears] * 8) == "8/8 (68 to 100)"  # Wilson, 95 %
+    assert rate_of([]) == ""
+    assert rate_of([{"end": "refused: robot.track"}]) == "refused"
     found = list(pairs([CELL], {CELL.label: [stops, clears, clears]}, {CELL.label: [stops, stops]}))
     assert len(found) == 2
     assert same_outcome(found) == "1 of 2"

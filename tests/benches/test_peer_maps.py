@@ -1,5 +1,6 @@
 """benches/peers: a drawn scene follows the scenario it is made of, and the report the figures."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from benches.adapters.planar import Scene, load_scene
 from benches.peers import maps
 from benches.peers.maps import scene_of
 from crawler2d.parameters.scenario import Scenario
+from research.markdown import spliced
 
 NOMINAL, BASE = load_scene("lwa5-round-step"), nominal("lwa5-round-step")
 
@@ -89,7 +91,10 @@ def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> 
         "loops": loops,
         "agrees": 0.99,
     }
-    text = " ".join(" ".join(maps.render(found).values()).split())
+    parts = maps.render(found)
+    page = (Path(__file__).parents[2] / "docs" / "studies" / "maps.md").read_text("utf-8")
+    assert all(text in spliced(page, parts) for text in parts.values())
+    text = " ".join(" ".join(parts.values()).split())
     assert "100 runs a second" in text
     assert "3.0 % of the time" in text
     assert "is fine: 50.0 ms a run, **5.0 times** crawler2d's 10.0 ms" in text
