@@ -100,7 +100,7 @@ class StandingChildren:
     def run(self, command: list[str], **how: Any) -> subprocess.CompletedProcess[Any]:
         """Take the place of `subprocess.run`, which starts whatever else is asked for."""
         program = command[-1]
-        if command[:-1] != [sys.executable, "-P", "-m"] or not program.endswith("_child"):
+        if command[:-1] != [sys.executable, "-P", "-m"] or not program.startswith("crawler2d."):
             return self.start(command, **how)
         if program not in self.children:
             self.children[program] = StandingChild(program)

@@ -173,7 +173,7 @@ def meshes_of(form: str) -> dict[str, bytes]:
 @MESH_FORMS
 def test_a_mutated_mesh_is_read_or_left_out(tmp_path: Path, form: str) -> None:
     """What is left out are wheels, so the model is refused."""
-    with StandingChild("crawler2d.reading.mesh_child") as standing:
+    with StandingChild("crawler2d.reading.meshes") as standing:
         count = cases("MESHES", 100)
         how: dict[str, Any] = {"models": ON_MESHES, "mesh": "hull"}
         check(go_through(tmp_path, count, meshes_of(form), standing, **how))
@@ -182,7 +182,7 @@ def test_a_mutated_mesh_is_read_or_left_out(tmp_path: Path, form: str) -> None:
 @pytest.mark.soak
 @MESH_FORMS
 def test_20000_mutated_meshes_are_read_or_left_out(tmp_path: Path, form: str) -> None:
-    with StandingChild("crawler2d.reading.mesh_child") as standing:
+    with StandingChild("crawler2d.reading.meshes") as standing:
         count = cases("MESHES", 20_000)
         how: dict[str, Any] = {"models": ON_MESHES, "mesh": "hull"}
         check(go_through(tmp_path, count, meshes_of(form), standing, **how))
@@ -204,7 +204,7 @@ def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path, trusted: bool) 
 def test_20000_mutated_mjcf_files_are_read_or_refused(tmp_path: Path) -> None:
     """Each in a fork of a child that stands ready, under the limits of any child."""
     pytest.importorskip("mujoco")
-    with StandingChild("crawler2d.reading.mjcf_child") as standing:
+    with StandingChild("crawler2d.reading.mjcf") as standing:
         check(go_through(tmp_path, cases("MJCF", 20_000), MJCF, standing))
 
 
@@ -213,7 +213,7 @@ def test_20000_mutated_mjcf_files_are_read_or_refused(tmp_path: Path) -> None:
 def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path, trusted: bool) -> None:
     pytest.importorskip("xacrodoc")
     how = {"trusted": trusted, **LENIENT}
-    with StandingChild("crawler2d.reading.xacro_child") as standing:
+    with StandingChild("crawler2d.reading.xacro") as standing:
         count = cases("XACRO", 20_000)
         check(go_through(tmp_path, count, XACRO, standing, parts=NAMED_BY_XACRO, **how))
 
@@ -222,7 +222,7 @@ def test_a_child_that_stands_ready_is_ended_as_any_other(tmp_path: Path) -> None
     pytest.importorskip("xacrodoc")
     path = tmp_path / "loop.xacro"
     path.write_text(LOOP)
-    with StandingChild("crawler2d.reading.xacro_child") as standing:
+    with StandingChild("crawler2d.reading.xacro") as standing:
         for _ in range(2):  # the next one is answered again
             with pytest.raises(c2d.ScenarioError, match=r"loop\.xacro must be understood in 2 s"):
                 c2d.read_robot(path, trusted=True)

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.drive import ACTUATORS
-from crawler2d.reading.options import ENGINES
+from crawler2d.reading.engines import ACTUATORS, ENGINES
 from tests.reading.carts import FILES, SIDES, pair, read, urdf
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from crawler2d.reading.drive import ACTUATORS
+from crawler2d.reading.engines import ACTUATORS
 
 INERTIA, RATE, TORQUE, STEPS, STEP = 0.01, 10.0, 1.0, 50, 1e-3
 USUAL = {"effort": TORQUE, "velocity": 100.0, "damping": 0.0, "friction": 0.0, "armature": 0.0}

@@ -89,7 +89,7 @@ def test_a_hostile_expression_is_refused_at_once(text: str) -> None:
 @pytest.fixture(scope="module")
 def standing() -> Iterator[StandingChild]:
     pytest.importorskip("xacrodoc")
-    with StandingChild("crawler2d.reading.xacro_child") as child:
+    with StandingChild("crawler2d.reading.xacro") as child:
         yield child
 
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.options import How
-from crawler2d.reading.reading import tree_of
+from crawler2d.reading.loading import How, tree_of
 from crawler2d.reading.surfaces import refuse_unread
 from tests.reading.carts import (
     FILES,

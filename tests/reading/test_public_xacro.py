@@ -15,7 +15,7 @@ import crawler2d as c2d
 from crawler2d.reading.elements import parsed
 from crawler2d.reading.files import VARIABLES, Files
 from crawler2d.reading.log import Doubt
-from crawler2d.reading.urdf import expanded
+from crawler2d.reading.xacro import expanded
 from tests.reading.carts import WHEELS, XACRO, collision, read, refused, urdf
 from tests.robots.tree_keys import Key, keys
 

@@ -8,8 +8,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.model_tree import Joint, Link, Shape, Tree
-from crawler2d.reading.options import How
-from crawler2d.reading.reading import tree_of as tree_in
+from crawler2d.reading.loading import How
+from crawler2d.reading.loading import tree_of as tree_in
 from crawler2d.writing.formats import MJCF, SDF, URDF
 from tests.writing.test_checkers import BELTED, WHEELED
 from tests.writing.test_engines import TAPERED

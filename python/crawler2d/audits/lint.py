@@ -12,9 +12,9 @@ import numpy as np
 from crawler2d.model_tree import Joint, Link, Where
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
+from crawler2d.reading.loading import size_of
 from crawler2d.reading.log import lines, named
 from crawler2d.reading.reading import Reading
-from crawler2d.reading.surfaces import size_of
 from crawler2d.reading.wheels import farthest
 
 __all__ = [

@@ -25,9 +25,9 @@ from crawler2d.parameters.terrain import (
     Terrain,
 )
 from crawler2d.presets.unknowns import of_ground, of_robot
-from crawler2d.reading.options import Engine
+from crawler2d.reading.engines import Engine
+from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.reading import Reading, read_robot
-from crawler2d.reading.shapes import MeshRule
 from crawler2d.variation.distributions import Distribution, Levels, Ranges, scaled, shifted, uniform
 from crawler2d.variation.variability import of_contact, of_field, of_start
 

@@ -26,8 +26,9 @@ from crawler2d.audits.runs import Live
 from crawler2d.audits.text import Linted, linted, plain_of
 from crawler2d.audits.verdicts import least_samples
 from crawler2d.errors import LimitError, ScenarioError, StoreError
-from crawler2d.reading.options import ENGINES, TOLERANCE
-from crawler2d.reading.shapes import MeshRule
+from crawler2d.reading.engines import ENGINES
+from crawler2d.reading.loading import TOLERANCE
+from crawler2d.reading.meshes import MeshRule
 
 __all__ = [
     "add_arguments",

@@ -29,7 +29,7 @@ from crawler2d.reading.reading import Reading, read_text
 from crawler2d.reading.tracks import FIT
 from crawler2d.writing.document import Document, Span
 
-__all__ = ["Patch", "labelled", "patched"]
+__all__ = ["labelled", "patched"]
 
 _FORMS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
     "SDF": change_sdf,

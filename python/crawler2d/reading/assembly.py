@@ -9,13 +9,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import Array, Link, Pose, Shape, Tree
+from crawler2d.model_tree import Array, Link, Pose, Shape, Tree, Where
 from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
-from crawler2d.reading.drive import drivetrain_of
+from crawler2d.reading.engines import combined, drivetrain_of
 from crawler2d.reading.flippers import ArmPair, AtEnd, arm_pairs, arms_at, flippers_of
 from crawler2d.reading.log import Telling, estimate, lines, named, place_of
-from crawler2d.reading.options import combined
 from crawler2d.reading.running_gear import (
     Pair,
     SideView,
@@ -38,17 +37,7 @@ from crawler2d.reading.tracks import (
 )
 from crawler2d.reading.wheels import Runner, RunningGear
 
-__all__ = [
-    "Assembly",
-    "Sum",
-    "assembled",
-    "belly_of",
-    "bent_round",
-    "circulating",
-    "frame_of",
-    "outline_of",
-    "summed",
-]
+__all__ = ["Assembly", "Silhouette", "assembled", "silhouettes"]
 
 _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorter.
 
@@ -249,7 +238,11 @@ def circulating(pairs: list[Pair]) -> tuple[float, bool]:
 
 
 _SHOWN = 4  # names of links in a doubt
+
+
 _LEAST_MOVING = 0.001  # [kg] The least that a robot can have.
+
+
 _MOVING_SHARE = 0.01  # of the mass, for a surface that moves without mass in its file
 
 
@@ -518,3 +511,39 @@ def _holding_torque(mass: float, radius: float) -> float:
 def _named(direction: np.ndarray[tuple[int]]) -> str:
     axis = int(np.argmax(np.abs(direction)))
     return f"{'+' if direction[axis] > 0.0 else '-'}{'xyz'[axis]}"
+
+
+_DRAWN_CHORDS = 64  # the same where it is looked at; 0.2 %
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Silhouette:
+    """What is seen of a collision shape from the side.
+
+    Parameters
+    ----------
+    link : str
+        The link that it is a shape of.
+    kind : str
+        As in `Shape`.
+    outline : ndarray, shape (n, 2)
+        [m] Its corners in the frame of the chassis, counter-clockwise; circles as polygons.
+    at : Where
+        Its line.
+    """
+
+    link: str
+    kind: str
+    outline: Array
+    at: Where
+
+
+def silhouettes(tree: Tree, view: SideView, base: Base) -> tuple[Silhouette, ...]:
+    """Return what is seen of every collision shape, with all joints at zero."""
+    found = []
+    for link in tree.links:
+        for shape in link.shapes:
+            corners = hull(base.of(silhouette(shape, view, _DRAWN_CHORDS)))
+            outline = np.array(corners).reshape(-1, 2)
+            found.append(Silhouette(link=link.name, kind=shape.kind, outline=outline, at=shape.at))
+    return tuple(found)

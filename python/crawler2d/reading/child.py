@@ -14,7 +14,7 @@ from typing import Any
 
 from crawler2d.errors import ScenarioError
 
-__all__ = ["CLOCK", "MEGABYTES", "SECONDS", "answered", "no_more_files", "serve"]
+__all__ = ["answered", "no_more_files", "serve"]
 
 SECONDS = 2
 """[s] Of computing, after the imports."""

@@ -35,16 +35,7 @@ from typing import Any
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.log import Doubt
 
-__all__ = [
-    "LARGEST_MODEL",
-    "LARGEST_TOGETHER",
-    "MANIFESTS",
-    "VARIABLES",
-    "Files",
-    "Packages",
-    "is_absent",
-    "why",
-]
+__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "VARIABLES", "Files", "is_absent", "why"]
 
 MANIFESTS = ("package.xml", "manifest.xml", "model.config")
 """Files that make a folder a package."""

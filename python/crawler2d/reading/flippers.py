@@ -13,7 +13,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Where
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
-from crawler2d.reading.drive import (
+from crawler2d.reading.engines import (
     FASTEST,
     MARGIN,
     WEIGHT,
@@ -23,13 +23,19 @@ from crawler2d.reading.drive import (
     tell_ignored,
     tell_lost,
 )
-from crawler2d.reading.gear_wheels import is_same_wheel
 from crawler2d.reading.log import Telling, estimate, lines, place_of
 from crawler2d.reading.running_gear import Pair, SideView, centers, is_belted, paired
-from crawler2d.reading.tracks import BELT_TOLERANCE, Base, belt_ends, silhouette, wheels_of
+from crawler2d.reading.tracks import (
+    BELT_TOLERANCE,
+    Base,
+    belt_ends,
+    is_same_wheel,
+    silhouette,
+    wheels_of,
+)
 from crawler2d.reading.wheels import Arm, Runner
 
-__all__ = ["ArmPair", "AtEnd", "arm_pairs", "arms_at", "at_end", "flippers_of", "refuse_unlike"]
+__all__ = ["ArmPair", "AtEnd", "arm_pairs", "arms_at", "flippers_of"]
 
 _NEAR = 0.05
 """[-] How far a pivot may be from the end axle, as a share of the axle distance."""

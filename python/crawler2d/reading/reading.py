@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,103 +14,15 @@ from crawler2d.drawings.svg import table
 from crawler2d.errors import ScenarioError, ScenarioWarning, warn
 from crawler2d.model_tree import Pose, Tree
 from crawler2d.parameters.robot import Robot
-from crawler2d.reading.assembly import Assembly, assembled
-from crawler2d.reading.elements import parsed
+from crawler2d.reading.assembly import Assembly, Silhouette, assembled, silhouettes
+from crawler2d.reading.engines import ENGINES, Engine
 from crawler2d.reading.files import Files
-from crawler2d.reading.log import Doubt, Sources, noted
-from crawler2d.reading.mjcf import read_mjcf
-from crawler2d.reading.options import ENGINES, TOLERANCE, Engine, How, scaled
-from crawler2d.reading.sdf import read_sdf
-from crawler2d.reading.shapes import Meshes, MeshRule
-from crawler2d.reading.surfaces import bounded, refuse_unread
-from crawler2d.reading.tracks import Silhouette, silhouettes
-from crawler2d.reading.urdf import expanded, read_urdf
+from crawler2d.reading.loading import TOLERANCE, How, tree_of
+from crawler2d.reading.log import Sources, noted
+from crawler2d.reading.meshes import MeshRule
+from crawler2d.reading.surfaces import refuse_unread
 
-__all__ = ["Found", "Reading", "read_robot", "read_text", "tree_of"]
-
-_MOST_SHAPES = 3000  # collisions; the public models have at most 67
-
-
-@dataclass(slots=True)
-class Found:
-    """A tree with the text that its lines are those of, and what the reader did without.
-
-    Parameters
-    ----------
-    tree : Tree
-        The model.
-    text : str
-        The file, or what it expands to.
-    doubts : list of Doubt
-        What was left out or replaced, with its line.
-    """
-
-    tree: Tree
-    text: str
-    doubts: list[Doubt] = field(default_factory=list)
-
-
-def tree_of(data: bytes, path: Path, how: How) -> Found:
-    """Read what a file holds.
-
-    Parameters
-    ----------
-    data : bytes
-        What it holds, or would hold.
-    path : Path
-        Where it is: its name is that of the lines, and names in it are relative to its folder.
-    how : How
-        The keywords of `read_robot`.
-
-    Raises
-    ------
-    ScenarioError
-        If it breaks a rule of its format, or needs what is not there; what was left out before is
-        in its notes.
-    """
-    name, files = path.name, Files(path, how.packages)
-    doubts: list[Doubt] = []
-    if path.suffix == ".xacro":
-        data, doubts = expanded(
-            files,
-            data,
-            parsed(data, name),  # entities are refused before anything else reads the file
-            trusted=how.trusted,
-            arguments=how.arguments,
-            leave_out=how.leaves_out_missing,
-        )
-        name = f"{name} (expanded)"
-    with noted(doubts):
-        root = parsed(data, name)
-        if how.scale not in (None, 1.0):
-            if root.tag not in ("sdf", "robot"):
-                rule = "must be 1 for MJCF: <compiler> and its defaults say what its lengths are"
-                raise ScenarioError("scale", how.scale, rule)
-            data = scaled(data, how.scale, name)
-            root = parsed(data, name)
-        shapes = [element for element in root.within() if element.tag in ("collision", "geom")]
-        if len(shapes) > _MOST_SHAPES:
-            rule = f"must have at most {_MOST_SHAPES} collision shapes"
-            shapes[_MOST_SHAPES].refuse(len(shapes), rule)
-        text = data.decode("utf-8", errors="replace")
-        meshes = Meshes(rule=how.mesh, files=files, doubts=doubts)
-        if root.tag == "sdf":
-            tree = read_sdf(root, how.model, meshes, doubts)
-        elif root.tag == "robot":
-            tree = read_urdf(
-                root,
-                meshes,
-                doubts,
-                leave_out=how.leaves_out_missing,
-                is_bullet=how.engine == "bullet",
-            )
-        elif root.tag == "mujoco":
-            tree = read_mjcf(root, text, how.model, meshes)
-        else:
-            root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
-        tree = bounded(tree, doubts)
-    return Found(tree, text, doubts + files.doubts)
-
+__all__ = ["Reading", "read_robot", "read_text"]
 
 _SHOWN = 12  # wheels in the text of a reading
 

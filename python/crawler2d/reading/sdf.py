@@ -23,20 +23,24 @@ from crawler2d.model_tree import (
     unit,
 )
 from crawler2d.reading.elements import Element, real
-from crawler2d.reading.joints import (
+from crawler2d.reading.log import Doubt
+from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.parts import (
     carrying,
     checked,
+    collisions,
     driven_by,
+    inertia,
     joint_of,
     moving,
     named_tracks,
     plugin_of,
     settled,
+    shape_of,
+    solid,
 )
-from crawler2d.reading.log import Doubt
-from crawler2d.reading.shapes import Meshes, collisions, inertia, shape_of, solid
 
-__all__ = ["MODEL", "Frames", "pose_of", "read_sdf"]
+__all__ = ["MODEL", "read_sdf"]
 
 MODEL = "__model__"
 

@@ -1,43 +1,49 @@
-"""Surfaces that move: those that a file moves, and drums that stand for a track it does not move.
+"""Surfaces that move: those that a file moves, and drums of a track that it does not move.
 
 Many models have the drums of a track as fixed cylinders, and leave it to a controller elsewhere, or
-to one sprocket among them, to move what runs round them. That such drums are a track is told from
-where they are, and always doubted: a simulator that only has the file lets them slide.
+to one sprocket among them, to move the belt. That such drums carry a track is inferred from their
+places, with a warning: a simulator that has only the file lets them slide.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Link, Shape, Tree
-from crawler2d.reading.joints import moved_links
 from crawler2d.reading.log import Doubt, named
+from crawler2d.reading.parts import moved_links
 from crawler2d.reading.wheels import (
     below,
     corners_of,
-    farthest,
     is_parallel,
     radius_about,
     wheel_of,
 )
 
-__all__ = ["Surfaces", "bounded", "refuse_unread", "size_of", "surfaces_of"]
+__all__ = ["Surfaces", "refuse_unread", "surfaces_of"]
 
 _SAME = 0.002
 """[m] By how much a drum may differ in side view from its partner on the other side."""
 
+
 _APART = 0.01
 """[m] Drums nearer than this are one: a belt round them would have no length."""
+
 
 _BELOW = 0.01
 """[m] By how much a belly may hang below the drums of a track: less than a boss or a bolt head."""
 
+
 _HORIZONTAL = 0.02  # of the upward part of a direction
+
+
 _SHOWN = 4  # names of links
+
+
 _MOST = 100  # axes that are compared with all
 
 
@@ -232,9 +238,8 @@ def _seen(place: Array, axis: Array) -> Array:
 
 _UPRIGHT = 0.5  # [-] Upward part of an axis from which it is no axle, but that of a lidar, say.
 
+
 _LISTED = 5  # names of links
-_LIGHT = 0.01  # [-] Share of the robot's mass below which a link is light.
-_MATTERS = 0.01  # [-] Share of the robot's moment of inertia from which a false one is doubted.
 
 
 def refuse_unread(tree: Tree) -> None:
@@ -316,71 +321,3 @@ def _refuse(names: list[str], links: dict[str, Link]) -> None:
         " box, or name links whose surface moves with tracks="
     )
     raise ScenarioError(f"{unread.at}: link[{link.name}]", unread.name, rule)
-
-
-def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
-    """Return the tree with no moment of inertia that its mass cannot have inside of the robot.
-
-    One that is larger is doubted, and scaled down to that of the mass on the outermost point of the
-    robot if the link is light and no wheel: files have such where somebody took a figure that an
-    engine does not stumble over. Heavy links, and what turns without limit, keep what their file
-    states. As long as all of them together make no difference to the robot, they stay as they are.
-
-    Parameters
-    ----------
-    tree : Tree
-        The model.
-    doubts : list of Doubt
-        Where they are noted, the worst with its line.
-    """
-    if not any(link.shapes for link in tree.links):
-        return tree
-    size = size_of(tree)
-    whole = sum(link.mass for link in tree.links)
-    hanging = below(tree)
-    turning = {n for child, j in tree.joints.items() if j.is_unlimited for n in hanging[child]}
-    links = []
-    false: dict[bool, list[tuple[float, float, Link]]] = {True: [], False: []}
-    for link in tree.links:
-        largest = float(np.linalg.eigvalsh(link.inertia)[-1])
-        most = link.mass * size**2
-        scale = 1.0
-        if largest > most * (1.0 + 1e-6):
-            is_light = link.mass < _LIGHT * whole
-            if not is_light or link.name not in turning:
-                false[is_light].append((largest, most, link))
-                scale = most / largest if is_light else 1.0
-        links.append(replace(link, inertia=scale * link.inertia))
-    is_same = _largest_moment(tree.links) <= (1.0 + _MATTERS) * _largest_moment(links)
-    for is_light, found in false.items():
-        if not found or (is_light and is_same):
-            continue
-        largest, most, worst = max(found, key=lambda each: each[0])
-        others = [link.name for _, _, link in found if link is not worst]
-        reason = (
-            f"is {f'taken as {most:.3g} kg m^2' if is_light else 'kept'}, but {worst.mass:.3g} kg"
-            f" have at most {most:.3g} kg m^2 within {size:.3g} m, the reach of the robot"
-            f"{f'; likewise those of {named(others, _LISTED)}' if others else ''}"
-        )
-        doubts.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
-    return tree if is_same else replace(tree, links=tuple(links))
-
-
-def _largest_moment(links: Sequence[Link]) -> float:
-    """[kg m^2] Return the largest moment of inertia of all links together."""
-    mass = np.array([link.mass for link in links])
-    away = np.array([link.center for link in links])
-    away -= mass @ away / mass.sum() if mass.sum() > 0.0 else 0.0
-    swung = (mass * (away**2).sum(axis=1)).sum() * np.eye(3) - (mass * away.T) @ away
-    return float(np.linalg.eigvalsh(swung + sum(link.inertia for link in links))[-1])
-
-
-def size_of(tree: Tree) -> float:
-    """[m] Return how far any shape or centre of mass is from the middle of all shapes.
-
-    There must be a shape.
-    """
-    shapes = [shape for link in tree.links for shape in link.shapes]
-    middle = np.mean([shape.pose.place for shape in shapes], axis=0)
-    centers = [float(np.linalg.norm(link.center - middle)) for link in tree.links]
-    return max(*(farthest(shape, middle) for shape in shapes), *centers)

@@ -21,7 +21,6 @@ __all__ = [
     "farthest",
     "grousers_on",
     "is_parallel",
-    "plane_across",
     "radius_about",
     "wheel_of",
 ]

@@ -17,7 +17,7 @@ from crawler2d.reading.elements import parsed
 from crawler2d.reading.files import Files, is_absent
 from crawler2d.reading.log import Doubt
 
-__all__ = ["OWN_OF_URDF", "XacroFiles", "XacroMacros", "place_of", "tree_of_text"]
+__all__ = ["XacroFiles", "XacroMacros"]
 
 # What xacro took as its own without a prefix until 2016, if it has these attributes.
 _OLD = {

@@ -27,9 +27,7 @@ __all__ = [
     "left_of",
     "refuse_tapering",
     "refuse_unheld",
-    "rest",
     "tensor",
-    "track_of",
 ]
 
 # Of the gauge, and of the track: those of Absolem's public model are 97 mm wide at a gauge of

@@ -38,19 +38,7 @@ from crawler2d.writing.formats import (
 from crawler2d.writing.model import Limits, model_of
 from crawler2d.writing.shapes import in_space, lowest
 
-__all__ = [
-    "Ground",
-    "Model",
-    "ModelText",
-    "Name",
-    "Piece",
-    "ground_of",
-    "modelled",
-    "placed_model",
-    "stored",
-    "written",
-    "written_world",
-]
+__all__ = ["written", "written_world"]
 
 Name = Literal["sdf", "urdf", "mjcf"]
 

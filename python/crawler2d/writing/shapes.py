@@ -17,7 +17,6 @@ __all__ = [
     "grousers_of",
     "in_space",
     "lowest",
-    "runs_round",
 ]
 
 _UPRIGHT = from_rpy((-0.5 * math.pi, 0.0, 0.0))

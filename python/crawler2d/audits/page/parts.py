@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from crawler2d.audits.lint import Finding
     from crawler2d.audits.repairs import Repair
     from crawler2d.parameters.robot import Robot
-    from crawler2d.reading.tracks import Silhouette
+    from crawler2d.reading.assembly import Silhouette
 
 __all__ = [
     "answer_section",

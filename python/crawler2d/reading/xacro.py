@@ -1,8 +1,8 @@
-"""Arguments of a xacro file: those that are given, and settings of its package for those without.
+"""Xacro files as URDF, expanded by xacro itself in a child process.
 
 A repository often passes its settings to xacro as arguments. If the model has an argument without a
-value, the files of YAML in its package are looked through for it, and those that have it are taken
-as a whole, as the repository would. Only ``name: value`` at the beginning of a line counts.
+value, the YAML files of its package are searched for it, and those that have it are taken as a
+whole, as the repository would. Only ``name: value`` at the beginning of a line counts.
 """
 
 from __future__ import annotations
@@ -19,20 +19,94 @@ from typing import Any, NoReturn
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.child import serve
+from crawler2d.reading.child import answered, serve
+from crawler2d.reading.elements import Element
 from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_copy
 from crawler2d.reading.files import Files
 from crawler2d.reading.log import Doubt
 from crawler2d.reading.xacro_tree import XacroFiles, XacroMacros
 
-__all__ = ["Arguments", "Setting", "Settings", "doubts_of"]
+__all__ = ["expanded"]
+
+
+def expanded(
+    files: Files,
+    data: bytes,
+    root: Element,
+    *,
+    trusted: bool,
+    arguments: Mapping[str, str],
+    leave_out: bool,
+) -> tuple[bytes, list[Doubt]]:
+    """Expand a file.
+
+    Parameters
+    ----------
+    files : Files
+        Those of the model.
+    data : bytes
+        What it holds.
+    root : Element
+        Of the file, for errors.
+    trusted : bool
+        Whether its user trusts it: Python evaluates its expressions, whatever they are.
+    arguments : mapping of str to str
+        Values of its ``xacro:arg``.
+    leave_out : bool
+        Whether it does without what is not there: includes and calls of their macros are left out,
+        arguments without a value are looked for in settings.
+
+    Returns
+    -------
+    text : bytes
+        The URDF.
+    doubts : list of Doubt
+        What was left out, and what was taken for something that is not there.
+
+    Raises
+    ------
+    ScenarioError
+        If it does not expand, needs what is not there, or is not trusted and has expressions of
+        more than plain data and known functions.
+    ImportError
+        If xacrodoc is missing; the message names the extra to install.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        root.refuse("another encoding", "must be UTF-8, which xacro reads")
+    question = {
+        "text": text,
+        "file": root.where.file,
+        "files": files.plain,
+        "trusted": trusted,
+        "arguments": {name: str(value) for name, value in arguments.items()},
+        "leave_out": leave_out,
+    }
+    answer = answered(
+        "crawler2d.reading.xacro", question, file=root.where.file, folder=files.folder
+    )
+    return answer["text"].encode(), [(path, value, why) for path, value, why in answer["doubts"]]
+
 
 _MOST_FILES = 100
+
+
 _LARGEST = 64_000  # [bytes]
+
+
 _MOST_BYTES = 1_000_000
+
+
 _LINE = re.compile(r"([A-Za-z_]\w*) ?: +(\S.*)")
+
+
 _QUOTED = re.compile(r"""(["'])([^"'\\]*)\1\s*(?:\s#.*)?""")
+
+
 _NO_SCALAR = "[]{}&*!|>%@`\"'#,?:"  # lists, blocks, anchors, comments and the like begin so
+
+
 _NOTHING = ("null", "Null", "NULL", "~")
 
 
@@ -216,8 +290,14 @@ def _meant(value: str) -> float | str:
 
 # What xacro says was unknown to it, or could not be evaluated.
 _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
+
+
 _EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
+
+
 _MOST_PASSES = 5
+
+
 _MOST_DOUBTS = 100
 
 

@@ -1,0 +1,214 @@
+"""Meshes as the hulls of their corners, which trimesh finds in a child process.
+
+The child reads only the bytes that it is given. Whatever they refer to (materials, textures,
+buffers in other files) is never opened: trimesh gets no resolver, and no file can be opened.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import PurePath
+from typing import Any, Literal
+from xml.parsers import expat
+
+import numpy as np
+
+from crawler2d.common.extras import extra
+from crawler2d.errors import ScenarioError
+from crawler2d.model_tree import Array, Shape, Unread
+from crawler2d.reading.child import answered, no_more_files, serve
+from crawler2d.reading.elements import Element
+from crawler2d.reading.files import LARGEST_TOGETHER, Files, why
+from crawler2d.reading.log import Doubt
+
+__all__ = ["MOST_CORNERS", "MeshRule", "Meshes"]
+
+MeshRule = Literal["refuse", "hull", "leave_out"]
+
+
+MOST_CORNERS = 300_000
+"""Of all meshes of a model, each corner of a mesh once."""
+
+
+_KINDS = ("dae", "glb", "gltf", "obj", "stl")
+
+
+_FARTHEST = 1e6  # [m] as for any number of a model file
+
+
+@dataclass(slots=True, kw_only=True)
+class Meshes:
+    """What is done with the meshes of one model.
+
+    Parameters
+    ----------
+    rule : {"refuse", "hull", "leave_out"}
+        As in `read_robot`.
+    files : Files
+        The files of the model.
+    doubts : list of Doubt
+        Where shapes that are left out are noted.
+    """
+
+    rule: MeshRule
+    files: Files
+    doubts: list[Doubt] = field(default_factory=list)
+    _found: dict[str, Array | str] = field(default_factory=dict)
+
+    def find(self, named: dict[str, Element]) -> None:
+        """Read meshes, all at once: the child process has its limits for all of them.
+
+        Parameters
+        ----------
+        named : dict of str to Element
+            By the name of a mesh the first element that names it.
+
+        Raises
+        ------
+        ImportError
+            If a mesh is there, and trimesh is missing.
+        """
+        if self.rule != "hull":
+            return
+        data: dict[str, bytes] = {}
+        for name, element in named.items():
+            if PurePath(name).suffix[1:].lower() not in _KINDS:
+                self._found[name] = f"must be a mesh of a kind that is known: {', '.join(_KINDS)}"
+                continue
+            try:
+                data[name] = self.files.read(name, at=element.at, most=LARGEST_TOGETHER)
+            except ScenarioError as error:
+                self._found[name] = why(error)
+        if data:
+            self._found |= zip(data, self._asked(data), strict=True)
+
+    def _asked(self, data: dict[str, bytes]) -> list[Array | str]:
+        """Return the corners of meshes in their own frames, or why there are none."""
+        meshes = [
+            {
+                "kind": PurePath(name).suffix[1:].lower(),
+                "data": base64.b64encode(each).decode(),
+            }
+            for name, each in data.items()
+        ]
+        question = {"meshes": meshes, "most": MOST_CORNERS}
+        try:
+            answer = answered(
+                "crawler2d.reading.meshes",
+                question,
+                file="all meshes together",
+                folder=self.files.folder,
+            )
+        except ScenarioError as error:
+            return [f"{error.path} {error.rule}"] * len(data)
+        return [
+            each.get("reason")
+            or np.frombuffer(base64.b64decode(each["points"]), dtype=np.float64).reshape(-1, 3)
+            for each in answer["meshes"]
+        ]
+
+    def hull(self, shape: Shape, element: Element, name: str, scale: list[float]) -> Shape | Unread:
+        """Return the shape with the corners of its mesh, or what was left out and why."""
+        if (part := element.only("submesh/name")) is not None:
+            return self.missing(element, name, f"only a part of it, {part.text}, is meant")
+        found = self._found.get(name, "")
+        if isinstance(found, str):
+            return self.missing(element, name, found)
+        with np.errstate(over="ignore", invalid="ignore"):  # of what is left out below
+            points = found * np.array(scale)
+        if not len(points):
+            return self.left_out(element, name, "must be a mesh with corners")
+        if not (np.abs(points) <= _FARTHEST).all():
+            reason = f"must have corners that are finite and at most {_FARTHEST:g} m away"
+            return self.left_out(element, name, reason)
+        return replace(shape, kind="hull", points=shape.pose.at(points))
+
+    def missing(self, element: Element, name: str, reason: str) -> Unread:
+        """Leave a mesh out for a reason, or by rule; refuse it by rule."""
+        if self.rule == "refuse":
+            rule = 'must be no mesh: mesh="hull" takes its hull, mesh="leave_out" leaves it out'
+            element.refuse(name, rule)
+        return self.left_out(element, name, reason if self.rule == "hull" else "a mesh")
+
+    def left_out(self, element: Element, what: str, reason: str) -> Unread:
+        """Note that a collision shape is left out."""
+        self.doubts.append((element.at, what, f"is left out: {reason}"))
+        return Unread(name=what, reason=reason, at=element.where)
+
+
+# What trimesh and pycollada take if it is there, but corners do not need: pictures, and scipy, the
+# import of which takes longest. lxml is not the parser that refuses document types below.
+_UNUSED = ("PIL", "lxml", "scipy")
+
+
+def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Import trimesh, and pycollada by which it reads COLLADA."""
+    for name in _UNUSED:
+        sys.modules[name] = None  # type: ignore[assignment]
+    extra("collada", "models")
+    trimesh = extra("trimesh", "models")
+    return lambda question: {"meshes": _described(trimesh, **question)}
+
+
+def _described(trimesh: Any, meshes: list[dict[str, str]], most: int) -> list[dict[str, str]]:
+    """Return the corners of each mesh, or the reason why there are none."""
+    answers, left = [], most
+    for each in meshes:
+        try:
+            with no_more_files():
+                points = _corners(trimesh, base64.b64decode(each["data"]), each["kind"])
+        except Exception as error:  # whatever trimesh stumbles over, it is no mesh of that format
+            said = " ".join(f"{type(error).__name__} {error}".split())[:150]
+            answers.append({"reason": f"must be a mesh that trimesh reads ({said})"})
+            continue
+        left -= len(points)
+        if left < 0:
+            rule = f"must, with the other meshes, have at most {most} corners"
+            answers.append({"reason": rule})
+            continue
+        answers.append({"points": base64.b64encode(points.tobytes()).decode()})
+    return answers
+
+
+def _corners(trimesh: Any, data: bytes, kind: str) -> Array:
+    """Return the corners of a mesh in its own frame, each once: facets share them."""
+    unit = _unit(data) if kind == "dae" else 1.0
+    scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, skip_materials=True)
+    found = [np.zeros((0, 3))]
+    for node in scene.graph.nodes_geometry:
+        place, name = scene.graph[node]
+        vertices = np.asarray(scene.geometry[name].vertices, dtype=np.float64).reshape(-1, 3)
+        found.append(vertices @ place[:3, :3].T + place[:3, 3])
+    return np.ascontiguousarray(np.unique(np.concatenate(found), axis=0)) * unit
+
+
+def _unit(data: bytes) -> float:
+    """[m] Return the unit of a COLLADA file; document types and entities are refused.
+
+    Gazebo and RViz apply the unit and take no notice of the axis that is up.
+    """
+    units = []
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        if tag.rpartition(":")[2] == "unit":
+            units.append(float(attributes.get("meter", "1")))
+
+    def doctype(*_: object) -> None:
+        raise ValueError("it has a document type")
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = start
+    parser.StartDoctypeDeclHandler = doctype
+    parser.Parse(data, True)
+    unit = units[0] if units else 1.0
+    if not unit > 0.0:
+        raise ValueError(f"its unit is {unit:g} m")
+    return unit
+
+
+if __name__ == "__main__":
+    serve(prepare)
