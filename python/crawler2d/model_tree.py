@@ -1,10 +1,7 @@
-"""Robots as model files hold them: links, joints and collision shapes in three dimensions.
+"""The neutral tree: links, joints and collision shapes of a robot, whatever its format.
 
-The neutral tree: links, joints and collision shapes of a robot, whatever format has them.
-
-Readers make one of a file, writers make a file of one. Everything is in the frame of the model,
-whose z axis points up, with all joints at zero; metres, kilograms, radians. What is None was not
-given.
+Everything is in the frame of the model, whose z axis points up, with all joints at zero; metres,
+kilograms, radians. What is None was not given.
 """
 
 from __future__ import annotations
@@ -17,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
-    "MADE",
+    "NOWHERE",
     "Array",
     "Friction",
     "Joint",
@@ -59,16 +56,15 @@ class Where:
         return f"{self.file}:{self.line}"
 
 
-MADE = Where("", 0)
-"""Of what was made, not read."""
-
+NOWHERE = Where("", 0)
+"""Of parts that do not come from a file."""
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Pose:
-    """A frame seen from another one.
+    """A frame in another one.
 
     Parameters
     ----------
@@ -89,11 +85,11 @@ class Pose:
     turn: Array = field(default_factory=lambda: np.eye(3))
 
     def then(self, inner: Pose) -> Pose:
-        """Return what is given in this frame, seen from where this one is."""
+        """Return a frame that is given in this one, in the frame of this one."""
         return Pose(place=self.at(inner.place), turn=self.turn @ inner.turn)
 
     def seen_from(self, frame: Pose) -> Pose:
-        """Return this frame, seen from another one that is given in the same frame."""
+        """Return this frame in another one; both are given in the same frame."""
         return Pose(place=frame.turn.T @ (self.place - frame.place), turn=frame.turn.T @ self.turn)
 
     @property
@@ -164,26 +160,26 @@ def unit(vector: Sequence[float] | Array) -> Array | None:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Friction:
-    """What a file says about the friction of a shape.
+    """The friction of a shape as its file states it.
 
     Parameters
     ----------
     first, second : float
-        [-] Coefficients along the first and across it.
+        [-] Coefficients along the first direction and across it.
     direction : ndarray, shape (3,), optional
-        Of the first; None where it is left to the engine.
+        The first direction; None leaves it to the engine.
     priority : int
         Of this shape's coefficients over those of others, in MuJoCo.
     first_at, second_at : Where
-        Their lines.
+        The lines of both.
     """
 
     first: float
     second: float
     direction: Array | None = None
     priority: int = 0
-    first_at: Where = MADE
-    second_at: Where = MADE
+    first_at: Where = NOWHERE
+    second_at: Where = NOWHERE
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -211,9 +207,9 @@ class Shape:
     surface_speed : float
         [m/s] At which the file itself moves its surface; 0: it does not.
     at : Where
-        Its own line.
+        Its line.
     pose_at, size_at : Where
-        The lines of its pose and of its radius or size.
+        The lines of its pose and of its radius or size, if not its own.
     """
 
     name: str
@@ -225,9 +221,13 @@ class Shape:
     points: Array = field(default_factory=lambda: np.zeros((0, 3)))
     friction: Friction | None = None
     surface_speed: float = 0.0
-    at: Where = MADE
-    pose_at: Where = MADE
-    size_at: Where = MADE
+    at: Where = NOWHERE
+    pose_at: Where = NOWHERE
+    size_at: Where = NOWHERE
+
+    def __post_init__(self) -> None:
+        """Take the line of the shape where none is given."""
+        _default_lines(self, "pose_at", "size_at")
 
     @property
     def axis(self) -> Array:
@@ -235,15 +235,25 @@ class Shape:
         turned: Array = self.pose.turn[:, 2]
         return turned
 
+    @property
+    def is_round(self) -> bool:
+        """Whether it has a radius."""
+        return self.kind in ("cylinder", "capsule", "sphere")
+
+    @property
+    def path(self) -> str:
+        """Its line and name, for errors."""
+        return f"{self.at}: collision[{self.name}]"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unread:
-    """A collision shape that was left out: that it is there is all that is known of it.
+    """A collision shape that was left out, of which only its existence is known.
 
     Parameters
     ----------
     name : str
-        The file of a mesh as it is named, or the kind of the shape.
+        The file of a mesh as the model names it, or the kind of the shape.
     reason : str
         Why it was left out.
     at : Where
@@ -252,7 +262,7 @@ class Unread:
 
     name: str
     reason: str
-    at: Where = MADE
+    at: Where = NOWHERE
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -272,11 +282,13 @@ class Link:
     inertia : ndarray, shape (3, 3)
         [kg m^2] About that.
     shapes : tuple of Shape
-        What collides.
+        Its collision shapes.
     unread : tuple of Unread
-        What collides besides, but was left out.
-    at, pose_at, mass_at : Where
-        The lines of the link, of its place and of its mass.
+        Those that were left out.
+    at : Where
+        Its line.
+    pose_at, mass_at : Where
+        The lines of its pose and of its mass, if not its own.
     """
 
     name: str
@@ -286,9 +298,18 @@ class Link:
     inertia: Array
     shapes: tuple[Shape, ...]
     unread: tuple[Unread, ...] = ()
-    at: Where = MADE
-    pose_at: Where = MADE
-    mass_at: Where = MADE
+    at: Where = NOWHERE
+    pose_at: Where = NOWHERE
+    mass_at: Where = NOWHERE
+
+    def __post_init__(self) -> None:
+        """Take the line of the link where none is given."""
+        _default_lines(self, "pose_at", "mass_at")
+
+    @property
+    def path(self) -> str:
+        """Its line and name, for errors."""
+        return f"{self.at}: link[{self.name}]"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -322,9 +343,13 @@ class Joint:
     armature : float
         [kg m^2] or [kg] Of the motor's rotor behind its gear, on top of the link's inertia.
     gain : float, optional
-        [N m s/rad] or [N s/m] Of a servo of its speed: torque or force for an error of that.
-    at, effort_at, velocity_at, dynamics_at, gain_at : Where
-        Its line, and those of its limits, of damping, friction and armature, and of its servo.
+        [N m s/rad] or [N s/m] Of a servo of its speed: torque or force per error of the speed.
+    at : Where
+        Its line.
+    effort_at, velocity_at, dynamics_at : Where
+        The lines of its limits, and of damping, friction and armature, if not its own.
+    gain_at : Where
+        The line of its servo.
     """
 
     name: str
@@ -342,11 +367,20 @@ class Joint:
     friction: float = 0.0
     armature: float = 0.0
     gain: float | None = None
-    at: Where = MADE
-    effort_at: Where = MADE
-    velocity_at: Where = MADE
-    dynamics_at: Where = MADE
-    gain_at: Where = MADE
+    at: Where = NOWHERE
+    effort_at: Where = NOWHERE
+    velocity_at: Where = NOWHERE
+    dynamics_at: Where = NOWHERE
+    gain_at: Where = NOWHERE
+
+    def __post_init__(self) -> None:
+        """Take the line of the joint where none is given."""
+        _default_lines(self, "effort_at", "velocity_at", "dynamics_at")
+
+    @property
+    def path(self) -> str:
+        """Its line and name, for errors."""
+        return f"{self.at}: joint[{self.name}]"
 
     @property
     def is_locked(self) -> bool:
@@ -357,18 +391,24 @@ class Joint:
 
     @property
     def is_unlimited(self) -> bool:
-        """Whether it can turn at least twice: what is driven on is not limited to less."""
+        """Whether it is a hinge that can turn at least twice, as wheels do."""
         return self.kind == "hinge" and self.upper - self.lower >= 4.0 * math.pi * (1.0 - 1e-3)
+
+
+def _default_lines(part: Shape | Link | Joint, *names: str) -> None:
+    for name in names:
+        if getattr(part, name) is NOWHERE:
+            object.__setattr__(part, name, part.at)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plugin:
-    """A plugin that the file asks for, with its settings: path, text and line of each leaf."""
+    """A plugin of the file with its settings: path, text and line of each."""
 
     name: str
     filename: str
     settings: tuple[tuple[str, str, Where], ...]
-    at: Where = MADE
+    at: Where = NOWHERE
 
     def values(self, *paths: str) -> list[tuple[str, Where]]:
         """Return text and line of every setting at one of these paths."""
@@ -394,7 +434,7 @@ class Tree:
     plugins : tuple of Plugin
         In their order.
     driven : mapping of str to Where
-        The joints that the file gives a motor, and where.
+        The joints that the file gives a motor, with the line that does.
     tracks : tuple of str
         Links whose surface something outside the file moves.
     at : Where
@@ -409,7 +449,7 @@ class Tree:
     plugins: tuple[Plugin, ...] = ()
     driven: Mapping[str, Where] = field(default_factory=dict)
     tracks: tuple[str, ...] = ()
-    at: Where = MADE
+    at: Where = NOWHERE
 
     @property
     def by_name(self) -> dict[str, Link]:

@@ -2,11 +2,12 @@
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.engines import ACTUATORS, ENGINES
+from crawler2d.reading.engines import ENGINES, Engine
 from tests.reading.carts import FILES, SIDES, pair, read, urdf
 
 
@@ -25,8 +26,8 @@ def stated(*parts: str, dynamics: str = "") -> str:
     return urdf(*(pair(end, x, limit=limit) for end, x in (("front", 0.2), ("rear", -0.2))), *parts)
 
 
-def test_every_engine_has_both_rules() -> None:
-    assert ACTUATORS.keys() == ENGINES.keys()
+def test_every_engine_has_its_laws() -> None:
+    assert set(get_args(Engine)) == ENGINES.keys()
 
 
 def test_the_armature_of_one_side_is_the_rotor_inertia(tmp_path: Path) -> None:
@@ -59,7 +60,7 @@ def test_an_engine_without_rotors_has_none(engine: str, tmp_path: Path) -> None:
     reading = read(tmp_path, mjcf('armature="0.01"'), "cart.xml", engine=engine)
     assert reading.robot.drivetrain.rotor_inertia == 0.0
     assert "none in" in reading.sources["robot.drivetrain.rotor_inertia"]
-    assert any("armature[" in doubt and "plays no part in" in doubt for doubt in reading.doubts)
+    assert any("armature[" in doubt and "has no effect in" in doubt for doubt in reading.doubts)
 
 
 def test_formats_without_armature_say_that_there_is_none(tmp_path: Path) -> None:
@@ -83,7 +84,7 @@ def test_what_an_engine_ignores_of_a_urdf_is_doubted(
 ) -> None:
     text = stated(dynamics='<dynamics damping="0.001" friction="0.002"/>')
     reading = read(tmp_path, text, engine=engine)
-    found = [doubt for doubt in reading.doubts if "plays no part" in doubt]
+    found = [doubt for doubt in reading.doubts if "has no effect" in doubt]
     assert {doubt.split(": ")[1].split("[")[0] for doubt in found} == ignored
     assert all(doubt.startswith("cart.urdf:") for doubt in found)
 
@@ -92,7 +93,7 @@ def test_speeds_of_commands_are_limits_in_mujoco(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf(""), "cart.xml")
     assert reading.robot.drivetrain.max_speed == pytest.approx(10.0 * 0.125)
-    assert not [doubt for doubt in reading.doubts if "plays no part" in doubt]
+    assert not [doubt for doubt in reading.doubts if "has no effect" in doubt]
 
 
 def test_losses_of_joints_are_told(tmp_path: Path) -> None:

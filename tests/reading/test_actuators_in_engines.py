@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from crawler2d.reading.engines import ACTUATORS
+from crawler2d.reading.engines import ENGINES
 
 INERTIA, RATE, TORQUE, STEPS, STEP = 0.01, 10.0, 1.0, 50, 1e-3
 USUAL = {"effort": TORQUE, "velocity": 100.0, "damping": 0.0, "friction": 0.0, "armature": 0.0}
@@ -118,7 +118,7 @@ def test_what_plays_no_part_changes_nothing(name: str, tmp_path: Path) -> None:
     usual = run(tmp_path, USUAL)
     for figure in figures:
         found = run(tmp_path, {**USUAL, figure: OTHER[figure]})
-        if figure in ACTUATORS[name].ignored:
+        if figure in ENGINES[name].ignored:
             assert found == usual, figure
         else:
             assert found < 0.95 * usual, figure

@@ -15,7 +15,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import crawler2d as c2d
-from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_copy
+from crawler2d.reading.expressions import NAMES, NotAllowed, copy_data, evaluate
 from tests.fuzz.standing_child import StandingChild
 from tests.reading.carts import FILES, ROBOTS, WHEELS, XACRO, quietly, read, urdf
 
@@ -64,7 +64,7 @@ HOSTILE = [
 
 def names() -> dict[str, Any]:
     """What xacro gives names to, and a few properties."""
-    space = MappingProxyType({"load_yaml": plain_copy, "dotify": dict})
+    space = MappingProxyType({"load_yaml": copy_data, "dotify": dict})
     return {**NAMES, "xacro": space, "x": "text", "l": [1], "d": {"a": 1}}
 
 
@@ -80,7 +80,7 @@ def test_there_are_hundreds_of_hostile_expressions() -> None:
 def test_a_hostile_expression_is_refused_at_once(text: str) -> None:
     start = time.process_time()
     with pytest.raises(Exception) as caught:  # noqa: PT011 - what Python raises for the same
-        evaluated(text, names())
+        evaluate(text, names())
     assert time.process_time() - start < 1.0
     allowed = (NotAllowed, SyntaxError, ArithmeticError, LookupError, NameError, TypeError)
     assert isinstance(caught.value, (*allowed, ValueError)), caught.value
@@ -245,7 +245,7 @@ def test_an_expression_of_a_public_file_is_evaluated_as_by_python(text: str) -> 
         texts = dict.fromkeys(("prefix", "color", "type", "name"), "rear")
         return {**numbers, **lists, **texts}
 
-    assert evaluated(text, {**NAMES, **known()}) == python_of(text, known())
+    assert evaluate(text, {**NAMES, **known()}) == python_of(text, known())
 
 
 NUMBERS = st.one_of(st.integers(-50, 50), st.floats(-50, 50, allow_nan=False), st.booleans())
@@ -273,7 +273,7 @@ def test_arithmetic_is_that_of_python(text: str) -> None:
     except (ArithmeticError, TypeError, ValueError) as error:
         expected = type(error)
     try:
-        found = evaluated(text, {**NAMES, **known})
+        found = evaluate(text, {**NAMES, **known})
     except (ArithmeticError, TypeError, ValueError) as error:
         found = type(error)
     except NotAllowed as error:
@@ -294,7 +294,7 @@ PIECES = st.one_of(
 @given(st.lists(PIECES, max_size=40).map("".join))
 def test_whatever_is_written_gives_plain_data_or_an_error_soon(text: str) -> None:
     try:
-        found = evaluated(text, names())
+        found = evaluate(text, names())
     except (
         NotAllowed,
         SyntaxError,
@@ -305,4 +305,4 @@ def test_whatever_is_written_gives_plain_data_or_an_error_soon(text: str) -> Non
         ValueError,
     ):
         return
-    assert plain_copy(found) == found
+    assert copy_data(found) == found

@@ -134,7 +134,7 @@ def test_a_file_that_mjcf_names_and_is_none_is_not_opened(
     for suffix in ("stl", "png", "skn", "xml"):
         ODD[what](tmp_path / f"part.{suffix}")
     if named == "model":
-        refused(tmp_path, mjcf(MJCF[named]), "must hold the robot itself", "cart.xml")
+        refused(tmp_path, mjcf(MJCF[named]), "must contain the robot itself", "cart.xml")
     else:
         assert read(tmp_path, mjcf(MJCF[named]), "cart.xml").robot.mass > 0.0
 

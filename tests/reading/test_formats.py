@@ -74,7 +74,7 @@ def test_mjcf_names_the_line_of_an_error(tmp_path: Path) -> None:
 
 def test_mjcf_that_includes_other_files_is_refused(tmp_path: Path) -> None:
     text = '<mujoco><include file="robot.xml"/></mujoco>'
-    with pytest.raises(c2d.ScenarioError, match="must hold the robot itself"):
+    with pytest.raises(c2d.ScenarioError, match="must contain the robot itself"):
         read(tmp_path, text, "scene.xml")
 
 
@@ -280,7 +280,7 @@ def test_a_mesh_in_mjcf_is_read_as_its_hull(tmp_path: Path) -> None:
     text = (FILES / "cart.xml").read_text().replace("<worldbody>", f"{mesh}<worldbody>")
     box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'
     text = text.replace(box, '<geom type="mesh" mesh="hull"/>')
-    with pytest.raises(c2d.ScenarioError, match=r"cart\.xml:13: geom.* must be no mesh"):
+    with pytest.raises(c2d.ScenarioError, match=r"cart\.xml:13: geom.* must not be a mesh"):
         read(tmp_path, text, "cart.xml", mesh="refuse")
     belly = read(tmp_path, text, "cart.xml").robot.belly
     assert belly == ((-0.2, 0.0), (0.2, 0.0), (0.2, 0.1), (-0.2, 0.1))

@@ -140,7 +140,8 @@ def test_a_doubt_about_phases_names_the_wheels_and_the_turn_that_all_have(tmp_pa
     slope, level = np.polyfit(np.arange(1, 7), turns - turn, 1)
     most = np.abs(turns - turn - level - slope * np.arange(1, 7)).max()
     assert f"left_w1 to left_w6: all start turned by {7 + math.degrees(level):.3g} degrees" in note
-    off = f"left_w1 to left_w6 start up to {math.degrees(most):.3g} degrees off, besides a turn"
+    degrees = f"{math.degrees(most):.3g} degrees"
+    off = f"left_w1 to left_w6 start up to {degrees} off, in addition to a turn"
     assert off in doubt
 
 
@@ -233,7 +234,7 @@ def test_what_is_no_gear_wheel_is_no_wheel(
     turns: list[float] | None, how: dict[str, Any], tmp_path: Path
 ) -> None:
     text = urdf(gear("front", 0.2, turns=turns, **how), gear("rear", -0.2, turns=turns, **how))
-    refused(tmp_path, text, "must have wheels, which are round collision shapes")
+    refused(tmp_path, text, "must have wheels .round collision shapes")
     beside = read(tmp_path, urdf(WHEELS, gear("mid", 0.0, turns=turns, **how)))
     assert any("left_mid" in note and "touch nothing" in note for note in beside.notes)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.loading import How, tree_of
+from crawler2d.reading.loading import ReadOptions, load_model
 from crawler2d.reading.surfaces import refuse_unread
 from tests.reading.carts import (
     FILES,
@@ -67,7 +67,7 @@ def test_a_wheel_without_a_shape_is_refused_although_there_are_others(
 ) -> None:
     text = urdf(WHEELS, pair("middle", 0.0, geometry=shape))
     refused(
-        tmp_path, text, "for it may be a wheel or a track, .*; so must right_middle: put its mesh"
+        tmp_path, text, "as it may be a wheel or a track .*; so must right_middle: provide its mesh"
     )
 
 
@@ -93,7 +93,7 @@ def test_wheels_that_are_not_round_are_what_is_wrong_not_a_camera(tmp_path: Path
     square = '<box size="0.1 0.1 0.1"/>'
     wheels = pair("front", 0.2, geometry=square) + pair("rear", -0.2, geometry=square)
     camera = sensor('type="fixed">', collision('<mesh filename="camera.stl"/>'), "camera")
-    refused(tmp_path, urdf(wheels, camera), "must have wheels, which are round")
+    refused(tmp_path, urdf(wheels, camera), "must have wheels .round")
 
 
 def test_a_moved_track_without_a_shape_is_refused_beside_wheels(tmp_path: Path) -> None:
@@ -139,7 +139,7 @@ def test_a_joint_that_carries_nothing_is_fixed_if_it_is_wrong(
     tmp_path: Path, joint: str, reason: str
 ) -> None:
     (doubt,) = doubts(tmp_path, urdf(WHEELS, sensor(joint)))
-    assert f"is taken as fixed, for nothing on its joint collides: {reason}" in doubt
+    assert f"is taken as fixed, as nothing on its joint collides: {reason}" in doubt
     box = collision('<box size="0.1 0.1 0.1"/>')
     refused(tmp_path, urdf(WHEELS, sensor(joint, box)), reason)
 
@@ -161,7 +161,7 @@ def test_a_joint_that_needs_no_axis_has_none(tmp_path: Path, joint: str) -> None
 
 def test_two_joints_of_one_name_are_doubted(tmp_path: Path) -> None:
     text = urdf(WHEELS).replace('name="left_front_joint"', 'name="left_rear_joint"')
-    assert any("is the name of another joint, too" in doubt for doubt in doubts(tmp_path, text))
+    assert any("is also the name of another joint" in doubt for doubt in doubts(tmp_path, text))
 
 
 def test_a_negative_moment_of_inertia_is_that_of_a_point(tmp_path: Path) -> None:
@@ -401,15 +401,15 @@ def test_a_mesh_of_mjcf_that_is_only_seen_need_not_be_there(tmp_path: Path) -> N
     box = '<body><geom type="box" size="0.1 0.1 0.1" mass="1"/>{}</body>'
     heavy = text.replace(seen, box.format(seen.replace(' mass="0"', "")))
     told = read(tmp_path, heavy, "cart.xml").doubts
-    assert any("weighs nothing here, but its volume counts" in doubt for doubt in told)
+    assert any("has no mass here, but its volume counts" in doubt for doubt in told)
 
 
 @pytest.mark.parametrize("name", ["tractor", "marv_model", "sekirei2020", "marv"])
 def test_nothing_in_a_public_tree_that_cannot_carry_it_stops_the_reader(name: str) -> None:
     pytest.importorskip("xacrodoc")
     key = keys()[name]
-    how = How(packages=key.packages, arguments=key.arguments)
-    refuse_unread(tree_of(key.file.read_bytes(), key.file, how).tree)
+    how = ReadOptions(packages=key.packages, arguments=key.arguments)
+    refuse_unread(load_model(key.file.read_bytes(), key.file, how).tree)
 
 
 def test_the_public_tank_of_meshes_is_refused_with_what_it_lacks() -> None:
@@ -418,6 +418,8 @@ def test_the_public_tank_of_meshes_is_refused_with_what_it_lacks() -> None:
     data = key.file.read_bytes()
     missing = b'<xacro:include filename="controller.xacro"/>'
     assert missing in data
-    tree = tree_of(data.replace(missing, b""), key.file, How(packages=key.packages)).tree
-    with pytest.raises(c2d.ScenarioError, match=r"there is no file .*wheel\.stl.* put its mesh"):
+    tree = load_model(data.replace(missing, b""), key.file, ReadOptions(packages=key.packages)).tree
+    with pytest.raises(
+        c2d.ScenarioError, match=r"there is no file .*wheel\.stl.* provide its mesh"
+    ):
         refuse_unread(tree)

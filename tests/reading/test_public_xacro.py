@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.elements import parsed
+from crawler2d.reading.elements import parse_xml
 from crawler2d.reading.files import VARIABLES, Files
 from crawler2d.reading.log import Doubt
-from crawler2d.reading.xacro import expanded
+from crawler2d.reading.xacro import expand_xacro
 from tests.reading.carts import WHEELS, XACRO, collision, read, refused, urdf
 from tests.robots.tree_keys import Key, keys
 
@@ -94,7 +94,7 @@ def expand(path: Path, **how: Any) -> tuple[str, list[Doubt]]:
     data = path.read_bytes()
     usual: dict[str, Any] = {"trusted": False, "arguments": {}, "leave_out": True}
     files = Files(path, how.pop("packages", {}))
-    text, doubts = expanded(files, data, parsed(data, path.name), **{**usual, **how})
+    text, doubts = expand_xacro(files, data, parse_xml(data, path.name), **{**usual, **how})
     return text.decode(), doubts
 
 
@@ -105,7 +105,7 @@ def copied(key: Key, to: Path) -> Path:
 
 
 def check(name: str, text: str, doubts: list[Doubt]) -> None:
-    root = parsed(text.encode(), name)
+    root = parse_xml(text.encode(), name)
     assert root.tag == "robot"
     assert len(list(root.all("link"))) == LINKS[name]
     assert not any(element.tag.startswith("xacro:") for element in root.within())
@@ -142,7 +142,7 @@ def test_every_public_main_file_of_xacro_is_tried() -> None:
 )
 def test_what_is_expanded_has_the_mass_of_its_key(name: str, key: str) -> None:
     text, _ = expand(keys()[name].file)
-    masses = [each for each in parsed(text.encode(), name).within() if each.tag == "mass"]
+    masses = [each for each in parse_xml(text.encode(), name).within() if each.tag == "mass"]
     total = sum(float(mass.attribute("value")) for mass in masses)
     assert total == pytest.approx(keys()[key].figures["mass"], abs=1e-6)
 

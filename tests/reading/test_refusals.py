@@ -107,7 +107,7 @@ def test_friction_without_limit_is_refused_where_the_larger_holds(tmp_path: Path
 
 def test_a_mesh_that_is_not_there_is_left_out_or_refused_on_request(tmp_path: Path) -> None:
     text = urdf(WHEELS, shapes=collision('<mesh filename="a.stl"/>'))
-    refused(tmp_path, text, 'must be no mesh: mesh="hull" takes its hull', mesh="refuse")
+    refused(tmp_path, text, 'must not be a mesh; pass mesh="hull" for its hull', mesh="refuse")
     left_out(tmp_path, text, rf"left out: there is no file {tmp_path}/a.stl, got a.stl")
     left_out(tmp_path, text, "left out: a mesh, got a.stl", mesh="leave_out")
     assert read(tmp_path, text).robot.belly is None
@@ -123,7 +123,7 @@ def test_a_mesh_of_an_unknown_kind_or_package_is_left_out(tmp_path: Path) -> Non
 
 
 def test_a_model_without_anything_that_turns_is_refused(tmp_path: Path) -> None:
-    refused(tmp_path, urdf(), "must have wheels, which are round collision shapes")
+    refused(tmp_path, urdf(), "must have wheels .round collision shapes")
 
 
 def test_wheels_with_upright_axles_are_refused(tmp_path: Path) -> None:
@@ -332,4 +332,4 @@ def test_joints_of_missing_links_are_left_out_or_refused_on_request(tmp_path: Pa
 
 def test_a_misspelt_parent_is_named_with_the_nearest_link(tmp_path: Path) -> None:
     text = urdf(WHEELS).replace('<parent link="hull"/>', '<parent link="hul"/>', 1)
-    refused(tmp_path, text, "of which the nearest is hull; missing=", missing="refuse")
+    refused(tmp_path, text, "of which the closest is hull; missing=", missing="refuse")

@@ -70,7 +70,7 @@ def test_a_sprocket_and_a_fixed_idler_are_a_belt_and_the_sprocket_has_the_torque
     assert found.robot.track == c2d.BeltTrack()
     assert found.robot.drivetrain.max_torque == 5.0
     assert found.robot.outline.axle_distance == 0.4
-    assert "do not turn as the wheel beside them does" in found.doubts[0]
+    assert "do not turn as the wheel on their side does" in found.doubts[0]
 
 
 def test_a_box_between_the_drums_is_no_belly(tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ def test_flippers_lighter_than_the_core_can_move_get_the_least_mass(tmp_path: Pa
     found = read(tmp_path, text)
     assert found.robot.flippers is not None
     assert found.robot.flippers.mass == pytest.approx(1e-5 * found.robot.mass, rel=0.01)
-    assert any("is too light to be moved" in doubt for doubt in found.doubts)
+    assert any("is too light to simulate" in doubt for doubt in found.doubts)
     found.robot.wheels()
 
 

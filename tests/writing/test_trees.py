@@ -8,8 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.model_tree import Joint, Link, Shape, Tree
-from crawler2d.reading.loading import How
-from crawler2d.reading.loading import tree_of as tree_in
+from crawler2d.reading.loading import ReadOptions, load_model
 from crawler2d.writing.formats import MJCF, SDF, URDF
 from tests.writing.test_checkers import BELTED, WHEELED
 from tests.writing.test_engines import TAPERED
@@ -28,7 +27,7 @@ CASES = [
 
 def read_again(robot: c2d.Robot, name: str, folder: Path) -> Tree:
     path = written(robot, name, folder, friction=1.0)
-    return tree_in(path.read_bytes(), path, How(mesh="hull")).tree
+    return load_model(path.read_bytes(), path, ReadOptions(mesh="hull")).tree
 
 
 def close(got: Any, expected: Any, accuracy: float = 1e-9) -> bool:

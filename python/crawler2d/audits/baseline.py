@@ -28,7 +28,7 @@ from crawler2d.audits.lint import SEVERITIES
 from crawler2d.audits.verdicts import Share, Verdict
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import to_plain
-from crawler2d.reading.log import named
+from crawler2d.reading.log import list_names
 
 __all__ = ["against", "entry_of", "read_baseline", "write_baseline"]
 
@@ -226,7 +226,7 @@ def _robot_moved(before: Plain, now: Plain) -> Iterator[str]:
         if not _is_same(was.get(path), is_now.get(path))
     ]
     if moved:
-        yield f"another robot: {named(moved, _MOST)}"
+        yield f"another robot: {list_names(moved, _MOST)}"
 
 
 def _leaves(plain: Any, path: str = "robot") -> Iterator[tuple[str, object]]:

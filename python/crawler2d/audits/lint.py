@@ -13,7 +13,7 @@ from crawler2d.model_tree import Joint, Link, Where
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
 from crawler2d.reading.loading import size_of
-from crawler2d.reading.log import lines, named
+from crawler2d.reading.log import lines, list_names
 from crawler2d.reading.reading import Reading
 from crawler2d.reading.wheels import farthest
 
@@ -255,7 +255,7 @@ def _driven(reading: Reading) -> Iterator[Finding]:
     idle = [joint for joint in wheels if joint.name not in reading.tree.driven]
     if not idle:
         return
-    names = named([joint.child for joint in idle])
+    names = list_names([joint.child for joint in idle])
     what = (
         f"the file names no motor for {len(idle)} of {len(wheels)} wheels ({names}); here all are"
         " driven, as by a controller outside it: those that nothing turns drag"
@@ -299,7 +299,7 @@ def _balance(reading: Reading) -> Iterator[Finding]:
     found = [(away, link) for away, link in off if away > _OFF_AXLE * radii[link.name]]
     if found:
         most = max(away for away, _ in found)
-        names = named([link.name for _, link in found])
+        names = list_names([link.name for _, link in found])
         what = (
             f"{names}: their centres of mass are off their axles by up to {1e3 * most:.3g} mm: such"
             " wheels shake a robot as they turn; here they are in balance"
@@ -353,7 +353,7 @@ def _told(links: list[Link], rule: str, what: str, mass: float) -> Iterator[Find
         (light, "note"),
     ):
         if each:
-            told = f"{named([link.name for link in each])}: {what}"
+            told = f"{list_names([link.name for link in each])}: {what}"
             where = lines([link.at for link in each])
             yield Finding(rule=rule, severity=severity, what=told, where=where)
 

@@ -18,7 +18,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Flat
 from crawler2d.reading.reading import Reading
-from crawler2d.reading.wheels import below
+from crawler2d.reading.wheels import subtrees
 from crawler2d.writing.carriers import Carrier, Wheel, carriers_of
 from crawler2d.writing.shapes import Solids, gear_shapes, grousers_of
 
@@ -157,7 +157,7 @@ class _Carrier:
         self.reading = reading
         self.was, self.now = was, now
         self.name = f"{was.end} flipper" if was.end else "chassis"
-        self.hanging = below(reading.tree)
+        self.hanging = subtrees(reading.tree)
 
     def changes(self) -> list[Change]:
         for carrier, whose in ((self.was, "of the file"), (self.now, "of the robot")):

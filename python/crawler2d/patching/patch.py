@@ -36,12 +36,12 @@ _FORMS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
     "URDF": change_urdf,
     "MJCF": change_mjcf,
 }
+
 _SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
 """Settings of plugins that drive wheels by their speed."""
 
 _COUNTS = ("num_wheel_pairs", "wheel_torque", "max_wheel_torque")
 """Settings of plugins that are right for a number of wheels only, and are not changed."""
-
 _MASS = 1e-4  # of the whole: far above what rounding leaves
 _CENTER = 0.01  # of the axle distance: wheels of unlike masses are spread anew
 
@@ -130,38 +130,6 @@ def labelled(text: str, label: str) -> str:
     return f"{text[:end]}<!-- {label.replace('--', '- -')} -->{line}{text[end:]}"
 
 
-def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> str:
-    """Say what becomes of the wheels, and what is left to be set by hand."""
-    fates = _fates(changes)
-    parts = [f"{fates[fate]} {fate}" for fate in ("added", "removed", "changed") if fates[fate]]
-    marks = Counter(line[0] for line in diff[2:])
-    text = f"wheels: {', '.join(parts)}; lines: {marks['+']} new, {marks['-']} gone"
-    more = fates["added"] - fates["removed"]
-    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})"
-    return f"{text}; to be set by hand{hint}: {', '.join(left)}" if left else text
-
-
-def _left(changes: list[Change], root: Span, text: str) -> tuple[str, ...]:
-    """List the settings of plugins that may no longer be right for so many wheels."""
-    fates = _fates(changes)
-    if fates["added"] == fates["removed"]:
-        return ()
-    lines = text.encode().splitlines(keepends=True)
-    ends = list(itertools.accumulate(map(len, lines)))
-    return tuple(
-        f"{setting.tag} in line {bisect.bisect(ends, setting.start) + 1} is still {setting.text}"
-        for plugin in root.within()
-        if plugin.tag == "plugin"
-        for setting in plugin.within()
-        if setting.tag in _COUNTS
-    )
-
-
-def _fates(changes: list[Change]) -> Counter[str]:
-    """Count what becomes of wheels."""
-    return Counter(change.fate for change in changes if not change.is_none)
-
-
 def _change(document: Document, changes: list[Change], tree: Tree) -> None:
     """Make all changes in a text."""
     change_wheel = _FORMS[tree.format.split()[0]]
@@ -248,3 +216,35 @@ def _check(reading: Reading, robot: Robot, text: str) -> None:
 
 def _fail(what: str, value: object, rule: str) -> NoReturn:
     raise ScenarioError(f"the changed file, read again: {what}", value, rule)
+
+
+def _left(changes: list[Change], root: Span, text: str) -> tuple[str, ...]:
+    """List the settings of plugins that may no longer be right for so many wheels."""
+    fates = _fates(changes)
+    if fates["added"] == fates["removed"]:
+        return ()
+    lines = text.encode().splitlines(keepends=True)
+    ends = list(itertools.accumulate(map(len, lines)))
+    return tuple(
+        f"{setting.tag} in line {bisect.bisect(ends, setting.start) + 1} is still {setting.text}"
+        for plugin in root.within()
+        if plugin.tag == "plugin"
+        for setting in plugin.within()
+        if setting.tag in _COUNTS
+    )
+
+
+def _fates(changes: list[Change]) -> Counter[str]:
+    """Count what becomes of wheels."""
+    return Counter(change.fate for change in changes if not change.is_none)
+
+
+def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> str:
+    """Say what becomes of the wheels, and what is left to be set by hand."""
+    fates = _fates(changes)
+    parts = [f"{fates[fate]} {fate}" for fate in ("added", "removed", "changed") if fates[fate]]
+    marks = Counter(line[0] for line in diff[2:])
+    text = f"wheels: {', '.join(parts)}; lines: {marks['+']} new, {marks['-']} gone"
+    more = fates["added"] - fates["removed"]
+    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})"
+    return f"{text}; to be set by hand{hint}: {', '.join(left)}" if left else text

@@ -21,6 +21,9 @@ _NO_NAMES = ("class", "childclass", "material", "mesh", "type", "filename")
 
 _WITH_NAMES = ("transmission", "actuator")
 """Elements that are about one joint, and need names of their own."""
+_NOT_ROUND = ("box", "mesh", "ellipsoid", "plane", "hfield")
+_INHERITED = ("class", "friction", "condim", "priority", "contype", "conaffinity", "solref")
+_ROUNDS = ("cylinder", "sphere", "capsule")
 
 
 def names_of(scope: Span, links: Collection[str], joint: str) -> set[str]:
@@ -52,17 +55,6 @@ def items_about(scope: Span, names: Collection[str]) -> list[Span]:
         elif child.tag not in ("link", "joint"):
             found += items_about(child, names)
     return found
-
-
-def _is_about(span: Span, names: Collection[str]) -> bool:
-    if any(value in names for key, value in span.attributes.items() if key not in _NO_NAMES):
-        return True
-    if span.tag == "transmission":
-        return any(joint.name in names for joint in span.all("joint"))
-    if span.tag == "joint":
-        child = span.only("child")
-        return child is not None and (child.text or child.attributes.get("link")) in names
-    return not span.children and span.text in names
 
 
 def copied(
@@ -103,28 +95,6 @@ def copied(
     return [third.source(holder.children[0]) for holder in third.root.children]
 
 
-def _rename(document: Document, item: Span, names: Mapping[str, str]) -> None:
-    suffix = next(new.removeprefix(old) for old, new in names.items())
-    for span in item.within():
-        for key, value in span.attributes.items():
-            if value in names and key not in _NO_NAMES:
-                document.set_attribute(span, key, names[value])
-            elif key == "name" and (span.tag in _WITH_NAMES or (span is item and _is_mjcf(span))):
-                document.set_attribute(span, key, value + suffix)
-        if not span.children and span.text in names:
-            document.set_text(span, names[span.text])
-
-
-def _is_mjcf(item: Span) -> bool:
-    """Whether it is a motor, a sensor or an exclusion, which MJCF names one by one."""
-    holder = "" if item.parent is None else item.parent.tag
-    return holder in ("actuator", "sensor", "contact", "tendon", "equality")
-
-
-_NOT_ROUND = ("box", "mesh", "ellipsoid", "plane", "hfield")
-_INHERITED = ("class", "friction", "condim", "priority", "contype", "conaffinity", "solref")
-
-
 def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
     """Change a wheel; the arguments are those of `change_urdf`."""
     every = [each for each in scope.within() if each.tag == "body" and each.name in change.links]
@@ -155,65 +125,6 @@ def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> 
     _add_mjcf_grousers(document, body, change, tree.by_name[change.link].pose)
 
 
-def _above(span: Span) -> list[str]:
-    return [] if span.parent is None else [span.parent.tag, *_above(span.parent)]
-
-
-def _change_motor(document: Document, motor: Span, change: Change) -> None:
-    """Change what a motor can do; that of a `motor` without a limit of force is its gear."""
-    if "forcerange" in motor.attributes or motor.tag != "motor":
-        document.multiply(motor, [change.effort] * 2, "forcerange")
-    elif change.effort != 1.0:
-        gear = motor.attributes.get("gear", "1").split()
-        document.set_attribute(
-            motor, "gear", " ".join([written([float(gear[0]) * change.effort]), *gear[1:]])
-        )
-    if motor.tag in ("velocity", "intvelocity"):
-        document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
-    for name in ("kv", "armature"):
-        document.multiply(motor, [change.inertia], name)
-
-
-def _change_body(document: Document, body: Span, change: Change, link: Link) -> None:
-    inertial = body.only("inertial")
-    if inertial is not None:
-        document.multiply(inertial, [change.share], "mass")
-        for name, count in (("diaginertia", 3), ("fullinertia", 6)):
-            document.multiply(inertial, [change.inertia] * count, name, is_exact=True)
-    geoms = [geom for geom in body.all("geom") if geom.attributes.get("type") not in _NOT_ROUND]
-    for geom in geoms:
-        if "size" in geom.attributes:
-            document.multiply(geom, [change.round_size], "size")
-        elif change.round_size != 1.0:
-            (shape,) = link.shapes if len(link.shapes) == len(geoms) == 1 else (None,)
-            if shape is None:
-                _refuse_body(body.name, "geoms of a class", "must state the sizes of its wheels")
-            sizes = [change.round_size * shape.radius, 0.5 * shape.length]
-            document.set_attribute(geom, "size", written(sizes))
-    if inertial is None and (change.share, change.round_size) != (1.0, 1.0) and link.mass > 0.0:
-        if len(body.all("geom")) != 1:
-            _refuse_body(body.name, "no <inertial>", "must state its mass, for wheels to share it")
-        document.set_attribute(body.all("geom")[0], "mass", written([change.share * link.mass]))
-
-
-def _refuse_body(body: str, value: str, rule: str) -> NoReturn:
-    raise ScenarioError(f"body[{body}]", value, rule)
-
-
-def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pose) -> None:
-    geom = body.only("geom")
-    alike = {} if geom is None else geom.attributes
-    given = "".join(f' {name}="{alike[name]}"' for name in _INHERITED if name in alike)
-    for shape, place in change.grousers_on(pose):
-        where = f'pos="{written(place.place)}" quat="{numbers(place.quaternion)}"'
-        size = f'size="{written(0.5 * shape.size)}"'
-        # Its mass is that of the wheel already; without a name, as names must differ.
-        document.append(body, f'<geom type="box" {where} {size} mass="0"{given}/>')
-
-
-_ROUNDS = ("cylinder", "sphere", "capsule")
-
-
 def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
     """Change a wheel; the arguments are those of `change_urdf`."""
     links = links_in(scope, change.links)
@@ -242,42 +153,6 @@ def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> N
                 document.multiply(shape.only(f"geometry/{kind}/radius"), [change.round_size])
         if link.name == change.link:
             _add_sdf_grousers(document, link, change, tree.by_name[change.link].pose)
-
-
-def _move(document: Document, element: Span, pose: Span | None, shift: Array) -> None:
-    if pose is None:
-        document.append(element, f"<pose>{written([*shift, 0.0, 0.0, 0.0])}</pose>")
-    elif not pose.text:
-        document.set_text(pose, written([*shift, 0.0, 0.0, 0.0]))
-    else:
-        document.add_to(pose, shift.tolist())
-
-
-def _turned(shift: Array, frame: str, tree: Tree, element: Span) -> Array:
-    """[m] Return a shift of the model in the frame in which an element is given."""
-    if frame == MODEL:
-        return shift
-    if frame not in tree.by_name:
-        _refuse_element(element, frame, "must be placed in the frame of a link or of the model")
-    turned: Array = np.asarray(tree.by_name[frame].pose.turn.T @ shift)
-    return turned
-
-
-def _refuse_element(element: Span, value: str, rule: str) -> NoReturn:
-    raise ScenarioError(f"{element.tag}[{element.name}]", value, rule)
-
-
-def _add_sdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
-    first = link.only("collision")
-    surface = None if first is None else first.only("surface")
-    of_wheel = "" if surface is None else document.source(surface)
-    for shape, place in change.grousers_on(pose):
-        pose_text = f"<pose>{written(place.place)} {numbers(place.rpy)}</pose>"
-        box = f"<geometry><box><size>{written(shape.size)}</size></box></geometry>"
-        for tag, more in (("collision", of_wheel), ("visual", "")):
-            document.append(
-                link, f'<{tag} name="{shape.name}_{tag}">{pose_text}{box}{more}</{tag}>'
-            )
 
 
 def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
@@ -315,6 +190,127 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
                 document.multiply(each, [change.round_size], "radius")
         if link.name == change.link:
             _add_urdf_grousers(document, link, change, tree.by_name[change.link].pose)
+
+
+def _is_about(span: Span, names: Collection[str]) -> bool:
+    if any(value in names for key, value in span.attributes.items() if key not in _NO_NAMES):
+        return True
+    if span.tag == "transmission":
+        return any(joint.name in names for joint in span.all("joint"))
+    if span.tag == "joint":
+        child = span.only("child")
+        return child is not None and (child.text or child.attributes.get("link")) in names
+    return not span.children and span.text in names
+
+
+def _rename(document: Document, item: Span, names: Mapping[str, str]) -> None:
+    suffix = next(new.removeprefix(old) for old, new in names.items())
+    for span in item.within():
+        for key, value in span.attributes.items():
+            if value in names and key not in _NO_NAMES:
+                document.set_attribute(span, key, names[value])
+            elif key == "name" and (span.tag in _WITH_NAMES or (span is item and _is_mjcf(span))):
+                document.set_attribute(span, key, value + suffix)
+        if not span.children and span.text in names:
+            document.set_text(span, names[span.text])
+
+
+def _is_mjcf(item: Span) -> bool:
+    """Whether it is a motor, a sensor or an exclusion, which MJCF names one by one."""
+    holder = "" if item.parent is None else item.parent.tag
+    return holder in ("actuator", "sensor", "contact", "tendon", "equality")
+
+
+def _refuse_body(body: str, value: str, rule: str) -> NoReturn:
+    raise ScenarioError(f"body[{body}]", value, rule)
+
+
+def _change_body(document: Document, body: Span, change: Change, link: Link) -> None:
+    inertial = body.only("inertial")
+    if inertial is not None:
+        document.multiply(inertial, [change.share], "mass")
+        for name, count in (("diaginertia", 3), ("fullinertia", 6)):
+            document.multiply(inertial, [change.inertia] * count, name, is_exact=True)
+    geoms = [geom for geom in body.all("geom") if geom.attributes.get("type") not in _NOT_ROUND]
+    for geom in geoms:
+        if "size" in geom.attributes:
+            document.multiply(geom, [change.round_size], "size")
+        elif change.round_size != 1.0:
+            (shape,) = link.shapes if len(link.shapes) == len(geoms) == 1 else (None,)
+            if shape is None:
+                _refuse_body(body.name, "geoms of a class", "must state the sizes of its wheels")
+            sizes = [change.round_size * shape.radius, 0.5 * shape.length]
+            document.set_attribute(geom, "size", written(sizes))
+    if inertial is None and (change.share, change.round_size) != (1.0, 1.0) and link.mass > 0.0:
+        if len(body.all("geom")) != 1:
+            _refuse_body(body.name, "no <inertial>", "must state its mass, for wheels to share it")
+        document.set_attribute(body.all("geom")[0], "mass", written([change.share * link.mass]))
+
+
+def _above(span: Span) -> list[str]:
+    return [] if span.parent is None else [span.parent.tag, *_above(span.parent)]
+
+
+def _change_motor(document: Document, motor: Span, change: Change) -> None:
+    """Change what a motor can do; that of a `motor` without a limit of force is its gear."""
+    if "forcerange" in motor.attributes or motor.tag != "motor":
+        document.multiply(motor, [change.effort] * 2, "forcerange")
+    elif change.effort != 1.0:
+        gear = motor.attributes.get("gear", "1").split()
+        document.set_attribute(
+            motor, "gear", " ".join([written([float(gear[0]) * change.effort]), *gear[1:]])
+        )
+    if motor.tag in ("velocity", "intvelocity"):
+        document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
+    for name in ("kv", "armature"):
+        document.multiply(motor, [change.inertia], name)
+
+
+def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pose) -> None:
+    geom = body.only("geom")
+    alike = {} if geom is None else geom.attributes
+    given = "".join(f' {name}="{alike[name]}"' for name in _INHERITED if name in alike)
+    for shape, place in change.grousers_on(pose):
+        where = f'pos="{written(place.place)}" quat="{numbers(place.quaternion)}"'
+        size = f'size="{written(0.5 * shape.size)}"'
+        # Its mass is that of the wheel already; without a name, as names must differ.
+        document.append(body, f'<geom type="box" {where} {size} mass="0"{given}/>')
+
+
+def _move(document: Document, element: Span, pose: Span | None, shift: Array) -> None:
+    if pose is None:
+        document.append(element, f"<pose>{written([*shift, 0.0, 0.0, 0.0])}</pose>")
+    elif not pose.text:
+        document.set_text(pose, written([*shift, 0.0, 0.0, 0.0]))
+    else:
+        document.add_to(pose, shift.tolist())
+
+
+def _turned(shift: Array, frame: str, tree: Tree, element: Span) -> Array:
+    """[m] Return a shift of the model in the frame in which an element is given."""
+    if frame == MODEL:
+        return shift
+    if frame not in tree.by_name:
+        _refuse_element(element, frame, "must be placed in the frame of a link or of the model")
+    turned: Array = np.asarray(tree.by_name[frame].pose.turn.T @ shift)
+    return turned
+
+
+def _refuse_element(element: Span, value: str, rule: str) -> NoReturn:
+    raise ScenarioError(f"{element.tag}[{element.name}]", value, rule)
+
+
+def _add_sdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
+    first = link.only("collision")
+    surface = None if first is None else first.only("surface")
+    of_wheel = "" if surface is None else document.source(surface)
+    for shape, place in change.grousers_on(pose):
+        pose_text = f"<pose>{written(place.place)} {numbers(place.rpy)}</pose>"
+        box = f"<geometry><box><size>{written(shape.size)}</size></box></geometry>"
+        for tag, more in (("collision", of_wheel), ("visual", "")):
+            document.append(
+                link, f'<{tag} name="{shape.name}_{tag}">{pose_text}{box}{more}</{tag}>'
+            )
 
 
 def _add_urdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:

@@ -9,26 +9,26 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import Array, Link, Pose, Shape, Tree, Where
+from crawler2d.model_tree import Array, Pose, Tree, Where
 from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
-from crawler2d.reading.engines import combined, drivetrain_of
+from crawler2d.reading.engines import combine_friction, drivetrain_of
 from crawler2d.reading.flippers import ArmPair, AtEnd, arm_pairs, arms_at, flippers_of
-from crawler2d.reading.log import Telling, estimate, lines, named, place_of
+from crawler2d.reading.log import ReadLog, estimate, lines, list_names
 from crawler2d.reading.running_gear import (
     Pair,
     SideView,
     centers,
     is_belted,
     middle_of,
-    paired,
+    pair_runners,
     running_gear_of,
     side_view,
 )
 from crawler2d.reading.surfaces import surfaces_of
 from crawler2d.reading.tracks import (
     Base,
-    belt_round,
+    bending_drums,
     beyond_belt,
     ends_among,
     hull,
@@ -37,213 +37,14 @@ from crawler2d.reading.tracks import (
 )
 from crawler2d.reading.wheels import Runner, RunningGear
 
-__all__ = ["Assembly", "Silhouette", "assembled", "silhouettes"]
+__all__ = ["Assembly", "Silhouette", "assemble", "silhouettes"]
 
 _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorter.
-
-
-def bent_round(
-    told: Telling,
-    pairs: list[Pair],
-    arms: list[ArmPair],
-    castors: list[Runner],
-    *,
-    is_belt: bool,
-) -> list[Pair]:
-    """Return what the outline is the hull of, from the rear to the front; note its lines.
-
-    The two outermost wheels, or the drums that a belt bends round; without either, the roots of
-    flippers; of a robot with one wheel a side, that and its castors.
-
-    Raises
-    ------
-    ScenarioError
-        If there is nothing to stand on at one end, or something reaches out of a belt.
-    """
-    if is_belt:
-        bent = belt_round(pairs, at=told.at)
-    elif len(pairs) == 1 and castors:
-        # One wheel a side is no track: the robot stands on it and on what it trails.
-        bent = sorted([*pairs, *map(_alone, castors)], key=lambda pair: pair.x)
-        reason = "is no track: its outline is drawn round it and the free wheels in the middle"
-        told.doubts.append(("robot.outline", "one wheel a side", reason))
-    elif pairs:
-        bent = [pairs[0], pairs[-1]]
-    else:
-        # Nothing runs between the flippers: the robot stands on their roots.
-        order = sorted(arms, key=lambda arm: float(arm.pivot[0]))
-        if len(order) < 2:
-            rule = "must have wheels on the chassis, or flippers at both ends"
-            raise ScenarioError(str(told.at), "flippers at one end", rule)
-        bent = [order[0].pairs[0], order[-1].pairs[0]]
-        text = "the chassis has no wheels: it stands on the roots of its flippers"
-        told.notes.append(text)
-        told.note("robot.track", estimate(f"{text}, which are no track"))
-    runners = [runner for pair in bent for runner in pair.both]
-    places = [place_of(runner) for runner in runners]
-    if len(bent) > 2:
-        sizes = [runner.shape.size_at for runner in runners]
-        told.note("robot.outline.discs", lines([*places, *sizes]))
-    else:
-        told.note("robot.outline.axle_distance", lines(places))
-        for name, pair in zip(("rear_radius", "front_radius"), bent, strict=True):
-            told.note(f"robot.outline.{name}", lines([r.shape.size_at for r in pair.both]))
-    if pairs:
-        of_all = [s.size_at for pair in pairs for runner in pair.both for s in runner.surfaces]
-        told.note("robot.track", lines(of_all, "sizes"))
-    return bent
-
-
-def _alone(castor: Runner) -> Pair:
-    return Pair(left=(castor,), right=(castor,), x=castor.x, y=castor.y, radius=castor.radius)
-
-
-def frame_of(told: Telling, bent: list[Pair], tolerance: float) -> tuple[Base, Pair]:
-    """Return the chassis frame, and what is on the rear end axle.
-
-    Raises
-    ------
-    ScenarioError
-        If there is no distance between the two.
-    """
-    rear, front = bent if len(bent) == 2 else ends_among(bent)
-    base = Base(
-        rear=np.array([rear.x, rear.y]),
-        front=np.array([front.x, front.y]),
-        is_level=len(bent) > 2,
-    )
-    if base.length <= tolerance:
-        rule = "must have two wheels or drums on each side"
-        raise ScenarioError(str(told.at), base.length, rule)
-    return base, rear
-
-
-def outline_of(told: Telling, base: Base, bent: list[Pair]) -> TrackOutline:
-    """Return the outline, without grousers, which no format has."""
-    for name in ("grouser_height", "grouser_pitch", "grouser_thickness"):
-        told.note(f"robot.outline.{name}", estimate("the file has no grousers"))
-    radii = [pair.radius for pair in bent]
-    grousers = {
-        "grouser_height": 0.0,
-        "grouser_pitch": 0.75 * min(radii),
-        "grouser_thickness": 0.0,
-    }
-    if len(bent) == 2:
-        rear, front = radii
-        outline = TrackOutline(
-            axle_distance=base.length, front_radius=front, rear_radius=rear, **grousers
-        )
-    else:
-        places = base.of(centers(bent))
-        outline = TrackOutline(discs=np.column_stack([places, radii]), **grousers)
-    length = outline.axle_distance
-    whole = length + outline.rear_radius + outline.front_radius
-    if whole > _LARGEST:
-        power = math.ceil(math.log10(whole / _LARGEST))
-        reason = (
-            f"is usually at most {_LARGEST:g} m with the wheels: is the file in metres?"
-            f" scale={10.0**-power:g} reads it so much smaller"
-        )
-        told.doubts.append(("robot.outline.axle_distance", length, reason))
-    return outline
-
-
-Corners = tuple[tuple[float, float], ...]
-
-
-def belly_of(shapes: list[tuple[Link, Shape]], view: SideView, base: Base) -> Corners | None:
-    """Return the belly in the chassis frame, counter-clockwise; None if there is none."""
-    if not shapes:
-        return None
-    flat = [base.of(silhouette(shape, view)) for _, shape in shapes]
-    corners = hull(np.concatenate(flat))
-    if len(corners) < 3:
-        return None
-    return tuple((float(x), float(y)) for x, y in corners)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sum:
-    """Several links as one, in the chassis frame.
-
-    Parameters
-    ----------
-    mass : float
-        [kg] Their mass.
-    center : tuple of float, shape (2,)
-        [m] Their centre of mass.
-    inertia : float
-        [kg m^2] About that.
-    """
-
-    mass: float
-    center: tuple[float, float]
-    inertia: float
-
-
-def summed(tree: Tree, view: SideView, base: Base, arms: Iterable[tuple[AtEnd, float]]) -> Sum:
-    """Sum all links, with the flippers turned to angle 0, as the figures of a robot have them.
-
-    Parameters
-    ----------
-    tree : Tree
-        The model.
-    view : SideView
-        Its side view.
-    base : Base
-        Its chassis frame.
-    arms : iterable of (AtEnd, float)
-        The flippers, and 1 at the front or -1 at the rear.
-
-    Returns
-    -------
-    Sum
-        Of the whole robot.
-    """
-    mass = np.array([link.mass for link in tree.links])
-    places = base.of(view.of(np.array([link.center for link in tree.links]))[:, :2])
-    number = {link.name: index for index, link in enumerate(tree.links)}
-    for end, sign in arms:
-        for arm in end.pair.arms:
-            pivot = base.of(arm.pivot[None, :2])[0]
-            turn = _rotation(-sign * end.angle)
-            for link in arm.links:
-                index = number[link.name]
-                places[index] = pivot + turn @ (places[index] - pivot)
-    whole = float(mass.sum())
-    center = mass @ places / whole if whole > 0.0 else np.zeros(2)
-    own = sum(view.about_left(link.inertia) for link in tree.links)
-    swung = float(mass @ ((places - center) ** 2).sum(axis=1))
-    return Sum(mass=whole, center=(float(center[0]), float(center[1])), inertia=own + swung)
-
-
-def _rotation(angle: float) -> Array:
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[cos, -sin], [sin, cos]])
-
-
-def circulating(pairs: list[Pair]) -> tuple[float, bool]:
-    """[kg] Return the mass that turns with the wheels: moment of inertia by radius squared.
-
-    No body within a wheel's radius has more than its mass there, so no wheel counts for more; the
-    second value says whether one would have.
-    """
-    total, is_excessive = 0.0, False
-    for pair in pairs:
-        for wheel in pair.both:
-            own = wheel.inertia / wheel.radius**2
-            is_excessive |= own > wheel.mass * (1.0 + 1e-6)
-            total += min(own, wheel.mass)
-    return total, is_excessive
-
-
 _SHOWN = 4  # names of links in a doubt
-
-
 _LEAST_MOVING = 0.001  # [kg] The least that a robot can have.
-
-
-_MOVING_SHARE = 0.01  # of the mass, for a surface that moves without mass in its file
+_MOVING_FRACTION = 0.01  # of the mass, for a surface that moves without mass in its file
+_CHORDS = 64  # of a circle; at most 0.2 % of its radius inside it
+_SIGN = {"front": 1.0, "rear": -1.0}
 
 
 @dataclass(slots=True, kw_only=True)
@@ -254,98 +55,101 @@ class Assembly:
     ----------
     tree : Tree
         The model.
-    tolerance : float
-        [m] By how much the two sides may differ.
     engine : str
-        By whose laws its motors work.
-    told : Telling
-        What is told about it.
+        The engine whose laws drive its motors.
+    log : ReadLog
+        Takes notes, doubts and sources.
     view : SideView
         The side view.
-    middle : float
-        [m] Where the middle plane lies across it.
     base : Base
         The chassis frame in the side view.
     """
 
     tree: Tree
-    tolerance: float
     engine: str
-    told: Telling
+    log: ReadLog
     view: SideView = field(init=False)
-    middle: float = field(init=False)
     base: Base = field(init=False)
 
-    def robot(self, forward: str | None) -> Robot:
-        """Make the robot.
+    def robot(self, forward: str | None, tolerance: float) -> Robot:
+        """Build the robot.
 
         Raises
         ------
         ScenarioError
-            If the model has what a side view cannot hold, or breaks a rule of a robot.
+            If the model has what a side view cannot represent, or breaks a rule of a robot.
         """
-        tree, at, tolerance = self.tree, self.tree.at, self.tolerance
+        tree, log = self.tree, self.log
         surfaces = surfaces_of(tree)
-        self.told.doubts += surfaces.doubts
-        self.view = view = side_view(tree, surfaces, forward)
-        self.told.notes.append(f"{view.reason}: {_named(view.forward)} is forward")
+        log.doubts += surfaces.doubts
+        view = side_view(tree, surfaces, forward, tolerance)
+        log.notes.append(f"{view.reason}: {_axis_name(view.forward)} is forward")
         gear = running_gear_of(tree, view, surfaces)
-        runners = gear.runners + [r for arm in gear.arms for r in arm.runners]
-        self.middle = middle = middle_of(gear.runners or runners)
-        castors = gear.without_castors(middle, tolerance)
-        self.doubt_passive(gear, castors)
-        pairs = paired(gear.runners, middle=middle, tolerance=tolerance, at=at)
-        arms = arm_pairs(self.told, gear.arms, view, middle=middle, tolerance=tolerance, at=at)
-        is_belt = is_belted(gear.runners, str(at))
+        runners = gear.runners or [runner for arm in gear.arms for runner in arm.runners]
+        self.view = view = replace(view, middle=middle_of(runners))
+        castors = gear.remove_castors(view.middle, tolerance)
+        self.doubt_undriven(gear, castors)
+        pairs = pair_runners(gear.runners, view)
+        arms = arm_pairs(log, gear.arms, view)
+        is_belt = is_belted(gear.runners, str(tree.at))
         if gear.bars and not is_belt:
             rule = "must have a drum at either end of a track"
-            raise ScenarioError(str(at), "moved boxes only", rule)
-        bent = bent_round(self.told, pairs, arms, castors, is_belt=is_belt)
+            raise ScenarioError(str(tree.at), "moved boxes only", rule)
+        bent = _outline_pairs(log, pairs, arms, castors, is_belt=is_belt)
         if is_belt:
             self.sort_boxes(gear, bent, is_moved=not surfaces.taken)
-        base, rear = frame_of(self.told, bent, tolerance)
-        self.base = base
-        by_end = arms_at(self.told, arms, base, view, radius=rear.radius, tolerance=tolerance)
+        rear, front = bent if len(bent) == 2 else ends_among(bent)
+        self.base = base = Base(
+            rear=np.array([rear.x, rear.y]),
+            front=np.array([front.x, front.y]),
+            is_level=len(bent) > 2,
+        )
+        if base.length <= tolerance:
+            rule = "must have two wheels or drums on each side"
+            raise ScenarioError(str(tree.at), base.length, rule)
+        by_end = arms_at(log, arms, base, view, radius=rear.radius)
         track: Track = BeltTrack() if is_belt else LineOfWheels(2, as_track=False)
         if pairs and not is_belt:
-            track = wheels_of(self.told, pairs, base, view)
-        total = summed(tree, view, base, [(by_end[end], _SIGN[end]) for end in by_end])
-        if not total.mass > 0.0:
-            raise ScenarioError(str(at), total.mass, "must have links with a mass > 0 kg")
-        self.told.note("robot.name", f"{at}")
-        self.told.note("robot.mass", lines([link.mass_at for link in tree.links], "sum"))
-        angle = " at angle 0" if by_end else ""
-        of_links = lines([link.at for link in tree.links], f"sum{angle}")
-        self.told.note("robot.center_of_mass", of_links)
-        self.told.note("robot.moment_of_inertia", of_links)
-        outline = outline_of(self.told, base, bent)
+            track = wheels_of(log, pairs, base, view)
+        flipped = [(by_end[end], _SIGN[end]) for end in by_end]
+        mass, center, inertia = _sum_links(tree, view, base, flipped)
+        if not mass > 0.0:
+            raise ScenarioError(str(tree.at), mass, "must have links with a mass > 0 kg")
+        sum_at = lines([link.at for link in tree.links], "sum at angle 0" if by_end else "sum")
+        log.sources |= {
+            "robot.name": str(tree.at),
+            "robot.mass": lines([link.mass_at for link in tree.links], "sum"),
+            "robot.center_of_mass": sum_at,
+            "robot.moment_of_inertia": sum_at,
+        }
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
-        torque = _holding_torque(total.mass, rear.radius)
+        outline = _outline_of(log, base, bent)
+        # The estimate of Robot.simple: 1.6 times what holds it on 45 degrees.
+        simple = Robot.simple(mass, axle_distance=1.0, radius=rear.radius)
+        lever = rear.radius - simple.outline.grouser_height
         drivetrain = drivetrain_of(
-            self.told,
+            log,
             tree,
             driven,
             track,
             engine=self.engine,
             radius=rear.radius,
-            torque=torque,
+            torque=simple.drivetrain.max_torque * rear.radius / lever,
         )
-        flippers = flippers_of(
-            self.told, by_end, total.mass, engine=self.engine, is_mjcf=tree.format == "MJCF"
-        )
+        flippers = flippers_of(log, by_end, mass, engine=self.engine, is_mjcf=tree.format == "MJCF")
         if flippers is not None and isinstance(flippers.track, BeltTrack):
             drivetrain = replace(drivetrain, torque_sharing="track")
-        self.note_rows(pairs, by_end)
+        self.list_runners(pairs, by_end)
         return Robot(
             tree.name or "robot",
-            mass=total.mass,
-            center_of_mass=total.center,
-            moment_of_inertia=total.inertia,
-            track_mass=self.track_mass([] if is_belt else pairs, total.mass),
+            mass=mass,
+            center_of_mass=center,
+            moment_of_inertia=inertia,
+            track_mass=self.track_mass([] if is_belt else pairs, mass),
             outline=outline,
-            belly=self.belly(gear, base, driven),
+            belly=self.belly(gear, driven),
             flippers=flippers,
-            gauge=self.gauge(pairs or driven),
+            gauge=self.gauge(driven),
             drivetrain=drivetrain,
             track=track,
         )
@@ -354,171 +158,133 @@ class Assembly:
     def frame(self) -> Pose:
         """The chassis frame in that of the model: x forward, y to the left, z up."""
         view, base = self.view, self.base
-        side = np.stack([view.forward, view.up], axis=1)  # turns the side view into the model
+        side = np.stack([view.forward, view.up], axis=1)  # from the side view to the model
         ahead = base.ahead
         turn = np.stack([side @ ahead, view.left, side @ (-ahead[1], ahead[0])], axis=1)
-        place = side @ (0.5 * (base.front + base.rear)) + self.middle * view.left
+        place = side @ (0.5 * (base.front + base.rear)) + view.middle * view.left
         return Pose(place=place, turn=turn)
 
     def sort_boxes(self, gear: RunningGear, bent: list[Pair], *, is_moved: bool) -> None:
-        """Take what lies within the belt for a part of it, and what reaches out for the belly.
+        """Take what lies within the belt as part of it, and what sticks out as belly.
 
         Raises
         ------
         ScenarioError
-            If something moves that reaches out where it may meet the ground.
+            If a moved shape sticks out where it may meet the ground.
         """
-        if not is_moved:  # by the file: then what stands between the drums is no belly
+        if not is_moved:  # by the file: then what is fixed between the drums is no belly
             gear.bars += gear.shapes
             gear.shapes = []
         outlines = [silhouette(shape, self.view) for _, shape in gear.bars]
         for (link, shape), (out, low) in zip(gear.bars, beyond_belt(outlines, bent), strict=True):
-            path = f"{shape.at}: collision[{shape.name}]"
             if is_moved and low > 0.0:
                 rule = "must lie within the belt round the drums, but for its upper run"
-                raise ScenarioError(path, f"a moved shape {1e3 * low:.3g} mm beyond it", rule)
+                value = f"a moved shape {1e3 * low:.3g} mm beyond it"
+                raise ScenarioError(shape.path, value, rule)
             if out > 0.0:
                 gear.shapes.append((link, shape))
             if out > 0.0 and is_moved:
-                reason = "reaches out of the belt round the drums: read as belly, which stands"
-                self.told.doubts.append((path, f"{1e3 * out:.3g} mm", reason))
+                reason = "sticks out of the belt round the drums: read as belly, which is fixed"
+                self.log.doubt(shape.path, f"{1e3 * out:.3g} mm", reason)
 
-    def doubt_passive(self, gear: RunningGear, castors: list[Runner]) -> None:
-        """Doubt wheels without a motor, beside others that have one."""
+    def doubt_undriven(self, gear: RunningGear, castors: list[Runner]) -> None:
+        """Doubt wheels without a motor if others have one."""
+        undriven = [runner for runner in gear.runners if runner.name in gear.passive]
         for wheels, reason in (
             (castors, "roll freely in the middle: read as skids of the belly, which slide"),
             (
-                [r for r in gear.runners if r.name in gear.passive],
-                "roll freely beside others that are driven: read as driven, as by a track round"
-                " all",
+                undriven,
+                "roll freely while others are driven: read as driven, as by a track round all",
             ),
         ):
             if wheels:
-                names = named([wheel.name for wheel in wheels], _SHOWN)
-                self.told.doubts.append((str(wheels[0].link.at), names, reason))
+                names = list_names([wheel.name for wheel in wheels], _SHOWN)
+                self.log.doubt(wheels[0].link.at, names, reason)
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
-        """[kg] Return what moves at track speed."""
-        moving, is_excessive = circulating(pairs)
+        """[kg] Return the mass that moves at track speed: moment of inertia by radius squared.
+
+        No body within a wheel's radius has more than its mass there, so no wheel counts for more.
+        """
+        path, moving, is_excessive = "robot.track_mass", 0.0, False
+        for wheel in (runner for pair in pairs for runner in pair.both):
+            own = wheel.inertia / wheel.radius**2
+            is_excessive |= own > wheel.mass * (1.0 + 1e-6)
+            moving += min(own, wheel.mass)
         if not _LEAST_MOVING <= moving < mass:
-            self.told.note(
-                "robot.track_mass", estimate("a hundredth of the mass: the file has none")
-            )
-            return _MOVING_SHARE * mass
+            self.log.sources[path] = estimate("a hundredth of the mass: the file has none")
+            return _MOVING_FRACTION * mass
         wheels = [runner.link.at for pair in pairs for runner in pair.both]
-        self.told.note("robot.track_mass", lines(wheels, "moment of inertia by radius squared"))
+        self.log.sources[path] = lines(wheels, "moment of inertia by radius squared")
         if is_excessive:
             rule = "the mass of the wheels, as of hoops: their moments of inertia exceed it"
-            self.told.note("robot.track_mass", estimate(rule))
-            self.told.doubts.append(
-                (
-                    "robot.track_mass",
-                    float(f"{moving:.4g}"),
-                    "is limited to hoops: wheels state more inertia",
-                )
-            )
+            self.log.sources[path] = estimate(rule)
+            reason = "is limited to hoops: wheels state more inertia"
+            self.log.doubt(path, float(f"{moving:.4g}"), reason)
         return moving
 
     def belly(
-        self, gear: RunningGear, base: Base, driven: list[Pair]
+        self, gear: RunningGear, driven: list[Pair]
     ) -> tuple[tuple[float, float], ...] | None:
-        """Return the belly; doubt one that touches level ground, tell what it leaves out."""
-        corners = belly_of(gear.shapes, self.view, base)
+        """Return the belly, counter-clockwise; doubt one that touches level ground."""
         moving = list(dict.fromkeys(link.name for _, link, _ in gear.moving))
         if moving:
-            self.told.notes.append(
-                f"{', '.join(moving)}: move by themselves, and touch nothing here"
-            )
-        if corners is None:
-            self.told.note("robot.belly", f"{self.tree.at}: no collision shape on the chassis")
+            text = f"{', '.join(moving)}: move by themselves, and touch nothing here"
+            self.log.notes.append(text)
+        flat = [self.base.of(silhouette(shape, self.view)) for _, shape in gear.shapes]
+        corners = hull(np.concatenate(flat)) if flat else []
+        if len(corners) < 3:
+            self.log.sources["robot.belly"] = f"{self.tree.at}: no collision shape on the chassis"
             return None
-        self.told.note("robot.belly", lines([shape.at for _, shape in gear.shapes], "hull"))
-        places = base.of(centers(driven))
+        self.log.sources["robot.belly"] = lines([shape.at for _, shape in gear.shapes], "hull")
+        places = self.base.of(centers(driven))
         ground = min(float(y) - pair.radius for (_, y), pair in zip(places, driven, strict=True))
-        lowest = min(y for _, y in corners)
-        if lowest <= ground + self.tolerance:
-            reason = "rubs on level ground: a skid beside the wheels counts as belly"
-            self.told.doubts.append(("robot.belly", lowest, reason))
-        return corners
+        lowest = min(float(y) for _, y in corners)
+        if lowest <= ground + self.view.tolerance:
+            reason = "rubs on level ground: a skid next to the wheels counts as belly"
+            self.log.doubt("robot.belly", lowest, reason)
+        return tuple((float(x), float(y)) for x, y in corners)
 
     def gauge(self, pairs: list[Pair]) -> float:
-        """[m] Return the lateral distance of the tracks; tell of wheels that stand apart."""
+        """[m] Return the lateral distance of the tracks; note wheels that are off it."""
         runners = [runner for pair in pairs for runner in pair.both]
-        across = [abs(runner.z - self.middle) for runner in runners]
+        across = [abs(runner.z - self.view.middle) for runner in runners]
         usual = float(np.median(across))
-        self.told.note("robot.gauge", lines([place_of(runner) for runner in runners], "median"))
+        self.log.sources["robot.gauge"] = lines([each.pose_at for each in runners], "median")
         for runner, own in zip(runners, across, strict=True):
-            if abs(own - usual) > self.tolerance:
+            if abs(own - usual) > self.view.tolerance:
                 where = "inboard" if own < usual else "outboard"
                 off = 1e3 * abs(own - usual)
-                self.told.notes.append(f"{runner.name}: {off:.3g} mm {where} of the others")
+                self.log.notes.append(f"{runner.name}: {off:.3g} mm {where} of the others")
         return 2.0 * usual
 
-    def note_rows(self, pairs: list[Pair], by_end: dict[str, AtEnd]) -> None:
-        """List all wheels: left before right, chassis before flippers."""
+    def list_runners(self, pairs: list[Pair], by_end: dict[str, AtEnd]) -> None:
+        """List all runners in the log: left before right, chassis before flippers."""
+        log, middle = self.log, self.view.middle
         carriers = [("chassis", pairs)]
         carriers += [(f"{end} flipper", list(each.pair.pairs)) for end, each in by_end.items()]
-        for _, each in carriers:
-            for pair in each:
-                self.note_aslant(pair)
+        for pair in [pair for _, carried in carriers for pair in carried]:
+            left, right = pair.left[0], pair.right[0]
+            off = abs(left.z + right.z - 2.0 * middle)
+            if off > self.view.tolerance:  # which a side view does not show
+                text = f"{left.name} and {right.name}: not mirrored across, by {1e3 * off:.3g} mm"
+                log.notes.append(text)
         for side in ("left", "right"):
-            for carrier, each in carriers:
-                found = [runner for pair in each for runner in getattr(pair, side)]
-                self.told.rows += [(carrier, runner) for runner in sorted(found, key=lambda r: r.x)]
-        swapped = [r.name for _, r in self.told.rows if _is_swapped(r, self.middle)]
-        if swapped:
-            reason = "is on the other side than its name says: is forward right?"
-            self.told.doubts.append(("forward", swapped[0], reason))
-
-    def note_aslant(self, pair: Pair) -> None:
-        """Tell of a pair that is not mirrored across: a side view does not see it."""
-        left, right = pair.left[0], pair.right[0]
-        off = abs(left.z + right.z - 2.0 * self.middle)
-        if off > self.tolerance:
-            text = f"{left.name} and {right.name}: not mirrored across, by {1e3 * off:.3g} mm"
-            self.told.notes.append(text)
-
-
-_SIGN = {"front": 1.0, "rear": -1.0}
-
-
-def assembled(
-    tree: Tree, *, forward: str | None, tolerance: float, engine: str, ground: float
-) -> tuple[Robot, float, Assembly]:
-    """Make a robot of a tree, with its friction on the ground and where that is from."""
-    work = Assembly(tree=tree, tolerance=tolerance, engine=engine, told=Telling(at=tree.at))
-    robot = work.robot(forward)
-    runners = [runner for _, runner in work.told.rows]
-    friction, source, places = combined(runners, work.view, engine, ground)
-    at = f": {lines(places)}" if places else ""
-    work.told.note("friction", f"{source}{at}")
-    return robot, friction, work
-
-
-def _is_swapped(runner: Runner, middle: float) -> bool:
-    name = runner.name.lower()
-    is_left, is_right = "left" in name, "right" in name
-    return is_left is not is_right and is_left is not (runner.z > middle)
-
-
-def _holding_torque(mass: float, radius: float) -> float:
-    """[N m] Return the estimate of `Robot.simple`: 1.6 times what holds it on 45 degrees."""
-    simple = Robot.simple(mass, axle_distance=1.0, radius=radius)
-    height = simple.outline.grouser_height
-    return simple.drivetrain.max_torque * radius / (radius - height)
-
-
-def _named(direction: np.ndarray[tuple[int]]) -> str:
-    axis = int(np.argmax(np.abs(direction)))
-    return f"{'+' if direction[axis] > 0.0 else '-'}{'xyz'[axis]}"
-
-
-_DRAWN_CHORDS = 64  # the same where it is looked at; 0.2 %
+            for carrier, carried in carriers:
+                runners = [runner for pair in carried for runner in getattr(pair, side)]
+                log.rows += [(carrier, runner) for runner in sorted(runners, key=lambda r: r.x)]
+        for _, runner in log.rows:
+            name = runner.name.lower()
+            is_left, is_right = "left" in name, "right" in name
+            if is_left is not is_right and is_left is not (runner.z > middle):
+                reason = "is on the other side than its name says: is forward right?"
+                log.doubt("forward", runner.name, reason)
+                break
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Silhouette:
-    """What is seen of a collision shape from the side.
+    """The outline of a collision shape in side view.
 
     Parameters
     ----------
@@ -538,12 +304,158 @@ class Silhouette:
     at: Where
 
 
+def assemble(
+    tree: Tree, *, forward: str | None, tolerance: float, engine: str, ground: float
+) -> tuple[Robot, float, Assembly]:
+    """Build the robot of a tree; return it with its friction on the ground and its assembly."""
+    work = Assembly(tree=tree, engine=engine, log=ReadLog(at=tree.at))
+    robot = work.robot(forward, tolerance)
+    runners = [runner for _, runner in work.log.rows]
+    friction, source, places = combine_friction(runners, work.view, engine, ground)
+    work.log.sources["friction"] = f"{source}: {lines(places)}" if places else source
+    return robot, friction, work
+
+
 def silhouettes(tree: Tree, view: SideView, base: Base) -> tuple[Silhouette, ...]:
-    """Return what is seen of every collision shape, with all joints at zero."""
-    found = []
-    for link in tree.links:
-        for shape in link.shapes:
-            corners = hull(base.of(silhouette(shape, view, _DRAWN_CHORDS)))
-            outline = np.array(corners).reshape(-1, 2)
-            found.append(Silhouette(link=link.name, kind=shape.kind, outline=outline, at=shape.at))
-    return tuple(found)
+    """Return the outlines of all collision shapes, with all joints at zero."""
+    return tuple(
+        Silhouette(
+            link=link.name,
+            kind=shape.kind,
+            outline=np.array(hull(base.of(silhouette(shape, view, _CHORDS)))).reshape(-1, 2),
+            at=shape.at,
+        )
+        for link in tree.links
+        for shape in link.shapes
+    )
+
+
+def _axis_name(direction: np.ndarray[tuple[int]]) -> str:
+    axis = int(np.argmax(np.abs(direction)))
+    return f"{'+' if direction[axis] > 0.0 else '-'}{'xyz'[axis]}"
+
+
+def _outline_pairs(
+    log: ReadLog,
+    pairs: list[Pair],
+    arms: list[ArmPair],
+    castors: list[Runner],
+    *,
+    is_belt: bool,
+) -> list[Pair]:
+    """Return the pairs whose hull the outline is, from the rear to the front; log their lines.
+
+    These are the two outermost wheels, or the drums that a belt bends round; without either, the
+    roots of flippers; of a robot with one wheel a side, that and its castors.
+
+    Raises
+    ------
+    ScenarioError
+        If there is nothing to stand on at one end, or something sticks out of a belt.
+    """
+    if is_belt:
+        bent = bending_drums(pairs, at=log.at)
+    elif len(pairs) == 1 and castors:
+        # One wheel a side is no track: the robot stands on it and on what it trails.
+        singles = [
+            Pair(left=(each,), right=(each,), x=each.x, y=each.y, radius=each.radius)
+            for each in castors
+        ]
+        bent = sorted([*pairs, *singles], key=lambda pair: pair.x)
+        reason = "is no track: its outline is drawn round it and the free wheels in the middle"
+        log.doubt("robot.outline", "one wheel a side", reason)
+    elif pairs:
+        bent = [pairs[0], pairs[-1]]
+    else:
+        order = sorted(arms, key=lambda arm: float(arm.pivot[0]))
+        if len(order) < 2:
+            rule = "must have wheels on the chassis, or flippers at both ends"
+            raise ScenarioError(str(log.at), "flippers at one end", rule)
+        bent = [order[0].pairs[0], order[-1].pairs[0]]
+        text = "the chassis has no wheels: it stands on the roots of its flippers"
+        log.notes.append(text)
+        log.sources["robot.track"] = estimate(f"{text}, which are no track")
+    runners = [runner for pair in bent for runner in pair.both]
+    places = [runner.pose_at for runner in runners]
+    if len(bent) > 2:
+        sizes = [runner.shape.size_at for runner in runners]
+        log.sources["robot.outline.discs"] = lines([*places, *sizes])
+    else:
+        log.sources["robot.outline.axle_distance"] = lines(places)
+        for name, pair in zip(("rear_radius", "front_radius"), bent, strict=True):
+            log.sources[f"robot.outline.{name}"] = lines([r.shape.size_at for r in pair.both])
+    if pairs:
+        of_all = [s.size_at for pair in pairs for runner in pair.both for s in runner.surfaces]
+        log.sources["robot.track"] = lines(of_all, "sizes")
+    return bent
+
+
+def _sum_links(
+    tree: Tree, view: SideView, base: Base, arms: Iterable[tuple[AtEnd, float]]
+) -> tuple[float, tuple[float, float], float]:
+    """Sum all links, with the flippers turned to angle 0, as the figures of a robot have them.
+
+    Parameters
+    ----------
+    tree : Tree
+        The model.
+    view : SideView
+        Its side view.
+    base : Base
+        Its chassis frame.
+    arms : iterable of (AtEnd, float)
+        The flippers, and 1 at the front or -1 at the rear.
+
+    Returns
+    -------
+    mass : float
+        [kg] Of the robot.
+    center : tuple of float, shape (2,)
+        [m] Its centre of mass in the chassis frame.
+    inertia : float
+        [kg m^2] About that.
+    """
+    mass = np.array([link.mass for link in tree.links])
+    places = base.of(view.of(np.array([link.center for link in tree.links]))[:, :2])
+    number = {link.name: index for index, link in enumerate(tree.links)}
+    for end, sign in arms:
+        cos, sin = math.cos(-sign * end.angle), math.sin(-sign * end.angle)
+        turn = np.array([[cos, -sin], [sin, cos]])
+        for arm in end.pair.arms:
+            pivot = base.of(arm.pivot[None, :2])[0]
+            for index in (number[link.name] for link in arm.links):
+                places[index] = pivot + turn @ (places[index] - pivot)
+    whole = float(mass.sum())
+    center = mass @ places / whole if whole > 0.0 else np.zeros(2)
+    own = sum(view.about_left(link.inertia) for link in tree.links)
+    swung = float(mass @ ((places - center) ** 2).sum(axis=1))
+    return whole, (float(center[0]), float(center[1])), own + swung
+
+
+def _outline_of(log: ReadLog, base: Base, bent: list[Pair]) -> TrackOutline:
+    """Return the outline, without grousers, which no format has."""
+    radii = [pair.radius for pair in bent]
+    grousers = {
+        "grouser_height": 0.0,
+        "grouser_pitch": 0.75 * min(radii),
+        "grouser_thickness": 0.0,
+    }
+    for name in grousers:
+        log.sources[f"robot.outline.{name}"] = estimate("the file has no grousers")
+    if len(bent) == 2:
+        rear, front = radii
+        outline = TrackOutline(
+            axle_distance=base.length, front_radius=front, rear_radius=rear, **grousers
+        )
+    else:
+        outline = TrackOutline(discs=np.column_stack([base.of(centers(bent)), radii]), **grousers)
+    length = outline.axle_distance
+    whole = length + outline.rear_radius + outline.front_radius
+    if whole > _LARGEST:
+        power = math.ceil(math.log10(whole / _LARGEST))
+        reason = (
+            f"is usually at most {_LARGEST:g} m with the wheels: is the file in metres?"
+            f" scale={10.0**-power:g} would correct that"
+        )
+        log.doubt("robot.outline.axle_distance", length, reason)
+    return outline

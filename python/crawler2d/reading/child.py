@@ -1,4 +1,4 @@
-"""Parsers of others run in a child process with limits: it alone may hang, grow or crash."""
+"""Third-party parsers run in a child process with limits: it alone may hang, grow or crash."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.files import Files
 
-__all__ = ["answered", "no_more_files", "serve"]
+__all__ = ["ask_child", "no_more_files", "serve"]
 
 SECONDS = 2
 """[s] Of computing, after the imports."""
 
 CLOCK = 4 * SECONDS
-"""[s] Of the clock, after the imports: whatever it waits for, it does not wait for ever."""
+"""[s] Of the clock, after the imports: it waits for nothing for ever."""
 
 MEGABYTES = 400
 """[MB] Of memory, beyond what the imports took."""
@@ -49,7 +49,7 @@ def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> 
 
 @contextlib.contextmanager
 def no_more_files() -> Iterator[None]:
-    """Let nothing be opened, by whatever means, where the system knows such a limit."""
+    """Prevent any file from being opened, by whatever means, where the system has such a limit."""
     try:
         import resource  # noqa: PLC0415 - not on Windows
     except ImportError:
@@ -64,7 +64,7 @@ def no_more_files() -> Iterator[None]:
 
 
 def _limit() -> None:
-    """Set the limits, where the system knows such."""
+    """Set the limits, where the system has them."""
     with contextlib.suppress(ImportError):
         import resource  # noqa: PLC0415 - not on Windows, where only the patience of the parent holds
 
@@ -87,24 +87,19 @@ def _limit() -> None:
 _PATIENCE = 30.0
 
 
-def answered(program: str, question: dict[str, Any], *, file: str, folder: Path) -> dict[str, Any]:
-    """Ask a program of this room, in a process of its own.
+def ask_child(program: str, question: dict[str, Any], *, file: str, files: Files) -> dict[str, Any]:
+    """Ask a program of this room, in a process of its own, for plain data.
 
     Parameters
     ----------
     program : str
-        Dotted name of the module, which ends with `limits.serve`.
+        Dotted name of the module, which ends with `serve`.
     question : dict
-        What JSON can hold.
+        Plain data that JSON can represent.
     file : str
-        What it is about, for errors.
-    folder : Path
-        In which it runs.
-
-    Returns
-    -------
-    dict
-        Its answer.
+        The subject of errors.
+    files : Files
+        The files of the model, in whose folder the program runs.
 
     Raises
     ------
@@ -119,22 +114,22 @@ def answered(program: str, question: dict[str, Any], *, file: str, folder: Path)
             [sys.executable, "-P", "-m", program],
             input=json.dumps(question).encode(),
             capture_output=True,
-            cwd=folder,
+            cwd=files.folder,
             timeout=_PATIENCE,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        rule = f"must be understood within {_PATIENCE:g} s"
+        rule = f"must be parsed within {_PATIENCE:g} s"
         raise ScenarioError(file, "no answer", rule) from None
     try:
         answer: dict[str, Any] = json.loads(done.stdout)
     except ValueError:
         rule = (
-            f"must be understood in {SECONDS} s of computing, {CLOCK} s of the clock and"
+            f"must be parsed in {SECONDS} s of computing, {CLOCK} s of the clock and"
             f" {MEGABYTES} MB of memory"
         )
-        got = done.stderr.decode(errors="replace").strip().splitlines()
-        said = got[-1] if got else f"an end by {_ended(done.returncode)}"
+        errors = done.stderr.decode(errors="replace").strip().splitlines()
+        said = errors[-1] if errors else f"an end by {_exit_name(done.returncode)}"
         raise ScenarioError(file, said, rule) from None
     if "missing" in answer:
         raise ImportError(answer["missing"])
@@ -143,8 +138,8 @@ def answered(program: str, question: dict[str, Any], *, file: str, folder: Path)
     return answer
 
 
-def _ended(status: int) -> str:
-    """Say how a process ended; those that run out of time end by a signal."""
+def _exit_name(status: int) -> str:
+    """Name the exit of a process; those that run out of time end by a signal."""
     if status >= 0:
         return f"status {status}"
     try:

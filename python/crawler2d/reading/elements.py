@@ -20,12 +20,14 @@ from crawler2d.model_tree import Where
 from crawler2d.reading.files import LARGEST_MODEL
 from crawler2d.reading.log import Doubt
 
-__all__ = ["Element", "parsed", "real"]
+__all__ = ["Element", "parse_xml", "real"]
 
 # [m, kg, ...] No robot has a larger figure; an effort or a limit of an angle that is, is none.
 _LARGEST = 1e6
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _LONGEST_NUMBER = 60
+_MOST_ELEMENTS = 50_000
+_DEEPEST = 60
 
 
 class Element:
@@ -155,11 +157,7 @@ def real(element: Element, word: str, part: str = "", *, unlimited: bool = False
     return number
 
 
-_MOST_ELEMENTS = 50_000
-_DEEPEST = 60
-
-
-def parsed(data: bytes, file: str) -> Element:
+def parse_xml(data: bytes, file: str) -> Element:
     r"""Parse the bytes of a file.
 
     Parameters
@@ -181,10 +179,10 @@ def parsed(data: bytes, file: str) -> Element:
 
     Examples
     --------
-    >>> root = parsed(b"<robot name='cart'>\n  <link name='hull'/>\n</robot>", "cart.urdf")
+    >>> root = parse_xml(b"<robot name='cart'>\n  <link name='hull'/>\n</robot>", "cart.urdf")
     >>> print(root.children[0].where)
     cart.urdf:2
-    >>> parsed(b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "bomb.sdf")
+    >>> parse_xml(b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", "bomb.sdf")
     Traceback (most recent call last):
     ...
     crawler2d.errors.ScenarioError: bomb.sdf:1 must have no document type, got 'a'

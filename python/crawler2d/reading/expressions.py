@@ -18,7 +18,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-__all__ = ["NAMES", "NotAllowed", "evaluated", "plain_copy"]
+__all__ = ["NAMES", "NotAllowed", "copy_data", "evaluate"]
 
 _LONGEST = 2000  # [characters] of an expression; those of public files have at most 200
 _DEEPEST = 100
@@ -54,7 +54,7 @@ class NotAllowed(Exception):
         self.expression = ""
 
 
-def evaluated(text: str, names: Mapping[str, Any]) -> Any:
+def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     """Evaluate an expression.
 
     Parameters
@@ -78,9 +78,9 @@ def evaluated(text: str, names: Mapping[str, Any]) -> Any:
 
     Examples
     --------
-    >>> evaluated("2 * radius if wide else [pi, 'a'][0]", {**NAMES, "radius": 0.1, "wide": True})
+    >>> evaluate("2 * radius if wide else [pi, 'a'][0]", {**NAMES, "radius": 0.1, "wide": True})
     0.2
-    >>> evaluated("().__class__", NAMES)
+    >>> evaluate("().__class__", NAMES)
     Traceback (most recent call last):
     ...
     crawler2d.reading.expressions.NotAllowed: ('.__class__', 'must have only plain data, ...')
@@ -99,7 +99,7 @@ def evaluated(text: str, names: Mapping[str, Any]) -> Any:
         raise
 
 
-def plain_copy(value: Any) -> Any:
+def copy_data(value: Any) -> Any:
     """Copy lists and dicts of any class as plain ones; anything but data is refused."""
     return _Evaluation("", {}).copy(value, 0)
 

@@ -35,7 +35,7 @@ from typing import Any
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.log import Doubt
 
-__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "VARIABLES", "Files", "is_absent", "why"]
+__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "VARIABLES", "Files", "is_absent", "reason_of"]
 
 MANIFESTS = ("package.xml", "manifest.xml", "model.config")
 """Files that make a folder a package."""
@@ -51,7 +51,6 @@ VARIABLES = {
     "ROS_ROOT": (),
 }
 """By variable where a package is in one of its folders; without a pattern, anywhere below."""
-
 _NAME = re.compile(rb"<name\s*>([^<]+)</name\s*>")
 _ALLOWED = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+ -]*")
 _LARGEST = 64_000  # [bytes] of a manifest
@@ -59,6 +58,32 @@ _FARTHEST = 8  # folders, that of the model and those round it, that may have a 
 _WIDER = 2  # folders above a package that is in no repository
 _DEEPEST = 7  # levels below the folder in which a search starts
 _MOST = 4000  # folders of one search
+
+LARGEST_MODEL = 4_000_000
+"""[bytes] Of one file of elements or settings. The largest public models have 150 kB."""
+
+LARGEST_TOGETHER = 30_000_000
+"""[bytes] Of all files of one model, and so of any mesh: 600,000 facets of a binary STL."""
+
+_IN_PACKAGE = re.compile(
+    r"(?:file://)?(?:(?:package|model)://([^/]*)|\$\((?:find|find-pkg-share)\s+([^)\s]+)\s*\))(.*)",
+    re.DOTALL,
+)
+
+_KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
+
+# Nothing that is opened waits, becomes the terminal, or is a link put there in the meantime.
+_FLAGS = os.O_RDONLY
+
+for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
+    _FLAGS |= getattr(os, _name, 0)
+_ELSEWHERE = "is not among the files of the model"
 
 
 class Packages:
@@ -190,94 +215,6 @@ class Packages:
         return names
 
 
-def folders(variable: str) -> list[Path]:
-    """List the folders that an environment variable names, with all links followed."""
-    parts = os.environ.get(variable, "").split(os.pathsep)
-    return [Path(os.path.realpath(part)) for part in parts if part]
-
-
-def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
-    """Say where to look for packages, the nearest first: the package, then what it is part of.
-
-    Without a repository that is the outermost package; folders above may have packages beside it,
-    but not those in which anything may lie.
-    """
-    near = [folder, *folder.parents][:_FARTHEST]
-    packages = [each for each in near if any((each / name).is_file() for name in MANIFESTS)]
-    for each in near:
-        if (each / ".git").exists():
-            return list(dict.fromkeys([*packages[:1], each])), []
-    if packages:
-        wider = packages[-1].parents[:_WIDER]
-        all_in = (Path.home(), Path(os.path.realpath(tempfile.gettempdir())))
-        beside = [each for each in wider if not any(wide.is_relative_to(each) for wide in all_in)]
-        return list(dict.fromkeys([packages[0], packages[-1]])), beside
-    return [folder], []
-
-
-def _within(starts: Iterable[Path]) -> Iterator[tuple[Path, set[str]]]:
-    """Go through folders with what is in them, those near a start first, each once."""
-    seen: set[Path] = set()
-    for start in starts:
-        level = [start]
-        for _ in range(_DEEPEST):
-            below: list[Path] = []
-            for folder in level:
-                if folder in seen:
-                    continue
-                if len(seen) == _MOST:
-                    return
-                seen.add(folder)
-                files, inside = _listed(folder)
-                yield folder, files
-                below += inside
-            level = below
-
-
-def _listed(folder: Path) -> tuple[set[str], list[Path]]:
-    """List files, and folders in order, of a folder; hidden and linked ones are passed over."""
-    try:
-        with os.scandir(folder) as entries:
-            shown = sorted(
-                (each for each in entries if not each.name.startswith(".")),
-                key=lambda each: each.name,
-            )
-            inside = [Path(each.path) for each in shown if each.is_dir(follow_symlinks=False)]
-    except OSError:
-        return set(), []
-    return {each.name for each in shown}, inside
-
-
-def _without_comments(data: bytes) -> bytes:
-    first, *others = data.split(b"<!--")
-    return first + b"".join(part.partition(b"-->")[2] for part in others)
-
-
-LARGEST_MODEL = 4_000_000
-"""[bytes] Of one file of elements or settings. The largest public models have 150 kB."""
-
-LARGEST_TOGETHER = 30_000_000
-"""[bytes] Of all files of one model, and so of any mesh: 600,000 facets of a binary STL."""
-
-_IN_PACKAGE = re.compile(
-    r"(?:file://)?(?:(?:package|model)://([^/]*)|\$\((?:find|find-pkg-share)\s+([^)\s]+)\s*\))(.*)",
-    re.DOTALL,
-)
-_KINDS = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-}
-# Nothing that is opened waits, becomes the terminal, or is a link put there in the meantime.
-_FLAGS = os.O_RDONLY
-for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
-    _FLAGS |= getattr(os, _name, 0)
-
-_ELSEWHERE = "is not among the files of the model"
-
-
 class Files:
     """The files of one model, of which each that is read counts.
 
@@ -323,7 +260,7 @@ class Files:
         self.doubts: list[Doubt] = []
 
     @property
-    def plain(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, Any]:
         """The parameters, for another process."""
         packages = {name: str(folder) for name, folder in self._given.items()}
         return {"model": str(self._model), "packages": packages}
@@ -414,21 +351,88 @@ class Files:
         return _real(self._taken[name], at)
 
 
+def folders(variable: str) -> list[Path]:
+    """List the folders that an environment variable names, with all links followed."""
+    parts = os.environ.get(variable, "").split(os.pathsep)
+    return [Path(os.path.realpath(part)) for part in parts if part]
+
+
 def is_absent(error: BaseException) -> bool:
     """Whether a file was refused because there is none among those of the model."""
     return isinstance(error.__cause__, (FileNotFoundError, NotADirectoryError))
 
 
-def _absent(name: str) -> FileNotFoundError:
-    return FileNotFoundError(errno.ENOENT, _ELSEWHERE, name)
-
-
-def why(error: ScenarioError) -> str:
+def reason_of(error: ScenarioError) -> str:
     """Say why a file could not be read, and which one it is if it is not there."""
     cause = error.__cause__
     if isinstance(cause, FileNotFoundError) and cause.strerror != _ELSEWHERE:
         return f"there is no file {cause.filename}"
     return error.rule
+
+
+def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
+    """Say where to look for packages, the nearest first: the package, then what it is part of.
+
+    Without a repository that is the outermost package; folders above may have packages beside it,
+    but not those in which anything may lie.
+    """
+    near = [folder, *folder.parents][:_FARTHEST]
+    packages = [each for each in near if any((each / name).is_file() for name in MANIFESTS)]
+    for each in near:
+        if (each / ".git").exists():
+            return list(dict.fromkeys([*packages[:1], each])), []
+    if packages:
+        wider = packages[-1].parents[:_WIDER]
+        all_in = (Path.home(), Path(os.path.realpath(tempfile.gettempdir())))
+        beside = [each for each in wider if not any(wide.is_relative_to(each) for wide in all_in)]
+        return list(dict.fromkeys([packages[0], packages[-1]])), beside
+    return [folder], []
+
+
+def _within(starts: Iterable[Path]) -> Iterator[tuple[Path, set[str]]]:
+    """Go through folders with what is in them, those near a start first, each once."""
+    seen: set[Path] = set()
+    for start in starts:
+        level = [start]
+        for _ in range(_DEEPEST):
+            below: list[Path] = []
+            for folder in level:
+                if folder in seen:
+                    continue
+                if len(seen) == _MOST:
+                    return
+                seen.add(folder)
+                files, inside = _listed(folder)
+                yield folder, files
+                below += inside
+            level = below
+
+
+def _listed(folder: Path) -> tuple[set[str], list[Path]]:
+    """List files, and folders in order, of a folder; hidden and linked ones are passed over."""
+    try:
+        with os.scandir(folder) as entries:
+            shown = sorted(
+                (each for each in entries if not each.name.startswith(".")),
+                key=lambda each: each.name,
+            )
+            inside = [Path(each.path) for each in shown if each.is_dir(follow_symlinks=False)]
+    except OSError:
+        return set(), []
+    return {each.name for each in shown}, inside
+
+
+def _without_comments(data: bytes) -> bytes:
+    first, *others = data.split(b"<!--")
+    return first + b"".join(part.partition(b"-->")[2] for part in others)
+
+
+def _real(path: str | os.PathLike[str], at: str) -> Path:
+    """Follow all links; a circle of them is refused when it is opened."""
+    try:
+        return Path(os.path.realpath(path))
+    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
+        raise ScenarioError(at, str(path), f"must be the name of a file ({error})") from None
 
 
 def _read_regular(path: Path, most: int) -> bytes:
@@ -444,17 +448,13 @@ def _read_regular(path: Path, most: int) -> bytes:
         os.close(number)
 
 
-def _real(path: str | os.PathLike[str], at: str) -> Path:
-    """Follow all links; a circle of them is refused when it is opened."""
-    try:
-        return Path(os.path.realpath(path))
-    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
-        raise ScenarioError(at, str(path), f"must be the name of a file ({error})") from None
-
-
 def _package_round(folder: Path) -> Path:
     """Return the innermost folder with a manifest round a folder, or else that itself."""
     for each in (folder, *folder.parents):
         if any(os.path.exists(each / name) for name in MANIFESTS):
             return each
     return folder
+
+
+def _absent(name: str) -> FileNotFoundError:
+    return FileNotFoundError(errno.ENOENT, _ELSEWHERE, name)

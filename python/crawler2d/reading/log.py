@@ -1,4 +1,4 @@
-"""What is recorded about a robot that is read: sources of figures, notes, doubts and its wheels."""
+"""The log of reading a file: sources of figures, notes, doubts, and the wheels in table order."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.model_tree import Where
 from crawler2d.reading.wheels import Runner
 
-__all__ = ["Doubt", "Sources", "Telling", "estimate", "lines", "named", "noted", "place_of"]
+__all__ = ["Doubt", "ReadLog", "Sources", "add_doubts", "estimate", "lines", "list_names"]
 
-_MOST = 4  # lines that are listed one by one
+_MOST_LINES = 4  # that are listed one by one
+_MOST_NOTES = 10  # on one error
+
+Doubt = tuple[str, object, str]
+"""Path, value and reason of a `ScenarioWarning`."""
 
 
 class Sources(Mapping[str, str]):
@@ -59,13 +63,42 @@ class Sources(Mapping[str, str]):
         return tuple(path for path, source in self._entries if source.startswith("estimate"))
 
 
+@dataclass(slots=True, kw_only=True)
+class ReadLog:
+    """What is recorded while a robot is built from a model.
+
+    Parameters
+    ----------
+    at : Where
+        Line of the model.
+    sources : dict of str to str
+        By path.
+    notes : list of str
+        Decisions.
+    doubts : list of Doubt
+        Probable mistakes.
+    rows : list of (str, Runner)
+        All wheels and drums, each with its carrier, in the order of the table.
+    """
+
+    at: Where
+    sources: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    doubts: list[Doubt] = field(default_factory=list)
+    rows: list[tuple[str, Runner]] = field(default_factory=list)
+
+    def doubt(self, path: object, value: object, reason: str) -> None:
+        """Record a probable mistake."""
+        self.doubts.append((str(path), value, reason))
+
+
 def estimate(rule: str) -> str:
-    """Say that a figure is an estimate, and by which rule."""
+    """Return the source of a figure that is an estimate by a rule."""
     return f"estimate: {rule}"
 
 
 def lines(places: Iterable[Where], what: str = "") -> str:
-    """Write lines of a file; of many, how many and from where to where.
+    """List lines of a file; of many, the first, the last and their number.
 
     Examples
     --------
@@ -80,7 +113,7 @@ def lines(places: Iterable[Where], what: str = "") -> str:
     parts = []
     for file, numbers in by_file.items():
         order = sorted(numbers)
-        if len(order) <= _MOST:
+        if len(order) <= _MOST_LINES:
             parts.append(f"{file}:{', '.join(str(number) for number in order)}")
             continue
         kind = f"{what} of {len(order)}" if what else f"{len(order)}"
@@ -88,49 +121,9 @@ def lines(places: Iterable[Where], what: str = "") -> str:
     return "; ".join(parts)
 
 
-Doubt = tuple[str, object, str]
-"""Path, value and reason of a `ScenarioWarning`."""
-
-_MOST_NOTES = 10
-
-
-@dataclass(slots=True, kw_only=True)
-class Telling:
-    """Gathers what is told while a robot is made.
-
-    Parameters
-    ----------
-    at : Where
-        Line of the model.
-    sources : dict of str to str
-        By path.
-    notes : list of str
-        What was decided.
-    doubts : list of Doubt
-        What is hardly meant.
-    rows : list of (str, Runner)
-        All wheels and drums, each with its carrier, in the order of the table.
-    """
-
-    at: Where
-    sources: dict[str, str] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
-    doubts: list[Doubt] = field(default_factory=list)
-    rows: list[tuple[str, Runner]] = field(default_factory=list)
-
-    def note(self, path: str, source: str) -> None:
-        """Keep the source of a figure."""
-        self.sources[path] = source
-
-
-def place_of(runner: Runner) -> Where:
-    """Return the line that says where a wheel or drum is."""
-    return runner.link.pose_at if runner.joint is not None else runner.shape.pose_at
-
-
 @contextmanager
-def noted(doubts: Iterable[Doubt]) -> Iterator[None]:
-    """Add to a refusal what was done without before it, which may be its cause, as notes."""
+def add_doubts(doubts: Iterable[Doubt]) -> Iterator[None]:
+    """Add earlier doubts to an error as notes: what was left out may be its cause."""
     try:
         yield
     except ScenarioError as error:
@@ -139,12 +132,12 @@ def noted(doubts: Iterable[Doubt]) -> Iterator[None]:
         raise
 
 
-def named(names: Sequence[str], most: int = 3) -> str:
-    """List names; of many, the first and how many more.
+def list_names(names: Sequence[str], most: int = 3) -> str:
+    """List names; of many, the first ones and how many more.
 
     Examples
     --------
-    >>> named(["a", "b"]), named(["a", "b", "c", "d", "e"])
+    >>> list_names(["a", "b"]), list_names(["a", "b", "c", "d", "e"])
     ('a, b', 'a, b, c and 2 more')
     """
     more = len(names) - most

@@ -20,29 +20,29 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Shape, Unread
-from crawler2d.reading.child import answered, no_more_files, serve
+from crawler2d.reading.child import ask_child, no_more_files, serve
 from crawler2d.reading.elements import Element
-from crawler2d.reading.files import LARGEST_TOGETHER, Files, why
+from crawler2d.reading.files import LARGEST_TOGETHER, Files, reason_of
 from crawler2d.reading.log import Doubt
 
 __all__ = ["MOST_CORNERS", "MeshRule", "Meshes"]
 
 MeshRule = Literal["refuse", "hull", "leave_out"]
 
-
 MOST_CORNERS = 300_000
 """Of all meshes of a model, each corner of a mesh once."""
 
-
 _KINDS = ("dae", "glb", "gltf", "obj", "stl")
-
-
 _FARTHEST = 1e6  # [m] as for any number of a model file
+
+# What trimesh and pycollada take if it is there, but corners do not need: pictures, and scipy, the
+# import of which takes longest. lxml is not the parser that refuses document types below.
+_UNUSED = ("PIL", "lxml", "scipy")
 
 
 @dataclass(slots=True, kw_only=True)
 class Meshes:
-    """What is done with the meshes of one model.
+    """The meshes of one model, and the rule for them.
 
     Parameters
     ----------
@@ -51,98 +51,81 @@ class Meshes:
     files : Files
         The files of the model.
     doubts : list of Doubt
-        Where shapes that are left out are noted.
+        Takes shapes that are left out.
     """
 
     rule: MeshRule
     files: Files
     doubts: list[Doubt] = field(default_factory=list)
-    _found: dict[str, Array | str] = field(default_factory=dict)
+    _corners: dict[str, Array | str] = field(default_factory=dict)  # or why there are none
 
-    def find(self, named: dict[str, Element]) -> None:
+    def read(self, elements: dict[str, Element]) -> None:
         """Read meshes, all at once: the child process has its limits for all of them.
 
         Parameters
         ----------
-        named : dict of str to Element
+        elements : dict of str to Element
             By the name of a mesh the first element that names it.
 
         Raises
         ------
         ImportError
-            If a mesh is there, and trimesh is missing.
+            If there is a mesh, and trimesh is missing.
         """
         if self.rule != "hull":
             return
-        data: dict[str, bytes] = {}
-        for name, element in named.items():
-            if PurePath(name).suffix[1:].lower() not in _KINDS:
-                self._found[name] = f"must be a mesh of a kind that is known: {', '.join(_KINDS)}"
+        names, meshes = [], []
+        for name, element in elements.items():
+            kind = PurePath(name).suffix[1:].lower()
+            if kind not in _KINDS:
+                self._corners[name] = f"must be a mesh of a known kind: {', '.join(_KINDS)}"
                 continue
             try:
-                data[name] = self.files.read(name, at=element.at, most=LARGEST_TOGETHER)
+                data = self.files.read(name, at=element.at, most=LARGEST_TOGETHER)
             except ScenarioError as error:
-                self._found[name] = why(error)
-        if data:
-            self._found |= zip(data, self._asked(data), strict=True)
-
-    def _asked(self, data: dict[str, bytes]) -> list[Array | str]:
-        """Return the corners of meshes in their own frames, or why there are none."""
-        meshes = [
-            {
-                "kind": PurePath(name).suffix[1:].lower(),
-                "data": base64.b64encode(each).decode(),
-            }
-            for name, each in data.items()
-        ]
+                self._corners[name] = reason_of(error)
+            else:
+                names.append(name)
+                meshes.append({"kind": kind, "data": base64.b64encode(data).decode()})
+        if not names:
+            return
         question = {"meshes": meshes, "most": MOST_CORNERS}
         try:
-            answer = answered(
-                "crawler2d.reading.meshes",
-                question,
-                file="all meshes together",
-                folder=self.files.folder,
-            )
+            answer = ask_child(__name__, question, file="all meshes together", files=self.files)
         except ScenarioError as error:
-            return [f"{error.path} {error.rule}"] * len(data)
-        return [
-            each.get("reason")
-            or np.frombuffer(base64.b64decode(each["points"]), dtype=np.float64).reshape(-1, 3)
-            for each in answer["meshes"]
-        ]
+            self._corners |= dict.fromkeys(names, f"{error.path} {error.rule}")
+            return
+        for name, each in zip(names, answer["meshes"], strict=True):
+            points = np.frombuffer(base64.b64decode(each.get("points", "")), dtype=np.float64)
+            self._corners[name] = each.get("reason") or points.reshape(-1, 3)
 
     def hull(self, shape: Shape, element: Element, name: str, scale: list[float]) -> Shape | Unread:
-        """Return the shape with the corners of its mesh, or what was left out and why."""
+        """Return the shape with the corners of its mesh, or leave it out."""
         if (part := element.only("submesh/name")) is not None:
             return self.missing(element, name, f"only a part of it, {part.text}, is meant")
-        found = self._found.get(name, "")
-        if isinstance(found, str):
-            return self.missing(element, name, found)
+        corners = self._corners.get(name, "")
+        if isinstance(corners, str):
+            return self.missing(element, name, corners)
         with np.errstate(over="ignore", invalid="ignore"):  # of what is left out below
-            points = found * np.array(scale)
+            points = corners * np.array(scale)
         if not len(points):
-            return self.left_out(element, name, "must be a mesh with corners")
+            return self.leave_out(element, name, "must be a mesh with corners")
         if not (np.abs(points) <= _FARTHEST).all():
             reason = f"must have corners that are finite and at most {_FARTHEST:g} m away"
-            return self.left_out(element, name, reason)
+            return self.leave_out(element, name, reason)
         return replace(shape, kind="hull", points=shape.pose.at(points))
 
     def missing(self, element: Element, name: str, reason: str) -> Unread:
-        """Leave a mesh out for a reason, or by rule; refuse it by rule."""
+        """Leave out a mesh that has no corners for a reason; refuse it by rule."""
         if self.rule == "refuse":
-            rule = 'must be no mesh: mesh="hull" takes its hull, mesh="leave_out" leaves it out'
+            rule = 'must not be a mesh; pass mesh="hull" for its hull, or mesh="leave_out"'
             element.refuse(name, rule)
-        return self.left_out(element, name, reason if self.rule == "hull" else "a mesh")
+        return self.leave_out(element, name, reason if self.rule == "hull" else "a mesh")
 
-    def left_out(self, element: Element, what: str, reason: str) -> Unread:
-        """Note that a collision shape is left out."""
-        self.doubts.append((element.at, what, f"is left out: {reason}"))
-        return Unread(name=what, reason=reason, at=element.where)
-
-
-# What trimesh and pycollada take if it is there, but corners do not need: pictures, and scipy, the
-# import of which takes longest. lxml is not the parser that refuses document types below.
-_UNUSED = ("PIL", "lxml", "scipy")
+    def leave_out(self, element: Element, name: str, reason: str) -> Unread:
+        """Leave out a collision shape, with a doubt."""
+        self.doubts.append((element.at, name, f"is left out: {reason}"))
+        return Unread(name=name, reason=reason, at=element.where)
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
@@ -151,17 +134,17 @@ def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
         sys.modules[name] = None  # type: ignore[assignment]
     extra("collada", "models")
     trimesh = extra("trimesh", "models")
-    return lambda question: {"meshes": _described(trimesh, **question)}
+    return lambda question: {"meshes": _read_meshes(trimesh, **question)}
 
 
-def _described(trimesh: Any, meshes: list[dict[str, str]], most: int) -> list[dict[str, str]]:
+def _read_meshes(trimesh: Any, meshes: list[dict[str, str]], most: int) -> list[dict[str, str]]:
     """Return the corners of each mesh, or the reason why there are none."""
     answers, left = [], most
-    for each in meshes:
+    for mesh in meshes:
         try:
             with no_more_files():
-                points = _corners(trimesh, base64.b64decode(each["data"]), each["kind"])
-        except Exception as error:  # whatever trimesh stumbles over, it is no mesh of that format
+                points = _corners_of(trimesh, base64.b64decode(mesh["data"]), mesh["kind"])
+        except Exception as error:  # whatever trimesh raises, it is no mesh of that format
             said = " ".join(f"{type(error).__name__} {error}".split())[:150]
             answers.append({"reason": f"must be a mesh that trimesh reads ({said})"})
             continue
@@ -169,21 +152,21 @@ def _described(trimesh: Any, meshes: list[dict[str, str]], most: int) -> list[di
         if left < 0:
             rule = f"must, with the other meshes, have at most {most} corners"
             answers.append({"reason": rule})
-            continue
-        answers.append({"points": base64.b64encode(points.tobytes()).decode()})
+        else:
+            answers.append({"points": base64.b64encode(points.tobytes()).decode()})
     return answers
 
 
-def _corners(trimesh: Any, data: bytes, kind: str) -> Array:
+def _corners_of(trimesh: Any, data: bytes, kind: str) -> Array:
     """Return the corners of a mesh in its own frame, each once: facets share them."""
     unit = _unit(data) if kind == "dae" else 1.0
     scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, skip_materials=True)
-    found = [np.zeros((0, 3))]
+    parts = [np.zeros((0, 3))]
     for node in scene.graph.nodes_geometry:
         place, name = scene.graph[node]
         vertices = np.asarray(scene.geometry[name].vertices, dtype=np.float64).reshape(-1, 3)
-        found.append(vertices @ place[:3, :3].T + place[:3, 3])
-    return np.ascontiguousarray(np.unique(np.concatenate(found), axis=0)) * unit
+        parts.append(vertices @ place[:3, :3].T + place[:3, 3])
+    return np.ascontiguousarray(np.unique(np.concatenate(parts), axis=0)) * unit
 
 
 def _unit(data: bytes) -> float:

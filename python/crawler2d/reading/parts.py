@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -14,6 +15,7 @@ from crawler2d.model_tree import (
     Array,
     Friction,
     Joint,
+    Link,
     Plugin,
     Pose,
     Shape,
@@ -22,31 +24,31 @@ from crawler2d.model_tree import (
     Where,
     unit,
 )
-from crawler2d.reading.elements import Element
+from crawler2d.reading.elements import Element, real
 from crawler2d.reading.log import Doubt
 from crawler2d.reading.meshes import Meshes
 
 __all__ = [
     "Limit",
-    "carrying",
-    "checked",
+    "coefficient",
+    "collision_ancestors",
     "collisions",
     "driven_by",
     "ellipsoid",
     "inertia",
     "joint_of",
+    "joint_or_fixed",
     "moved_links",
-    "moving",
+    "moving_joint",
     "named_tracks",
+    "order_links",
     "plugin_of",
-    "settled",
     "shape_of",
     "solid",
     "wheel_torques",
 ]
 
 _AXES = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
-
 
 # The sizes of each shape, with how many numbers each has.
 _SIZES = {
@@ -58,12 +60,25 @@ _SIZES = {
     "sphere": (("radius", 1),),
 }
 
-
 _CIRCLE = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)  # its chords fall short by 0.12 %
-
 
 Numbers = Callable[[Element, str, int], list[float]]
 """Reads so many numbers of a name: SDF has them as elements, URDF as attributes."""
+
+_DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
+
+# Gazebo's TrackController has link; its TrackedVehicle left_track/link and right_track/link; the
+# plugins of Gazebo classic name the links of tracks and flippers like this.
+_TRACKS = {"link", "left_track", "right_track", "left_flipper", "right_flipper"}
+
+_KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
+
+Limit = tuple[float, Where]
+"""A figure of a joint and its line. A negative or infinite effort or speed is no limit."""
+
+_MOST_LINKS = 1000
+_USUAL_FRICTION = 1.0  # of SDF, where a file says nothing
+_LONGEST_NAME = 200
 
 
 def shape_of(
@@ -77,7 +92,7 @@ def shape_of(
     mesh_name: Callable[[Element], str],
     meshes: Meshes,
 ) -> Shape | Unread | None:
-    """Read the geometry of a collision; None if it is empty, what is left out is unread."""
+    """Read the geometry of a collision; None if it is empty."""
     geometry = collision.needed("geometry")
     kinds = [child for child in geometry.children if child.tag != "empty"]
     if not kinds:
@@ -96,62 +111,51 @@ def shape_of(
         size_at=(element.only("radius") or element).where,
     )
     if kind == "mesh":
-        scale = [1.0, 1.0, 1.0]
-        if element.only("scale") is not None or "scale" in element.attributes:
-            scale = numbers(element, "scale", 3)
+        has_scale = element.only("scale") is not None or "scale" in element.attributes
+        scale = numbers(element, "scale", 3) if has_scale else [1.0, 1.0, 1.0]
         return meshes.hull(shape, element, mesh_name(element), scale)
-    return _sized(shape, element, numbers, meshes)
-
-
-def _sized(shape: Shape, element: Element, numbers: Numbers, meshes: Meshes) -> Shape | Unread:
-    """Return a shape with its sizes."""
-    kind = shape.kind
     if kind not in _SIZES:
-        return meshes.left_out(element, kind, "no shape that a side view knows")
+        return meshes.leave_out(element, kind, "unsupported shape")
     sizes = [size for word, count in _SIZES[kind] for size in numbers(element, word, count)]
     if min(sizes) < 0.0:
         element.refuse(min(sizes), "must have sizes >= 0 m")
     if kind == "capsule" and sizes[1] == 0.0:
         kind = "sphere"
     elif 0.0 in sizes:
-        return meshes.left_out(element, kind, "a size of 0, with which it touches nothing")
+        return meshes.leave_out(element, kind, "its size is 0, and it touches nothing")
     if kind == "box":
-        return replace(shape, size=np.array(sizes))
-    if kind in ("cone", "ellipsoid"):
+        shape = replace(shape, size=np.array(sizes))
+    elif kind in ("cone", "ellipsoid"):
         points = _cone(*sizes) if kind == "cone" else ellipsoid(sizes)
-        return replace(shape, kind="hull", points=shape.pose.at(points))
-    radius, length = sizes[0], sizes[1] if kind != "sphere" else 0.0
-    return replace(shape, kind=kind, radius=radius, length=length)
+        shape = replace(shape, kind="hull", points=pose.at(points))
+    else:
+        length = sizes[1] if kind != "sphere" else 0.0
+        shape = replace(shape, kind=kind, radius=sizes[0], length=length)
+    return shape
 
 
 def collisions(
-    found: Iterable[Shape | Unread | None],
+    parts: Iterable[Shape | Unread | None],
 ) -> tuple[tuple[Shape, ...], tuple[Unread, ...]]:
     """Return the shapes of a link, and those that were left out."""
-    every = list(found)
+    every = list(parts)
     shapes = tuple(each for each in every if isinstance(each, Shape))
     return shapes, tuple(each for each in every if isinstance(each, Unread))
 
 
 def ellipsoid(radii: list[float]) -> Array:
-    """[m] Return points on an ellipsoid about the origin, whose hull stands for it."""
+    """[m] Return points on an ellipsoid about the origin, whose hull approximates it."""
     turns, heights = np.meshgrid(_CIRCLE, np.linspace(0.0, math.pi, 33))
     ball = [np.sin(heights) * np.cos(turns), np.sin(heights) * np.sin(turns), np.cos(heights)]
     points: Array = np.stack(ball, axis=-1).reshape(-1, 3) * radii
     return points
 
 
-def _cone(radius: float, length: float) -> Array:
-    """[m] Return corners of a cone, with half of its length on either side of the origin."""
-    rim = [radius * np.cos(_CIRCLE), radius * np.sin(_CIRCLE), np.full_like(_CIRCLE, -0.5 * length)]
-    return np.concatenate([np.stack(rim, axis=1), [[0.0, 0.0, 0.5 * length]]])
-
-
 def inertia(element: Element, value: Callable[[str], float], doubts: list[Doubt]) -> Array:
     """Read a tensor of inertia [kg m^2] by the names of its six components.
 
     One with a negative moment is doubted and taken as 0, that of a point: a guess at its size would
-    be worse, and what a link has of its own counts little beside where it is.
+    be worse, and the position of a link matters more than its own inertia.
     """
     tensor = np.zeros((3, 3))
     for name, row, column in _AXES:
@@ -164,7 +168,7 @@ def inertia(element: Element, value: Callable[[str], float], doubts: list[Doubt]
 
 
 def solid(shapes: Sequence[Shape], density: float) -> tuple[float, Array, Array]:
-    """Return mass [kg], centre [m] and inertia [kg m^2] about it, of shapes that are filled."""
+    """Return mass [kg], centre [m] and inertia [kg m^2] about it, of solid shapes."""
     parts = [_filled(shape, density) for shape in shapes]
     masses = np.array([own for own, _ in parts])
     places = np.array([shape.pose.place for shape in shapes])
@@ -174,24 +178,6 @@ def solid(shapes: Sequence[Shape], density: float) -> tuple[float, Array, Array]
         tensor += shape.pose.turn @ np.diag(moments) @ shape.pose.turn.T
         tensor += own * (away @ away * np.eye(3) - np.outer(away, away))
     return float(masses.sum()), center, tensor
-
-
-def _filled(shape: Shape, density: float) -> tuple[float, list[float]]:
-    """Return mass [kg] and principal moments [kg m^2] of a shape in its own frame."""
-    if shape.kind == "box":
-        mass = density * float(np.prod(shape.size))
-        squares = shape.size**2
-        return mass, [mass * (sum(squares) - own) / 12.0 for own in squares]
-    radius, length = shape.radius, shape.length
-    straight = density * math.pi * radius**2 * length
-    ends = 0.0 if shape.kind == "cylinder" else density * 4.0 / 3.0 * math.pi * radius**3
-    across = straight * (radius**2 / 4.0 + length**2 / 12.0)
-    across += ends * (0.4 * radius**2 + length**2 / 4.0 + 0.375 * length * radius)
-    along = straight * radius**2 / 2.0 + ends * 0.4 * radius**2
-    return straight + ends, [across, across, along]
-
-
-_DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
 
 
 def plugin_of(plugin: Element) -> Plugin:
@@ -219,27 +205,24 @@ def driven_by(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
 
 def wheel_torques(plugins: tuple[Plugin, ...]) -> dict[str, tuple[float, Where]]:
     """[N m] Return the torques that differential drives of Gazebo Classic give to joints."""
-    found: dict[str, tuple[float, Where]] = {}
+    torques: dict[str, tuple[float, Where]] = {}
     for plugin in plugins:
         for text, where in plugin.values("max_wheel_torque", "wheelTorque", "torque"):
-            try:
-                torque = float(text)
-            except ValueError:
-                continue
-            if 0.0 < torque < math.inf:
-                found |= dict.fromkeys(driven_by((plugin,)), (torque, where))
-    return found
+            with contextlib.suppress(ValueError):
+                if 0.0 < (torque := float(text)) < math.inf:
+                    torques |= dict.fromkeys(driven_by((plugin,)), (torque, where))
+    return torques
 
 
 def moved_links(tree: Tree) -> dict[str, Where]:
     """Return the links whose surface is moved, and the lines that say so."""
     links = tree.by_name
-    named = {name: where for name, where in named_tracks(tree.plugins) if name in links}
-    return named | {name: links[name].at for name in tree.tracks}
+    moved = {name: where for name, where in named_tracks(tree.plugins) if name in links}
+    return moved | {name: links[name].at for name in tree.tracks}
 
 
 def named_tracks(plugins: Iterable[Plugin]) -> Iterator[tuple[str, Where]]:
-    """Yield what plugins name as tracks, with the lines; not all of it need be links."""
+    """Yield the names of tracks in plugins, with the lines; some may be no links."""
     for plugin in plugins:
         if "track" in f"{plugin.name} {plugin.filename}".lower():
             for path, text, where in plugin.settings:
@@ -247,20 +230,8 @@ def named_tracks(plugins: Iterable[Plugin]) -> Iterator[tuple[str, Where]]:
                     yield text, where
 
 
-# Gazebo's TrackController has link; its TrackedVehicle left_track/link and right_track/link; the
-# plugins of Gazebo classic name the links of tracks and flippers like this.
-_TRACKS = {"link", "left_track", "right_track", "left_flipper", "right_flipper"}
-
-
-_KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
-
-
-Limit = tuple[float, Where]
-"""A figure of a joint and its line. A negative or infinite limit of effort or speed is none."""
-
-
 def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -> Joint:
-    """Return a joint as far as its axis plays no part.
+    """Return a joint without its axis and limits.
 
     Parameters
     ----------
@@ -282,64 +253,51 @@ def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -
         place=pose.place,
         axis=pose.turn[:, 2],
         at=element.where,
-        effort_at=element.where,
-        velocity_at=element.where,
-        dynamics_at=element.where,
     )
 
 
-def settled(
-    made: Joint, moves: Callable[[], Joint], *, carries: bool, doubts: list[Doubt]
+def joint_or_fixed(
+    joint: Joint, complete: Callable[[], Joint], *, carries: bool, doubts: list[Doubt]
 ) -> Joint:
-    """Return a joint that moves, or a fixed one where what is wrong with it makes no difference.
+    """Return a joint with axis and limits, or a fixed one where its faults make no difference.
 
     Parameters
     ----------
-    made : Joint
-        What `joint_of` made of it.
-    moves : callable
-        Returns it with its axis and limits, or raises what is wrong with them.
+    joint : Joint
+        As from `joint_of`.
+    complete : callable
+        Returns it with its axis and limits, or raises the rule that it breaks.
     carries : bool
-        Whether anything that hangs on it collides.
+        Whether anything in its subtree collides.
     doubts : list of Doubt
-        Where it is noted.
+        Takes the fault.
     """
     try:
-        return moves()
+        return complete()
     except ScenarioError as error:
         if carries:
             raise
-        reason = f"is taken as fixed, for nothing on its joint collides: {error.rule}"
+        reason = f"is taken as fixed, as nothing on its joint collides: {error.rule}"
         doubts.append((error.path, error.value, reason))
-        return replace(made, kind="fixed")
+        return replace(joint, kind="fixed")
 
 
-def moving(
-    joint: Joint,
-    element: Element,
-    along: Array,
-    *,
-    bounds: tuple[float, float],
-    effort: Limit | None,
-    velocity: Limit | None,
-    dynamics: Mapping[str, Limit],
+def moving_joint(
+    joint: Joint, element: Element, along: Array, figures: Mapping[str, Limit]
 ) -> Joint:
     """Return a joint with its axis and limits.
 
     Parameters
     ----------
     joint : Joint
-        What `joint_of` made of it.
+        As from `joint_of`.
     element : Element
-        That errors are about.
+        The element of its axis, for errors.
     along : ndarray, shape (3,)
         Along its axis, of any length.
-    bounds : tuple of float
-        [rad] or [m] The lower and the upper limit.
-    effort, velocity : Limit or None
-        As the file has them.
-    dynamics : mapping of str to Limit
-        "stiffness", "damping" and "friction" as far as the file has them.
+    figures : mapping of str to Limit
+        "lower", "upper", "effort", "velocity", "stiffness", "damping" and "friction" as far as the
+        file has them.
 
     Raises
     ------
@@ -347,44 +305,48 @@ def moving(
         If a joint that is not locked has an axis without a direction, or the lower limit is above
         the upper.
     """
-    axis, (lower, upper) = unit(along), bounds
-    stiffness, damping, friction = (
-        dynamics[name][0] if name in dynamics else 0.0
-        for name in ("stiffness", "damping", "friction")
-    )
+    axis = unit(along)
+    value = {name: number for name, (number, _) in figures.items()}
+    lower, upper = value.get("lower", -math.inf), value.get("upper", math.inf)
     if axis is None and lower == upper:
         return replace(joint, kind="fixed")  # locked, so it needs none
     if axis is None:
         element.refuse("0 0 0", "must have an axis with a direction")
     if lower > upper:
         element.refuse(lower, f"must have a lower limit of at most the upper, {upper}")
+    effort, velocity = (
+        value[name] if 0.0 <= value.get(name, math.inf) < math.inf else None
+        for name in ("effort", "velocity")
+    )
+    at = {name: where for name, (_, where) in figures.items()}
+    dynamics = ("stiffness", "damping", "friction")
     return replace(
         joint,
         axis=axis,
         lower=lower,
         upper=upper,
-        effort=_figure(effort),
-        velocity=_figure(velocity),
-        stiffness=stiffness,
-        damping=max(0.0, damping),
-        friction=max(0.0, friction),
-        effort_at=effort[1] if effort else joint.at,
-        velocity_at=velocity[1] if velocity else joint.at,
-        dynamics_at=next((where for _, where in dynamics.values()), joint.at),
+        effort=effort,
+        velocity=velocity,
+        stiffness=value.get("stiffness", 0.0),
+        damping=max(0.0, value.get("damping", 0.0)),
+        friction=max(0.0, value.get("friction", 0.0)),
+        effort_at=at.get("effort", joint.at),
+        velocity_at=at.get("velocity", joint.at),
+        dynamics_at=next((at[name] for name in dynamics if name in at), joint.at),
     )
 
 
-def _figure(limit: Limit | None) -> float | None:
-    return limit[0] if limit is not None and 0.0 <= limit[0] < math.inf else None
+def coefficient(element: Element | None, owner: Element) -> Limit:
+    """[-] Read a coefficient of friction from a text or a value; 1 where there is none."""
+    if element is None:
+        return _USUAL_FRICTION, owner.where
+    value = real(element, element.attributes.get("value", "") or element.text, unlimited=True)
+    if value < 0.0:
+        element.refuse(value, "must be >= 0")
+    return value, element.where
 
 
-_MOST_LINKS = 1000
-
-
-_LONGEST_NAME = 200
-
-
-def checked(
+def order_links(
     names: list[tuple[str, Where]],
     joints: list[tuple[str, str, str, Where]],
     at: Where,
@@ -395,8 +357,8 @@ def checked(
 ) -> list[str]:
     """Return the links of one tree in an order in which parents precede children.
 
-    If there are several trees, that is taken which has the most links that may drive it, and of
-    equal ones the largest.
+    Of several trees, the one with the most links that may drive it counts, and of equal ones the
+    largest.
 
     Parameters
     ----------
@@ -407,7 +369,7 @@ def checked(
     at : Where
         Line of the model.
     doubts : list of Doubt
-        Where trees that are left out, and names that repeat, are noted.
+        Takes trees that are left out, and names that repeat.
     driving : collection of str
         Links that turn without limit, or whose surface moves.
     remedy : str
@@ -418,28 +380,28 @@ def checked(
     ScenarioError
         If names of links repeat, or a link is missing, has two parents, or hangs on itself.
     """
-    seen = _links_of(names, at)
+    links = _check_names(names, at)
     if len(joints) > _MOST_LINKS:
         raise ScenarioError(str(at), len(joints), f"must have at most {_MOST_LINKS} joints")
-    named: set[str] = set()
+    known: set[str] = set()
     children: dict[str, list[str]] = {name: [] for name, _ in names}
     parent_of: dict[str, str] = {}
     for name, parent, child, where in joints:
-        if name in named:
-            doubts.append((f"{where}: joint[{name}]", name, "is the name of another joint, too"))
-        named.add(name)
+        path = f"{where}: joint[{name}]"
+        if name in known:
+            doubts.append((path, name, "is also the name of another joint"))
+        known.add(name)
         for end in (parent, child):
-            if end not in seen:
-                near = difflib.get_close_matches(end, seen, n=1)
-                meant = f", of which the nearest is {near[0]}" if near else ""
-                rule = f"must join links of the model{meant}{remedy}"
-                raise ScenarioError(f"{where}: joint[{name}]", end, rule)
+            if end not in links:
+                close = difflib.get_close_matches(end, links, n=1)
+                meant = f", of which the closest is {close[0]}" if close else ""
+                raise ScenarioError(path, end, f"must join links of the model{meant}{remedy}")
         if child in parent_of:
             rule = "must be the only joint that holds its child: a chain of links must be open"
-            raise ScenarioError(f"{where}: joint[{name}]", child, rule)
+            raise ScenarioError(path, child, rule)
         parent_of[child] = parent
         children[parent].append(child)
-    if len(parent_of) == len(seen):
+    if len(parent_of) == len(links):
         rule = "must have one link that hangs on no other"
         raise ScenarioError(str(at), "links in a circle", rule)
     trees = {name: [name] for name, _ in names if name not in parent_of}
@@ -447,9 +409,9 @@ def checked(
         for name in tree:
             tree.extend(children[name])
     reached = {name for tree in trees.values() for name in tree}
-    if len(reached) < len(seen):
+    if len(reached) < len(links):
         rule = "must hang on the root, not on itself in a circle"
-        raise ScenarioError(str(at), min(seen - reached), rule)
+        raise ScenarioError(str(at), min(links - reached), rule)
     drives = set(driving)
     root = max(trees, key=lambda name: (len(drives.intersection(trees[name])), len(trees[name])))
     for name, where in names:
@@ -461,38 +423,55 @@ def checked(
     return trees[root]
 
 
-def carrying(
-    order: list[str], parent_of: Mapping[str, str], colliding: Collection[str]
-) -> set[str]:
+def collision_ancestors(links: Sequence[Link], parent_of: Mapping[str, str]) -> set[str]:
     """Return the links that collide, and those from which such hang.
 
     Parameters
     ----------
-    order : list of str
+    links : sequence of Link
         All links, parents before their children.
     parent_of : mapping of str to str
         The link from which each hangs.
-    colliding : collection of str
-        The links with shapes.
     """
-    found = set(colliding)
-    for name in reversed(order):
-        if name in found and name in parent_of:
-            found.add(parent_of[name])
-    return found
+    names: set[str] = set()
+    for link in reversed(links):
+        if link.shapes or link.unread or link.name in names:
+            names |= {link.name, parent_of.get(link.name, link.name)}
+    return names
 
 
-def _links_of(names: list[tuple[str, Where]], at: Where) -> set[str]:
+def _cone(radius: float, length: float) -> Array:
+    """[m] Return corners of a cone, with half of its length on either side of the origin."""
+    rim = [radius * np.cos(_CIRCLE), radius * np.sin(_CIRCLE), np.full_like(_CIRCLE, -0.5 * length)]
+    return np.concatenate([np.stack(rim, axis=1), [[0.0, 0.0, 0.5 * length]]])
+
+
+def _filled(shape: Shape, density: float) -> tuple[float, list[float]]:
+    """Return mass [kg] and principal moments [kg m^2] of a shape in its own frame."""
+    if shape.kind == "box":
+        mass = density * float(np.prod(shape.size))
+        squares = shape.size**2
+        return mass, [mass * (sum(squares) - own) / 12.0 for own in squares]
+    radius, length = shape.radius, shape.length
+    straight = density * math.pi * radius**2 * length
+    ends = 0.0 if shape.kind == "cylinder" else density * 4.0 / 3.0 * math.pi * radius**3
+    across = straight * (radius**2 / 4.0 + length**2 / 12.0)
+    across += ends * (0.4 * radius**2 + length**2 / 4.0 + 0.375 * length * radius)
+    along = straight * radius**2 / 2.0 + ends * 0.4 * radius**2
+    return straight + ends, [across, across, along]
+
+
+def _check_names(names: list[tuple[str, Where]], at: Where) -> set[str]:
     """Return the names of the links, if there are some, not too many, and no two alike."""
     if not names:
         raise ScenarioError(str(at), "no link", "must have a link")
     if len(names) > _MOST_LINKS:
         raise ScenarioError(str(at), len(names), f"must have at most {_MOST_LINKS} links")
-    seen: set[str] = set()
+    unique: set[str] = set()
     for name, where in names:
         if len(name) > _LONGEST_NAME:
             raise ScenarioError(str(where), name, f"must have at most {_LONGEST_NAME} letters")
-        if name in seen:
+        if name in unique:
             raise ScenarioError(str(where), name, "must be a name that no other link has")
-        seen.add(name)
-    return seen
+        unique.add(name)
+    return unique

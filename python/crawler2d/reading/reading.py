@@ -14,11 +14,11 @@ from crawler2d.drawings.svg import table
 from crawler2d.errors import ScenarioError, ScenarioWarning, warn
 from crawler2d.model_tree import Pose, Tree
 from crawler2d.parameters.robot import Robot
-from crawler2d.reading.assembly import Assembly, Silhouette, assembled, silhouettes
+from crawler2d.reading.assembly import Assembly, Silhouette, assemble, silhouettes
 from crawler2d.reading.engines import ENGINES, Engine
 from crawler2d.reading.files import Files
-from crawler2d.reading.loading import TOLERANCE, How, tree_of
-from crawler2d.reading.log import Sources, noted
+from crawler2d.reading.loading import TOLERANCE, ReadOptions, load_model
+from crawler2d.reading.log import Sources, add_doubts
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.surfaces import refuse_unread
 
@@ -36,7 +36,7 @@ class Reading:
     robot : Robot
         The robot, in side view.
     friction : float
-        [-] Between its tracks and the ground, by the rule of `engine`.
+        [-] Between its tracks and the ground, by the law of `engine`.
     sources : Sources
         For every figure of the robot its file and lines, or the word "estimate" with its rule.
     wheels : Table
@@ -44,23 +44,23 @@ class Reading:
         and `z` [m] (in the frame of the model: forward, up and to the left), `radius` [m], `mass`
         [kg] of what turns, `line`.
     notes : tuple of str
-        What was decided while reading, in words.
+        Decisions made while reading, in words.
     doubts : tuple of str
-        What is legal but hardly meant, in words; each was also a `ScenarioWarning`.
+        Probable mistakes, in words; each was also a `ScenarioWarning`.
     engine : str
-        The engine whose rules combined the friction and drive the motors.
+        The engine whose laws combined the friction and drive the motors.
     tree : Tree
         Links, joints and collision shapes as the file has them.
     silhouettes : tuple of Silhouette
         Its collision shapes in side view, in the frame of the robot's chassis.
     text : str
-        What the lines are those of: the file, or what a xacro file expands to.
+        The text to which lines refer: the file, or the expansion of a xacro file.
     frame : Pose
         Of the chassis frame in the frame of the model: x forward through the end axles, y to the
         left, z up.
     path : Path
         Of the file.
-    how : How
+    how : ReadOptions
         The keywords with which it was read.
     """
 
@@ -76,11 +76,11 @@ class Reading:
     text: str
     frame: Pose
     path: Path
-    how: How
+    how: ReadOptions
 
     @property
     def in_words(self) -> str:
-        """What it is, for titles."""
+        """A short description, for titles."""
         return (
             f"{self.robot.in_words}; {self.robot.mass:.4g} kg,"
             f" friction {self.friction:.3g} ({self.tree.format}, {self.tree.file})"
@@ -88,8 +88,8 @@ class Reading:
 
     @takes_keywords
     def friction_on(self, ground: float) -> float:
-        """[-] Return the friction with ground of another coefficient, by the rule of `engine`."""
-        _, friction, _ = assembled(
+        """[-] Return the friction with ground of another coefficient, by the law of `engine`."""
+        _, friction, _ = assemble(
             self.tree,
             forward=self.how.forward,
             tolerance=self.how.tolerance,
@@ -99,9 +99,15 @@ class Reading:
         return friction
 
     def __repr__(self) -> str:
-        """Write the robot, its wheels, and what was decided and doubted."""
-        rows = [self.in_words]
-        rows += [f"  {line}" for line in self._wheel_lines()]
+        """Write the robot, its wheels, notes and doubts."""
+        columns = [self.wheels[name].tolist() for name in ("side", "carrier", "x", "y", "radius")]
+        lines = [
+            f"{side} {carrier}: x {x:.4f} m, y {y:.4f} m, radius {radius:.4f} m"
+            for side, carrier, x, y, radius in zip(*columns, strict=True)
+        ]
+        if len(lines) > _SHOWN:
+            lines[_SHOWN:] = [f"and {len(lines) - _SHOWN} more: see .wheels"]
+        rows = [self.in_words, *(f"  {line}" for line in lines)]
         rows += [f"  note: {note}" for note in self.notes]
         rows += [f"  doubt: {doubt}" for doubt in self.doubts]
         rows.append(f"  estimates: {', '.join(self.sources.estimates)}")
@@ -111,15 +117,6 @@ class Reading:
         """Show the robot with the sources of its figures in a notebook."""
         card = self.robot._repr_html_() or ""
         return card + table(self.sources.items())
-
-    def _wheel_lines(self) -> list[str]:
-        columns = [self.wheels[name].tolist() for name in ("side", "carrier", "x", "y", "radius")]
-        lines = [
-            f"{side} {carrier}: x {x:.4f} m, y {y:.4f} m, radius {radius:.4f} m"
-            for side, carrier, x, y, radius in zip(*columns, strict=True)
-        ]
-        more = len(lines) - _SHOWN
-        return lines if more <= 0 else [*lines[:_SHOWN], f"and {more} more: see .wheels"]
 
 
 @takes_keywords
@@ -139,37 +136,37 @@ def read_robot(
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
     arguments: Mapping[str, str] | None = None,
 ) -> Reading:
-    """Read a robot from a file that others simulate with: SDF, URDF, xacro or MJCF.
+    """Read a robot from a model file of another simulator: SDF, URDF, xacro or MJCF.
 
-    What a side view cannot hold is refused by name: sides that differ, suspension, steering, wheels
-    that nothing drives, friction that differs from wheel to wheel. The rules are in
-    ``docs/conventions.md``, "Reading a model file".
+    What a side view cannot represent is refused by name: sides that differ, suspension, steering,
+    friction that differs from wheel to wheel. The rules are in ``docs/conventions.md``, "Reading a
+    model file".
 
     Parameters
     ----------
     path : str or PathLike
         The file; one with xacro is named ``*.xacro``.
     engine : {"gz", "classic", "bullet", "mujoco", "isaac"}, optional
-        The simulator by whose rules the model is read: gz-sim with DART, Gazebo Classic with ODE,
-        PyBullet, MuJoCo or Isaac Sim; none of them runs. It says how the friction of two surfaces
-        is combined, what a commanded speed does (a note of the reading), and which figures of a
-        joint play a part: a rotor inertia where the engine has one, and doubts about what it
+        The simulator by whose laws the model is read: gz-sim with DART, Gazebo Classic with ODE,
+        PyBullet, MuJoCo or Isaac Sim; none of them runs. It determines how the friction of two
+        surfaces is combined, the effect of a commanded speed (a note of the reading), and which
+        figures of a joint count: a rotor inertia where the engine has one, and doubts about what it
         ignores. ``docs/conventions.md``, "Reading a model file", has the rules with their sources.
         None takes "mujoco" for MJCF and "gz" for the rest.
     forward : {"+x", "-x", "+y", "-y"}, optional
         Direction of the model that is forward. None takes the side of the links called front, or
-        else +x; where neither tells, it must be given.
+        else +x; if that is ambiguous, it must be given.
     model : str, optional
         Name of the model in a world; None takes the only one that can move.
     mesh : {"refuse", "hull", "leave_out"}
         What to do with collision meshes. "hull" takes the hull of a mesh whose file (.dae, .stl,
-        .obj, .glb or .gltf) is there and can be read, and leaves out, with a doubt, one that
-        is not. "leave_out" leaves all out, "refuse" refuses them. A model whose wheels or tracks
-        would be left out is refused in any case.
+        .obj, .glb or .gltf) exists and can be read, and leaves out any other, with a doubt.
+        "leave_out" leaves all out, "refuse" refuses them. A model whose wheels or tracks would be
+        left out is refused in any case.
     missing : {"leave_out", "refuse"}
-        What to do with what is not there. "leave_out" does without, and doubts each: includes,
-        calls of macros that no file has, joints of missing links. A file of a package that is not
-        found is then told by its path, and an argument without a value by a setting in the package.
+        What to do with missing parts: includes, macros that no file has, joints of missing links.
+        "leave_out" leaves them out, with a doubt each. A file of a package that is not found is
+        then identified by its path, and an argument without a value by a setting in the package.
     tracks : collection of str
         Links whose surface something outside the file moves, as a controller in Isaac does.
     ground_friction : float, optional
@@ -179,8 +176,8 @@ def read_robot(
         [m] By how much the two sides may differ in side view.
     scale : float, optional
         [-] By which every length of an SDF or URDF file is multiplied before it is read, moments
-        of inertia by its square: 0.001 for a file in millimetres. A file that is changed by
-        `Audit.patch` is written so.
+        of inertia by its square: 0.001 for a file in millimetres. `Audit.patch` writes the scaled
+        file.
     trusted : bool
         Whether a xacro file may evaluate expressions of any kind, and see the environment. Without
         that, only plain data, operators and known functions are evaluated: enough for most files.
@@ -201,7 +198,7 @@ def read_robot(
     ------
     ScenarioError
         If the file cannot be read, breaks a rule of its format, or has what a side view cannot
-        hold. The error names file, line and element; its notes say what was left out before.
+        represent. The error names file, line and element; its notes say what was left out before.
     ImportError
         If the library for xacro, MJCF or meshes is missing; the message names the extra to install.
 
@@ -237,8 +234,8 @@ def read_robot(
     'cleared'
     """
     if not isinstance(path, (str, os.PathLike)):
-        raise ScenarioError("path", path, "must be the name of a file")
-    how = How(
+        raise ScenarioError("path", path, "must be a path")
+    options = ReadOptions(
         engine=engine,
         forward=forward,
         model=model,
@@ -253,79 +250,76 @@ def read_robot(
         arguments=arguments or {},
     )
     path = Path(path)
-    reading, doubts = read_text(Files(path, how.packages).model(), path, how)
+    reading, doubts = read_text(Files(path, options.packages).model(), path, options)
     for doubt in doubts:
         warn(doubt.path, doubt.value, doubt.reason)
     return reading
 
 
-def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[ScenarioWarning]]:
-    """Read a robot from what a file holds, or would hold; `read_robot` without its warnings.
+def read_text(
+    data: bytes, path: Path, options: ReadOptions
+) -> tuple[Reading, list[ScenarioWarning]]:
+    """Read a robot from the content of a file, as `read_robot` does, but without its warnings.
 
     Parameters
     ----------
     data : bytes
-        The text.
+        The content.
     path : Path
-        Where it is, or would be.
-    how : How
+        Of the file, which need not exist.
+    options : ReadOptions
         The keywords of `read_robot`.
 
     Returns
     -------
     Reading and list of ScenarioWarning
-        What was read, and what is legal but hardly meant.
+        The reading, and probable mistakes.
     """
-    found = tree_of(data, path, how)
-    tree = replace(found.tree, tracks=_known(how.tracks, found.tree))
+    loaded = load_model(data, path, options)
+    for name in options.tracks:
+        if not isinstance(name, str) or name not in loaded.tree.by_name:
+            raise ScenarioError("tracks", name, "must be links of the model")
+    tree = replace(loaded.tree, tracks=tuple(options.tracks))
     refuse_unread(tree)
-    engine = how.engine or ("mujoco" if tree.format == "MJCF" else "gz")
-    ground = ENGINES[engine].usual if how.ground_friction is None else how.ground_friction
-    with noted(found.doubts):
-        robot, friction, work = assembled(
-            tree, forward=how.forward, tolerance=how.tolerance, engine=engine, ground=ground
+    engine = options.engine or ("mujoco" if tree.format == "MJCF" else "gz")
+    ground = options.ground_friction
+    if ground is None:
+        ground = ENGINES[engine].usual_friction
+    with add_doubts(loaded.doubts):
+        robot, friction, work = assemble(
+            tree, forward=options.forward, tolerance=options.tolerance, engine=engine, ground=ground
         )
     robot.wheels()  # the core checks every rule of a robot
-    doubts = [ScenarioWarning(*doubt) for doubt in [*found.doubts, *work.told.doubts]]
-    notes = list(work.told.notes)
+    doubts = [ScenarioWarning(*doubt) for doubt in [*loaded.doubts, *work.log.doubts]]
     if path.suffix == ".xacro":
-        notes.append(f"lines are those of the text that {path.name} expands to, Reading.text")
+        work.log.notes.append(
+            f"lines are those of the text that {path.name} expands to, Reading.text"
+        )
     reading = Reading(
         robot=robot,
         friction=friction,
-        sources=Sources(work.told.sources),
-        wheels=_table(work),
-        notes=tuple(notes),
+        sources=Sources(work.log.sources),
+        wheels=_wheel_table(work),
+        notes=tuple(work.log.notes),
         doubts=tuple(str(doubt) for doubt in doubts),
         engine=engine,
         tree=tree,
         silhouettes=silhouettes(tree, work.view, work.base),
-        text=found.text,
+        text=loaded.text,
         frame=work.frame,
         path=path,
-        how=how,
+        how=options,
     )
     return reading, doubts
 
 
-def _known(tracks: Collection[str], tree: Tree) -> tuple[str, ...]:
-    links = tree.by_name
-    for name in tracks:
-        if not isinstance(name, str) or name not in links:
-            raise ScenarioError("tracks", name, "must be links of the model")
-    return tuple(tracks)
-
-
-def _table(work: Assembly) -> Table:
-    rows = work.told.rows
+def _wheel_table(work: Assembly) -> Table:
+    rows = work.log.rows
     columns: dict[str, Any] = {
-        "side": ["left" if runner.z > work.middle else "right" for _, runner in rows],
+        "side": ["left" if runner.z > work.view.middle else "right" for _, runner in rows],
         "carrier": [carrier for carrier, _ in rows],
-        "name": [runner.name for _, runner in rows],
-        **{
-            name: [getattr(runner, name) for _, runner in rows]
-            for name in ("x", "y", "z", "radius", "mass")
-        },
-        "line": [runner.link.at.line for _, runner in rows],
     }
+    for name in ("name", "x", "y", "z", "radius", "mass"):
+        columns[name] = [getattr(runner, name) for _, runner in rows]
+    columns["line"] = [runner.link.at.line for _, runner in rows]
     return Table(columns)

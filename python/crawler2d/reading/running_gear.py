@@ -1,4 +1,4 @@
-"""What of a model is wheel, track, flipper or chassis in its side view, left and right as one."""
+"""The side view of a model, and its wheels, drums, flippers and chassis in it, paired across."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from typing import NoReturn
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import Array, Joint, Link, Shape, Tree, Where
+from crawler2d.model_tree import Array, Joint, Link, Shape, Tree
 from crawler2d.reading.surfaces import Surfaces
 from crawler2d.reading.wheels import (
     PARALLEL,
     Arm,
     Runner,
     RunningGear,
-    below,
     grousers_on,
     is_parallel,
     radius_about,
+    subtrees,
     wheel_of,
 )
 
@@ -31,17 +31,32 @@ __all__ = [
     "centers",
     "is_belted",
     "middle_of",
-    "paired",
+    "pair_runners",
     "running_gear_of",
     "side_view",
 ]
 
-_MOST = 400  # wheels of one track, on both sides: any two are compared
+_MOST_RUNNERS = 400  # of one track, on both sides: any two are compared
+_UP = np.array([0.0, 0.0, 1.0])
+_DRUMS = ("cylinder", "capsule", "sphere")
+
+# [rad] An axis so close to one of the model's is meant to be it: files have 3.1415 for pi.
+_SNAP = 0.01
+
+_FORWARDS = {
+    f"{sign}{name}": (1.0 if sign == "+" else -1.0) * np.eye(3)[axis]
+    for sign in "+-"
+    for axis, name in enumerate("xy")
+}
+_FRONT, _REAR = re.compile(r"front|fore"), re.compile(r"rear|back|hind")
+
+# [m] What lies this little behind its pivot does not lie behind it.
+_BEHIND = 0.005
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Pair:
-    """A wheel or drum on the left, and the one at the same place on the right.
+    """A wheel or drum on the left, and the one at the same position on the right.
 
     Parameters
     ----------
@@ -63,8 +78,50 @@ class Pair:
         return self.left + self.right
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class SideView:
+    """The plane of the side view: x forward, y up and z to the left.
+
+    Parameters
+    ----------
+    forward, left : ndarray, shape (3,)
+        Directions in the frame of the model, whose z axis is up.
+    reason : str
+        The rule that gave them.
+    tolerance : float
+        [m] By how much positions and radii may differ between the sides.
+    middle : float
+        [m] Lateral position of the middle plane.
+    """
+
+    forward: Array
+    left: Array
+    reason: str
+    tolerance: float
+    middle: float = 0.0
+
+    @property
+    def up(self) -> Array:
+        """Direction up in the frame of the model."""
+        return _UP
+
+    def of(self, point: Array) -> Array:
+        """[m] Return forward, up and left of a point, shape (3,), or of several, shape (n, 3)."""
+        turned: Array = np.asarray(point) @ np.stack([self.forward, _UP, self.left], axis=1)
+        return turned
+
+    def about_left(self, tensor: Array) -> float:
+        """[kg m^2] Return the moment of inertia about the lateral axis."""
+        return float(self.left @ tensor @ self.left)
+
+    def is_same(self, first: Runner, second: Runner) -> bool:
+        """Whether two runners have one position and radius in side view, within the tolerance."""
+        off = (first.x - second.x, first.y - second.y, first.radius - second.radius)
+        return max(map(abs, off)) <= self.tolerance
+
+
 def centers(pairs: Iterable[Pair]) -> Array:
-    """[m] Return where pairs stand in side view, shape (n, 2)."""
+    """[m] Return the positions of pairs in the side view, shape (n, 2)."""
     return np.array([[pair.x, pair.y] for pair in pairs])
 
 
@@ -84,131 +141,54 @@ def is_belted(runners: list[Runner], path: str) -> bool:
 
 
 def middle_of(runners: Iterable[Runner]) -> float:
-    """[m] Return where the middle plane lies: halfway between the outermost wheels."""
+    """[m] Return the lateral position of the middle plane: halfway between the outermost wheels."""
     across = [runner.z for runner in runners]
     return 0.5 * (min(across) + max(across)) if across else 0.0
 
 
-def paired(runners: list[Runner], *, middle: float, tolerance: float, at: Where) -> list[Pair]:
-    """Pair what is on the left with what is on the right.
-
-    Parameters
-    ----------
-    runners : list of Runner
-        Of one carrier.
-    middle : float
-        [m] Where the middle plane lies.
-    tolerance : float
-        [m] By how much places and radii of a pair may differ in side view; across, by any.
-    at : Where
-        Line of the model, for errors.
-
-    Returns
-    -------
-    list of Pair
-        From the rear to the front.
+def pair_runners(runners: list[Runner], view: SideView) -> list[Pair]:
+    """Pair the runners of one carrier, left and right, from the rear to the front.
 
     Raises
     ------
     ScenarioError
         If a wheel has no partner, or stands in the middle.
     """
-    if len(runners) > _MOST:
-        raise ScenarioError(str(at), len(runners), f"must have at most {_MOST} wheels a carrier")
+    if len(runners) > _MOST_RUNNERS:
+        rule = f"must have at most {_MOST_RUNNERS} wheels per carrier"
+        raise ScenarioError(str(runners[0].link.at), len(runners), rule)
     for runner in runners:
-        if abs(runner.z - middle) <= tolerance:
+        if abs(runner.z - view.middle) <= view.tolerance:
             _refuse(runner, "in the middle", "must stand on the left or on the right")
     order = sorted(runners, key=lambda runner: (runner.x, runner.y, runner.radius))
-    left = [runner for runner in order if runner.z > middle]
-    right = [runner for runner in order if runner.z <= middle]
+    right = [runner for runner in order if runner.z <= view.middle]
     pairs: list[Pair] = []
-    for runner in left:
-        partner = next((other for other in right if _same(runner, other, tolerance)), None)
+    for runner in order:
+        if runner.z <= view.middle:
+            continue
+        partner = next((other for other in right if view.is_same(runner, other)), None)
         if partner is None:
-            _refuse(runner, _runner_text(runner), _rule("right", tolerance))
+            _refuse_alone(runner, "right", view)
         right.remove(partner)
-        beside = next((p for p in pairs if _same(runner, p.left[0], tolerance)), None)
-        if beside is not None:  # a double wheel is one wheel in side view
-            pairs.remove(beside)
+        double = next((pair for pair in pairs if view.is_same(runner, pair.left[0])), None)
+        if double is not None:  # a double wheel is one wheel in side view
+            pairs.remove(double)
         pairs.append(
             Pair(
-                left=(runner, *(beside.left if beside else ())),
-                right=(partner, *(beside.right if beside else ())),
+                left=(runner, *(double.left if double else ())),
+                right=(partner, *(double.right if double else ())),
                 x=0.5 * (runner.x + partner.x),
                 y=0.5 * (runner.y + partner.y),
                 radius=0.5 * (runner.radius + partner.radius),
             )
         )
     for runner in right:
-        _refuse(runner, _runner_text(runner), _rule("left", tolerance))
+        _refuse_alone(runner, "left", view)
     return pairs
 
 
-def _same(first: Runner, second: Runner, tolerance: float) -> bool:
-    return (
-        abs(first.x - second.x) <= tolerance
-        and abs(first.y - second.y) <= tolerance
-        and abs(first.radius - second.radius) <= tolerance
-    )
-
-
-def _rule(side: str, tolerance: float) -> str:
-    within = f"within {1e3 * tolerance:g} mm: tolerance= may say more"
-    return f"must have a partner on the {side}, in side view {within}"
-
-
-def _runner_text(runner: Runner) -> str:
-    return f"radius {runner.radius:.4g} m at x = {runner.x:.4g} m, y = {runner.y:.4g} m"
-
-
-def _refuse(runner: Runner, value: str, rule: str) -> NoReturn:
-    raise ScenarioError(f"{runner.shape.at}: wheel[{runner.name}]", value, rule)
-
-
-_UP = np.array([0.0, 0.0, 1.0])
-# [rad] An axis so close to one of the model's is meant to be it: files have 3.1415 for pi.
-_SNAP = 0.01
-_FORWARDS = {
-    f"{sign}{name}": (1.0 if sign == "+" else -1.0) * np.eye(3)[axis]
-    for sign in "+-"
-    for axis, name in enumerate("xy")
-}
-_FRONT, _REAR = re.compile(r"front|fore"), re.compile(r"rear|back|hind")
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class SideView:
-    """Turns points of the model into x forward, y up and z to the left.
-
-    Parameters
-    ----------
-    forward, left : ndarray, shape (3,)
-        Directions in the frame of the model, whose z axis is up.
-    reason : str
-        By which rule they were found.
-    """
-
-    forward: Array
-    left: Array
-    reason: str
-
-    @property
-    def up(self) -> Array:
-        """Direction up in the frame of the model."""
-        return _UP
-
-    def of(self, point: Array) -> Array:
-        """[m] Return forward, up and left of a point, shape (3,), or of several, shape (n, 3)."""
-        turned: Array = np.asarray(point) @ np.stack([self.forward, _UP, self.left], axis=1)
-        return turned
-
-    def about_left(self, tensor: Array) -> float:
-        """[kg m^2] Return the moment of inertia about the lateral axis."""
-        return float(self.left @ tensor @ self.left)
-
-
-def side_view(tree: Tree, surfaces: Surfaces, forward: str | None) -> SideView:
-    """Find the lateral axis from what turns, and the forward sign from the names.
+def side_view(tree: Tree, surfaces: Surfaces, forward: str | None, tolerance: float) -> SideView:
+    """Find the lateral axis from the axes of wheels and drums, and the forward sign from names.
 
     Parameters
     ----------
@@ -218,16 +198,13 @@ def side_view(tree: Tree, surfaces: Surfaces, forward: str | None) -> SideView:
         Those that move.
     forward : {"+x", "-x", "+y", "-y"}, optional
         The direction that is forward; None finds it.
-
-    Returns
-    -------
-    SideView
-        With the rule by which it was found.
+    tolerance : float
+        [m] By how much the sides may differ.
 
     Raises
     ------
     ScenarioError
-        If nothing turns, what turns has no common lateral axis, or forward cannot be told.
+        If nothing turns, the axes have no common lateral direction, or forward is ambiguous.
     """
     lateral = _lateral(tree, surfaces)
     ahead = np.cross(lateral, _UP)
@@ -236,24 +213,49 @@ def side_view(tree: Tree, surfaces: Surfaces, forward: str | None) -> SideView:
             rule = f"must be one of {', '.join(_FORWARDS)}, or None"
             raise ScenarioError("forward", forward, rule)
         if not is_parallel(_FORWARDS[forward], ahead):
-            rule = f"must be across the axes of the wheels, which point along {_axis_text(lateral)}"
+            rule = (
+                f"must be normal to the axes of the wheels, which point along {_axis_text(lateral)}"
+            )
             raise ScenarioError("forward", forward, rule)
         sign, reason = float(np.sign(_FORWARDS[forward] @ ahead)), "forward was given"
-    elif named := _named_ahead(tree, ahead):
-        sign, reason = named
+    elif by_names := _sign_by_names(tree, ahead):
+        sign, reason = by_names
     elif is_parallel(ahead, np.array([1.0, 0.0, 0.0])):
         sign, reason = float(np.sign(ahead[0])), "by convention, x is forward"
     else:
-        rule = 'must be given, as "+y" or "-y": no name has front or rear'
+        rule = 'is ambiguous, as no link is called front or rear: pass forward="+y" or "-y"'
         raise ScenarioError("forward", forward, rule)
     ahead = sign * ahead
-    return SideView(forward=ahead, left=np.cross(_UP, ahead), reason=reason)
+    left = np.cross(_UP, ahead)
+    return SideView(forward=ahead, left=left, reason=reason, tolerance=tolerance)
+
+
+def running_gear_of(tree: Tree, view: SideView, surfaces: Surfaces) -> RunningGear:
+    """Sort everything that can touch the ground.
+
+    Raises
+    ------
+    ScenarioError
+        If wheels or tracks hang on springs, slides, rockers or steered joints, or a wheel turns
+        about another axis.
+    """
+    return _Sorting(tree, view, surfaces).gear()
+
+
+def _refuse(runner: Runner, value: str, rule: str) -> NoReturn:
+    raise ScenarioError(runner.path, value, rule)
+
+
+def _refuse_alone(runner: Runner, side: str, view: SideView) -> NoReturn:
+    within = f"within {1e3 * view.tolerance:g} mm; tolerance= allows more"
+    value = f"radius {runner.radius:.4g} m at x = {runner.x:.4g} m, y = {runner.y:.4g} m"
+    _refuse(runner, value, f"must have a partner on the {side}, in side view {within}")
 
 
 def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     """Return the direction of the most axes of wheels and of the drums of tracks, horizontal."""
-    hanging = below(tree)
-    axes = [j.axis for j in tree.joints.values() if wheel_of(tree, j, hanging)]
+    hanging = subtrees(tree)
+    axes = [joint.axis for joint in tree.joints.values() if wheel_of(tree, joint, hanging)]
     axes += [
         shape.axis
         for link in tree.links
@@ -262,13 +264,11 @@ def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     ]
     if not axes:
         rule = (
-            "must have wheels, which are round collision shapes on joints that turn without limit,"
-            " bare or with equal grousers evenly round them, or tracks that a plugin moves or"
-            " tracks= names"
+            "must have wheels (round collision shapes on joints without limits, bare or with equal"
+            " grousers evenly round them) or tracks that a plugin moves or tracks= names"
         )
-        kinds = [shape.kind for link in tree.links for shape in link.shapes]
-        count = sum(kind in ("cylinder", "capsule", "sphere") for kind in kinds)
-        got = f"{count} round shapes, none of them such" if count else "no round shape"
+        count = sum(shape.kind in _DRUMS for link in tree.links for shape in link.shapes)
+        got = f"{count} round shapes, none of them a wheel" if count else "no round shape"
         raise ScenarioError(str(tree.at), got, rule)
     rows = np.array(axes)
     alike = np.abs(rows @ rows.T) >= math.cos(PARALLEL)
@@ -286,7 +286,11 @@ def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     return flat
 
 
-def _named_ahead(tree: Tree, ahead: Array) -> tuple[float, str] | None:
+def _axis_text(axis: Array) -> str:
+    return f"({', '.join(f'{round(part, 3) + 0.0:g}' for part in axis)})"
+
+
+def _sign_by_names(tree: Tree, ahead: Array) -> tuple[float, str] | None:
     """Return on which side the links called front are; None if that is not clear."""
     along: dict[bool, list[float]] = {True: [], False: []}
     for link in tree.links:
@@ -302,54 +306,20 @@ def _named_ahead(tree: Tree, ahead: Array) -> tuple[float, str] | None:
     return float(np.sign(difference)), "links called front are ahead of those called rear"
 
 
-def _axis_text(axis: Array) -> str:
-    return f"({', '.join(f'{round(part, 3) + 0.0:g}' for part in axis)})"
-
-
-# [m] What lies this little behind its pivot does not lie behind it.
-_BEHIND = 0.005
-_DRUMS = ("cylinder", "capsule", "sphere")
-
-
-def running_gear_of(tree: Tree, view: SideView, surfaces: Surfaces) -> RunningGear:
-    """Sort everything that can touch the ground.
-
-    Parameters
-    ----------
-    tree : Tree
-        The model.
-    view : SideView
-        Its side view.
-    surfaces : Surfaces
-        Those that move.
-
-    Returns
-    -------
-    RunningGear
-        What was found.
-
-    Raises
-    ------
-    ScenarioError
-        If wheels or tracks hang on springs, slides, rockers or steered joints, or a wheel turns
-        about another axis.
-    """
-    return _Sorting(tree, view, surfaces).gear()
-
-
 class _Sorting:
     """Walks down the tree; what hangs on a link is known when it is its turn."""
 
     def __init__(self, tree: Tree, view: SideView, surfaces: Surfaces) -> None:
         self.tree = tree
         self.view = view
-        self.hanging = below(tree)
+        self.hanging = subtrees(tree)
         self.moved = surfaces.moved
         self.links = tree.by_name
-        self.wheels: dict[str, list[tuple[Link, Shape]]] = {}
-        for child, joint in tree.joints.items():
-            if shapes := wheel_of(tree, joint, self.hanging):
-                self.wheels[child] = shapes
+        self.wheels = {
+            child: shapes
+            for child, joint in tree.joints.items()
+            if (shapes := wheel_of(tree, joint, self.hanging))
+        }
         self.turning = {n for child in self.wheels for n in self.hanging[child]}
         self.carrier: dict[str, Joint | None] = {}
 
@@ -362,9 +332,11 @@ class _Sorting:
             if joint is not None and link.name not in self.turning:
                 above = self.carried(joint, above, arms)
             self.carrier[link.name] = above
-        gear.passive = self.passive()
-        for arm in arms.values():
-            gear.arms.append(self.arm(arm))
+        driven = {
+            child for child in self.wheels if self.tree.joints[child].name in self.tree.driven
+        }
+        gear.passive = set(self.wheels) - driven if driven else set()
+        gear.arms = [self.arm(joint) for joint in arms.values()]
         for link in self.tree.links:
             carrier = self.carrier[link.name]
             if carrier is None:
@@ -389,25 +361,25 @@ class _Sorting:
             if above is not None:
                 self.refuse(joint, "must not be a flipper on another moving part")
             if joint.stiffness > 0.0:
-                self.refuse(joint, "must have no spring: a side view holds no suspension")
+                self.refuse(joint, "must have no spring: a side view has no suspension")
             arms[joint.child] = joint
             return joint
         if joint.is_locked:
             return above
-        return self.refuse(joint, self.reason(joint))
+        return self.refuse(joint, self.rule(joint))
 
-    def reason(self, joint: Joint) -> str:
-        """Return the rule that a joint breaks that carries wheels and is no flipper's."""
+    def rule(self, joint: Joint) -> str:
+        """Return the rule that a joint breaks that carries wheels and is not a flipper's."""
         if joint.kind == "slide" or joint.stiffness > 0.0:
-            return "must carry no wheels: a side view holds no suspension"
+            return "must carry no wheels: a side view has no suspension"
         if joint.kind != "hinge":
             return "must be fixed or turn about an axis, to carry wheels"
         if is_parallel(joint.axis, self.view.left):
-            return "must carry no wheels on both sides of it: a side view holds no rocker"
-        return "must carry no wheels: a side view holds no steering"
+            return "must carry no wheels on both sides of it: a side view has no rocker"
+        return "must carry no wheels: a side view has no steering"
 
     def refuse(self, joint: Joint, rule: str) -> NoReturn:
-        raise ScenarioError(f"{joint.at}: joint[{joint.name}]", joint.kind, rule)
+        raise ScenarioError(joint.path, joint.kind, rule)
 
     def places(self, joint: Joint) -> Iterator[Array]:
         """Yield where the wheels and drums are that hang on a joint."""
@@ -445,7 +417,7 @@ class _Sorting:
         shapes = self.wheels[joint.child]
         if not is_parallel(joint.axis, self.view.left):
             self.refuse(
-                joint, "must turn about the axis of the other wheels: a side view holds no steering"
+                joint, "must turn about the axis of the other wheels: a side view has no steering"
             )
         radii = [radius_about(shape, joint.place, joint.axis) or 0.0 for _, shape in shapes]
         largest = int(np.argmax(radii))
@@ -475,7 +447,7 @@ class _Sorting:
 
     def drum(self, link: Link, shape: Shape) -> Runner:
         if shape.kind != "sphere" and not is_parallel(shape.axis, self.view.left):
-            path = f"{shape.at}: collision[{shape.name}]"
+            path = shape.path
             raise ScenarioError(path, shape.kind, "must lie across, to be a drum of a track")
         x, y, z = (float(part) for part in self.view.of(shape.pose.place))
         name = f"{link.name}/{shape.name}"
@@ -483,7 +455,6 @@ class _Sorting:
 
     def arm(self, joint: Joint) -> Arm:
         links = [self.links[name] for name in self.hanging[joint.child]]
-        still = [(link, shape) for link in links for shape in self.still(link)]
         return Arm(
             joint=joint,
             pivot=self.view.of(joint.place),
@@ -491,14 +462,8 @@ class _Sorting:
             runners=tuple(runner for link in links for runner in self.runners_of(link)),
             shapes=tuple(
                 (link, shape)
-                for link, shape in still
+                for link in links
+                for shape in self.still(link)
                 if shape not in self.moved or shape.kind not in _DRUMS
             ),
         )
-
-    def passive(self) -> set[str]:
-        """Return the wheels that nothing drives, if the file says what drives others."""
-        driven = {
-            child for child in self.wheels if self.tree.joints[child].name in self.tree.driven
-        }
-        return set(self.wheels) - driven if driven else set()

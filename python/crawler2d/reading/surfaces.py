@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import Array, Link, Shape, Tree
-from crawler2d.reading.log import Doubt, named
+from crawler2d.model_tree import Array, Shape, Tree
+from crawler2d.reading.log import Doubt, list_names
 from crawler2d.reading.parts import moved_links
 from crawler2d.reading.wheels import (
-    below,
     corners_of,
     is_parallel,
     radius_about,
+    subtrees,
     wheel_of,
 )
 
@@ -29,32 +29,27 @@ __all__ = ["Surfaces", "refuse_unread", "surfaces_of"]
 _SAME = 0.002
 """[m] By how much a drum may differ in side view from its partner on the other side."""
 
-
 _APART = 0.01
-"""[m] Drums nearer than this are one: a belt round them would have no length."""
-
+"""[m] Closer drums are one: a belt round them would have no length."""
 
 _BELOW = 0.01
 """[m] By how much a belly may hang below the drums of a track: less than a boss or a bolt head."""
 
-
 _HORIZONTAL = 0.02  # of the upward part of a direction
-
-
 _SHOWN = 4  # names of links
-
-
-_MOST = 100  # axes that are compared with all
+_MOST_AXES = 100  # that are compared with all
+_UPRIGHT = 0.5  # [-] An axis with a larger upward part is no axle, but that of a lidar, say.
+_LISTED = 5  # names of links
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surfaces:
-    """What moves without turning.
+    """The shapes whose surface moves.
 
     Parameters
     ----------
     moved : frozenset of Shape
-        Shapes whose surface moves, be it by the file or by a rule of this module.
+        All of them, by the file or by a rule of this module.
     taken : frozenset of Shape
         Those by a rule of this module.
     doubts : tuple of Doubt
@@ -66,44 +61,9 @@ class Surfaces:
     doubts: tuple[Doubt, ...]
 
 
-def surfaces_of(tree: Tree) -> Surfaces:
-    """Find the surfaces of a model that move.
-
-    Fixed drums, cylinders across that stand on one side and have a partner on the other, are those
-    of a track that the file does not move, if either
-
-    - a wheel on a joint stands beside them on the same body, one for each drum at most: a sprocket;
-    - or nothing on that body turns or moves, and there are two of them: on the chassis they are the
-      lowest of all shapes, on a flipper one of them is on its pivot.
-
-    Parameters
-    ----------
-    tree : Tree
-        The model.
-    """
-    links = moved_links(tree)
-    moved = {
-        shape
-        for link in tree.links
-        for shape in link.shapes
-        if shape.surface_speed > 0.0 or link.name in links
-    }
-    beside, unmoved = _Search(tree, frozenset(moved)).found()
-    doubts = [
-        (str(drums[0].shape.at), _named(drums), f"{why}; with this file alone they slide")
-        for drums, why in (
-            (beside, "do not turn as the wheel beside them does: read as a belt round both"),
-            (unmoved, "are moved by nothing in the file: read as the drums of moving belts"),
-        )
-        if drums
-    ]
-    drums = frozenset(drum.shape for drum in (*beside, *unmoved))
-    return Surfaces(drums | moved, drums, tuple(doubts))
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Drum:
-    """A fixed cylinder across, or a wheel; where it is forward, up and across, and its body."""
+    """A fixed lateral cylinder, or a wheel: its position forward, up and across, and its body."""
 
     shape: Shape
     link: str
@@ -118,6 +78,82 @@ class _Drum:
         return bool(np.abs(self.place[:2] - place[:2]).max() <= within)
 
 
+def surfaces_of(tree: Tree) -> Surfaces:
+    """Find the surfaces of a model that move.
+
+    Fixed drums, lateral cylinders on one side with a partner on the other, are those of a track
+    that the file does not move, if either
+
+    - wheels on joints stand on the same body and side, at most one for each drum: sprockets;
+    - or nothing on that body turns or moves, and there are two of them: on the chassis they are the
+      lowest of all shapes, on a flipper one of them is on its pivot.
+    """
+    links = moved_links(tree)
+    moved = frozenset(
+        shape
+        for link in tree.links
+        for shape in link.shapes
+        if shape.surface_speed > 0.0 or link.name in links
+    )
+    driven, unmoved = _Search(tree, moved).drums()
+    doubts = []
+    for drums, reason in (
+        (driven, "do not turn as the wheel on their side does: read as a belt round both"),
+        (unmoved, "are moved by nothing in the file: read as the drums of moving belts"),
+    ):
+        if drums:
+            names = list_names(list(dict.fromkeys(drum.link for drum in drums)), _SHOWN)
+            value = f"{len(drums)} fixed drums: {names}"
+            at = str(drums[0].shape.at)
+            doubts.append((at, value, f"{reason}; with this file alone they slide"))
+    taken = frozenset(drum.shape for drum in (*driven, *unmoved))
+    return Surfaces(taken | moved, taken, tuple(doubts))
+
+
+def refuse_unread(tree: Tree) -> None:
+    """Refuse a model if its contact with the ground would have to be guessed.
+
+    A shape that was left out may be a wheel or a track if its link has no other shape, and its
+    surface moves, or it turns without limit on an axle that is no higher than the wheels. If
+    nothing that was read turns on an axle or is a track, it may be on any link.
+
+    Raises
+    ------
+    ScenarioError
+        If there is such a link; it names what was left out, why, and what to do.
+    """
+    lacking = {link.name: link for link in tree.links if link.unread and not link.shapes}
+    moved = moved_links(tree)
+    hanging = subtrees(tree)
+    tops = list(_tops(tree, hanging))
+    if not tops:
+        _refuse_bare(tree, hanging)
+    if not lacking:
+        return
+    suspects = [link for name, link in lacking.items() if name in moved]
+    links = tree.by_name
+    is_on_wheels = bool(tops)  # or would be, if its turning parts were round
+    for child, joint in tree.joints.items():
+        if joint.is_unlimited and abs(joint.axis[2]) <= _UPRIGHT:
+            turning = [links[name] for name in hanging[child]]
+            if any(link.shapes for link in turning):
+                is_on_wheels = True
+            elif joint.place[2] <= max(tops, default=np.inf):
+                suspects += [link for link in turning if link.unread]
+    if not suspects and not is_on_wheels:
+        suspects = list(lacking.values())
+    if suspects:
+        names = list(dict.fromkeys(link.name for link in suspects))
+        link = lacking[names[0]]
+        unread = link.unread[0]
+        rule = (
+            "must have a collision shape that can be read, as it may be a wheel or a track"
+            f" ({unread.reason}){_so_must(names[1:])}: provide its mesh, give it a cylinder or a"
+            " box, or name links whose surface moves with tracks="
+        )
+        raise ScenarioError(f"{unread.at}: link[{link.name}]", unread.name, rule)
+
+
 class _Search:
     """Drums and wheels by the rigid body that carries them, and by side."""
 
@@ -129,13 +165,16 @@ class _Search:
             joint = tree.joints.get(link.name)
             is_rigid = joint is not None and joint.kind == "fixed"
             self.body[link.name] = self.body[joint.parent] if joint and is_rigid else link.name
-        hanging = below(tree)
-        shapes = {child: wheel_of(tree, joint, hanging) for child, joint in tree.joints.items()}
-        self.wheels = {child: found for child, found in shapes.items() if found}
+        hanging = subtrees(tree)
+        self.wheels = {
+            child: shapes
+            for child, joint in tree.joints.items()
+            if (shapes := wheel_of(tree, joint, hanging))
+        }
         self.turning = {name for child in self.wheels for name in hanging[child]}
 
-    def found(self) -> tuple[list[_Drum], list[_Drum]]:
-        """Return the drums beside sprockets, and those that nothing moves."""
+    def drums(self) -> tuple[list[_Drum], list[_Drum]]:
+        """Return the drums with sprockets, and those that nothing moves."""
         axis = self._lateral()
         if axis is None:
             return [], []
@@ -144,24 +183,26 @@ class _Search:
         middle = 0.5 * (min(across) + max(across)) if across else 0.0
         drums = [drum for drum in drums if abs(drum.place[2] - middle) > 0.5 * drum.shape.length]
         drums = [drum for drum in drums if self._has_partner(drum, drums, middle)]
-        beside: list[_Drum] = []
+        driven: list[_Drum] = []
         unmoved: list[_Drum] = []
-        for body, side in dict.fromkeys((d.body, d.side(middle)) for d in drums):
-            group = [d for d in drums if d.body == body and d.side(middle) == side]
-            own = [w for w in wheels if w.body == body and w.side(middle) == side]
+        for body, side in dict.fromkeys((drum.body, drum.side(middle)) for drum in drums):
+            group, own = (
+                [each for each in some if each.body == body and each.side(middle) == side]
+                for some in (drums, wheels)
+            )
             if own:
                 apart = [d for d in group if not any(d.is_at(w.place, _APART) for w in own)]
-                beside += group if apart and len(own) <= len(apart) else []
+                driven += group if apart and len(own) <= len(apart) else []
             elif self._is_track(body, group, axis):
                 unmoved += group
-        return beside, unmoved
+        return driven, unmoved
 
     def _lateral(self) -> Array | None:
         """Return the direction of the axes of most wheels, or else of most fixed cylinders."""
         axes = [self.tree.joints[child].axis for child in self.wheels] or [
             shape.axis for _, shape in self._cylinders() if abs(shape.axis[2]) < _HORIZONTAL
         ]
-        counts = [sum(is_parallel(axis, other) for other in axes) for axis in axes[:_MOST]]
+        counts = [sum(is_parallel(axis, other) for other in axes) for axis in axes[:_MOST_AXES]]
         return axes[int(np.argmax(counts))] if axes else None
 
     def _cylinders(self) -> Iterator[tuple[str, Shape]]:
@@ -176,15 +217,15 @@ class _Search:
     def _drums(self, axis: Array) -> Iterator[_Drum]:
         for name, shape in self._cylinders():
             if is_parallel(shape.axis, axis):
-                place = _seen(shape.pose.place, axis)
+                place = _in_side_view(shape.pose.place, axis)
                 yield _Drum(shape, name, self.body[name], place, shape.radius)
 
     def _sprockets(self, axis: Array) -> Iterator[_Drum]:
-        for child, found in self.wheels.items():
+        for child, parts in self.wheels.items():
             joint = self.tree.joints[child]
             if is_parallel(joint.axis, axis):
-                shape = found[0][1]
-                place = _seen(shape.pose.place, axis)
+                shape = parts[0][1]
+                place = _in_side_view(shape.pose.place, axis)
                 radius = radius_about(shape, joint.place, joint.axis) or 0.0
                 yield _Drum(shape, child, self.body[joint.parent], place, radius)
 
@@ -197,12 +238,12 @@ class _Search:
         )
 
     def _is_track(self, body: str, group: list[_Drum], axis: Array) -> bool:
-        """Whether drums beside no wheel are those of a track that nothing in the file moves."""
+        """Whether drums without a sprocket are those of a track that nothing in the file moves."""
         if not any(not drum.is_at(group[0].place, _APART) for drum in group):
             return False
         joint = self.tree.joints.get(body)
         if joint is not None and joint.kind == "hinge":  # a flipper?
-            pivot = _seen(joint.place, axis)
+            pivot = _in_side_view(joint.place, axis)
             return is_parallel(joint.axis, axis) and any(d.is_at(pivot, _APART) for d in group)
         return not self._moves(body) and self._is_lowest(body, group)
 
@@ -225,84 +266,14 @@ class _Search:
         return foot <= min(others, default=foot) + _BELOW
 
 
-def _named(drums: list[_Drum]) -> str:
-    names = list(dict.fromkeys(drum.link for drum in drums))
-    return f"{len(drums)} fixed drums: {named(names, _SHOWN)}"
-
-
-def _seen(place: Array, axis: Array) -> Array:
-    """[m] Return where a place is along, up and across, shape (3,)."""
-    along = np.cross(axis, (0.0, 0.0, 1.0))
-    return np.array([place @ along, place[2], place @ axis])
-
-
-_UPRIGHT = 0.5  # [-] Upward part of an axis from which it is no axle, but that of a lidar, say.
-
-
-_LISTED = 5  # names of links
-
-
-def refuse_unread(tree: Tree) -> None:
-    """Refuse a model if what touches the ground would have to be guessed.
-
-    What was left out may be a wheel or a track if the link has no other shape, and its surface
-    moves, or it turns without limit on an axle that is no higher than the wheels are. If nothing
-    that was read turns on an axle or is a track, it may be any link.
-
-    Parameters
-    ----------
-    tree : Tree
-        The model.
-
-    Raises
-    ------
-    ScenarioError
-        If there is such a link; it names what was left out, why, and what to do.
-    """
-    lacking = {link.name: link for link in tree.links if link.unread and not link.shapes}
-    moved = moved_links(tree)
-    hanging = below(tree)
-    tops = list(_tops(tree, hanging))
-    if not tops:
-        _refuse_bare(tree, hanging)
-    if not lacking:
-        return
-    suspects = [link for name, link in lacking.items() if name in moved]
-    links = tree.by_name
-    is_on_wheels = bool(tops)  # or would be, if what turns were round
-    for child, joint in tree.joints.items():
-        if joint.is_unlimited and abs(joint.axis[2]) <= _UPRIGHT:
-            turning = [links[name] for name in hanging[child]]
-            if any(link.shapes for link in turning):
-                is_on_wheels = True
-            elif joint.place[2] <= max(tops, default=np.inf):
-                suspects += [link for link in turning if link.unread]
-    if not suspects and not is_on_wheels:
-        suspects = list(lacking.values())
-    if suspects:
-        _refuse(list(dict.fromkeys(link.name for link in suspects)), lacking)
-
-
-def _refuse_bare(tree: Tree, hanging: dict[str, list[str]]) -> None:
-    """Refuse a model whose wheels are only seen."""
-    links = tree.by_name
-    bare = [
-        links[child]
-        for child, joint in tree.joints.items()
-        if joint.is_unlimited
-        and not any(links[name].shapes or links[name].unread for name in hanging[child])
-    ]
-    if bare:
-        others = f"; so must {named([link.name for link in bare[1:]], _LISTED)}" if bare[1:] else ""
-        rule = (
-            f"must have a collision shape, for what is only seen touches no ground{others}: give"
-            " each the cylinder that is seen, and a mass"
-        )
-        raise ScenarioError(f"{bare[0].at}: link[{bare[0].name}]", "no collision shape", rule)
+def _in_side_view(place: Array, axis: Array) -> Array:
+    """[m] Return a position forward, up and along a lateral axis, shape (3,)."""
+    forward = np.cross(axis, (0.0, 0.0, 1.0))
+    return np.array([place @ forward, place[2], place @ axis])
 
 
 def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
-    """[m] Yield how high each wheel and each drum reaches that was read."""
+    """[m] Yield the height of the top of each wheel and drum."""
     for joint in tree.joints.values():
         for _, shape in wheel_of(tree, joint, hanging):
             yield float(joint.place[2]) + (radius_about(shape, joint.place, joint.axis) or 0.0)
@@ -311,13 +282,23 @@ def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
             yield float(shape.pose.place[2]) + shape.radius
 
 
-def _refuse(names: list[str], links: dict[str, Link]) -> None:
-    link = links[names[0]]
-    unread = link.unread[0]
-    others = f"; so must {named(names[1:], _LISTED)}" if len(names) > 1 else ""
-    rule = (
-        "must have a collision shape that can be read, for it may be a wheel or a track, which"
-        f" nothing may guess ({unread.reason}){others}: put its mesh there, give it a cylinder or a"
-        " box, or name links whose surface moves with tracks="
-    )
-    raise ScenarioError(f"{unread.at}: link[{link.name}]", unread.name, rule)
+def _refuse_bare(tree: Tree, hanging: dict[str, list[str]]) -> None:
+    """Refuse a model whose wheels have no collision shapes."""
+    links = tree.by_name
+    bare = [
+        links[child]
+        for child, joint in tree.joints.items()
+        if joint.is_unlimited
+        and not any(links[name].shapes or links[name].unread for name in hanging[child])
+    ]
+    if bare:
+        rule = (
+            "must have a collision shape, for what is only visible touches no ground"
+            f"{_so_must([link.name for link in bare[1:]])}: give each the cylinder of its visual,"
+            " and a mass"
+        )
+        raise ScenarioError(bare[0].path, "no collision shape", rule)
+
+
+def _so_must(others: list[str]) -> str:
+    return f"; so must {list_names(others, _LISTED)}" if others else ""

@@ -12,7 +12,7 @@ from crawler2d.common.bodies import ends_of
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Shape, Where
 from crawler2d.parameters.track import GearWheel, HybridWheels, LineOfWheels, RoundWheel
-from crawler2d.reading.log import Telling
+from crawler2d.reading.log import ReadLog
 from crawler2d.reading.running_gear import Pair, SideView, centers
 from crawler2d.reading.wheels import ALIKE, Grousers, Runner, corners_of
 
@@ -21,7 +21,7 @@ __all__ = [
     "FIT",
     "Base",
     "belt_ends",
-    "belt_round",
+    "bending_drums",
     "beyond_belt",
     "ends_among",
     "hull",
@@ -31,7 +31,33 @@ __all__ = [
 ]
 
 FIT = 1e-5
-"""[m] Wheels this near to an even line lie on it: files round to six decimals."""
+"""[m] Wheels this close to an evenly spaced line lie on it: files round to six decimals."""
+
+BELT_TOLERANCE = 0.02
+"""[-] How far boxes may reach out of the belt, relative to the larger radius: boxes that are drawn
+between drums only approximate their tangents. Those of Gazebo's example are off by 1.2 %."""
+
+_UPWARDS = 0.5  # 30 degrees above level: what sticks out higher meets no obstacle
+_MOST_DISCS = 64  # that an outline can have
+_AT_ONCE = 10_000  # corners of a mesh that are processed together, in some tens of MB
+_DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
+_NORMALS = np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
+_CHORDS = 16  # of a circle; at most 2 % of its radius inside it
+_DIGITS = 6  # Files round to a micrometre.
+_SMALLEST = 1e-6  # [m] Closer corners are one, and a thinner hull is none.
+
+_EXPLAINED = 0.01
+"""[-] An offset is real, however small, if it leaves less than this fraction of the residual."""
+
+_TURNED = 1e-3
+"""[rad] The phase deviation that is allowed: files round angles to this."""
+
+_ROUNDED = 0.01  # relative, of the sizes of grousers, which files round to 0.1 mm
+_THICKNESSES = ("tip_thickness", "base_thickness")
+
+_PARALLEL = 1e-6
+"""[-] Grousers have parallel flanks if their thickness changes by less than this, relative to the
+radius: MuJoCo keeps their corners as float32."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,7 +69,7 @@ class Base:
     rear, front : ndarray, shape (2,)
         [m] The end axles in the side view.
     is_level : bool
-        Whether x is forward as in the model, instead of through both end axles.
+        Whether x is the forward direction of the model, instead of the line through both axles.
     """
 
     rear: Array
@@ -72,16 +98,34 @@ class Base:
 
     def of(self, points: Array) -> Array:
         """[m] Return points of the side view, shape (n, 2), in the chassis frame."""
-        ahead = self.ahead
-        up = np.array([-ahead[1], ahead[0]])
-        turned: Array = (np.asarray(points) - 0.5 * (self.front + self.rear)) @ np.stack(
-            [ahead, up], 1
-        )
+        x, y = self.ahead
+        turn = np.array([[x, -y], [y, x]])
+        turned: Array = (np.asarray(points) - 0.5 * (self.front + self.rear)) @ turn
         return turned
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Phases:
+    """The phases of the wheels of a track at the start: wheel n at offset + n * step.
+
+    Parameters
+    ----------
+    step, offset : float
+        [-] In pitches: the angle between two grousers.
+    residual : float
+        [-] The largest deviation of a wheel.
+    order : list of int
+        Which wheel is the first, the second, ...
+    """
+
+    step: float
+    offset: float
+    residual: float
+    order: list[int]
+
+
 def wheels_of(
-    told: Telling,
+    log: ReadLog,
     pairs: list[Pair],
     base: Base,
     view: SideView,
@@ -90,16 +134,16 @@ def wheels_of(
     run: float = 0.0,
     is_whole: bool = True,
 ) -> LineOfWheels | HybridWheels:
-    """Return the track model that has these wheels where they are.
+    """Return the track model that has these wheels in their positions.
 
     A line of wheels, if they stand evenly on the line between the end axles and their radii are
-    equal or change evenly; else wheels that are placed one by one, as also where one at an end
-    axle is missing, which makes the line no whole one.
+    equal or change evenly; else wheels that are placed one by one, as also where the wheel at an
+    end axle is missing.
 
     Parameters
     ----------
-    told : Telling
-        Takes what is to be told about gear wheels.
+    log : ReadLog
+        Takes notes and doubts.
     pairs : list of Pair
         From the rear to the front.
     base : Base
@@ -109,7 +153,7 @@ def wheels_of(
     path : str
         Of the track in a scenario.
     run : float
-        [m] How far the track has run before the start, because its flipper is raised.
+        [m] Distance that the track has run before the start, because its flipper is raised.
     is_whole : bool
         Whether wheels are at both end axles.
 
@@ -127,45 +171,27 @@ def wheels_of(
         off = np.abs([places[:, 0] - even, places[:, 1], radii - between]).max()
         is_line = bool(off <= FIT)
     angles = [base.tilt - run / pair.radius for pair in pairs]
-    wheel, order = wheel_on(told, pairs, view, angles=angles, path=f"{path}.wheel", is_line=is_line)
+    wheel, order = common_wheel(
+        log, pairs, view, angles=angles, path=f"{path}.wheel", is_line=is_line
+    )
     if is_line:
         return LineOfWheels(len(pairs), wheel=wheel)
     rows = [(*places[k].tolist(), float(radii[k])) for k in order]
     return HybridWheels(tuple(rows), wheel=wheel)
 
 
-BELT_TOLERANCE = 0.02
-"""[-] How far boxes may reach out of the belt, as a share of the larger radius: what is drawn as
-boxes between drums only nears their tangents. Those of Gazebo's example do so by 1.2 %."""
-
-
-_UPWARDS = 0.5  # 30 degrees above level: what reaches out higher meets no obstacle
-
-
-_MOST = 64  # discs that an outline can have
-
-
-_AT_ONCE = 10_000  # corners of a mesh that are looked at together, in some tens of MB
-
-
-_DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
-
-
-_NORMALS = np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
-
-
 def ends_among(drums: list[Pair]) -> tuple[Pair, Pair]:
     """Return the drums on the rear and on the front end axle, as an outline has them."""
-    places = [(drum.x, drum.y, drum.radius) for drum in drums]
-    rear, front = ends_of(places)
-    return drums[places.index(rear)], drums[places.index(front)]
+    discs = [(drum.x, drum.y, drum.radius) for drum in drums]
+    rear, front = ends_of(discs)
+    return drums[discs.index(rear)], drums[discs.index(front)]
 
 
-def belt_round(drums: list[Pair], *, at: Where) -> list[Pair]:
+def bending_drums(drums: list[Pair], *, at: Where) -> list[Pair]:
     """Return the drums that bend the belt round all, from the rear to the front.
 
-    What lies within the belt, such as a return roller, or on one of its straight runs, such as a
-    road wheel between two others, bends nothing.
+    Those within the belt, such as a return roller, or on one of its straight runs, such as a road
+    wheel between two others, do not bend it.
 
     Parameters
     ----------
@@ -177,7 +203,7 @@ def belt_round(drums: list[Pair], *, at: Where) -> list[Pair]:
     Raises
     ------
     ScenarioError
-        If there is one drum only, or too many bend the belt.
+        If there is only one drum, or too many bend the belt.
     """
     discs = _discs(drums)
     first = _ends(discs, np.array([1.0, 0.0]), at)
@@ -187,10 +213,9 @@ def belt_round(drums: list[Pair], *, at: Where) -> list[Pair]:
         if out.max() <= FIT:
             break
         bent.append(int(out.argmax()))
-        if len(bent) > _MOST:
-            path = f"{drums[bent[-1]].left[0].shape.at}: drum[{drums[bent[-1]].left[0].name}]"
-            rule = f"must be a track that bends round at most {_MOST} drums: leave some out"
-            raise ScenarioError(path, "one drum more", rule)
+        if len(bent) > _MOST_DISCS:
+            rule = f"must be a track that bends round at most {_MOST_DISCS} drums: leave some out"
+            raise ScenarioError(drums[bent[-1]].left[0].path, "one drum more", rule)
     # Of several drums on one run, the first that was found may lie between two later ones.
     for each in list(bent):
         others = [other for other in bent if other != each]
@@ -214,7 +239,7 @@ def belt_ends(drums: list[Pair], *, along: Array, at: Where) -> tuple[Pair, Pair
     Raises
     ------
     ScenarioError
-        If there is one drum only, or another reaches out.
+        If there is only one drum, or another one reaches out.
     """
     discs = _discs(drums)
     ends = list(_ends(discs, along, at))
@@ -222,36 +247,199 @@ def belt_ends(drums: list[Pair], *, along: Array, at: Where) -> tuple[Pair, Pair
     tolerance = BELT_TOLERANCE * float(discs[ends, 2].max())
     beyond = np.flatnonzero(out > tolerance)
     if beyond.size:
-        runner = drums[beyond[0]].left[0]
-        raise ScenarioError(
-            f"{runner.shape.at}: drum[{runner.name}]",
-            f"{len(beyond)} beyond the belt round the end drums",
-            "must lie within the belt round the end drums: flippers have two",
-        )
-    rear, front = ends
-    return drums[rear], drums[front]
+        rule = "must lie within the belt round the end drums: flippers have two"
+        value = f"{len(beyond)} beyond the belt round the end drums"
+        raise ScenarioError(drums[beyond[0]].left[0].path, value, rule)
+    return drums[ends[0]], drums[ends[1]]
 
 
 def beyond_belt(outlines: list[Array], drums: list[Pair]) -> list[tuple[float, float]]:
-    """[m] Return how far shapes reach out of the belt round drums, and how far but upwards.
+    """[m] Return how far shapes reach out of the belt round drums: anywhere, and not upwards.
 
-    Both are 0 within what boxes may.
+    Both are 0 within the tolerance of boxes.
 
     Parameters
     ----------
     outlines : list of ndarray, shape (n, 2)
         [m] Corners of each in the side view.
     drums : list of Pair
-        All that the belt bends round.
+        Those that bend the belt.
     """
     discs = _discs(drums)
     hull, tolerance = _Hull(discs), BELT_TOLERANCE * float(discs[:, 2].max())
-    found = []
-    for flat in outlines:
+
+    def beyond(flat: Array, highest: float) -> float:
         points = np.column_stack([flat, np.zeros(len(flat))])
-        out = [float(hull.beyond(points, highest).max()) for highest in (1.0, _UPWARDS)]
-        found.append((out[0] if out[0] > tolerance else 0.0, out[1] if out[1] > tolerance else 0.0))
-    return found
+        out = float(hull.beyond(points, highest).max())
+        return out if out > tolerance else 0.0
+
+    return [(beyond(flat, 1.0), beyond(flat, _UPWARDS)) for flat in outlines]
+
+
+def silhouette(shape: Shape, view: SideView, chords: int = _CHORDS) -> Array:
+    """[m] Return points of the side view whose hull is that of the shape, circles as polygons."""
+    if shape.kind in ("box", "hull"):
+        return view.of(corners_of(shape))[:, :2]
+    half = np.array([-0.5, 0.5]) * (0.0 if shape.kind == "sphere" else shape.length)
+    middles = shape.pose.place + half[:, None] * shape.axis
+    angles = np.linspace(0.0, 2.0 * math.pi, chords, endpoint=False)
+    circle = shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    if shape.kind == "cylinder":
+        rim = circle @ shape.pose.turn[:, :2].T
+        return view.of((middles[:, None, :] + rim).reshape(-1, 3))[:, :2]
+    return (view.of(middles)[:, None, :2] + circle).reshape(-1, 2)
+
+
+def hull(points: Array) -> list[Array]:
+    """Return the corners of the convex hull, counter-clockwise, none on a straight edge."""
+    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0).tolist()  # floats, which are faster
+    ends = [_chain(order), _chain(order[::-1])]
+    return [np.array(corner) for chain in ends for corner in chain[:-1]]
+
+
+def fit_phases(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
+    """Fit the phases of wheels; in the first order and without an offset, if that suffices.
+
+    Parameters
+    ----------
+    own : ndarray, shape (n,)
+        [-] Phase of each wheel, in pitches.
+    orders : list of list of int
+        The orders in which they may be numbered.
+    tolerance : float
+        [-] The residual that is allowed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> round(fit_phases(np.array([0.3, 0.6, 0.9, 0.2]), [[0, 1, 2, 3]], 1e-3).step, 9)
+    0.3
+    """
+    without, turned = (
+        [_fit(own[order], order, has_offset=has_offset) for order in orders]
+        for has_offset in (False, True)
+    )
+    for each, other in zip(without, turned, strict=True):
+        if each.residual <= tolerance:
+            # A frame with a slight tilt turns all wheels by as little, which the step must not take
+            # up. Any two wheels have an offset and a step.
+            is_turned = len(own) > 2 and other.residual < _EXPLAINED * each.residual
+            return other if is_turned else each
+    best = min(without + turned, key=lambda each: each.residual)
+    return next((each for each in turned if each.residual <= tolerance), best)
+
+
+def belt_order(places: Array, own: Array) -> list[int]:
+    """Return the order of wheels along a belt round them, up at the rear and forward on top.
+
+    The first is where the phases of neighbours are discontinuous.
+
+    Parameters
+    ----------
+    places : ndarray, shape (n, 2)
+        [m] Their axles.
+    own : ndarray, shape (n,)
+        [-] Phase of each, in pitches.
+    """
+    away = places - places.mean(axis=0)
+    loop = np.argsort(-np.arctan2(away[:, 1], away[:, 0]), kind="stable")
+    ahead = wrap_phase(np.roll(own[loop], -1) - own[loop])
+    usual = ahead[np.abs(wrap_phase(ahead[:, None] - ahead)).sum(axis=1).argmin()]
+    breaks = np.abs(wrap_phase(ahead - usual))
+    last = int(breaks.argmax())
+    if breaks[last] < 1e-6:  # a closed loop: the first wheel is the one whose phase is one step
+        last = int(np.abs(wrap_phase(own[loop] - usual)).argmin()) - 1
+    return [int(k) for k in np.roll(loop, -(last + 1))]
+
+
+def wrap_phase(phase: Any) -> Any:
+    """[-] Wrap phases, in pitches, to -0.5 to 0.5."""
+    return (np.asarray(phase) + 0.5) % 1.0 - 0.5
+
+
+def common_wheel(
+    log: ReadLog,
+    pairs: list[Pair],
+    view: SideView,
+    *,
+    angles: list[float],
+    path: str,
+    is_line: bool,
+) -> tuple[RoundWheel | GearWheel, list[int]]:
+    """Return the shape that all wheels of a track have, and the order of their phases.
+
+    Parameters
+    ----------
+    log : ReadLog
+        Takes notes and doubts on their phases.
+    pairs : list of Pair
+        The wheels, from the rear to the front.
+    view : SideView
+        The side view.
+    angles : list of float
+        [rad] By how much the carrier, and the run of its track, have turned each already.
+    path : str
+        Of the wheel in a scenario.
+    is_line : bool
+        Whether they stand in a line, from the rear to the front; others may be phased in the order
+        of a belt round them.
+
+    Raises
+    ------
+    ScenarioError
+        If wheels differ in their grousers.
+    """
+    runners = [runner for pair in pairs for runner in pair.both]
+    gears = [runner.grousers for runner in runners if runner.grousers is not None]
+    order = list(range(len(pairs)))
+    if not gears:
+        return RoundWheel(), order
+    for runner in runners:
+        _refuse_unlike(runner, gears[0])
+    pitch = 2.0 * math.pi / gears[0].count
+    own = (np.array([_phase(pair.left[0], view) for pair in pairs]) - angles) / pitch
+    orders = [order] if is_line else [order, belt_order(centers(pairs), own)]
+    phases = fit_phases(own, orders, _TURNED / pitch)
+    expected = {k: phases.step * n + phases.offset for n, k in enumerate(phases.order, 1)}
+    off = max(
+        abs(wrap_phase((_phase(runner, view) - turned) / pitch - expected[k]))
+        for k, (pair, turned) in enumerate(zip(pairs, angles, strict=True))
+        for runner in pair.both
+    )
+    is_turned, is_off = (abs(each) * pitch > _TURNED for each in (phases.offset, off))
+    turn, degrees = (f"{math.degrees(each * pitch):.3g} degrees" for each in (phases.offset, off))
+    names = " to ".join(dict.fromkeys(pair.left[0].name for pair in (pairs[0], pairs[-1])))
+    if is_turned:
+        log.notes.append(f"{names}: all start turned by {turn} more than they do here")
+    if is_off:
+        more = ", in addition to a turn that all have" if is_turned else ""
+        reason = f"is the best fit: {names} start up to {degrees} off{more}"
+        log.doubt(f"{path}.phase_fraction", float(f"{phases.step:.4g}"), reason)
+    tip, base = (float(np.mean([getattr(gear, name) for gear in gears])) for name in _THICKNESSES)
+    is_parallel = base - tip <= _PARALLEL * gears[0].radius
+    return GearWheel(
+        grouser_count=gears[0].count,
+        grouser_height=float(np.mean([grousers.height for grousers in gears])),
+        tip_thickness=tip,
+        base_thickness=None if is_parallel else base,
+        phase_fraction=phases.step,
+    ), phases.order
+
+
+def is_same_wheel(first: RoundWheel | GearWheel, second: RoundWheel | GearWheel) -> bool:
+    """Whether two wheels are the same but for the rounding of files."""
+    if not isinstance(first, GearWheel) or not isinstance(second, GearWheel):
+        return first == second
+    count = first.grouser_count
+    if count is None or count != second.grouser_count:
+        return False
+    off = abs(wrap_phase(first.phase_fraction - second.phase_fraction))
+    sizes = [
+        (gear.grouser_height, gear.tip_thickness, gear.base_thickness or gear.tip_thickness)
+        for gear in (first, second)
+    ]
+    is_alike = bool(np.allclose(np.array(sizes[0]), np.array(sizes[1]), rtol=_ROUNDED))
+    return is_alike and off <= _TURNED * count / (2.0 * math.pi)
 
 
 def _discs(drums: list[Pair]) -> Array:
@@ -260,7 +448,7 @@ def _discs(drums: list[Pair]) -> Array:
 
 
 def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
-    """Return which discs reach farthest back and forwards."""
+    """Return the discs that reach farthest back and farthest forward."""
     places = discs[:, :2] @ along
     rear, front = int((places - discs[:, 2]).argmin()), int((places + discs[:, 2]).argmax())
     if rear == front:
@@ -269,10 +457,10 @@ def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
 
 
 class _Hull:
-    """How far a belt round discs reaches in every direction that matters.
+    """The support of a belt round discs, in every direction that matters.
 
-    What reaches out of a straight run does so farthest at right angles to that, and what reaches
-    out of an arc nearly as far in the nearest of many directions.
+    What reaches out of a straight run does so farthest at right angles to it; out of an arc, nearly
+    as far in the closest of many directions.
     """
 
     def __init__(self, belt: Array) -> None:
@@ -284,7 +472,7 @@ class _Hull:
         across = along - np.arccos(narrower[rows, columns] / distance[rows, columns])
         normals = np.stack([np.cos(across), np.sin(across)])
         reach = belt[:, :2] @ normals + belt[:, 2:]
-        # Of the tangents of any two discs, those that no other disc crosses are runs.
+        # The runs are those tangents of two discs that no other disc crosses.
         is_run = reach.max(axis=0) <= reach[rows, np.arange(len(rows))] + FIT
         self.normals = np.concatenate([_NORMALS, normals[:, is_run]], axis=1)
         self.reach = (belt[:, :2] @ self.normals + belt[:, 2:]).max(axis=0)
@@ -292,7 +480,7 @@ class _Hull:
     def beyond(self, discs: Array, highest: float = 1.0) -> Array:
         """[m] Return how far each disc reaches out of the belt; < 0 where it does not.
 
-        Only directions that rise by `highest` at most count.
+        Only directions that rise by at most `highest` count.
         """
         counts = self.normals[1] <= highest
         parts = np.array_split(discs, 1 + len(discs) // _AT_ONCE)
@@ -301,37 +489,6 @@ class _Hull:
             for part in parts
         ]
         return np.concatenate(out)
-
-
-_CHORDS = 16  # that stand for a circle; at most 2 % of its radius inside it
-
-
-_DIGITS = 6  # Files round to a micrometre.
-
-
-_SMALLEST = 1e-6  # [m] Corners nearer than this are one, and a hull thinner than this is none.
-
-
-def silhouette(shape: Shape, view: SideView, chords: int = _CHORDS) -> Array:
-    """[m] Return points of the side view whose hull is the shape's, rounds as chords."""
-    if shape.kind in ("box", "hull"):
-        return view.of(corners_of(shape))[:, :2]
-    half = np.array([-0.5, 0.5]) * (0.0 if shape.kind == "sphere" else shape.length)
-    middles = shape.pose.place + half[:, None] * shape.axis
-    angles = np.linspace(0.0, 2.0 * math.pi, chords, endpoint=False)
-    circle = shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    if shape.kind == "cylinder":
-        rim = circle @ shape.pose.turn[:, :2].T
-        points = (middles[:, None, :] + rim).reshape(-1, 3)
-        return view.of(points)[:, :2]
-    return (view.of(middles)[:, None, :2] + circle).reshape(-1, 2)
-
-
-def hull(points: Array) -> list[Array]:
-    """Return the corners of the convex hull, counter-clockwise, none on a straight edge."""
-    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0).tolist()  # floats, which are faster
-    ends = [_chain(order), _chain(order[::-1])]
-    return [np.array(corner) for chain in ends for corner in chain[:-1]]
 
 
 def _chain(order: list[list[float]]) -> list[list[float]]:
@@ -352,252 +509,39 @@ def _height(start: list[float], corner: list[float], end: list[float]) -> float:
     return out / length if length > 0.0 else 0.0
 
 
-_EXPLAINED = 0.01
-"""[-] A turn that leaves less than this share of what is off without one is there, be it small."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Phases:
-    """How the wheels of a track start turned: wheel n by n times a share, and all by an offset.
-
-    Parameters
-    ----------
-    share, offset : float
-        [-] Of the angle between two grousers.
-    off : float
-        [-] The most by which a wheel starts turned otherwise.
-    order : list of int
-        Which wheel is the first, the second, ...
-    """
-
-    share: float
-    offset: float
-    off: float
-    order: list[int]
-
-
-def fitted(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
-    """Find how wheels are phased; in the first order, and without an offset, if that will do.
-
-    Parameters
-    ----------
-    own : ndarray, shape (n,)
-        [-] How far each wheel starts turned, in angles between two grousers.
-    orders : list of list of int
-        The orders in which they may be numbered.
-    tolerance : float
-        [-] What may be left.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> round(fitted(np.array([0.3, 0.6, 0.9, 0.2]), [[0, 1, 2, 3]], 1e-3).share, 9)
-    0.3
-    """
-    plain, turned = (
-        [_fit(own[order], order, has_offset=has_offset) for order in orders]
-        for has_offset in (False, True)
-    )
-    for each, other in zip(plain, turned, strict=True):
-        if each.off <= tolerance:
-            # A frame that is hardly tilted turns all by as little, which the share must not take
-            # up. Any two wheels have a turn and a share.
-            is_turned = len(own) > 2 and other.off < _EXPLAINED * each.off
-            return other if is_turned else each
-    best = min(plain + turned, key=lambda each: each.off)
-    return next((each for each in turned if each.off <= tolerance), best)
-
-
-def round_belt(places: Array, own: Array) -> list[int]:
-    """Return the order of wheels along a belt round them, up at the rear and forward on top.
-
-    The first is where the phases of neighbours break off.
-
-    Parameters
-    ----------
-    places : ndarray, shape (n, 2)
-        [m] Their axles.
-    own : ndarray, shape (n,)
-        [-] How far each starts turned, in angles between two grousers.
-    """
-    away = places - places.mean(axis=0)
-    loop = np.argsort(-np.arctan2(away[:, 1], away[:, 0]), kind="stable")
-    ahead = wrapped(np.roll(own[loop], -1) - own[loop])
-    usual = ahead[np.abs(wrapped(ahead[:, None] - ahead)).sum(axis=1).argmin()]
-    breaks = np.abs(wrapped(ahead - usual))
-    last = int(breaks.argmax())
-    if breaks[last] < 1e-6:  # it closes on itself: the first is the one that says so
-        last = int(np.abs(wrapped(own[loop] - usual)).argmin()) - 1
-    return [int(k) for k in np.roll(loop, -(last + 1))]
-
-
-def wrapped(shares: Any) -> Any:
-    """Return shares of the angle between two grousers as the nearest to none, from -0.5 to 0.5."""
-    return (np.asarray(shares) + 0.5) % 1.0 - 0.5
-
-
 def _fit(own: Array, order: list[int], *, has_offset: bool) -> Phases:
-    """Find the share, and the offset if there may be one, that comes closest."""
+    """Fit the step, and the offset if there may be one."""
     number = np.arange(1, len(own) + 1)
-    # Fine enough that the best of these is on the slope of the best of all.
-    shares = np.arange(16 * len(own)) / (16 * len(own))
-    sums = np.exp(2j * math.pi * (own - shares[:, None] * number)).sum(axis=1)
+    # Fine enough that the best of these is on the slope of the global optimum.
+    steps = np.arange(16 * len(own)) / (16 * len(own))
+    sums = np.exp(2j * math.pi * (own - steps[:, None] * number)).sum(axis=1)
     best = int((np.abs(sums) if has_offset else sums.real).argmax())
-    share, offset = float(shares[best]), 0.0
+    step, offset = float(steps[best]), 0.0
     if has_offset:
         offset = float(np.angle(sums[best])) / (2.0 * math.pi)
-    left = wrapped(own - offset - share * number)
+    left = wrap_phase(own - offset - step * number)
     if has_offset and len(own) > 1:
-        more, rest = np.polyfit(number, left, 1)
-        share, offset = share + more, offset + rest
+        slope, intercept = np.polyfit(number, left, 1)
+        step, offset = step + slope, offset + intercept
     elif not has_offset:
-        share += float(number @ left / (number @ number))
-    share %= 1.0
-    if 1.0 - share < 1e-9:  # a turn of nothing, but for rounding
-        share = 0.0
-    off = float(np.abs(wrapped(own - offset - share * number)).max())
-    return Phases(share=float(share), offset=float(offset), off=off, order=order)
-
-
-_TURNED = 1e-3
-"""[rad] By how much a wheel may start turned otherwise: files round angles to so much."""
-
-
-_ROUNDED = 0.01  # of the sizes of grousers, which files round to 0.1 mm
-
-
-_THICKNESSES = ("tip_thickness", "base_thickness")
-
-
-_PARALLEL = 1e-6
-"""[-] Grousers whose thickness changes by less than this share of the radius have parallel flanks:
-MuJoCo keeps their corners as float32."""
-
-
-def wheel_on(
-    told: Telling,
-    pairs: list[Pair],
-    view: SideView,
-    *,
-    angles: list[float],
-    path: str,
-    is_line: bool,
-) -> tuple[RoundWheel | GearWheel, list[int]]:
-    """Return the shape of all wheels of a track, and in which order they are phased.
-
-    Parameters
-    ----------
-    told : Telling
-        Takes what is to be told about their phases.
-    pairs : list of Pair
-        The wheels, from the rear to the front.
-    view : SideView
-        The side view.
-    angles : list of float
-        [rad] By how much what carries them, and the run of its track, has turned each already.
-    path : str
-        Of the wheel in a scenario.
-    is_line : bool
-        Whether they stand in a line, from the rear to the front; others may be phased in the order
-        of a belt round them.
-
-    Raises
-    ------
-    ScenarioError
-        If wheels differ in their grousers.
-    """
-    runners = [runner for pair in pairs for runner in pair.both]
-    gears = [runner.grousers for runner in runners if runner.grousers is not None]
-    order = list(range(len(pairs)))
-    if not gears:
-        return RoundWheel(), order
-    for runner in runners:
-        _refuse_unlike(runner, gears[0])
-    angle = 2.0 * math.pi / gears[0].count
-    first = [_turned(pair.left[0], view) for pair in pairs]
-    own = (np.array(first) - angles) / angle
-    orders = [order] if is_line else [order, round_belt(centers(pairs), own)]
-    found = fitted(own, orders, _TURNED / angle)
-    shares = {k: found.share * n + found.offset for n, k in enumerate(found.order, 1)}
-    off = max(
-        abs(wrapped((_turned(runner, view) - turned) / angle - shares[k]))
-        for k, (pair, turned) in enumerate(zip(pairs, angles, strict=True))
-        for runner in pair.both
-    )
-    _tell(told, found, _named(pairs), off, angle=angle, path=path)
-    tip, base = (float(np.mean([getattr(g, name) for g in gears])) for name in _THICKNESSES)
-    is_parallel = base - tip <= _PARALLEL * gears[0].radius
-    return GearWheel(
-        grouser_count=gears[0].count,
-        grouser_height=float(np.mean([grousers.height for grousers in gears])),
-        tip_thickness=tip,
-        base_thickness=None if is_parallel else base,
-        phase_fraction=found.share,
-    ), found.order
-
-
-def is_same_wheel(first: RoundWheel | GearWheel, second: RoundWheel | GearWheel) -> bool:
-    """Whether two wheels are the same but for the rounding of files."""
-    if not isinstance(first, GearWheel) or not isinstance(second, GearWheel):
-        return first == second
-    count = first.grouser_count
-    if count is None or count != second.grouser_count:
-        return False
-    off = abs(wrapped(first.phase_fraction - second.phase_fraction))
-    sizes = [
-        (gear.grouser_height, gear.tip_thickness, gear.base_thickness or gear.tip_thickness)
-        for gear in (first, second)
-    ]
-    is_alike = bool(np.allclose(np.array(sizes[0]), np.array(sizes[1]), rtol=_ROUNDED))
-    return is_alike and off <= _TURNED * count / (2.0 * math.pi)
-
-
-def _tell(
-    told: Telling, found: Phases, wheels: str, off: float, *, angle: float, path: str
-) -> None:
-    """Tell by how much wheels start turned otherwise than those of the robot that is made.
-
-    Parameters
-    ----------
-    told : Telling
-        Takes it.
-    found : Phases
-        How they start.
-    wheels : str
-        Their names.
-    off : float
-        [-] The most by which one of them, left or right, starts turned otherwise.
-    angle : float
-        [rad] Between two grousers.
-    path : str
-        Of the wheel in a scenario.
-    """
-    is_turned, is_off = (abs(each) * angle > _TURNED for each in (found.offset, off))
-    turn, degrees = (f"{math.degrees(each * angle):.3g} degrees" for each in (found.offset, off))
-    if is_turned:
-        told.notes.append(f"{wheels}: all start turned by {turn} more than they do here")
-    if is_off:
-        more = ", besides a turn that all have" if is_turned else ""
-        reason = f"comes closest: {wheels} start up to {degrees} off{more}"
-        told.doubts.append((f"{path}.phase_fraction", float(f"{found.share:.4g}"), reason))
-
-
-def _named(pairs: list[Pair]) -> str:
-    """Return the names of the first and the last wheel on the left."""
-    return " to ".join(dict.fromkeys(pair.left[0].name for pair in (pairs[0], pairs[-1])))
+        step += float(number @ left / (number @ number))
+    step %= 1.0
+    if 1.0 - step < 1e-9:  # zero, but for rounding
+        step = 0.0
+    residual = float(np.abs(wrap_phase(own - offset - step * number)).max())
+    return Phases(step=float(step), offset=float(offset), residual=residual, order=order)
 
 
 def _refuse_unlike(runner: Runner, first: Grousers) -> None:
     """Refuse a wheel whose grousers are not those of the first: a track has one kind."""
-    path = f"{runner.shape.at}: wheel[{runner.name}]"
     own = runner.grousers
     if own is None:
         rule = "must have grousers, as other wheels of its track: a track has one kind of wheel"
-        raise ScenarioError(path, "a round wheel", rule)
+        raise ScenarioError(runner.path, "a round wheel", rule)
     off = [abs(getattr(own, name) - getattr(first, name)) for name in ("height", *_THICKNESSES)]
     if own.count != first.count or max(off) > ALIKE * max(own.radius, first.radius):
         rule = f"must have the grousers of the other wheels of its track, {_words(first)}"
-        raise ScenarioError(path, _words(own), rule)
+        raise ScenarioError(runner.path, _words(own), rule)
 
 
 def _words(grousers: Grousers) -> str:
@@ -606,7 +550,7 @@ def _words(grousers: Grousers) -> str:
     return f"{grousers.count} of {high} mm, {tip} mm thick at the tip and {base} mm at the root"
 
 
-def _turned(runner: Runner, view: SideView) -> float:
+def _phase(runner: Runner, view: SideView) -> float:
     """[rad] Return the direction of a grouser in side view."""
     assert runner.grousers is not None
     x, y, _ = view.of(runner.grousers.direction)

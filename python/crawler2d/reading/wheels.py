@@ -1,4 +1,4 @@
-"""What can carry a robot: wheels on joints that turn, round or with grousers, and other parts."""
+"""Wheels, round or with grousers, drums and flippers of a model, and how to recognize a wheel."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from crawler2d.model_tree import Array, Joint, Link, Shape, Tree
+from crawler2d.model_tree import Array, Joint, Link, Shape, Tree, Where
 
 __all__ = [
     "ALIKE",
@@ -16,14 +16,33 @@ __all__ = [
     "Grousers",
     "Runner",
     "RunningGear",
-    "below",
     "corners_of",
     "farthest",
     "grousers_on",
     "is_parallel",
     "radius_about",
+    "subtrees",
     "wheel_of",
 ]
+
+PARALLEL = 0.05
+"""[rad] Axes within this angle count as parallel: files have 3.1415 for pi, and toe-in."""
+
+# A wheel sits on its axis, but for the rounding of files: a share of its radius.
+_OFF_AXIS = 0.02
+
+# The hull of a mesh counts as round if its silhouette nowhere falls short by more than this share.
+_OUT_OF_ROUND = 0.05
+_DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
+
+ALIKE = 2e-3
+"""[-] By how much grousers may differ, relative to the radius: files round to 0.1 mm."""
+
+_SHARP = 1e-5
+"""[-] Corners are one if they are nearer than this, relative to their distance from the axle: those
+on both sides of a prism, which MuJoCo keeps as float32."""
+_MOST_CORNERS = 64  # A prism has eight; its mesh may repeat each for every facet.
+_COUNT = range(3, 201)  # of grousers of a gear wheel
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -33,13 +52,13 @@ class Grousers:
     Parameters
     ----------
     count : int
-        How many.
+        Their number.
     radius : float
         [m] Of their tips about the axle.
     height, tip_thickness, base_thickness : float
         [m] As in `GearWheel`.
     direction : ndarray, shape (3,)
-        Of one of them from the axle.
+        From the axle to one of them.
     shapes : tuple of Shape
         All of them.
     """
@@ -64,17 +83,17 @@ class Runner:
     x, y, z : float
         [m] Its middle: forward, up and to the left.
     radius : float
-        [m] Its radius, to the tips of grousers if it has such.
+        [m] Its radius, to the tips of grousers if it has any.
     link : Link
-        What it is part of.
+        The link that it is part of.
     shape : Shape
-        Its own shape, the largest if there are several.
+        Its shape, the largest if there are several.
     joint : Joint, optional
         On which it turns; None for a drum, which is fixed while a plugin moves its surface.
     mass : float
-        [kg] Of what turns; 0 for a drum.
+        [kg] Of all that turns; 0 for a drum.
     inertia : float
-        [kg m^2] Of that, about its axis.
+        [kg m^2] Of the same, about its axis.
     grousers : Grousers, optional
         Those of a gear wheel.
     """
@@ -93,13 +112,23 @@ class Runner:
 
     @property
     def surfaces(self) -> tuple[Shape, ...]:
-        """Its own shape and its grousers."""
+        """Its shape and its grousers."""
         return (self.shape, *(self.grousers.shapes if self.grousers else ()))
+
+    @property
+    def path(self) -> str:
+        """Its line and name, for errors."""
+        return f"{self.shape.at}: {'drum' if self.joint is None else 'wheel'}[{self.name}]"
+
+    @property
+    def pose_at(self) -> Where:
+        """The line of its position."""
+        return self.shape.pose_at if self.joint is None else self.link.pose_at
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Arm:
-    """What turns about the pivot of a flipper.
+    """The parts that turn about the pivot of a flipper.
 
     Parameters
     ----------
@@ -108,11 +137,11 @@ class Arm:
     pivot : ndarray, shape (3,)
         [m] In the side view.
     links : tuple of Link
-        Everything that turns with it.
+        All that turn with it.
     runners : tuple of Runner
         Its wheels or drums.
     shapes : tuple of (Link, Shape)
-        What is neither wheel nor drum.
+        Its other shapes.
     """
 
     joint: Joint
@@ -131,11 +160,11 @@ class RunningGear:
     runners : list of Runner
         Wheels and drums of the chassis.
     bars : list of (Link, Shape)
-        Shapes on it whose surface is moved, and which are no drums.
+        Shapes of the chassis whose surface is moved, other than drums.
     arms : list of Arm
         The flippers.
     shapes : list of (Link, Shape)
-        What the chassis has besides, fixed to it.
+        The other shapes that are fixed to the chassis.
     moving : list of (Joint, Link, Shape)
         Shapes of other moving parts, such as a lidar or a manipulator.
     passive : set of str
@@ -149,8 +178,8 @@ class RunningGear:
     moving: list[tuple[Joint, Link, Shape]] = field(default_factory=list)
     passive: set[str] = field(default_factory=set)
 
-    def without_castors(self, middle: float, tolerance: float) -> list[Runner]:
-        """Take out the wheels in the middle that nothing drives, which become skids."""
+    def remove_castors(self, middle: float, tolerance: float) -> list[Runner]:
+        """Turn the undriven wheels in the middle into skids of the chassis, and return them."""
         castors = [
             wheel
             for wheel in self.runners
@@ -170,7 +199,7 @@ def corners_of(shape: Shape) -> Array:
 
 
 def farthest(shape: Shape, point: Array) -> float:
-    """[m] Return how far a shape reaches from a point, or a little more."""
+    """[m] Return the distance from a point to the farthest point of a shape, or a bit more."""
     if shape.kind in ("box", "hull"):
         return float(np.linalg.norm(corners_of(shape) - point, axis=1).max())
     own = math.hypot(shape.radius, 0.5 * shape.length)
@@ -178,24 +207,13 @@ def farthest(shape: Shape, point: Array) -> float:
     return float(np.linalg.norm(shape.pose.place - point)) + own
 
 
-PARALLEL = 0.05
-"""[rad] Axes within this angle count as parallel: files have 3.1415 for pi, and toe-in."""
-
-# A wheel sits on its axis, but for the rounding of files: a share of its radius.
-_OFF_AXIS = 0.02
-# The hull of a mesh counts as round if its silhouette nowhere falls short by more than this share.
-_OUT_OF_ROUND = 0.05
-_DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
-
-
-def below(tree: Tree) -> dict[str, list[str]]:
-    """Return the links that hang on each link, itself first."""
-    found: dict[str, list[str]] = {link.name: [link.name] for link in tree.links}
+def subtrees(tree: Tree) -> dict[str, list[str]]:
+    """Return for each link the links of its subtree, itself first."""
+    names: dict[str, list[str]] = {link.name: [link.name] for link in tree.links}
     for link in reversed(tree.links):  # children before their parents
-        joint = tree.joints.get(link.name)
-        if joint is not None:
-            found[joint.parent].extend(found[link.name])
-    return found
+        if (joint := tree.joints.get(link.name)) is not None:
+            names[joint.parent].extend(names[link.name])
+    return names
 
 
 def is_parallel(first: Array, second: Array) -> bool:
@@ -206,10 +224,11 @@ def is_parallel(first: Array, second: Array) -> bool:
 def radius_about(shape: Shape, point: Array, axis: Array) -> float | None:
     """[m] Return the radius of a shape that is round about an axis; None if it is not."""
     if shape.kind == "hull":
-        return _radius_of_hull(shape, point, axis)
-    if shape.kind not in ("cylinder", "capsule", "sphere"):
-        return None
-    if shape.kind != "sphere" and not is_parallel(shape.axis, axis):
+        flat = (shape.points - point) @ plane_across(axis)
+        reach = (flat @ np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])).max(axis=0)
+        largest = float(reach.max())
+        return largest if reach.min() >= (1.0 - _OUT_OF_ROUND) * largest > 0.0 else None
+    if not shape.is_round or (shape.kind != "sphere" and not is_parallel(shape.axis, axis)):
         return None
     offset = float(np.linalg.norm(np.cross(shape.pose.place - point, axis)))
     return shape.radius if offset <= _OFF_AXIS * shape.radius else None
@@ -223,41 +242,18 @@ def plane_across(axis: Array) -> Array:
     return np.stack([first, np.cross(axis, first)], axis=1)
 
 
-def _radius_of_hull(shape: Shape, point: Array, axis: Array) -> float | None:
-    flat = (shape.points - point) @ plane_across(axis)
-    reach = (flat @ np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])).max(axis=0)
-    largest = float(reach.max())
-    return largest if reach.min() >= (1.0 - _OUT_OF_ROUND) * largest > 0.0 else None
-
-
-ALIKE = 2e-3
-"""[-] By how much grousers may differ, as a share of the radius: files round to 0.1 mm."""
-
-_SHARP = 1e-5
-"""[-] Corners nearer than this share of the distance from the axle are one: those of a prism on its
-two sides, which MuJoCo keeps as float32."""
-
-_MOST_CORNERS = 64  # A prism has eight; the mesh of one may name each for every facet.
-_COUNT = range(3, 201)  # grousers that a gear wheel can have
-
-
 def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
-    """Return the grousers of a wheel; None if its shapes are none such.
+    """Return the grousers of a wheel, their sizes as means of all; None if it has none.
 
-    Each is a box or a prism across whose section has a straight tip and two flanks, alike on both
-    sides of the line from the axle through its middle, and which reaches down into the wheel.
+    Each is a lateral box or prism that reaches down into the wheel. Its section has a straight tip
+    and two flanks, symmetric about the line from the axle through its middle.
 
     Parameters
     ----------
     shapes : list of Shape
-        What turns.
+        All that turn.
     joint : Joint
-        On which it turns.
-
-    Returns
-    -------
-    Grousers or None
-        Their figures, each a mean of all.
+        On which they turn.
     """
     radii = [radius_about(shape, joint.place, joint.axis) for shape in shapes]
     root = max((radius for radius in radii if radius is not None), default=0.0)
@@ -265,11 +261,10 @@ def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
     if root <= 0.0 or len(others) not in _COUNT:
         return None
     plane = plane_across(joint.axis)
-    found = [_grouser(shape, joint, plane, root) for shape in others]
-    rows = np.array([row for row in found if row is not None])
+    rows = [row for shape in others if (row := _grouser(shape, joint, plane, root)) is not None]
     if len(rows) < len(others):
         return None
-    tip, base, radius, angles = rows.T
+    tip, base, radius, angles = np.array(rows).T
     tolerance = ALIKE * float(radius.max())
     slots, off = _spaced(angles)
     if max(np.ptp(each) for each in (tip, base, radius, radius * off)) > tolerance:
@@ -288,15 +283,20 @@ def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
     )
 
 
-def _spaced(angles: Array) -> tuple[list[int], Array]:
-    """Return which of evenly spaced places is nearest to each angle, and how far off that is [rad].
+def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tuple[Link, Shape]]:
+    """Return the shapes of the wheel on a joint; none if it carries no wheel.
 
-    The first place is the first angle.
+    A wheel turns without limit. All that turns with it is round about its axis, or one of equal
+    grousers evenly round it.
     """
-    count, step = len(angles), 2.0 * math.pi / len(angles)
-    away = (angles - angles[0]) / step
-    slots = np.round(away)
-    return [int(slot) % count for slot in slots], (away - slots) * step
+    names = hanging[joint.child]
+    if not joint.is_unlimited or any(not tree.joints[n].is_locked for n in names[1:]):
+        return []
+    links = tree.by_name
+    pairs = [(links[name], shape) for name in names for shape in links[name].shapes]
+    shapes = [shape for _, shape in pairs]
+    is_round = all(radius_about(shape, joint.place, joint.axis) is not None for shape in shapes)
+    return pairs if is_round or grousers_on(shapes, joint) is not None else []
 
 
 def _grouser(
@@ -307,7 +307,10 @@ def _grouser(
     if corners is None:
         return None
     tolerance = ALIKE * root
-    (third, fourth, *tip), distances = _by_distance(corners)
+    distances = np.hypot(*corners.T)
+    order = np.argsort(distances, kind="stable")
+    distances = distances[order]
+    third, fourth, *tip = corners[order]
     out = tip[0] + tip[1]
     length = math.hypot(*out)
     if distances[2] <= root + tolerance or length <= tolerance:
@@ -327,24 +330,8 @@ def _grouser(
     return 2.0 * float(half_tip[1]), 2.0 * base, float(distances[2:].mean()), angle
 
 
-def _by_distance(corners: Array) -> tuple[Array, Array]:
-    """Return corners and their distances [m] from the axle, the nearest first."""
-    distances = np.hypot(*corners.T)
-    order = np.argsort(distances, kind="stable")
-    return corners[order], distances[order]
-
-
-def _at_root(tip: Array, base: Array, root: float) -> float:
-    """[m] Return how far to the side a flank from tip to base meets the root circle."""
-    along = base - tip
-    square, half, beyond = along @ along, tip @ along, tip @ tip - root**2
-    under = half**2 - square * beyond
-    share = 1.0 if under < 0.0 else min(1.0, (-half - math.sqrt(under)) / square)
-    return float(tip[1] + share * along[1])
-
-
 def _section(shape: Shape, joint: Joint, plane: Array) -> Array | None:
-    """[m] Return the corners of a shape about the axle, shape (4, 2); None if it has others."""
+    """[m] Return the four corners of a section about the axle, shape (4, 2); None if not four."""
     if shape.kind == "box":
         along = np.abs(shape.pose.turn.T @ joint.axis)
         across = int(along.argmax())
@@ -358,26 +345,30 @@ def _section(shape: Shape, joint: Joint, plane: Array) -> Array | None:
         return None
     flat = (shape.points - joint.place) @ plane
     near = _SHARP * float(np.abs(flat).max(initial=0.0))
-    found: list[Array] = []
+    distinct: list[Array] = []
     for point in flat:
-        if all(math.hypot(*(point - other)) > near for other in found):
-            found.append(point)
-        if len(found) > 4:
+        if all(math.hypot(*(point - other)) > near for other in distinct):
+            distinct.append(point)
+        if len(distinct) > 4:
             return None
-    return np.array(found) if len(found) == 4 else None
+    return np.array(distinct) if len(distinct) == 4 else None
 
 
-def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tuple[Link, Shape]]:
-    """Return the shapes of the wheel that turns on a joint; none if what turns on it is no wheel.
+def _at_root(tip: Array, base: Array, root: float) -> float:
+    """[m] Return the lateral offset at which a flank from tip to base meets the root circle."""
+    along = base - tip
+    square, half, beyond = along @ along, tip @ along, tip @ tip - root**2
+    under = half**2 - square * beyond
+    fraction = 1.0 if under < 0.0 else min(1.0, (-half - math.sqrt(under)) / square)
+    return float(tip[1] + fraction * along[1])
 
-    A wheel turns without limit, and everything that turns with it is round about its axis, or a
-    grouser of equal ones evenly round it.
+
+def _spaced(angles: Array) -> tuple[list[int], Array]:
+    """Return which of evenly spaced places is nearest to each angle, and how far off that is [rad].
+
+    The first place is the first angle.
     """
-    names = hanging[joint.child]
-    if not joint.is_unlimited or any(not tree.joints[n].is_locked for n in names[1:]):
-        return []
-    links = tree.by_name
-    found = [(links[n], shape) for n in names for shape in links[n].shapes]
-    shapes = [shape for _, shape in found]
-    is_round = all(radius_about(s, joint.place, joint.axis) is not None for s in shapes)
-    return found if is_round or grousers_on(shapes, joint) is not None else []
+    count, step = len(angles), 2.0 * math.pi / len(angles)
+    away = (angles - angles[0]) / step
+    slots = np.round(away)
+    return [int(slot) % count for slot in slots], (away - slots) * step

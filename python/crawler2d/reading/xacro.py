@@ -19,95 +19,29 @@ from typing import Any, NoReturn
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.child import answered, serve
+from crawler2d.reading.child import ask_child, serve
 from crawler2d.reading.elements import Element
-from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_copy
+from crawler2d.reading.expressions import NAMES, NotAllowed, copy_data, evaluate
 from crawler2d.reading.files import Files
 from crawler2d.reading.log import Doubt
 from crawler2d.reading.xacro_tree import XacroFiles, XacroMacros
 
-__all__ = ["expanded"]
-
-
-def expanded(
-    files: Files,
-    data: bytes,
-    root: Element,
-    *,
-    trusted: bool,
-    arguments: Mapping[str, str],
-    leave_out: bool,
-) -> tuple[bytes, list[Doubt]]:
-    """Expand a file.
-
-    Parameters
-    ----------
-    files : Files
-        Those of the model.
-    data : bytes
-        What it holds.
-    root : Element
-        Of the file, for errors.
-    trusted : bool
-        Whether its user trusts it: Python evaluates its expressions, whatever they are.
-    arguments : mapping of str to str
-        Values of its ``xacro:arg``.
-    leave_out : bool
-        Whether it does without what is not there: includes and calls of their macros are left out,
-        arguments without a value are looked for in settings.
-
-    Returns
-    -------
-    text : bytes
-        The URDF.
-    doubts : list of Doubt
-        What was left out, and what was taken for something that is not there.
-
-    Raises
-    ------
-    ScenarioError
-        If it does not expand, needs what is not there, or is not trusted and has expressions of
-        more than plain data and known functions.
-    ImportError
-        If xacrodoc is missing; the message names the extra to install.
-    """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        root.refuse("another encoding", "must be UTF-8, which xacro reads")
-    question = {
-        "text": text,
-        "file": root.where.file,
-        "files": files.plain,
-        "trusted": trusted,
-        "arguments": {name: str(value) for name, value in arguments.items()},
-        "leave_out": leave_out,
-    }
-    answer = answered(
-        "crawler2d.reading.xacro", question, file=root.where.file, folder=files.folder
-    )
-    return answer["text"].encode(), [(path, value, why) for path, value, why in answer["doubts"]]
-
+__all__ = ["expand_xacro"]
 
 _MOST_FILES = 100
-
-
 _LARGEST = 64_000  # [bytes]
-
-
 _MOST_BYTES = 1_000_000
-
-
 _LINE = re.compile(r"([A-Za-z_]\w*) ?: +(\S.*)")
-
-
 _QUOTED = re.compile(r"""(["'])([^"'\\]*)\1\s*(?:\s#.*)?""")
-
-
 _NO_SCALAR = "[]{}&*!|>%@`\"'#,?:"  # lists, blocks, anchors, comments and the like begin so
-
-
 _NOTHING = ("null", "Null", "NULL", "~")
+
+# What xacro says was unknown to it, or could not be evaluated.
+_CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
+
+_EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
+_MOST_PASSES = 5
+_MOST_DOUBTS = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +69,7 @@ class Setting:
 
 
 class Arguments(dict[str, str]):
-    """Values of arguments by name; what has none is noted, and is 0 for the time being.
+    """Values of arguments by name; what has none is add_doubts, and is 0 for the time being.
 
     Parameters
     ----------
@@ -227,6 +161,64 @@ class Settings:
         return tables
 
 
+def expand_xacro(
+    files: Files,
+    data: bytes,
+    root: Element,
+    *,
+    trusted: bool,
+    arguments: Mapping[str, str],
+    leave_out: bool,
+) -> tuple[bytes, list[Doubt]]:
+    """Expand a file.
+
+    Parameters
+    ----------
+    files : Files
+        Those of the model.
+    data : bytes
+        What it holds.
+    root : Element
+        Of the file, for errors.
+    trusted : bool
+        Whether its user trusts it: Python evaluates its expressions, whatever they are.
+    arguments : mapping of str to str
+        Values of its ``xacro:arg``.
+    leave_out : bool
+        Whether it does without what is not there: includes and calls of their macros are left out,
+        arguments without a value are looked for in settings.
+
+    Returns
+    -------
+    text : bytes
+        The URDF.
+    doubts : list of Doubt
+        What was left out, and what was taken for something that is not there.
+
+    Raises
+    ------
+    ScenarioError
+        If it does not expand, needs what is not there, or is not trusted and has expressions of
+        more than plain data and known functions.
+    ImportError
+        If xacrodoc is missing; the message names the extra to install.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        root.refuse("another encoding", "must be UTF-8, which xacro reads")
+    question = {
+        "text": text,
+        "file": root.where.file,
+        "files": files.parameters,
+        "trusted": trusted,
+        "arguments": {name: str(value) for name, value in arguments.items()},
+        "leave_out": leave_out,
+    }
+    answer = ask_child("crawler2d.reading.xacro", question, file=root.where.file, files=files)
+    return answer["text"].encode(), [(path, value, why) for path, value, why in answer["doubts"]]
+
+
 def doubts_of(
     settings: Mapping[str, Setting], defaults: Mapping[str, str], lacking: Iterable[str]
 ) -> list[Doubt]:
@@ -255,6 +247,14 @@ def doubts_of(
     reason = "is taken as a whole, also in place of defaults"
     doubts += [(file, ", ".join(values), reason) for file, values in others.items()]
     return doubts
+
+
+def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Import xacrodoc, which brings xacro along and needs no ROS."""
+    module = extra("xacrodoc", "models")
+    xacro, substitution = extra("xacro", "models"), extra("xacro.substitution_args", "models")
+    own = SimpleNamespace(**vars(xacro), resolve_args=substitution.resolve_args)
+    return lambda question: _expanded(module, xacro, substitution, own, **question)
 
 
 def _table(path: str, text: str) -> dict[str, Setting]:
@@ -286,27 +286,6 @@ def _meant(value: str) -> float | str:
         return float({"true": "1", "false": "0"}.get(value.lower(), value))
     except ValueError:
         return value
-
-
-# What xacro says was unknown to it, or could not be evaluated.
-_CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
-
-
-_EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
-
-
-_MOST_PASSES = 5
-
-
-_MOST_DOUBTS = 100
-
-
-def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
-    """Import xacrodoc, which brings xacro along and needs no ROS."""
-    module = extra("xacrodoc", "models")
-    xacro, substitution = extra("xacro", "models"), extra("xacro.substitution_args", "models")
-    own = SimpleNamespace(**vars(xacro), resolve_args=substitution.resolve_args)
-    return lambda question: _expanded(module, xacro, substitution, own, **question)
 
 
 def _expanded(
@@ -362,14 +341,53 @@ def _expanded(
     return {"text": urdf, "doubts": _told([*door.doubts, *shared.doubts, *taken])}
 
 
-def _told(doubts: list[Doubt]) -> list[Doubt]:
-    """Return each doubt once, and not too many."""
-    told = list(dict.fromkeys(doubts))
-    if len(told) > _MOST_DOUBTS:
-        path, value, _ = told[_MOST_DOUBTS - 1]
-        reason = f"is one of {len(told) - _MOST_DOUBTS + 1} more places of this kind"
-        told[_MOST_DOUBTS - 1 :] = [(path, value, reason)]
-    return told
+def _check(xacro: Any, substitution: Any) -> None:
+    """Put a checked evaluation in the place of both that xacro has; keep it from looking round."""
+    load, context = xacro.load_yaml, xacro.substitution_args_context
+    own: dict[str, Callable[..., Any]] = {
+        "load_yaml": lambda name: copy_data(load(name)),
+        "dotify": dict,
+        "abs_filename": xacro.abs_filename_spec,
+    }
+    others: dict[str, Callable[..., Any]] = {
+        "arg": lambda name: context["arg"][name],
+        "fatal": _fatal,
+        "tokenize": _tokens,
+        **dict.fromkeys(("message", "warning", "error", "print_location"), lambda *_: ""),
+    }
+    names = {**NAMES, **own, "xacro": MappingProxyType({**own, **others})}
+
+    def in_eval(text: str, context: Mapping[str, Any]) -> str:
+        arguments = context.get("arg", {}).items()
+        values = {name: substitution.convert_value(str(value), "auto") for name, value in arguments}
+        return str(evaluate(text, ChainMap({"true": True, "false": False, **values}, names)))
+
+    def default(name: str, default: str = "") -> str:
+        return default if name not in os.environ else _refuse_environment(name)
+
+    xacro._global_symbols = names
+    xacro.safe_eval = lambda text, symbols, _=None: evaluate(text, symbols)
+    xacro.glob = SimpleNamespace(glob=_refuse_pattern)
+    substitution._eval = in_eval
+    substitution._eval_env = _refuse_environment
+    substitution._eval_optenv = default
+
+
+def _fatal(*words: Any) -> NoReturn:
+    raise ValueError(" ".join(map(str, words)))
+
+
+def _tokens(text: str, separators: str = ",; ", skip_empty: bool = True) -> list[str]:
+    pieces = re.split(f"[{re.escape(separators)}]", text)
+    return [piece for piece in pieces if piece or not skip_empty]
+
+
+def _refuse_environment(name: str) -> NoReturn:
+    raise NotAllowed(name, "must ask for no environment variable")
+
+
+def _refuse_pattern(pattern: str) -> NoReturn:
+    raise NotAllowed(pattern, "must include files by their names")
 
 
 def _refuse_arguments(
@@ -404,55 +422,6 @@ def _refuse(error: Exception, door: XacroFiles, xacro: Any) -> NoReturn:
     raise ScenarioError(door.place(culprits), said, rule) from None
 
 
-def _check(xacro: Any, substitution: Any) -> None:
-    """Put a checked evaluation in the place of both that xacro has; keep it from looking round."""
-    load, context = xacro.load_yaml, xacro.substitution_args_context
-    own: dict[str, Callable[..., Any]] = {
-        "load_yaml": lambda name: plain_copy(load(name)),
-        "dotify": dict,
-        "abs_filename": xacro.abs_filename_spec,
-    }
-    others: dict[str, Callable[..., Any]] = {
-        "arg": lambda name: context["arg"][name],
-        "fatal": _fatal,
-        "tokenize": _tokens,
-        **dict.fromkeys(("message", "warning", "error", "print_location"), lambda *_: ""),
-    }
-    names = {**NAMES, **own, "xacro": MappingProxyType({**own, **others})}
-
-    def in_eval(text: str, context: Mapping[str, Any]) -> str:
-        arguments = context.get("arg", {}).items()
-        values = {name: substitution.convert_value(str(value), "auto") for name, value in arguments}
-        return str(evaluated(text, ChainMap({"true": True, "false": False, **values}, names)))
-
-    def default(name: str, default: str = "") -> str:
-        return default if name not in os.environ else _refuse_environment(name)
-
-    xacro._global_symbols = names
-    xacro.safe_eval = lambda text, symbols, _=None: evaluated(text, symbols)
-    xacro.glob = SimpleNamespace(glob=_refuse_pattern)
-    substitution._eval = in_eval
-    substitution._eval_env = _refuse_environment
-    substitution._eval_optenv = default
-
-
-def _refuse_environment(name: str) -> NoReturn:
-    raise NotAllowed(name, "must ask for no environment variable")
-
-
-def _refuse_pattern(pattern: str) -> NoReturn:
-    raise NotAllowed(pattern, "must include files by their names")
-
-
-def _fatal(*words: Any) -> NoReturn:
-    raise ValueError(" ".join(map(str, words)))
-
-
-def _tokens(text: str, separators: str = ",; ", skip_empty: bool = True) -> list[str]:
-    pieces = re.split(f"[{re.escape(separators)}]", text)
-    return [piece for piece in pieces if piece or not skip_empty]
-
-
 def _refusal(error: BaseException | None) -> tuple[ScenarioError | NotAllowed | None, str]:
     """Return the refusal among an error and those that it came of, and in which expression.
 
@@ -473,6 +442,16 @@ def _file_of(xacro: Any) -> str:
     macros, files = xacro.macrostack or [], xacro.filestack or []
     files = macros[-1].history[-1] if macros else files
     return os.path.abspath(files[-1]) if files and files[-1] else ""
+
+
+def _told(doubts: list[Doubt]) -> list[Doubt]:
+    """Return each doubt once, and not too many."""
+    doubts = list(dict.fromkeys(doubts))
+    if len(doubts) > _MOST_DOUBTS:
+        path, value, _ = doubts[_MOST_DOUBTS - 1]
+        reason = f"is one of {len(doubts) - _MOST_DOUBTS + 1} more places of this kind"
+        doubts[_MOST_DOUBTS - 1 :] = [(path, value, reason)]
+    return doubts
 
 
 if __name__ == "__main__":

@@ -35,6 +35,17 @@ __all__ = [
 _TRACK = 0.25
 _FLIPPER = 0.5
 
+# A body with less than this share of the mass or the moment of inertia would make a simulation
+# of the whole stiff, if it is possible at all.
+_LEAST = 0.01
+
+_REASONS = {
+    "belt": "{} has no surface that moves",
+    "grouser_belt": "{} has no grousers that travel along a belt",
+    "segmental": "a chain is a loop of links, and {} has trees",
+    "force": "{} has no motor that pushes the chassis",
+}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Across:
@@ -59,31 +70,6 @@ class Across:
         return 0.5 * (self.gauge + self.track_width + self.flipper_width)
 
 
-def across_of(gauge: float, track_width: float | None, chassis_width: float | None) -> Across:
-    """Return the widths that are given, and estimates for the others.
-
-    Raises
-    ------
-    ScenarioError
-        If a width is not a number above 0, or the tracks would meet in the middle.
-    """
-    track = _TRACK * gauge if track_width is None else real_number(track_width, "track_width")
-    if not 0.0 < track < gauge:
-        rule = f"must be above 0 and less than robot.gauge = {gauge:g} m"
-        raise ScenarioError("track_width", track, rule)
-    chassis = gauge - track
-    if chassis_width is not None:
-        chassis = real_number(chassis_width, "chassis_width")
-    if not 0.0 < chassis <= 100.0:
-        raise ScenarioError("chassis_width", chassis, "must be above 0 and at most 100 m")
-    return Across(
-        gauge=gauge,
-        track_width=track,
-        chassis_width=chassis,
-        flipper_width=_FLIPPER * track,
-    )
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Part:
     """A body in the chassis frame of the side view.
@@ -101,57 +87,6 @@ class Part:
     mass: float
     center: Array
     inertia: float
-
-
-def rest(whole: Part, parts: Iterable[Part]) -> Part | None:
-    """Return what is left of a whole without its parts; None if no body can be that.
-
-    Examples
-    --------
-    >>> rod = Part(mass=3.0, center=np.zeros(2), inertia=0.5)
-    >>> tip = Part(mass=1.0, center=np.array([0.5, 0.0]), inertia=0.0)
-    >>> left = rest(rod, [tip])
-    >>> left.mass, left.center.tolist(), round(left.inertia, 3)
-    (2.0, [-0.25, 0.0], 0.125)
-    """
-    parts = list(parts)
-    mass = whole.mass - sum(part.mass for part in parts)
-    if not mass >= _LEAST * whole.mass:
-        return None
-    moment: Array = whole.mass * whole.center - sum(
-        (part.mass * part.center for part in parts), np.zeros(2)
-    )
-    center = moment / mass
-    inertia = whole.inertia - mass * _squared(center - whole.center)
-    for part in parts:
-        inertia -= part.inertia + part.mass * _squared(part.center - whole.center)
-    if not inertia >= _LEAST * whole.inertia:
-        return None
-    return Part(mass=mass, center=center, inertia=inertia)
-
-
-def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
-    """[kg m^2] Widen a moment of inertia to three axes: x along it, y across, z up.
-
-    The moment about y is that of the part. The others are estimates: the squares of x and of z
-    share it as in a uniform box of this length and height, and the mass is spread evenly over the
-    width. So a body with these three moments exists, whatever the sizes.
-    """
-    along = part.inertia * length**2 / (length**2 + height**2)
-    across = part.mass * width**2 / 12.0
-    moments: Array = np.diag(
-        [part.inertia - along + across, part.inertia, along + across],
-    )
-    return moments
-
-
-# A body with less than this share of the mass or the moment of inertia would make a simulation
-# of the whole stiff, if it is possible at all.
-_LEAST = 0.01
-
-
-def _squared(vector: Array) -> float:
-    return float(vector @ vector)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -215,6 +150,98 @@ class Carrier:
     loop: Part | None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """What a format can hold.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    moves_surfaces : bool
+        Whether it can move the surface of a shape, as a belt needs.
+    has_hulls : bool
+        Whether it can hold the corners of a convex hull.
+    has_rotors : bool
+        Whether it can hold the rotor inertia of a motor at its joint, and the gain of a servo.
+    reserved : str
+        A pattern of names that it keeps for itself.
+    """
+
+    name: str
+    moves_surfaces: bool
+    has_hulls: bool
+    has_rotors: bool
+    reserved: str = ""
+
+
+def across_of(gauge: float, track_width: float | None, chassis_width: float | None) -> Across:
+    """Return the widths that are given, and estimates for the others.
+
+    Raises
+    ------
+    ScenarioError
+        If a width is not a number above 0, or the tracks would meet in the middle.
+    """
+    track = _TRACK * gauge if track_width is None else real_number(track_width, "track_width")
+    if not 0.0 < track < gauge:
+        rule = f"must be above 0 and less than robot.gauge = {gauge:g} m"
+        raise ScenarioError("track_width", track, rule)
+    chassis = gauge - track
+    if chassis_width is not None:
+        chassis = real_number(chassis_width, "chassis_width")
+    if not 0.0 < chassis <= 100.0:
+        raise ScenarioError("chassis_width", chassis, "must be above 0 and at most 100 m")
+    return Across(
+        gauge=gauge,
+        track_width=track,
+        chassis_width=chassis,
+        flipper_width=_FLIPPER * track,
+    )
+
+
+def rest(whole: Part, parts: Iterable[Part]) -> Part | None:
+    """Return what is left of a whole without its parts; None if no body can be that.
+
+    Examples
+    --------
+    >>> rod = Part(mass=3.0, center=np.zeros(2), inertia=0.5)
+    >>> tip = Part(mass=1.0, center=np.array([0.5, 0.0]), inertia=0.0)
+    >>> left = rest(rod, [tip])
+    >>> left.mass, left.center.tolist(), round(left.inertia, 3)
+    (2.0, [-0.25, 0.0], 0.125)
+    """
+    parts = list(parts)
+    mass = whole.mass - sum(part.mass for part in parts)
+    if not mass >= _LEAST * whole.mass:
+        return None
+    moment: Array = whole.mass * whole.center - sum(
+        (part.mass * part.center for part in parts), np.zeros(2)
+    )
+    center = moment / mass
+    inertia = whole.inertia - mass * _squared(center - whole.center)
+    for part in parts:
+        inertia -= part.inertia + part.mass * _squared(part.center - whole.center)
+    if not inertia >= _LEAST * whole.inertia:
+        return None
+    return Part(mass=mass, center=center, inertia=inertia)
+
+
+def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
+    """[kg m^2] Widen a moment of inertia to three axes: x along it, y across, z up.
+
+    The moment about y is that of the part. The others are estimates: the squares of x and of z
+    share it as in a uniform box of this length and height, and the mass is spread evenly over the
+    width. So a body with these three moments exists, whatever the sizes.
+    """
+    along = part.inertia * length**2 / (length**2 + height**2)
+    across = part.mass * width**2 / 12.0
+    moments: Array = np.diag(
+        [part.inertia - along + across, part.inertia, along + across],
+    )
+    return moments
+
+
 def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
     """List what carries something, the chassis first.
 
@@ -271,82 +298,12 @@ def left_of(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Pa
     return None, True
 
 
-def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
-    """Return a wheel with its exact outline, if it is a gear wheel."""
-    body = int(np.flatnonzero(scene.bodies["body"] == row["body"])[0])
-    outline = None
-    # The core gives the radius of what is a disc.
-    if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
-        # A flipper that is raised has turned the wheels on it, the farther ones more.
-        turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
-        outline = placed(scene.bodies["outline"][body], turned)
-    return Wheel(
-        center=np.array([row["x"], row["y"]]),
-        radius=float(row["radius"]),
-        mass=float(row["mass"]),
-        inertia=float(row["moment_of_inertia"]),
-        outline=outline,
-    )
-
-
-def _loop(polygon: Array) -> Part:
-    """Return a belt along a polygon with 1 kg spread evenly over its length."""
-    start, end = polygon, np.roll(polygon, -1, axis=0)
-    lengths = np.hypot(*(end - start).T)
-    shares, middles = lengths / lengths.sum(), 0.5 * (start + end)
-    center = shares @ middles
-    inertia = shares @ (lengths**2 / 12.0 + ((middles - center) ** 2).sum(axis=1))
-    return Part(mass=1.0, center=center, inertia=float(inertia))
-
-
-def _surface(kinds: set[BodyKind], track: str) -> str:
-    """Tell what meets the ground, from the bodies of a carrier and the kind of its track."""
-    if BodyKind.SHOE in kinds:
-        return "segmental"
-    if BodyKind.BELT in kinds:
-        return "grouser_belt" if BodyKind.GROUSER in kinds else "belt"
-    return "force" if track == "force" else "wheels"
-
-
 def track_of(robot: dict[str, Any], end: str) -> tuple[str, dict[str, Any]]:
     """Return path and model of the track of the chassis, or of the flippers at an end."""
     flippers = robot["flippers"]
     if end and flippers["track"] is not None:
         return "robot.flippers.track", flippers["track"]
     return "robot.track", robot["track"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Format:
-    """What a format can hold.
-
-    Parameters
-    ----------
-    name : str
-        Its name.
-    moves_surfaces : bool
-        Whether it can move the surface of a shape, as a belt needs.
-    has_hulls : bool
-        Whether it can hold the corners of a convex hull.
-    has_rotors : bool
-        Whether it can hold the rotor inertia of a motor at its joint, and the gain of a servo.
-    reserved : str
-        A pattern of names that it keeps for itself.
-    """
-
-    name: str
-    moves_surfaces: bool
-    has_hulls: bool
-    has_rotors: bool
-    reserved: str = ""
-
-
-_REASONS = {
-    "belt": "{} has no surface that moves",
-    "grouser_belt": "{} has no grousers that travel along a belt",
-    "segmental": "a chain is a loop of links, and {} has trees",
-    "force": "{} has no motor that pushes the chassis",
-}
 
 
 def refuse_unheld(robot: dict[str, Any], carriers: Iterable[Carrier], form: Format) -> None:
@@ -394,3 +351,44 @@ def refuse_tapering(robot: dict[str, Any], end: str, form: Format) -> NoReturn:
     rule = f"must be as thick as the tip: {form.name} has boxes for grousers, and no hulls"
     thickness = track["wheel"]["base_thickness"]
     raise ScenarioError(f"{path}.wheel.base_thickness", thickness, rule)
+
+
+def _squared(vector: Array) -> float:
+    return float(vector @ vector)
+
+
+def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
+    """Return a wheel with its exact outline, if it is a gear wheel."""
+    body = int(np.flatnonzero(scene.bodies["body"] == row["body"])[0])
+    outline = None
+    # The core gives the radius of what is a disc.
+    if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
+        # A flipper that is raised has turned the wheels on it, the farther ones more.
+        turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
+        outline = placed(scene.bodies["outline"][body], turned)
+    return Wheel(
+        center=np.array([row["x"], row["y"]]),
+        radius=float(row["radius"]),
+        mass=float(row["mass"]),
+        inertia=float(row["moment_of_inertia"]),
+        outline=outline,
+    )
+
+
+def _surface(kinds: set[BodyKind], track: str) -> str:
+    """Tell what meets the ground, from the bodies of a carrier and the kind of its track."""
+    if BodyKind.SHOE in kinds:
+        return "segmental"
+    if BodyKind.BELT in kinds:
+        return "grouser_belt" if BodyKind.GROUSER in kinds else "belt"
+    return "force" if track == "force" else "wheels"
+
+
+def _loop(polygon: Array) -> Part:
+    """Return a belt along a polygon with 1 kg spread evenly over its length."""
+    start, end = polygon, np.roll(polygon, -1, axis=0)
+    lengths = np.hypot(*(end - start).T)
+    shares, middles = lengths / lengths.sum(), 0.5 * (start + end)
+    center = shares @ middles
+    inertia = shares @ (lengths**2 / 12.0 + ((middles - center) ** 2).sum(axis=1))
+    return Part(mass=1.0, center=center, inertia=float(inertia))

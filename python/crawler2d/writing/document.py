@@ -83,82 +83,6 @@ class Span:
         return node
 
 
-def links_in(scope: Span, names: Collection[str]) -> list[Span]:
-    """Find the links of some names, of URDF and SDF."""
-    return [each for each in scope.within() if each.tag == "link" and each.name in names]
-
-
-def joint_in(scope: Span, name: str) -> Span:
-    """Find a joint of URDF and SDF; a transmission has one without links, which is none."""
-    every = (each for each in scope.within() if each.tag == "joint" and each.only("child"))
-    return next(each for each in every if each.name == name)
-
-
-def spans_of(data: bytes) -> Span:
-    """Find the elements of a text that the reader has parsed before.
-
-    Parameters
-    ----------
-    data : bytes
-        In UTF-8.
-
-    Returns
-    -------
-    Span
-        The root.
-
-    Examples
-    --------
-    >>> root = spans_of(b"<link name='hull'> <mass value='8'/></link>")
-    >>> mass = root.children[0]
-    >>> mass.start, mass.end, mass.values
-    (19, 36, {'value': (32, 33)})
-    """
-    parser = expat.ParserCreate("utf-8")
-    stack: list[Span] = []
-    roots: list[Span] = []
-
-    def start(tag: str, attributes: dict[str, str]) -> None:
-        at = parser.CurrentByteIndex
-        opening = _OPENING.match(data, at)
-        assert opening is not None  # expat has seen the whole tag
-        parent = stack[-1] if stack else None
-        span = Span(tag=tag, attributes=attributes, parent=parent, start=at, inner=opening.end())
-        for found in _ATTRIBUTE.finditer(data, at + 1 + len(tag.encode()), opening.end()):
-            span.values[found[1].decode()] = (found.start(2) + 1, found.end(2) - 1)
-        if opening[0].endswith(b"/>"):
-            span.outer = span.end = span.inner
-        (parent.children if parent else roots).append(span)
-        stack.append(span)
-
-    def end(_: str) -> None:
-        span = stack.pop()
-        span.text = span.text.strip()
-        if not span.end:
-            span.outer = parser.CurrentByteIndex
-            span.end = data.index(b">", span.outer) + 1
-
-    def characters(text: str) -> None:
-        stack[-1].text += text
-
-    parser.StartElementHandler = start
-    parser.EndElementHandler = end
-    parser.CharacterDataHandler = characters
-    parser.Parse(data, True)
-    return roots[0]
-
-
-def written(values: Iterable[float]) -> str:
-    """Write lengths with as many digits as model files have.
-
-    Examples
-    --------
-    >>> written((0.1 + 0.2, -1e-13, 12.5))
-    '0.3 0 12.5'
-    """
-    return " ".join(f"{round(value, 12) + 0.0:.8g}" for value in values)
-
-
 class Document:
     r"""A text with its elements, and the changes that are to be made.
 
@@ -287,3 +211,79 @@ class Document:
 
     def _change(self, start: int, end: int, new: str) -> None:
         self._changes.append((start, end, new.encode()))
+
+
+def links_in(scope: Span, names: Collection[str]) -> list[Span]:
+    """Find the links of some names, of URDF and SDF."""
+    return [each for each in scope.within() if each.tag == "link" and each.name in names]
+
+
+def joint_in(scope: Span, name: str) -> Span:
+    """Find a joint of URDF and SDF; a transmission has one without links, which is none."""
+    every = (each for each in scope.within() if each.tag == "joint" and each.only("child"))
+    return next(each for each in every if each.name == name)
+
+
+def spans_of(data: bytes) -> Span:
+    """Find the elements of a text that the reader has parsed before.
+
+    Parameters
+    ----------
+    data : bytes
+        In UTF-8.
+
+    Returns
+    -------
+    Span
+        The root.
+
+    Examples
+    --------
+    >>> root = spans_of(b"<link name='hull'> <mass value='8'/></link>")
+    >>> mass = root.children[0]
+    >>> mass.start, mass.end, mass.values
+    (19, 36, {'value': (32, 33)})
+    """
+    parser = expat.ParserCreate("utf-8")
+    stack: list[Span] = []
+    roots: list[Span] = []
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        at = parser.CurrentByteIndex
+        opening = _OPENING.match(data, at)
+        assert opening is not None  # expat has seen the whole tag
+        parent = stack[-1] if stack else None
+        span = Span(tag=tag, attributes=attributes, parent=parent, start=at, inner=opening.end())
+        for found in _ATTRIBUTE.finditer(data, at + 1 + len(tag.encode()), opening.end()):
+            span.values[found[1].decode()] = (found.start(2) + 1, found.end(2) - 1)
+        if opening[0].endswith(b"/>"):
+            span.outer = span.end = span.inner
+        (parent.children if parent else roots).append(span)
+        stack.append(span)
+
+    def end(_: str) -> None:
+        span = stack.pop()
+        span.text = span.text.strip()
+        if not span.end:
+            span.outer = parser.CurrentByteIndex
+            span.end = data.index(b">", span.outer) + 1
+
+    def characters(text: str) -> None:
+        stack[-1].text += text
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    parser.CharacterDataHandler = characters
+    parser.Parse(data, True)
+    return roots[0]
+
+
+def written(values: Iterable[float]) -> str:
+    """Write lengths with as many digits as model files have.
+
+    Examples
+    --------
+    >>> written((0.1 + 0.2, -1e-13, 12.5))
+    '0.3 0 12.5'
+    """
+    return " ".join(f"{round(value, 12) + 0.0:.8g}" for value in values)

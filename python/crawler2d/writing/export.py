@@ -48,6 +48,15 @@ _WRITERS: dict[Name, tuple[Format, Callable[[Model, Pose], XML]]] = {
     "mjcf": (MJCF, lambda model, stand: mjcf_of(model.tree, stand)),
 }
 
+# Two bodies side by side: room to drift without falling off the obstacle.
+_WIDTH = 2.0  # gauges and track widths
+_FLAT = 1e-9  # [m] Heights that differ by less are equal.
+_FORMATS: dict[str, Name] = {".sdf": "sdf", ".world": "sdf", ".xml": "mjcf"}
+
+# In lengths of the robot: what is seen of the ground behind its start and beyond the goal.
+_BEHIND, _BEYOND = 2.0, 4.0
+_PLANE = 100.0  # [m] How much of an endless plane is drawn.
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
@@ -88,6 +97,51 @@ class ModelText(str):
     def __repr__(self) -> str:
         """Write the short form."""
         return f"<model file, {len(self)} characters; print it to see them>"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Piece:
+    """A convex prism across the robot.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (n, 2)
+        [m] Its outline in side view, counter-clockwise, x forward and y up.
+    across, width : float
+        [m] Place of its middle, to the left, and its width.
+    friction : float
+        [-] Of its surface.
+    """
+
+    corners: Array
+    across: float
+    width: float
+    friction: float
+
+    @property
+    def is_box(self) -> bool:
+        """Whether it is a rectangle with level and upright sides."""
+        sides = np.abs(np.diff(self.corners, axis=0, append=self.corners[:1]))
+        return len(self.corners) == 4 and bool((sides.min(axis=1) < _FLAT).all())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ground:
+    """What the robot drives over.
+
+    Parameters
+    ----------
+    level : float
+        [m] Height of a plane: that of the lowest ground.
+    friction : float
+        [-] Of the plane.
+    pieces : tuple of Piece
+        What stands on it.
+    """
+
+    level: float
+    friction: float
+    pieces: tuple[Piece, ...]
 
 
 def modelled(
@@ -157,102 +211,6 @@ def stored(root: XML, comment: str, path: str | os.PathLike[str] | None) -> Mode
     return made
 
 
-def _limits(robot: dict[str, Any]) -> Limits:
-    drivetrain, ends = robot["drivetrain"], ends_of(discs_in(robot["outline"]))
-    return Limits(
-        speed=float(drivetrain["max_speed"]),
-        acceleration=float(drivetrain["max_acceleration"]),
-        deceleration=float(drivetrain["max_deceleration"]),
-        track_height=2.0 * max(radius for _, _, radius in ends),
-    )
-
-
-def _left_out(robot: dict[str, Any], tree: Tree, form: Format) -> list[str]:
-    """Return what the file cannot hold of the motors, such as rotors of belts, without joints."""
-    has_motors = form.has_rotors and any(joint.is_unlimited for joint in tree.joints.values())
-    drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
-    is_held = {
-        "drivetrain.rotor_inertia": has_motors,
-        "drivetrain.no_load_speed": False,
-        "drivetrain.torque_curve": False,
-        "drivetrain.controller": has_motors,
-        "drivetrain.controller.integral": False,
-        "drivetrain.self_locking": False,
-        "flippers.rotor_inertia": form.has_rotors,
-        "flippers.self_locking": False,
-    }
-    given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
-    given |= {f"flippers.{name}": value for name, value in flippers.items()}
-    given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
-    names = [name for name, held in is_held.items() if given.get(name) and not held]
-    return [f"Left out, for {form.name} has no place for it: {', '.join(names)}."] if names else []
-
-
-def _comment(robot: dict[str, Any], across: Across, friction: float, left_out: list[str]) -> str:
-    """Return where the file comes from, and what in it is not from the robot."""
-    return "\n".join(
-        [
-            f"Written by crawler2d {_core.build_info()['version']}. Not from the robot:",
-            f"friction {friction:g} of all surfaces; widths of track {across.track_width:g} m,",
-            f"chassis {across.chassis_width:g} m and flippers {across.flipper_width:g} m;",
-            "moments of inertia about x and z; masses of single wheels, shares of their motors;",
-            "limits of half a turn for flippers.",
-            *left_out,
-            f"The robot: {commented(robot)}",
-        ]
-    )
-
-
-# Two bodies side by side: room to drift without falling off the obstacle.
-_WIDTH = 2.0  # gauges and track widths
-_FLAT = 1e-9  # [m] Heights that differ by less are equal.
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Piece:
-    """A convex prism across the robot.
-
-    Parameters
-    ----------
-    corners : ndarray, shape (n, 2)
-        [m] Its outline in side view, counter-clockwise, x forward and y up.
-    across, width : float
-        [m] Place of its middle, to the left, and its width.
-    friction : float
-        [-] Of its surface.
-    """
-
-    corners: Array
-    across: float
-    width: float
-    friction: float
-
-    @property
-    def is_box(self) -> bool:
-        """Whether it is a rectangle with level and upright sides."""
-        sides = np.abs(np.diff(self.corners, axis=0, append=self.corners[:1]))
-        return len(self.corners) == 4 and bool((sides.min(axis=1) < _FLAT).all())
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ground:
-    """What the robot drives over.
-
-    Parameters
-    ----------
-    level : float
-        [m] Height of a plane: that of the lowest ground.
-    friction : float
-        [-] Of the plane.
-    pieces : tuple of Piece
-        What stands on it.
-    """
-
-    level: float
-    friction: float
-    pieces: tuple[Piece, ...]
-
-
 def ground_of(
     lanes: list[tuple[int, Array]],
     frictions: dict[int, float],
@@ -293,47 +251,6 @@ def ground_of(
         for corners in _convex(points, level)
     ]
     return Ground(level=level, friction=max(frictions.values()), pieces=tuple(pieces))
-
-
-def _between(points: Array, left: float, right: float) -> Array:
-    """Cut a profile at two places, at which the ground is level or slopes."""
-    inner = points[(points[:, 0] > left) & (points[:, 0] < right)]
-    first, last = ([x, float(np.interp(x, *points.T))] for x in (left, right))
-    return np.array([first, *inner, last])
-
-
-def _convex(points: Array, level: float) -> Iterator[Array]:
-    """Cut what is below a profile and above a level into convex polygons.
-
-    A cut goes straight down from each inner corner of the ground, where no track can touch it.
-    """
-    ahead = np.diff(points, axis=0)
-    turns = ahead[:-1, 0] * ahead[1:, 1] - ahead[:-1, 1] * ahead[1:, 0]
-    inner = [0, *(np.flatnonzero(turns > 0.0) + 1).tolist(), len(points) - 1]
-    for first, last in itertools.pairwise(inner):
-        run = points[first : last + 1]
-        if np.ptp(run[:, 0]) < _FLAT or run[:, 1].max() < level + _FLAT:
-            continue
-        # A run that begins or ends on the level, or at a wall, has its foot in line already.
-        foot = np.array([[run[0, 0], level], [run[-1, 0], level]])
-        yield _corners(np.array([foot[0], foot[1], *run[::-1]]))
-
-
-def _corners(points: Array) -> Array:
-    """Return the corners of a convex polygon: no point twice, and none on a side."""
-    there = np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > _FLAT
-    points = points[there]
-    to, on = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
-    turns = to[:, 0] * on[:, 1] - to[:, 1] * on[:, 0]
-    corners: Array = points[turns > _FLAT * np.linalg.norm(to, axis=1) * np.linalg.norm(on, axis=1)]
-    return corners
-
-
-_FORMATS: dict[str, Name] = {".sdf": "sdf", ".world": "sdf", ".xml": "mjcf"}
-
-# In lengths of the robot: what is seen of the ground behind its start and beyond the goal.
-_BEHIND, _BEYOND = 2.0, 4.0
-_PLANE = 100.0  # [m] How much of an endless plane is drawn.
 
 
 def written_world(
@@ -380,6 +297,86 @@ def written_world(
     return stored(add(root, ground, json.loads(text)["gravity"]), model.comment, path)
 
 
+def _comment(robot: dict[str, Any], across: Across, friction: float, left_out: list[str]) -> str:
+    """Return where the file comes from, and what in it is not from the robot."""
+    return "\n".join(
+        [
+            f"Written by crawler2d {_core.build_info()['version']}. Not from the robot:",
+            f"friction {friction:g} of all surfaces; widths of track {across.track_width:g} m,",
+            f"chassis {across.chassis_width:g} m and flippers {across.flipper_width:g} m;",
+            "moments of inertia about x and z; masses of single wheels, shares of their motors;",
+            "limits of half a turn for flippers.",
+            *left_out,
+            f"The robot: {commented(robot)}",
+        ]
+    )
+
+
+def _left_out(robot: dict[str, Any], tree: Tree, form: Format) -> list[str]:
+    """Return what the file cannot hold of the motors, such as rotors of belts, without joints."""
+    has_motors = form.has_rotors and any(joint.is_unlimited for joint in tree.joints.values())
+    drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
+    is_held = {
+        "drivetrain.rotor_inertia": has_motors,
+        "drivetrain.no_load_speed": False,
+        "drivetrain.torque_curve": False,
+        "drivetrain.controller": has_motors,
+        "drivetrain.controller.integral": False,
+        "drivetrain.self_locking": False,
+        "flippers.rotor_inertia": form.has_rotors,
+        "flippers.self_locking": False,
+    }
+    given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
+    given |= {f"flippers.{name}": value for name, value in flippers.items()}
+    given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
+    names = [name for name, held in is_held.items() if given.get(name) and not held]
+    return [f"Left out, for {form.name} has no place for it: {', '.join(names)}."] if names else []
+
+
+def _limits(robot: dict[str, Any]) -> Limits:
+    drivetrain, ends = robot["drivetrain"], ends_of(discs_in(robot["outline"]))
+    return Limits(
+        speed=float(drivetrain["max_speed"]),
+        acceleration=float(drivetrain["max_acceleration"]),
+        deceleration=float(drivetrain["max_deceleration"]),
+        track_height=2.0 * max(radius for _, _, radius in ends),
+    )
+
+
+def _between(points: Array, left: float, right: float) -> Array:
+    """Cut a profile at two places, at which the ground is level or slopes."""
+    inner = points[(points[:, 0] > left) & (points[:, 0] < right)]
+    first, last = ([x, float(np.interp(x, *points.T))] for x in (left, right))
+    return np.array([first, *inner, last])
+
+
+def _convex(points: Array, level: float) -> Iterator[Array]:
+    """Cut what is below a profile and above a level into convex polygons.
+
+    A cut goes straight down from each inner corner of the ground, where no track can touch it.
+    """
+    ahead = np.diff(points, axis=0)
+    turns = ahead[:-1, 0] * ahead[1:, 1] - ahead[:-1, 1] * ahead[1:, 0]
+    inner = [0, *(np.flatnonzero(turns > 0.0) + 1).tolist(), len(points) - 1]
+    for first, last in itertools.pairwise(inner):
+        run = points[first : last + 1]
+        if np.ptp(run[:, 0]) < _FLAT or run[:, 1].max() < level + _FLAT:
+            continue
+        # A run that begins or ends on the level, or at a wall, has its foot in line already.
+        foot = np.array([[run[0, 0], level], [run[-1, 0], level]])
+        yield _corners(np.array([foot[0], foot[1], *run[::-1]]))
+
+
+def _corners(points: Array) -> Array:
+    """Return the corners of a convex polygon: no point twice, and none on a side."""
+    there = np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > _FLAT
+    points = points[there]
+    to, on = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    turns = to[:, 0] * on[:, 1] - to[:, 1] * on[:, 0]
+    corners: Array = points[turns > _FLAT * np.linalg.norm(to, axis=1) * np.linalg.norm(on, axis=1)]
+    return corners
+
+
 def _frictions(terrain: dict[str, Any]) -> dict[int, float]:
     """[-] Return the friction of each lane."""
     if terrain["kind"] != "lanes":
@@ -388,6 +385,39 @@ def _frictions(terrain: dict[str, Any]) -> dict[int, float]:
     middle = terrain["middle"]
     under = max(left, right) if middle is None else float(middle["friction"])
     return {Lane.BOTH: left, Lane.LEFT: left, Lane.RIGHT: right, Lane.MIDDLE: under}
+
+
+def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
+    """Put a ground into an MJCF file."""
+    parts = {part.tag: part for part in root}
+    world = parts["worldbody"]
+    parts["option"].set("gravity", numbers((0.0, 0.0, -gravity)))
+    assets = parts.get("asset")
+    if assets is None:
+        assets = element("asset")
+        root.insert(list(root).index(world), assets)
+    plane = {"type": "plane", "size": numbers((0.5 * _PLANE, 0.5 * _PLANE, 1.0))}
+    shapes = [({**plane, "pos": numbers((0.0, 0.0, ground.level))}, ground.friction)]
+    for number, piece in enumerate(ground.pieces, 1):
+        shapes.append((_mjcf_shape(f"ground_{number}", piece, assets), piece.friction))
+    for number, (shape, friction) in enumerate(shapes):
+        # With the higher priority its own friction holds, whatever the robot has.
+        given = {"name": f"ground_{number}", "friction": numbers(friction), "priority": "2"}
+        world.insert(number, element("geom", **given, **shape))
+    return root
+
+
+def _mjcf_shape(name: str, piece: Piece, assets: XML) -> dict[str, str]:
+    """Return the attributes of a box, or of a convex mesh, whose corners are an asset."""
+    pose, corners = _placed(piece)
+    half = 0.5 * piece.width
+    at = {"pos": numbers(pose.place)}
+    if piece.is_box:
+        x, z = corners.max(axis=0)
+        return {"type": "box", "size": numbers((x, half, z)), **at}
+    points = np.array([(x, side, z) for side in (-half, half) for x, z in corners])
+    assets.append(element("mesh", name=name, vertex=numbers(points.ravel())))
+    return {"type": "mesh", "mesh": name, **at}
 
 
 def _placed(piece: Piece) -> tuple[Pose, np.ndarray[Any, Any]]:
@@ -444,36 +474,3 @@ def _sdf_shape(piece: Piece) -> tuple[Pose, XML]:
     turned = from_rpy((0.5 * math.pi, 0.0, 0.0), (x, y + 0.5 * piece.width, z))
     points = (element("point", text=numbers(corner)) for corner in corners)
     return turned, element("polyline", *points, element("height", text=numbers(piece.width)))
-
-
-def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
-    """Put a ground into an MJCF file."""
-    parts = {part.tag: part for part in root}
-    world = parts["worldbody"]
-    parts["option"].set("gravity", numbers((0.0, 0.0, -gravity)))
-    assets = parts.get("asset")
-    if assets is None:
-        assets = element("asset")
-        root.insert(list(root).index(world), assets)
-    plane = {"type": "plane", "size": numbers((0.5 * _PLANE, 0.5 * _PLANE, 1.0))}
-    shapes = [({**plane, "pos": numbers((0.0, 0.0, ground.level))}, ground.friction)]
-    for number, piece in enumerate(ground.pieces, 1):
-        shapes.append((_mjcf_shape(f"ground_{number}", piece, assets), piece.friction))
-    for number, (shape, friction) in enumerate(shapes):
-        # With the higher priority its own friction holds, whatever the robot has.
-        given = {"name": f"ground_{number}", "friction": numbers(friction), "priority": "2"}
-        world.insert(number, element("geom", **given, **shape))
-    return root
-
-
-def _mjcf_shape(name: str, piece: Piece, assets: XML) -> dict[str, str]:
-    """Return the attributes of a box, or of a convex mesh, whose corners are an asset."""
-    pose, corners = _placed(piece)
-    half = 0.5 * piece.width
-    at = {"pos": numbers(pose.place)}
-    if piece.is_box:
-        x, z = corners.max(axis=0)
-        return {"type": "box", "size": numbers((x, half, z)), **at}
-    points = np.array([(x, side, z) for side in (-half, half) for x, z in corners])
-    assets.append(element("mesh", name=name, vertex=numbers(points.ravel())))
-    return {"type": "mesh", "mesh": name, **at}

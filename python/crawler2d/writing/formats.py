@@ -31,6 +31,32 @@ __all__ = [
 XML = ElementTree.Element
 """An element."""
 
+SDF = Format(
+    name="SDF",
+    moves_surfaces=True,
+    has_hulls=False,
+    has_rotors=False,
+    reserved=".*::.*|__.*__",
+)
+"""SDF has meshes in files of their own only. A rotor inertia has a place in extensions of Drake
+only."""
+
+# Newer versions add nothing that is needed here, and DART reads none of them.
+_VERSION = "1.6"
+_KINDS = {"hinge": "revolute", "fixed": "fixed"}
+
+URDF = Format(name="URDF", moves_surfaces=False, has_hulls=False, has_rotors=False)
+"""URDF has meshes in files of their own only, and nothing that moves a surface. A rotor inertia has
+a place in extensions of Drake only."""
+_UPPER = [(row, column) for row in range(3) for column in range(row, 3)]
+
+MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True, has_rotors=True)
+"""MJCF has the corners of meshes in the file itself, and surfaces that move."""
+
+# A motor without a controller gives all of its torque where it is off by this share of its largest
+# speed, or this angle.
+_OFF_SPEED, _OFF_ANGLE = 0.02, 0.02  # [-] and [rad]
+
 
 def element(tag: str, *children: XML | None, text: str = "", **attributes: str) -> XML:
     """Make an element with attributes, text and children; None stands for no child."""
@@ -67,11 +93,6 @@ def exactly(values: Iterable[float] | Array | float) -> str:
     return " ".join(repr(value) for value in _each(values))
 
 
-def _each(values: Iterable[float] | Array | float) -> Iterator[float]:
-    for value in [values] if isinstance(values, float | int) else values:
-        yield float(value) + 0.0
-
-
 def document(root: XML, comment: str) -> str:
     """Write an element as a file of its own, with a comment before it.
 
@@ -105,21 +126,6 @@ def commented(value: object) -> str:
     return re.sub("(?<=-)-", r"\\u002d", text)
 
 
-SDF = Format(
-    name="SDF",
-    moves_surfaces=True,
-    has_hulls=False,
-    has_rotors=False,
-    reserved=".*::.*|__.*__",
-)
-"""SDF has meshes in files of their own only. A rotor inertia has a place in extensions of Drake
-only."""
-
-# Newer versions add nothing that is needed here, and DART reads none of them.
-_VERSION = "1.6"
-_KINDS = {"hinge": "revolute", "fixed": "fixed"}
-
-
 def sdf_of(tree: Tree, across: Across, limits: Limits, stand: Pose) -> XML:
     """Write a model, its chassis frame where it stands."""
     model = element("model", element("pose", text=pose_text(stand)), name=tree.name)
@@ -134,6 +140,71 @@ def sdf_of(tree: Tree, across: Across, limits: Limits, stand: Pose) -> XML:
 def pose_text(pose: Pose) -> str:
     """Write a pose: place, then roll, pitch and yaw."""
     return numbers([*pose.place, *pose.rpy])
+
+
+def surface(friction: Friction) -> XML:
+    """Write coefficients of friction."""
+    first, second = friction.first, friction.second
+    ode = element("ode", element("mu", text=numbers(first)), element("mu2", text=numbers(second)))
+    return element("surface", element("friction", ode))
+
+
+def urdf_of(tree: Tree) -> XML:
+    """Write a robot in the frame of its root."""
+    links = tree.by_name
+    root = element("robot", name=tree.name)
+    for link in tree.links:
+        root.append(_urdf_link(link))
+        if link.name in tree.joints:
+            joint = tree.joints[link.name]
+            root.append(_urdf_joint(joint, link, links[joint.parent]))
+    for link in tree.links:
+        friction = _friction(link)
+        if friction is not None:
+            pair = (element(f"mu{n}", text=numbers(friction)) for n in (1, 2))
+            root.append(element("gazebo", *pair, reference=link.name))
+    return root
+
+
+def mjcf_of(tree: Tree, stand: Pose) -> XML:
+    """Write a model without a ground, its chassis frame where it stands."""
+    bodies: dict[str, XML] = {}
+    world = element("worldbody")
+    links = tree.by_name
+    for link in tree.links:
+        joint = tree.joints.get(link.name)
+        if joint is None:
+            body = _body(link, stand.then(link.pose))
+            body.insert(0, element("freejoint", name=f"{link.name}_joint"))
+            world.append(body)
+        else:
+            body = _body(link, link.pose.seen_from(links[joint.parent].pose))
+            if joint.kind != "fixed":
+                body.insert(0, _mjcf_joint(joint, link))
+            bodies[joint.parent].append(body)
+        bodies[link.name] = body
+    meshes = [
+        element("mesh", name=shape.name, vertex=numbers((shape.points - shape.pose.place).ravel()))
+        for link in tree.links
+        for shape in link.shapes
+        if shape.kind == "hull"
+    ]
+    motors = [_motor(joint) for joint in tree.joints.values() if joint.name in tree.driven]
+    return element(
+        "mujoco",
+        element("compiler", angle="radian", autolimits="true"),
+        # Its steps take the servos implicitly, which others could only do with tiny ones.
+        element("option", integrator="implicitfast"),
+        element("asset", *meshes) if meshes else None,
+        world,
+        element("actuator", *motors),
+        model=tree.name,
+    )
+
+
+def _each(values: Iterable[float] | Array | float) -> Iterator[float]:
+    for value in [values] if isinstance(values, float | int) else values:
+        yield float(value) + 0.0
 
 
 def _sdf_link(link: Link) -> XML:
@@ -180,13 +251,6 @@ def _sdf_geometry(shape: Shape) -> XML:
     return element("geometry", element("cylinder", radius, length))
 
 
-def surface(friction: Friction) -> XML:
-    """Write coefficients of friction."""
-    first, second = friction.first, friction.second
-    ode = element("ode", element("mu", text=numbers(first)), element("mu2", text=numbers(second)))
-    return element("surface", element("friction", ode))
-
-
 def _sdf_joint(joint: Joint) -> XML:
     made = element(
         "joint",
@@ -218,15 +282,10 @@ def _plugins(tree: Tree, across: Across, limits: Limits) -> list[XML]:
     ]
 
 
-def _plugin(system: str, file: str, *children: XML) -> XML:
-    name = f"gz::sim::systems::{system}"
-    return element("plugin", *children, filename=f"gz-sim-{file}-system", name=name)
-
-
 def _differential(radius: float, joints: list[Joint], across: Across, limits: Limits) -> XML:
     """Return a drive of wheels of one radius: a drive has one, and all obey the same command."""
     sides = [
-        element(f"{'left' if joint.place[1] > 0.0 else 'right'}_sdf_joint", text=joint.name)
+        element(f"{'left' if joint.place[1] > 0.0 else 'right'}_joint", text=joint.name)
         for joint in joints
     ]
     return _plugin(
@@ -240,6 +299,11 @@ def _differential(radius: float, joints: list[Joint], across: Across, limits: Li
         element("max_linear_acceleration", text=numbers(limits.acceleration)),
         element("min_linear_acceleration", text=numbers(-limits.deceleration)),
     )
+
+
+def _plugin(system: str, file: str, *children: XML) -> XML:
+    name = f"gz::sim::systems::{system}"
+    return element("plugin", *children, filename=f"gz-sim-{file}-system", name=name)
 
 
 def _tracks(tree: Tree, across: Across, limits: Limits) -> list[XML]:
@@ -286,34 +350,6 @@ def _servo(joint: Joint) -> XML:
     )
 
 
-URDF = Format(name="URDF", moves_surfaces=False, has_hulls=False, has_rotors=False)
-"""URDF has meshes in files of their own only, and nothing that moves a surface. A rotor inertia has
-a place in extensions of Drake only."""
-
-_UPPER = [(row, column) for row in range(3) for column in range(row, 3)]
-
-
-def urdf_of(tree: Tree) -> XML:
-    """Write a robot in the frame of its root."""
-    links = tree.by_name
-    root = element("robot", name=tree.name)
-    for link in tree.links:
-        root.append(_urdf_link(link))
-        if link.name in tree.joints:
-            joint = tree.joints[link.name]
-            root.append(_urdf_joint(joint, link, links[joint.parent]))
-    for link in tree.links:
-        friction = _friction(link)
-        if friction is not None:
-            pair = (element(f"mu{n}", text=numbers(friction)) for n in (1, 2))
-            root.append(element("gazebo", *pair, reference=link.name))
-    return root
-
-
-def _origin(pose: Pose) -> XML:
-    return element("origin", xyz=numbers(pose.place), rpy=numbers(pose.rpy))
-
-
 def _urdf_link(link: Link) -> XML:
     center = Pose(place=link.center).seen_from(link.pose)
     moments = link.pose.turn.T @ link.inertia @ link.pose.turn
@@ -338,6 +374,10 @@ def _urdf_link(link: Link) -> XML:
     if friction is not None:
         made.append(element("contact", element("lateral_friction", value=numbers(friction))))
     return made
+
+
+def _origin(pose: Pose) -> XML:
+    return element("origin", xyz=numbers(pose.place), rpy=numbers(pose.rpy))
 
 
 def _urdf_geometry(shape: Shape) -> XML:
@@ -373,54 +413,6 @@ def _urdf_joint(joint: Joint, link: Link, parent: Link) -> XML:
     return made
 
 
-MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True, has_rotors=True)
-"""MJCF has the corners of meshes in the file itself, and surfaces that move."""
-
-# A motor without a controller gives all of its torque where it is off by this share of its largest
-# speed, or this angle.
-_OFF_SPEED, _OFF_ANGLE = 0.02, 0.02  # [-] and [rad]
-
-
-def mjcf_of(tree: Tree, stand: Pose) -> XML:
-    """Write a model without a ground, its chassis frame where it stands."""
-    bodies: dict[str, XML] = {}
-    world = element("worldbody")
-    links = tree.by_name
-    for link in tree.links:
-        joint = tree.joints.get(link.name)
-        if joint is None:
-            body = _body(link, stand.then(link.pose))
-            body.insert(0, element("freejoint", name=f"{link.name}_mjcf_joint"))
-            world.append(body)
-        else:
-            body = _body(link, link.pose.seen_from(links[joint.parent].pose))
-            if joint.kind != "fixed":
-                body.insert(0, _mjcf_joint(joint, link))
-            bodies[joint.parent].append(body)
-        bodies[link.name] = body
-    meshes = [
-        element("mesh", name=shape.name, vertex=numbers((shape.points - shape.pose.place).ravel()))
-        for link in tree.links
-        for shape in link.shapes
-        if shape.kind == "hull"
-    ]
-    motors = [_motor(joint) for joint in tree.joints.values() if joint.name in tree.driven]
-    return element(
-        "mujoco",
-        element("compiler", angle="radian", autolimits="true"),
-        # Its steps take the servos implicitly, which others could only do with tiny ones.
-        element("option", integrator="implicitfast"),
-        element("asset", *meshes) if meshes else None,
-        world,
-        element("actuator", *motors),
-        model=tree.name,
-    )
-
-
-def _placed(pose: Pose) -> dict[str, str]:
-    return {"pos": numbers(pose.place), "quat": numbers(pose.quaternion)}
-
-
 def _body(link: Link, pose: Pose) -> XML:
     center = Pose(place=link.center).seen_from(link.pose)
     moments = link.pose.turn.T @ link.inertia @ link.pose.turn
@@ -452,6 +444,10 @@ def _geom(shape: Shape, link: Link) -> XML:
         given["surfacevel"] = numbers(_surface_velocity(shape))
     # Parts of the robot do not touch each other, but everything else.
     return element("geom", **given, contype="1", conaffinity="0")
+
+
+def _placed(pose: Pose) -> dict[str, str]:
+    return {"pos": numbers(pose.place), "quat": numbers(pose.quaternion)}
 
 
 def _surface_velocity(shape: Shape) -> list[float]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from crawler2d.common.bodies import discs_in, ends_of
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import MADE, Joint, Link, Pose, Shape, Tree
+from crawler2d.model_tree import NOWHERE, Joint, Link, Pose, Shape, Tree
 from crawler2d.writing.carriers import (
     Across,
     Carrier,
@@ -29,10 +29,29 @@ __all__ = ["Limits", "flipper_joints", "model_of", "moved_links", "wheels_by_rad
 
 CHASSIS = "chassis"
 """The root link; its frame is the chassis frame."""
-
 _SIDES = (("left", 1.0), ("right", -1.0))
 _AXLE = np.array([0.0, 1.0, 0.0])  # A wheel that turns about it by a positive angle drives forward.
 _HALF_TURN = math.pi  # [rad] by which a flipper may turn either way
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What the motors of a robot can do together.
+
+    Parameters
+    ----------
+    speed : float
+        [m/s] Largest speed of the tracks.
+    acceleration, deceleration : float
+        [m/s^2] Largest rates at which the commanded speed rises and falls.
+    track_height : float
+        [m] From the lower to the upper run.
+    """
+
+    speed: float
+    acceleration: float
+    deceleration: float
+    track_height: float
 
 
 def model_of(
@@ -61,6 +80,27 @@ def model_of(
     carriers = carriers_of(robot, text)
     refuse_unheld(robot, carriers, form)
     return _Model(robot, carriers, across, friction, form).tree()
+
+
+def wheels_by_radius(tree: Tree, limits: Limits) -> list[tuple[float, list[Joint]]]:
+    """[m] Return the joints of all wheels, by the radius at which they have the largest speed."""
+    found: dict[float, list[Joint]] = {}
+    for joint in tree.joints.values():
+        if joint.is_unlimited and joint.velocity:
+            found.setdefault(joint.velocity, []).append(joint)
+    return [(limits.speed / velocity, joints) for velocity, joints in found.items()]
+
+
+def flipper_joints(tree: Tree) -> list[Joint]:
+    """Return the joints that turn flippers."""
+    return [
+        joint for joint in tree.joints.values() if not joint.is_locked and not joint.is_unlimited
+    ]
+
+
+def moved_links(tree: Tree) -> list[Link]:
+    """Return the links whose surface moves."""
+    return [link for link in tree.links if any(shape.surface_speed for shape in link.shapes)]
 
 
 class _Model:
@@ -107,7 +147,7 @@ class _Model:
             file="",
             links=tuple(self.links),
             joints=self.joints,
-            driven={joint.name: MADE for joint in self.joints.values() if joint.kind == "hinge"},
+            driven={joint.name: NOWHERE for joint in self.joints.values() if joint.kind == "hinge"},
         )
 
     def add_chassis(self) -> None:
@@ -286,44 +326,3 @@ class _Model:
 
 def _sign(end: str) -> float:
     return 1.0 if end == "front" else -1.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """What the motors of a robot can do together.
-
-    Parameters
-    ----------
-    speed : float
-        [m/s] Largest speed of the tracks.
-    acceleration, deceleration : float
-        [m/s^2] Largest rates at which the commanded speed rises and falls.
-    track_height : float
-        [m] From the lower to the upper run.
-    """
-
-    speed: float
-    acceleration: float
-    deceleration: float
-    track_height: float
-
-
-def wheels_by_radius(tree: Tree, limits: Limits) -> list[tuple[float, list[Joint]]]:
-    """[m] Return the joints of all wheels, by the radius at which they have the largest speed."""
-    found: dict[float, list[Joint]] = {}
-    for joint in tree.joints.values():
-        if joint.is_unlimited and joint.velocity:
-            found.setdefault(joint.velocity, []).append(joint)
-    return [(limits.speed / velocity, joints) for velocity, joints in found.items()]
-
-
-def flipper_joints(tree: Tree) -> list[Joint]:
-    """Return the joints that turn flippers."""
-    return [
-        joint for joint in tree.joints.values() if not joint.is_locked and not joint.is_unlimited
-    ]
-
-
-def moved_links(tree: Tree) -> list[Link]:
-    """Return the links whose surface moves."""
-    return [link for link in tree.links if any(shape.surface_speed for shape in link.shapes)]

@@ -21,12 +21,10 @@ __all__ = [
 
 _UPRIGHT = from_rpy((-0.5 * math.pi, 0.0, 0.0))
 """Turns the axis of a cylinder, its z, to the left."""
-
-
-def in_space(point: Array, across: float) -> Array:
-    """[m] Return where a point of the side view is in a model: x forward, y to the left, z up."""
-    placed: Array = np.array([point[0], across, point[1]])
-    return placed
+_SAME = 1e-9  # [-] of the radius: what rounding leaves of equal lengths
+_THIN = 0.001  # [m] Depth of the box behind an edge with a corner sharper than a right angle.
+_SHARE = 0.05  # that depth at most, of the height of the belly over the edge
+_LEVELS = 64  # depths that are tried for the largest box
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,21 +83,32 @@ class Solids:
         )
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Run:
+    """A straight run of a belt, from a disc to the next one, counter-clockwise.
+
+    Parameters
+    ----------
+    start, end : int
+        Numbers of the discs.
+    normal : ndarray, shape (2,)
+        Out of the belt.
+    """
+
+    start: int
+    end: int
+    normal: Array
+
+
+def in_space(point: Array, across: float) -> Array:
+    """[m] Return where a point of the side view is in a model: x forward, y to the left, z up."""
+    placed: Array = np.array([point[0], across, point[1]])
+    return placed
+
+
 def lowest(tree: Tree) -> float:
     """[m] Return the height of the lowest point of all shapes."""
     return min((_low(shape) for link in tree.links for shape in link.shapes), default=0.0)
-
-
-def _low(shape: Shape) -> float:
-    if shape.kind == "hull":
-        return float(shape.points[:, 2].min())
-    if shape.kind == "cylinder":
-        return float(shape.pose.place[2]) - shape.radius
-    reach: Array = np.abs(shape.pose.turn[2]) @ shape.size
-    return float(shape.pose.place[2] - 0.5 * reach)
-
-
-_SAME = 1e-9  # [-] of the radius: what rounding leaves of equal lengths
 
 
 def grousers_of(outline: Array) -> tuple[float, Array]:
@@ -165,23 +174,6 @@ def gear_shapes(
     return shapes
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Run:
-    """A straight run of a belt, from a disc to the next one, counter-clockwise.
-
-    Parameters
-    ----------
-    start, end : int
-        Numbers of the discs.
-    normal : ndarray, shape (2,)
-        Out of the belt.
-    """
-
-    start: int
-    end: int
-    normal: Array
-
-
 def runs_round(discs: Array) -> list[Run]:
     """Find the straight runs of the belt that is taut round discs.
 
@@ -214,18 +206,6 @@ def runs_round(discs: Array) -> list[Run]:
     return found
 
 
-def _tangent(start: Array, end: Array) -> Array | None:
-    """Return the normal of the outer tangent from a disc to another, to the right of the way."""
-    (x, y), narrower = end[:2] - start[:2], start[2] - end[2]
-    distance = math.hypot(x, y)
-    if distance <= abs(narrower):
-        return None
-    along, out = narrower / distance, math.sqrt(1.0 - (narrower / distance) ** 2)
-    way, right = np.array([x, y]) / distance, np.array([y, -x]) / distance
-    normal: Array = along * way + out * right
-    return normal
-
-
 def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
     """Return the parts of a belt, whose union has its exact outline.
 
@@ -255,11 +235,6 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
     return shapes
 
 
-_THIN = 0.001  # [m] Depth of the box behind an edge with a corner sharper than a right angle.
-_SHARE = 0.05  # that depth at most, of the height of the belly over the edge
-_LEVELS = 64  # depths that are tried for the largest box
-
-
 def belly_shapes(corners: Array, solids: Solids, *, hulls: bool) -> list[Shape]:
     """Return the parts of the belly.
 
@@ -283,6 +258,27 @@ def belly_shapes(corners: Array, solids: Solids, *, hulls: bool) -> list[Shape]:
     most = max(edges, key=lambda edge: edge.largest[0])
     boxes = [most.box(0, most.largest[1], solids)]
     return boxes + [edge.box(n, edge.depth, solids) for n, edge in enumerate(edges, 1)]
+
+
+def _low(shape: Shape) -> float:
+    if shape.kind == "hull":
+        return float(shape.points[:, 2].min())
+    if shape.kind == "cylinder":
+        return float(shape.pose.place[2]) - shape.radius
+    reach: Array = np.abs(shape.pose.turn[2]) @ shape.size
+    return float(shape.pose.place[2] - 0.5 * reach)
+
+
+def _tangent(start: Array, end: Array) -> Array | None:
+    """Return the normal of the outer tangent from a disc to another, to the right of the way."""
+    (x, y), narrower = end[:2] - start[:2], start[2] - end[2]
+    distance = math.hypot(x, y)
+    if distance <= abs(narrower):
+        return None
+    along, out = narrower / distance, math.sqrt(1.0 - (narrower / distance) ** 2)
+    way, right = np.array([x, y]) / distance, np.array([y, -x]) / distance
+    normal: Array = along * way + out * right
+    return normal
 
 
 class _Edge:
