@@ -108,7 +108,7 @@ def test_xacro_evaluates_no_hostile_expression(tmp_path: Path, standing: Standin
         assert time.perf_counter() - start < 5.0, text
         error = caught.value
         assert re.match(r"cart\.xacro(:\d|$| )", error.path), (text, error)
-        rules = "trusted=True lets it through|xacro that expands|folder or|value for each argument"
+        rules = "trusted=True allows it|xacro that expands|folder or|value for each argument"
         assert re.search(rules, error.rule)
         assert [each.name for each in tmp_path.iterdir()] == ["cart.xacro"], text
     assert standing.asked >= 500
@@ -150,7 +150,7 @@ WHERE = {
 def test_an_expression_is_checked_wherever_xacro_evaluates_it(
     tmp_path: Path, standing: StandingChild, where: str
 ) -> None:
-    with pytest.raises(c2d.ScenarioError, match="trusted=True lets it through"):
+    with pytest.raises(c2d.ScenarioError, match="trusted=True allows it"):
         read(tmp_path, f"{XACRO}{WHERE[where]}</robot>", "cart.xacro")
     assert standing.asked
 
@@ -165,7 +165,7 @@ def test_what_is_not_allowed_is_named_with_its_expression_file_and_line(
         read(tmp_path, text, "cart.xacro")
     assert str(caught.value) == (
         "part.xacro:3: p.__class__ must have only plain data, operators and known functions, or be"
-        " trusted: trusted=True lets it through, got .__class__"
+        " trusted: trusted=True allows it, got .__class__"
     )
     assert standing.asked
 
@@ -173,7 +173,7 @@ def test_what_is_not_allowed_is_named_with_its_expression_file_and_line(
 def test_a_trusted_file_may_evaluate_anything(tmp_path: Path, standing: StandingChild) -> None:
     text = urdf(WHEELS, mass="${[a + b for a in [4] for b in [4]][0]}")
     text = text.replace('<robot name="cart">', XACRO)
-    with pytest.raises(c2d.ScenarioError, match="trusted=True lets it through"):
+    with pytest.raises(c2d.ScenarioError, match="trusted=True allows it"):
         read(tmp_path, text, "cart.xacro")
     assert read(tmp_path, text, "cart.xacro", trusted=True).robot.mass == 12.0
     assert standing.asked
@@ -196,7 +196,7 @@ def test_yaml_that_is_no_plain_data_is_refused(
 ) -> None:
     (tmp_path / "m.yaml").write_text(f"m: {yaml}")
     text = f"{XACRO}\n<link name=\"${{xacro.load_yaml('m.yaml')['m']}}\"/></robot>"
-    with pytest.raises(c2d.ScenarioError, match="trusted=True lets it through"):
+    with pytest.raises(c2d.ScenarioError, match="trusted=True allows it"):
         read(tmp_path, text, "cart.xacro")
     assert standing.asked
 

@@ -204,7 +204,7 @@ def test_the_first_of_several_inertials_and_origins_holds(tmp_path: Path) -> Non
     twice = '<inertial><mass value="70"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
     text = urdf(WHEELS, shapes=f"{twice}</inertial>")
     (doubt,) = doubts(tmp_path, text)
-    assert "link[hull]/inertial is left out: the first one holds" in doubt
+    assert "link[hull]/inertial is left out: the first one counts" in doubt
     assert read(tmp_path, text).robot.mass == 12.0
     moved = urdf(WHEELS, sensor('type="fixed"><origin xyz="0 0 1"/>'))
     assert any("origin is left out" in each for each in doubts(tmp_path, moved))

@@ -1,9 +1,7 @@
-"""XML that nobody vouches for, as elements that know their line: every error names it.
+"""Untrusted XML as elements that know their line: every error names it.
 
-The parser for text that nobody vouches for.
-
-Entities, document types and external parts are refused before anything is expanded, and so is what
-is too long, too deep or too much.
+Entities, document types and external parts are refused before anything is expanded, and so are
+files that are too long, too deep or have too many elements.
 """
 
 from __future__ import annotations
@@ -22,8 +20,9 @@ from crawler2d.reading.log import Doubt
 
 __all__ = ["Element", "parse_xml", "real"]
 
-# [m, kg, ...] No robot has a larger figure; an effort or a limit of an angle that is, is none.
+# [m, kg, ...] No robot has a larger figure; a larger effort or limit of an angle is no limit.
 _LARGEST = 1e6
+
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _LONGEST_NUMBER = 60
 _MOST_ELEMENTS = 50_000
@@ -64,7 +63,7 @@ class Element:
 
     @property
     def path(self) -> str:
-        """The way to it from the root: ``model[absolem]/link[base_link]/pose``."""
+        """Its path from the root: ``model[absolem]/link[base_link]/pose``."""
         node: Element | None = self
         steps = []
         while node is not None:
@@ -75,7 +74,7 @@ class Element:
 
     @property
     def at(self) -> str:
-        """Its line and its way, for errors."""
+        """Its line and path, for errors."""
         return f"{self.where}: {self.path}"
 
     def refuse(self, value: object, rule: str, part: str = "") -> NoReturn:
@@ -98,26 +97,26 @@ class Element:
         """Return the one child at a path; None if there is none. Two are refused."""
         node = self
         for tag in path.split("/"):
-            found = list(node.all(tag))
-            if not found:
+            children = list(node.all(tag))
+            if not children:
                 return None
-            if len(found) > 1:
-                found[1].refuse(f"{len(found)} of them", "must be given once")
-            node = found[0]
+            if len(children) > 1:
+                children[1].refuse(f"{len(children)} of them", "must be given once")
+            node = children[0]
         return node
 
     def first(self, tag: str, doubts: list[Doubt]) -> Element | None:
         """Return the first child of a name, as simulators do; others are doubted."""
-        found = list(self.all(tag))
-        doubts += [(other.at, tag, "is left out: the first one holds") for other in found[1:]]
-        return found[0] if found else None
+        children = list(self.all(tag))
+        doubts += [(other.at, tag, "is left out: the first one counts") for other in children[1:]]
+        return children[0] if children else None
 
     def needed(self, path: str) -> Element:
         """Return the one child at a path, which must be there."""
-        found = self.only(path)
-        if found is None:
+        element = self.only(path)
+        if element is None:
             self.refuse("none", f"must have an element <{path}>")
-        return found
+        return element
 
     def attribute(self, name: str) -> str:
         """Return an attribute, which must be there and not empty."""
@@ -138,12 +137,14 @@ class Element:
 
     def real(self, path: str, usual: float | None = None) -> float:
         """Return the number that a child holds; `usual` if there is none and it may be left out."""
-        found = self.only(path) if usual is not None else self.needed(path)
-        return usual if found is None and usual is not None else found.reals(1)[0]  # type: ignore[union-attr]
+        element = self.only(path)
+        if element is None and usual is not None:
+            return usual
+        return self.needed(path).reals(1)[0]
 
 
 def real(element: Element, word: str, part: str = "", *, unlimited: bool = False) -> float:
-    """Read a number. One beyond a million is refused, or, where that may be meant, infinite."""
+    """Read a number. One beyond a million is refused, or infinite where that is allowed."""
     text = word.strip()
     if unlimited and text.lower().lstrip("+-") in ("inf", "infinity"):
         return -math.inf if text.startswith("-") else math.inf
@@ -189,68 +190,50 @@ def parse_xml(data: bytes, file: str) -> Element:
     """
     if len(data) > LARGEST_MODEL:
         raise ScenarioError(file, len(data), f"must have at most {LARGEST_MODEL} bytes")
-    return _Parser(file).parse(data)
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    # A stray carriage return ends a line for expat, but not for most editors.
+    ends = [match.start() for match in re.finditer(rb"\n", data)]
+    count = 0
+    roots: list[Element] = []
+    stack: list[Element] = []
 
+    def line_of(offset: int) -> Where:
+        return Where(file, bisect.bisect_left(ends, offset) + 1)
 
-class _Parser:
-    """Builds the elements as expat reads them; one parser reads one file."""
+    def refuse(value: object, rule: str) -> NoReturn:
+        raise ScenarioError(str(line_of(parser.CurrentByteIndex)), value, rule)
 
-    def __init__(self, file: str) -> None:
-        self.file = file
-        self.ends: list[int] = []
-        self.root: Element | None = None
-        self.open: list[Element] = []
-        self.count = 0
-        self.expat = expat.ParserCreate()
-        self.expat.buffer_text = True
-        self.expat.StartElementHandler = self.start
-        self.expat.EndElementHandler = self.end
-        self.expat.CharacterDataHandler = self.characters
-        self.expat.StartDoctypeDeclHandler = self.doctype
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        if count > _MOST_ELEMENTS:
+            refuse(count, f"must have at most {_MOST_ELEMENTS} elements")
+        if len(stack) >= _DEEPEST:
+            refuse(len(stack) + 1, f"must be nested at most {_DEEPEST} deep")
+        parent = stack[-1] if stack else None
+        element = Element(tag, attributes, parent, line_of(parser.CurrentByteIndex))
+        (parent.children if parent else roots).append(element)
+        stack.append(element)
 
-    def parse(self, data: bytes) -> Element:
-        # A stray carriage return ends a line for expat, but not for most editors.
-        self.ends = [match.start() for match in re.finditer(rb"\n", data)]
-        try:
-            self.expat.Parse(data, True)
-        except expat.ExpatError as error:
-            reason = expat.ErrorString(error.code)
-            where = self.at(self.expat.ErrorByteIndex)
-            raise ScenarioError(str(where), reason, "must be well-formed XML") from None
-        except ScenarioError:  # which is a ValueError, too
-            raise
-        except (ValueError, LookupError) as error:  # an encoding that Python lacks or cannot map
-            raise ScenarioError(self.file, str(error), "must be in a known encoding") from None
-        assert self.root is not None  # without one, expat has raised
-        return self.root
+    def characters(text: str) -> None:
+        stack[-1].pieces.append(text)
 
-    def at(self, offset: int) -> Where:
-        return Where(self.file, bisect.bisect_left(self.ends, offset) + 1)
+    def doctype(name: str, *_: object) -> None:
+        refuse(repr(name), "must have no document type")
 
-    def here(self) -> Where:
-        return self.at(self.expat.CurrentByteIndex)
-
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        self.count += 1
-        if self.count > _MOST_ELEMENTS:
-            rule = f"must have at most {_MOST_ELEMENTS} elements"
-            raise ScenarioError(str(self.here()), self.count, rule)
-        if len(self.open) >= _DEEPEST:
-            rule = f"must be nested at most {_DEEPEST} deep"
-            raise ScenarioError(str(self.here()), len(self.open) + 1, rule)
-        parent = self.open[-1] if self.open else None
-        element = Element(tag, attributes, parent, self.here())
-        if parent is None:
-            self.root = element
-        else:
-            parent.children.append(element)
-        self.open.append(element)
-
-    def end(self, _tag: str) -> None:
-        self.open.pop()
-
-    def characters(self, text: str) -> None:
-        self.open[-1].pieces.append(text)
-
-    def doctype(self, name: str, *_: object) -> None:
-        raise ScenarioError(str(self.here()), repr(name), "must have no document type")
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: stack.pop()
+    parser.CharacterDataHandler = characters
+    parser.StartDoctypeDeclHandler = doctype
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        where = line_of(parser.ErrorByteIndex)
+        raise ScenarioError(str(where), reason, "must be well-formed XML") from None
+    except ScenarioError:  # which is a ValueError, too
+        raise
+    except (ValueError, LookupError) as error:  # an encoding that Python lacks or cannot map
+        raise ScenarioError(file, str(error), "must be in a known encoding") from None
+    return roots[0]  # without one, expat has raised

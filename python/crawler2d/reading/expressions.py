@@ -1,9 +1,9 @@
-"""Expressions of xacro, evaluated here and not by Python: by a list of what is harmless.
+"""Expressions of xacro, evaluated here and not by Python, with a list of harmless names.
 
 The text is parsed, but never compiled. Each node of its tree is evaluated below on plain data, or
-refused: nothing else of Python can be reached, because no attribute of any object is ever taken. A
-dotted name is a key of a dict, a member of a space such as ``math``, or a method of the list below
-that is called at once. Sizes are bounded before anything is made of them, and work is counted.
+refused: nothing else of Python can be reached, because no attribute of any object is ever read. A
+dotted name is a key of a dict, a member of a namespace such as ``math``, or a method of the list
+below. Sizes are checked before anything is built, and work is counted.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ _PLAIN = (*_SCALARS, list, tuple, dict)
 
 
 class NotAllowed(Exception):
-    """What only a trusted file may evaluate.
+    """An expression that only a trusted file may evaluate.
 
     Parameters
     ----------
     found : str
-        What is not allowed.
+        The part that is not allowed.
     rule : str
-        What it breaks.
+        The rule that it breaks.
 
     Attributes
     ----------
     expression : str
-        In which it stands.
+        All of it.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     text : str
         As Python writes it.
     names : mapping
-        What names stand for: plain data, functions, and spaces, which are mappings but no dicts.
+        The values of names: plain data, functions, and namespaces, which are mappings but no dicts.
 
     Returns
     -------
@@ -72,9 +72,9 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     Raises
     ------
     NotAllowed
-        If it holds what is not on the list, or makes what is too large.
+        If a part of it is not on the list, or a value too large.
     Exception
-        What Python raises for the same, such as `NameError`.
+        The same as Python raises, such as `NameError`.
 
     Examples
     --------
@@ -91,9 +91,9 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         try:
             tree = ast.parse(text.strip(), mode="eval")
         except (RecursionError, MemoryError):  # of the parser
-            raise NotAllowed("a deeper one", f"must be nested at most {_DEEPEST} deep") from None
+            raise _too_deep() from None
         evaluation = _Evaluation(text.strip(), names)
-        return evaluation.weighed(evaluation.value(tree.body))
+        return evaluation.checked(evaluation.value(tree.body))
     except NotAllowed as error:
         error.expression = text
         raise
@@ -118,8 +118,8 @@ class _Evaluation:
         if self.steps < 0:
             raise NotAllowed("more", f"must be evaluated in {_STEPS} steps")
 
-    def weighed(self, value: Any) -> Any:
-        """Return a value whose parts are all plain and not too many, as often as they are shown."""
+    def checked(self, value: Any) -> Any:
+        """Return a value whose parts, with repetitions, are all plain and not too many."""
         waiting, weight = [value], 0
         while waiting:
             part = waiting.pop()
@@ -128,23 +128,21 @@ class _Evaluation:
             weight += 1
             if isinstance(part, str):
                 weight += len(part) // 16
-                if len(part) > _MOST:
-                    _refuse_size()
+                _check_size(len(part))
             elif isinstance(part, dict):
                 waiting += [*part.keys(), *part.values()]
             elif isinstance(part, (list, tuple)):
                 waiting += part
-            elif isinstance(part, int) and part.bit_length() > _BITS:
-                raise NotAllowed("a larger one", f"must have integers of at most {_BITS} bits")
-            if weight + len(waiting) > _MOST:
-                _refuse_size()
+            elif isinstance(part, int):
+                _check_bits(part.bit_length())
+            _check_size(weight + len(waiting))
         self.count(weight)
         return value
 
     def copy(self, value: Any, depth: int) -> Any:
         self.count(1)
         if depth > _DEEPEST:
-            raise NotAllowed("a deeper one", f"must be nested at most {_DEEPEST} deep")
+            raise _too_deep()
         if isinstance(value, dict):
             return {
                 self.copy(key, depth + 1): self.copy(dict.__getitem__(value, key), depth + 1)
@@ -152,74 +150,74 @@ class _Evaluation:
             }
         if isinstance(value, list):
             return [self.copy(each, depth + 1) for each in list.__iter__(value)]
-        return self.weighed(value)
+        return self.checked(value)
 
     @contextmanager
     def deeper(self) -> Iterator[None]:
         self.count(1)
         self.depth += 1
         if self.depth > _DEEPEST:
-            raise NotAllowed("a deeper one", f"must be nested at most {_DEEPEST} deep")
+            raise _too_deep()
         yield
         self.depth -= 1
 
     def value(self, node: ast.expr) -> Any:
         """Evaluate a node that must be plain data."""
         with self.deeper():
-            found = self.found(node)
-        if type(found) not in _PLAIN:
-            _refuse_object(found)
-        return found
+            value = self.resolve(node)
+        if type(value) not in _PLAIN:
+            _refuse_object(value)
+        return value
 
-    def found(self, node: ast.expr) -> Any:  # noqa: PLR0911, PLR0912 - one for each kind of node
-        """Evaluate a node; of names and dotted names also functions and spaces."""
+    def resolve(self, node: ast.expr) -> Any:  # noqa: PLR0911, PLR0912 - one for each kind of node
+        """Evaluate a node; names and dotted names may also be functions and namespaces."""
         match node:
             case ast.Name(id=name):
-                return self.named(name)
+                return self.lookup(name)
             case ast.Attribute(value=owner, attr=name):
                 with self.deeper():
-                    return self.member(self.found(owner), name)
+                    return self.member(self.resolve(owner), name)
             case ast.Constant(value=value) if type(value) in _SCALARS:
-                return self.weighed(value)
+                return self.checked(value)
             case ast.UnaryOp(op=op, operand=operand):
                 return _UNARY[type(op)](self.value(operand))
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-                return self.weighed(_BINARY[type(op)](self.value(left), self.value(right)))
+                return self.checked(_BINARY[type(op)](self.value(left), self.value(right)))
             case ast.BoolOp(op=op, values=parts):
                 return self.either(parts, until=isinstance(op, ast.Or))
             case ast.Compare(left=left, ops=ops, comparators=parts):
-                return self.compared(left, ops, parts)
+                return self.compare(left, ops, parts)
             case ast.IfExp(test=test, body=body, orelse=other):
                 return self.value(body if self.value(test) else other)
             case ast.List(elts=parts):
-                return self.weighed([self.value(part) for part in parts])
+                return self.checked([self.value(part) for part in parts])
             case ast.Tuple(elts=parts):
-                return self.weighed(tuple(self.value(part) for part in parts))
+                return self.checked(tuple(self.value(part) for part in parts))
             case ast.Dict(keys=keys, values=parts) if None not in keys:
                 pairs = zip(keys, parts, strict=True)
-                return self.weighed({self.value(k): self.value(v) for k, v in pairs if k})
+                return self.checked({self.value(k): self.value(v) for k, v in pairs if k})
             case ast.Subscript(value=owner, slice=ast.Slice(lower=lower, upper=upper, step=step)):
                 ends = [None if end is None else self.value(end) for end in (lower, upper, step)]
-                return self.weighed(self.value(owner)[slice(*ends)])
+                return self.checked(self.value(owner)[slice(*ends)])
             case ast.Subscript(value=owner, slice=index):
                 return self.value(owner)[self.value(index)]
             case ast.Call(func=function, args=arguments, keywords=keywords):
-                return self.called(function, arguments, keywords)
+                return self.call(function, arguments, keywords)
             case ast.ListComp(
                 elt=element,
                 generators=[
                     ast.comprehension(target=ast.Name(id=name), iter=source, ifs=tests, is_async=0)
                 ],
             ):
-                return self.listed(element, name, source, tests)
+                return self.comprehend(element, name, source, tests)
         raise NotAllowed(self.written(node))
 
     def written(self, node: ast.expr) -> str:
         """Return the beginning of a node as it is written."""
         return (ast.get_source_segment(self.text, node) or type(node).__name__)[:60]
 
-    def named(self, name: str) -> Any:
-        """Return what a name stands for."""
+    def lookup(self, name: str) -> Any:
+        """Return the value of a name."""
         if name.startswith("__"):
             raise NotAllowed(name)
         try:
@@ -228,7 +226,7 @@ class _Evaluation:
             raise NameError(f"name '{name}' is not defined") from None
 
     def member(self, owner: Any, name: str) -> Any:
-        """Return what a dotted name stands for: a key, a member of a space, or a known method."""
+        """Return the value of a dotted name: a key, a member of a namespace, or a known method."""
         if name.startswith("__"):
             raise NotAllowed(f".{name}")
         if type(owner) is dict or (type(owner) not in _PLAIN and isinstance(owner, Mapping)):
@@ -241,21 +239,21 @@ class _Evaluation:
             raise NotAllowed(f".{name}")
         return partial(method, owner)
 
-    def called(self, node: ast.expr, arguments: list[ast.expr], keywords: list[ast.keyword]) -> Any:
+    def call(self, node: ast.expr, arguments: list[ast.expr], keywords: list[ast.keyword]) -> Any:
         """Call a function of the list."""
         with self.deeper():
-            function = self.found(node)
+            function = self.resolve(node)
         if type(function) in _PLAIN:
             raise TypeError(f"{self.written(node)} is no function")
         if not callable(function):
             _refuse_object(function)
-        values = self.weighed([self.value(argument) for argument in arguments])
+        values = self.checked([self.value(argument) for argument in arguments])
         named = {each.arg: self.value(each.value) for each in keywords if each.arg}
         if len(named) < len(keywords) or (named and function is not dict):
             raise NotAllowed(f"{keywords[0].arg or '**'}=")
-        result = self.weighed(function(*values, **named))
+        result = self.checked(function(*values, **named))
         if isinstance(function, partial):  # a method, which may have added to what it is of
-            self.weighed(list(function.args))
+            self.checked(list(function.args))
         return result
 
     def either(self, parts: list[ast.expr], *, until: bool) -> Any:
@@ -267,38 +265,38 @@ class _Evaluation:
                 break
         return value
 
-    def compared(self, left: ast.expr, ops: list[ast.cmpop], parts: list[ast.expr]) -> Any:
+    def compare(self, left: ast.expr, ops: list[ast.cmpop], parts: list[ast.expr]) -> Any:
         """Compare values in a row."""
-        one = self.weighed(self.value(left))
+        one = self.checked(self.value(left))
         holds: Any = True
         for op, part in zip(ops, parts, strict=True):
-            other = self.weighed(self.value(part))
+            other = self.checked(self.value(part))
             holds = _COMPARISONS[type(op)](one, other)
             if not holds:
                 break
             one = other
         return holds
 
-    def listed(
+    def comprehend(
         self, element: ast.expr, name: str, source: ast.expr, tests: list[ast.expr]
     ) -> list[Any]:
-        """Make a list of each element of another; its name is known within it alone."""
-        outer, made = self.names, []
+        """Build a list from each element of another; its name is known inside only."""
+        outer, values = self.names, []
         for each in iter(self.value(source)):
             self.names = ChainMap({name: each}, outer)  # type: ignore[arg-type]
             if all(self.value(test) for test in tests):
-                made.append(self.value(element))
+                values.append(self.value(element))
         self.names = outer
-        return self.weighed(made)  # type: ignore[no-any-return]
+        return self.checked(values)  # type: ignore[no-any-return]
+
+
+def _too_deep() -> NotAllowed:
+    return NotAllowed("a deeper one", f"must be nested at most {_DEEPEST} deep")
 
 
 def _refuse_object(value: object) -> NoReturn:
     kind = "a function" if callable(value) else f"a {type(value).__name__}"
     raise NotAllowed(kind, "must give plain data: numbers, texts, lists and dicts")
-
-
-def _refuse_size() -> NoReturn:
-    raise NotAllowed("more", f"must have texts and values of at most {_MOST} parts")
 
 
 def _times(one: Any, other: Any) -> Any:
@@ -317,7 +315,7 @@ def _power(base: Any, exponent: Any) -> Any:
     return power
 
 
-def _shifted(number: Any, by: Any) -> Any:
+def _shift(number: Any, by: Any) -> Any:
     if isinstance(by, int):
         _check_bits(by)
     return number << by
@@ -331,7 +329,7 @@ def _remainder(one: Any, other: Any) -> Any:
 
 def _check_size(size: int) -> None:
     if size > _MOST:
-        _refuse_size()
+        raise NotAllowed("more", f"must have texts and values of at most {_MOST} parts")
 
 
 def _check_bits(bits: int) -> None:
@@ -346,24 +344,20 @@ def _range(*ends: int) -> list[int]:
     return list(numbers)
 
 
-def _rounded(number: Any, digits: int | None = None) -> Any:
+def _round(number: Any, digits: int | None = None) -> Any:
     if digits is not None:
         _check_bits(abs(digits))
     return round(number, digits)
 
 
-def _replaced(text: str, old: str, new: str) -> str:
+def _replace(text: str, old: str, new: str) -> str:
     _check_size(len(text) + text.count(old) * len(new))
     return text.replace(old, new)
 
 
 def _list_of(function: Callable[..., Any]) -> Callable[..., list[Any]]:
-    """Return a function that gives a list, of one that gives what is not plain."""
+    """Return a function that lists the values of another one, which are not plain data."""
     return lambda *values: list(function(*values))
-
-
-def _sum(values: Any) -> Any:
-    return sum(values)
 
 
 _UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {
@@ -380,7 +374,7 @@ _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.FloorDiv: operator.floordiv,
     ast.Mod: _remainder,
     ast.Pow: _power,
-    ast.LShift: _shifted,
+    ast.LShift: _shift,
     ast.RShift: operator.rshift,
     ast.BitAnd: operator.and_,
     ast.BitOr: operator.or_,
@@ -402,7 +396,7 @@ _METHODS: dict[type, dict[str, Callable[..., Any]]] = {
     str: {
         **{name: getattr(str, name) for name in ("strip", "lstrip", "rstrip", "split")},
         **{name: getattr(str, name) for name in ("lower", "upper", "startswith", "endswith")},
-        "replace": _replaced,
+        "replace": _replace,
     },
     list: {"append": list.append, "index": list.index, "count": list.count},
     dict: {
@@ -410,10 +404,10 @@ _METHODS: dict[type, dict[str, Callable[..., Any]]] = {
         **{name: _list_of(getattr(dict, name)) for name in ("keys", "values", "items")},
     },
 }
-"""Those that public files call; none makes what is larger than the values that go in, or it checks
-before."""
+"""The methods that public files call; none returns more than its arguments hold, or it checks the
+size before."""
 
-# What these make grows faster than what goes in.
+# Their values grow faster than their arguments.
 _GROWING = ("factorial", "comb", "perm", "prod")
 _MATH = {
     name: member
@@ -425,8 +419,8 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     **{each.__name__: each for each in (all, any, dict, divmod, max, min, sorted)},
     **{each.__name__: _list_of(each) for each in (enumerate, reversed, zip)},
     "range": _range,
-    "round": _rounded,
-    "sum": _sum,
+    "round": _round,
+    "sum": lambda values: sum(values),  # noqa: PLW0108 - without a start
 }
 
 NAMES: Mapping[str, Any] = MappingProxyType(
@@ -437,4 +431,4 @@ NAMES: Mapping[str, Any] = MappingProxyType(
         "python": MappingProxyType(_PYTHON),
     }
 )
-"""What xacro gives names to, and is harmless."""
+"""The names of xacro that are harmless."""

@@ -1,23 +1,20 @@
-"""Where the packages are that a model names.
+"""The only access to files that a model names, and the packages that they are in.
 
-They are looked for in the tree of the model, by their manifests, then in the folders that the
-variables of ROS and Gazebo name. Where no manifest has the name, a file of the package may still be
-told by its path. Nothing but manifests is read, and folders are looked into up to a number and a
-depth.
+All that a model consists of is read here and nowhere else: the model itself, its includes, meshes
+and textures, settings in YAML, manifests of packages. A file is read if it
 
-The one door to the files that a model names.
-
-Whatever a model is made of is read here and nowhere else: the model itself, what it includes, its
-meshes and textures, settings in YAML, manifests of packages. A file is read if it
-
-- lies in the folder of the model, in the package round that, in another package of its tree, or in
-  a folder that the user named: one of ``packages=``, or of the variables in which ROS and Gazebo
-  look for packages; or is the one file of the tree that a name fits, though no manifest has that of
-  its package. Links and ``..`` are followed first, so none of them leads out;
+- is in the folder of the model, in the package around that, in another package of its tree, or in a
+  folder that the user named: one of ``packages=``, or of the variables in which ROS and Gazebo look
+  for packages; or is the only file of the tree that a name fits, though no manifest has the name of
+  its package. Links and ``..`` are resolved first, so none of them leads out;
 - is a regular file: a pipe may never answer, a device never end;
 - is not too large, by itself and with all others of its model.
 
 Each refusal is a `ScenarioError` that names the file, the rule and what to do.
+
+Packages are looked for in the tree of the model, by their manifests, then in the folders that the
+variables of ROS and Gazebo name. If no manifest has the name, a file of the package may still be
+identified by its path. Only manifests are read, in folders up to a number and a depth.
 """
 
 from __future__ import annotations
@@ -50,11 +47,11 @@ VARIABLES = {
     "ROS_PACKAGE_PATH": (),
     "ROS_ROOT": (),
 }
-"""By variable where a package is in one of its folders; without a pattern, anywhere below."""
+"""By variable the path of a package in one of its folders; without a pattern, anywhere below."""
 _NAME = re.compile(rb"<name\s*>([^<]+)</name\s*>")
 _ALLOWED = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+ -]*")
 _LARGEST = 64_000  # [bytes] of a manifest
-_FARTHEST = 8  # folders, that of the model and those round it, that may have a repository
+_FARTHEST = 8  # folders, that of the model and those around it, that may have a repository
 _WIDER = 2  # folders above a package that is in no repository
 _DEEPEST = 7  # levels below the folder in which a search starts
 _MOST = 4000  # folders of one search
@@ -78,7 +75,7 @@ _KINDS = {
     stat.S_IFBLK: "a device",
 }
 
-# Nothing that is opened waits, becomes the terminal, or is a link put there in the meantime.
+# What is opened does not block, does not become the terminal, and is not a link swapped in.
 _FLAGS = os.O_RDONLY
 
 for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
@@ -94,7 +91,7 @@ class Packages:
     folder : Path
         That of the model, with all links followed.
     given : mapping of str to Path
-        Folders that the user named, which come first.
+        Folders that the user named, which take precedence.
     read : callable
         Reads so many bytes of a regular file.
 
@@ -115,7 +112,7 @@ class Packages:
     ) -> None:
         self._given = given
         self._read = read
-        self._starts, self._beside = _starts(folder)
+        self._starts, self._siblings = _starts(folder)
 
     def find(self, name: str) -> Path | None:
         """Return the folder of a package; None if there is none."""
@@ -123,14 +120,14 @@ class Packages:
             return self._given[name]
         if not _ALLOWED.fullmatch(name):
             return None
-        return self._in_tree.get(name) or self._named(name) or self._in_ros.get(name)
+        return self._in_tree.get(name) or self._by_variable(name) or self._in_ros.get(name)
 
     def file(self, package: str, inside: str) -> Path | None:
-        """Return the file of a package without a manifest, if its path tells it.
+        """Return the file of a package without a manifest, if its path identifies it.
 
         That is the only file of the tree whose path ends in the name of the package and the path
-        inside, or else in the path inside, if that has a folder. What is near comes first: the
-        package of the model, then what that is part of.
+        inside, or else in the path inside, if that has a folder. The package of the model is
+        searched first, then what it is part of.
         """
         parts = tuple(part for part in inside.split("/") if part not in ("", "."))
         if not parts or ".." in parts or not _ALLOWED.fullmatch(package):
@@ -138,13 +135,13 @@ class Packages:
         for tree in self._trees:
             paths = [folder / parts[-1] for folder, files in tree.items() if parts[-1] in files]
             for ending in ((package, *parts), parts):
-                fit = [path for path in paths if path.parts[-len(ending) :] == ending]
-                if fit and len(ending) > 1:
-                    return fit[0] if len(fit) == 1 else None
+                matches = [path for path in paths if path.parts[-len(ending) :] == ending]
+                if matches and len(ending) > 1:
+                    return matches[0] if len(matches) == 1 else None
         return None
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
-        """List files of the package round the model, or else of its repository or folder."""
+        """List files in the package of the model, or else in its repository or folder."""
         return [
             folder / name
             for folder, names in self._trees[0].items()
@@ -153,18 +150,18 @@ class Packages:
         ]
 
     def hold(self, path: Path) -> bool:
-        """Whether a path, with all links followed, is in a package of the tree."""
+        """Whether a path, with all links resolved, is in a package of the tree."""
         return any(path.is_relative_to(folder) for folder in self._in_tree.values())
 
     @property
     def looked(self) -> str:
-        """Where packages are looked for, for errors."""
-        named = [variable for variable in VARIABLES if os.environ.get(variable)]
-        widest = [*self._starts, *self._beside][-1]
-        return " and in ".join([f"{widest} and below", *named])
+        """The folders and variables that are searched, for errors."""
+        variables = [variable for variable in VARIABLES if os.environ.get(variable)]
+        widest = [*self._starts, *self._siblings][-1]
+        return " and in ".join([f"{widest} and below", *variables])
 
-    def _named(self, name: str) -> Path | None:
-        """Look where a variable says how its folders are laid out."""
+    def _by_variable(self, name: str) -> Path | None:
+        """Look in the folders of variables with a known layout."""
         for variable, patterns in VARIABLES.items():
             for folder in folders(variable):
                 for pattern in patterns:
@@ -180,11 +177,11 @@ class Packages:
 
     @cached_property
     def _in_tree(self) -> dict[str, Path]:
-        """Packages by name, those near the model first."""
-        near: dict[Path, set[str]] = {}
-        for tree in (*self._trees, dict(_within(self._beside))):
-            near |= tree
-        return self._with_manifest(near.items())
+        """Packages by name, those close to the model first."""
+        folders: dict[Path, set[str]] = {}
+        for tree in (*self._trees, dict(_within(self._siblings))):
+            folders |= tree
+        return self._with_manifest(folders.items())
 
     @cached_property
     def _in_ros(self) -> dict[str, Path]:
@@ -195,20 +192,20 @@ class Packages:
 
     def _with_manifest(self, folders: Iterable[tuple[Path, set[str]]]) -> dict[str, Path]:
         """Look for manifests; of two packages of one name, the first counts."""
-        found: dict[str, Path] = {}
+        packages: dict[str, Path] = {}
         for folder, files in folders:
             for name in self._names(folder, files):
-                found.setdefault(name, folder)
-        return found
+                packages.setdefault(name, folder)
+        return packages
 
     def _names(self, folder: Path, files: set[str]) -> list[str]:
-        """Return the names of a package: ROS goes by the manifest, Gazebo by the folder."""
+        """Return the names of a package: ROS uses the manifest, Gazebo the folder."""
         names = [] if {"manifest.xml", "model.config"}.isdisjoint(files) else [folder.name]
         for manifest in ("package.xml", "model.config"):
             if manifest in files:
                 try:
                     data = self._read(folder / manifest, _LARGEST)
-                except OSError:  # a pipe, say: what it may name is not known
+                except OSError:  # a pipe, say
                     continue
                 stated = _NAME.search(_without_comments(data))
                 names += [stated[1].decode(errors="replace").strip()] if stated else []
@@ -216,7 +213,7 @@ class Packages:
 
 
 class Files:
-    """The files of one model, of which each that is read counts.
+    """The files of one model, whose sizes are added up as they are read.
 
     Parameters
     ----------
@@ -228,9 +225,9 @@ class Files:
     Attributes
     ----------
     folder : Path
-        That of the model, with all links followed.
+        That of the model, with all links resolved.
     doubts : list of Doubt
-        Files that were taken for those of packages that are not found.
+        Files that stand in for those of packages that are not found.
 
     Examples
     --------
@@ -254,7 +251,7 @@ class Files:
         self._given = {name: _real(folder, "packages") for name, folder in packages.items()}
         self._packages = Packages(self.folder, self._given, _read_regular)
         named = [folder for variable in VARIABLES for folder in folders(variable)]
-        self._roots = [_package_round(self.folder), *self._given.values(), *named]
+        self._roots = [_package_around(self.folder), *self._given.values(), *named]
         self._left = LARGEST_TOGETHER
         self._taken: dict[str, Path] = {}
         self.doubts: list[Doubt] = []
@@ -267,7 +264,7 @@ class Files:
 
     @property
     def looked(self) -> str:
-        """Where packages are looked for, for errors."""
+        """The folders and variables that are searched, for errors."""
         return self._packages.looked
 
     def model(self) -> bytes:
@@ -283,7 +280,7 @@ class Files:
             Relative to the folder of the model, absolute, or with ``package://``, ``model://``,
             ``file://`` or ``$(find ...)``.
         at : str
-            Who names it, as the path of errors.
+            The place that names it, as the path of errors.
         most : int
             [bytes] The largest size.
 
@@ -295,8 +292,7 @@ class Files:
         Raises
         ------
         ScenarioError
-            If it must not or cannot be read; the system's error, if there is one, is the cause. See
-            `is_absent`.
+            If it must not or cannot be read; the system's error, if any, is its cause.
         """
         path = self.path(name, at=at)
         inside = any(path.is_relative_to(root) for root in self._roots)
@@ -324,15 +320,15 @@ class Files:
         return self._packages.find(name)
 
     def settings(self) -> list[Path]:
-        """List the files of YAML in the package round the model, or else its repository."""
+        """List the YAML files in the package of the model, or else in its repository."""
         return self._packages.files((".yaml", ".yml"))
 
     def path(self, name: str, *, at: str) -> Path:
-        """Say where a file is that a model names; see `read`."""
-        found = _IN_PACKAGE.fullmatch(name)
-        if found is None:
+        """Return the path of a file that a model names; see `read`."""
+        match = _IN_PACKAGE.fullmatch(name)
+        if match is None:
             return _real(self.folder / name.removeprefix("file://"), at)
-        package, inside = found[1] or found[2] or "", found[3]
+        package, inside = match[1] or match[2] or "", match[3]
         folder = self.package(package)
         if folder is not None:
             return _real(folder / inside.lstrip("/"), at)
@@ -352,7 +348,7 @@ class Files:
 
 
 def folders(variable: str) -> list[Path]:
-    """List the folders that an environment variable names, with all links followed."""
+    """List the folders that an environment variable names, with all links resolved."""
     parts = os.environ.get(variable, "").split(os.pathsep)
     return [Path(os.path.realpath(part)) for part in parts if part]
 
@@ -363,7 +359,7 @@ def is_absent(error: BaseException) -> bool:
 
 
 def reason_of(error: ScenarioError) -> str:
-    """Say why a file could not be read, and which one it is if it is not there."""
+    """Return why a file could not be read, and which one it is if it is missing."""
     cause = error.__cause__
     if isinstance(cause, FileNotFoundError) and cause.strerror != _ELSEWHERE:
         return f"there is no file {cause.filename}"
@@ -371,10 +367,10 @@ def reason_of(error: ScenarioError) -> str:
 
 
 def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
-    """Say where to look for packages, the nearest first: the package, then what it is part of.
+    """Return where to look for packages: the innermost package, then its repository.
 
-    Without a repository that is the outermost package; folders above may have packages beside it,
-    but not those in which anything may lie.
+    Without a repository, that is the outermost package. Folders above it, which come second, may
+    have sibling packages, unless they are a home or a folder for temporary files.
     """
     near = [folder, *folder.parents][:_FARTHEST]
     packages = [each for each in near if any((each / name).is_file() for name in MANIFESTS)]
@@ -383,14 +379,14 @@ def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
             return list(dict.fromkeys([*packages[:1], each])), []
     if packages:
         wider = packages[-1].parents[:_WIDER]
-        all_in = (Path.home(), Path(os.path.realpath(tempfile.gettempdir())))
-        beside = [each for each in wider if not any(wide.is_relative_to(each) for wide in all_in)]
-        return list(dict.fromkeys([packages[0], packages[-1]])), beside
+        mixed = (Path.home(), Path(os.path.realpath(tempfile.gettempdir())))
+        siblings = [each for each in wider if not any(wide.is_relative_to(each) for wide in mixed)]
+        return list(dict.fromkeys([packages[0], packages[-1]])), siblings
     return [folder], []
 
 
 def _within(starts: Iterable[Path]) -> Iterator[tuple[Path, set[str]]]:
-    """Go through folders with what is in them, those near a start first, each once."""
+    """Yield folders with the names in them, those close to a start first, each once."""
     seen: set[Path] = set()
     for start in starts:
         level = [start]
@@ -402,14 +398,14 @@ def _within(starts: Iterable[Path]) -> Iterator[tuple[Path, set[str]]]:
                 if len(seen) == _MOST:
                     return
                 seen.add(folder)
-                files, inside = _listed(folder)
+                files, inside = _list(folder)
                 yield folder, files
                 below += inside
             level = below
 
 
-def _listed(folder: Path) -> tuple[set[str], list[Path]]:
-    """List files, and folders in order, of a folder; hidden and linked ones are passed over."""
+def _list(folder: Path) -> tuple[set[str], list[Path]]:
+    """List the names and the folders in a folder; hidden and linked folders are skipped."""
     try:
         with os.scandir(folder) as entries:
             shown = sorted(
@@ -428,7 +424,7 @@ def _without_comments(data: bytes) -> bytes:
 
 
 def _real(path: str | os.PathLike[str], at: str) -> Path:
-    """Follow all links; a circle of them is refused when it is opened."""
+    """Resolve all links; a circle of them is refused when it is opened."""
     try:
         return Path(os.path.realpath(path))
     except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
@@ -436,20 +432,20 @@ def _real(path: str | os.PathLike[str], at: str) -> Path:
 
 
 def _read_regular(path: Path, most: int) -> bytes:
-    """Read so many bytes of what was opened, which also says what it is: nothing comes between."""
+    """Read so many bytes of a file that is checked after it is opened: it cannot be swapped."""
     number = os.open(path, _FLAGS)
     try:
         kind = stat.S_IFMT(os.fstat(number).st_mode)
         if kind != stat.S_IFREG:
-            raise OSError(errno.EINVAL, f"{_KINDS.get(kind, 'what it is')} is none")
+            raise OSError(errno.EINVAL, f"it is {_KINDS.get(kind, 'no file')}")
         with os.fdopen(number, "rb", closefd=False) as file:
             return file.read(most) or b""  # None if the system has nothing ready
     finally:
         os.close(number)
 
 
-def _package_round(folder: Path) -> Path:
-    """Return the innermost folder with a manifest round a folder, or else that itself."""
+def _package_around(folder: Path) -> Path:
+    """Return the innermost folder with a manifest around a folder, or else that itself."""
     for each in (folder, *folder.parents):
         if any(os.path.exists(each / name) for name in MANIFESTS):
             return each

@@ -194,7 +194,7 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
         data, doubts = expand_xacro(
             files,
             data,
-            parse_xml(data, name),  # entities are refused before anything else reads the file
+            name,
             trusted=options.trusted,
             arguments=options.arguments,
             leave_out=options.leaves_out_missing,

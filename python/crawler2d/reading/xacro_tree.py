@@ -19,7 +19,7 @@ from crawler2d.reading.log import Doubt
 
 __all__ = ["XacroFiles", "XacroMacros"]
 
-# What xacro took as its own without a prefix until 2016, if it has these attributes.
+# Elements that xacro took as its own without a prefix until 2016, if they have these attributes.
 _OLD = {
     "arg": {"name", "default"},
     "if": {"value"},
@@ -40,6 +40,7 @@ OWN_OF_URDF = frozenset(
     )
 )
 """Elements that are never calls of a macro without a prefix."""
+
 _PLACE = "place"
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^)\s]+)\s*\)")
 _FINDS = ("find", "find-pkg-share")
@@ -47,29 +48,29 @@ _ARGUMENT = re.compile(r"\$\(arg\s+([^)\s]+)\s*\)")
 
 
 class XacroFiles:
-    """Takes the place of `open`, and of what in xacro finds packages and parses files.
+    """Replaces `open`, and the functions of xacro that find packages and parse files.
 
     Parameters
     ----------
     files : Files
-        Those of the model.
+        The files of the model.
     file : str
         Name of the model's file.
     text : str
-        What it holds.
+        Its content.
     leave_out : bool
-        Whether includes that are not there are left out, or refused.
+        Whether missing includes are left out, or refused.
 
     Attributes
     ----------
     texts : dict of str to str
-        What was read, by path.
+        The texts that were read, by path.
     doubts : list of Doubt
-        What was left out and taken, in its order.
+        What was left out or replaced.
     left_out : list of (str, str)
-        The includes that were left out: file and line, and what was named.
+        The includes that were left out: file and line, and name.
     defaults : dict of str to str
-        Those of arguments.
+        The defaults of arguments.
     """
 
     def __init__(self, files: Files, file: str, text: str, *, leave_out: bool) -> None:
@@ -79,23 +80,22 @@ class XacroFiles:
         self.doubts: list[Doubt] = []
         self.left_out: list[tuple[str, str]] = []
         self.defaults: dict[str, str] = {}
-        self._include: minidom.Element | None = None  # that is at work
-        self._checked: dict[str, bytes] = {}  # of an include, which is there
+        self._include: minidom.Element | None = None  # the current one
+        self._includes: dict[str, bytes] = {}  # their contents, before they are parsed
 
     def attach(self, xacro: Any, substitution: Any, own: Any) -> None:
-        """Take the places in xacro; `own` are those that xacro has of its own."""
+        """Replace functions of xacro; `own` has the original ones."""
 
         def resolve(text: str, context: Any = None, filename: Any = None) -> Any:
-            return own.resolve_args(
-                re.sub(r"^\$\(find-pkg-share\s", "$(find ", text), context, filename
-            )
+            text = re.sub(r"^\$\(find-pkg-share\s", "$(find ", text)
+            return own.resolve_args(text, context, filename)
 
         def included(element: minidom.Element, *others: Any) -> None:
             self._include = element
             own.process_include(element, *others)
 
         xacro.process_include = included
-        xacro.get_include_files = lambda spec, symbols: self._there(
+        xacro.get_include_files = lambda spec, symbols: self._existing(
             own.get_include_files(spec, symbols)
         )
         xacro.abs_filename_spec = lambda spec: self._absolute(own.abs_filename_spec, spec)
@@ -113,7 +113,7 @@ class XacroFiles:
         return io.BytesIO(data) if mode == "rb" else io.StringIO(data.decode(), newline=None)
 
     def find(self, name: str) -> str:
-        """Return the folder of a package, or its name as it is: it may not be needed."""
+        """Return the folder of a package, or the call itself: it may not be needed."""
         folder = self.files.package(name)
         if folder is not None:
             return str(folder)
@@ -121,7 +121,7 @@ class XacroFiles:
             return f"$(find {name})"
         rule = (
             f"must have its packages, which are looked for in {self.files.looked}:"
-            ' packages={name: folder} says where each is, missing="leave_out" leaves out includes'
+            ' packages={name: folder} gives their folders, missing="leave_out" leaves out includes'
             " of others"
         )
         others = _FIND.findall(next(iter(self.texts.values())))
@@ -130,17 +130,17 @@ class XacroFiles:
         raise ScenarioError(place, ", ".join(dict.fromkeys([*lost, name])), rule)
 
     def place(self, words: list[str], first: str = "") -> str:
-        """Return file and line where one of some words stands first: of a file, or of them all."""
+        """Return file and line of the first of some words: in one file, or in all."""
         for path in (first, *self.texts):
             text = self.texts.get(path, "")
             spelled = [each for word in words if word for each in (word, escape(word))]
-            found = [text.find(word) for word in spelled if word in text]
-            if found:
-                return f"{Path(path).name}:{text.count(chr(10), 0, min(found)) + 1}"
+            starts = [text.find(word) for word in spelled if word in text]
+            if starts:
+                return f"{Path(path).name}:{text.count(chr(10), 0, min(starts)) + 1}"
         return next(iter(self.texts))
 
     def lacking(self) -> list[str]:
-        """List arguments that some file asks for and none declares."""
+        """List arguments that a file uses and none declares."""
         asked = [name for text in self.texts.values() for name in _ARGUMENT.findall(text)]
         return [name for name in dict.fromkeys(asked) if name not in self.defaults]
 
@@ -150,38 +150,38 @@ class XacroFiles:
         return data
 
     def _absolute(self, absolute: Callable[[str], str], spec: str) -> str:
-        """Say where a file is that xacro names, also one of a package that was not found."""
+        """Return the path of a file that xacro names, also in a package that was not found."""
         if not spec.removeprefix("file://").startswith(("$(find ", "package://")):
             return absolute(spec)
         return str(self.files.path(spec, at=self.place([Path(spec).name])))
 
-    def _there(self, paths: Iterator[str]) -> Iterator[str]:
-        """Give the paths of an include, without those that are left out."""
+    def _existing(self, paths: Iterator[str]) -> Iterator[str]:
+        """Yield the paths of an include, without those that are left out."""
         assert self._include is not None
-        at, optional = place_of(self._include), self._include.getAttribute("optional")
+        at = _place_of(self._include)
+        is_optional = self._include.getAttribute("optional") in ("true", "True", "1")
         name = ""
         try:
             for path in paths:
                 name = str(Path(path).absolute())
-                self._checked[path] = self._read(name, at)
+                self._includes[path] = self._read(name, at)
                 yield path
         except ScenarioError as error:
-            optional_too = optional in ("true", "True", "1")
-            if not is_absent(error) or not (self.leave_out or optional_too):
+            if not is_absent(error) or not (self.leave_out or is_optional):
                 raise
-            if not optional_too:
-                # One of a package that is not there has no path. An error may cut names short.
+            if not is_optional:
+                # One of a package that is missing has no path. An error may cut names short.
                 name = name or str(getattr(error.__cause__, "filename", error.value))
                 self.left_out.append((at, name))
                 self.doubts.append((at, name, f"is left out: the file {error.rule}"))
 
     def _parse(self, text: str | None, path: str | None = None) -> minidom.Document:
-        """Make the tree of the model's text, or of an include."""
+        """Return the document of the model's text, or of an include."""
         if text is not None:
-            document, doubts = tree_of_text(text, next(iter(self.texts)))
+            document, doubts = _dom_of(text, next(iter(self.texts)))
         else:
             assert path is not None
-            document, doubts = tree_of_text(self._checked.pop(path), Path(path).name)
+            document, doubts = _dom_of(self._includes.pop(path), Path(path).name)
         self.doubts += doubts
         for each in document.getElementsByTagName("xacro:arg"):
             self.defaults.setdefault(each.getAttribute("name"), each.getAttribute("default"))
@@ -189,15 +189,15 @@ class XacroFiles:
 
 
 class XacroMacros:
-    """Takes the place of what in xacro defines macros and calls them.
+    """Replaces the functions of xacro that define and call macros.
 
-    Old xacro took macros as known before they are defined. So whoever meets such a call goes
-    through the file a second time, with the macros of the first as `known`.
+    Old xacro allowed calls of macros before their definition. A file with such a call is expanded a
+    second time, with the macros of the first pass as `known`.
 
     Parameters
     ----------
     files : XacroFiles
-        What is read, and what is add_doubts.
+        The files, with their doubts.
     leave_out : bool
         Whether calls of unknown macros are left out, or refused.
     known : mapping of str to Any
@@ -219,17 +219,17 @@ class XacroMacros:
         self.unknown: set[str] = set()
 
     def attach(self, xacro: Any, own: Any) -> None:
-        """Take the places in xacro; `own` are those that xacro has of its own."""
-        define, call, resolve = own.grab_macro, own.handle_macro_call, own.resolve_macro
+        """Replace functions of xacro; `own` has the original ones."""
+        define, call = own.grab_macro, own.handle_macro_call
 
         def defined(element: minidom.Element, macros: Any) -> None:
             name = element.getAttribute("name").removeprefix("xacro:")
             define(element, macros)
             self.defined[name] = macros[name]
 
-        def known(name: str, macros: Any, symbols: Any) -> Any:
+        def resolve(name: str, macros: Any, symbols: Any) -> Any:
             try:
-                macro = resolve(name, macros, symbols)[2]
+                macro = own.resolve_macro(name, macros, symbols)[2]
             except (KeyError, TypeError):  # of what is no macro, or no namespace
                 return None
             return macro if isinstance(macro, own.Macro) else None
@@ -239,7 +239,7 @@ class XacroMacros:
             prefixed = name != node.tagName
             if node.tagName == "xacro:call" or (not prefixed and name in OWN_OF_URDF):
                 return call(node, macros, symbols)
-            macro = known(name, macros, symbols)
+            macro = resolve(name, macros, symbols)
             if macro is None and name in self.known:
                 macro = macros[name] = self.known[name]
                 self.note(node, "is a macro that is defined later, which old xacro allowed")
@@ -259,7 +259,7 @@ class XacroMacros:
 
     def note(self, node: minidom.Element, reason: str) -> None:
         """Doubt a call."""
-        self.files.doubts.append((place_of(node), f"<{node.tagName}>", reason))
+        self.files.doubts.append((_place_of(node), f"<{node.tagName}>", reason))
 
     def fits(self, node: minidom.Element, macro: Any) -> bool:
         """Whether an element without the prefix has the parameters of a macro, and its blocks."""
@@ -275,22 +275,16 @@ class XacroMacros:
         )
 
 
-def tree_of_text(data: str | bytes, file: str) -> tuple[minidom.Document, list[Doubt]]:
-    """Make the tree of a file.
+def _place_of(node: minidom.Element) -> str:
+    """Return file and line of an element, or of the one that it is a copy of."""
+    place: str = node.getUserData(_PLACE) or ""
+    return place
 
-    Parameters
-    ----------
-    data : str or bytes
-        What it holds.
-    file : str
-        Its name, for the lines.
 
-    Returns
-    -------
-    document : Document
-        With the place of each element; see `place_of`.
-    doubts : list of Doubt
-        One if it has elements of old xacro.
+def _dom_of(data: str | bytes, file: str) -> tuple[minidom.Document, list[Doubt]]:
+    """Return the document of a file, and a doubt if it has elements of old xacro.
+
+    Each element has its line, see `_place_of`.
 
     Raises
     ------
@@ -313,32 +307,25 @@ def tree_of_text(data: str | bytes, file: str) -> tuple[minidom.Document, list[D
     return document, [(place, name, f"is taken as one of xacro, without its prefix{others}")]
 
 
-def place_of(node: minidom.Element) -> str:
-    """Return file and line of an element of a tree, or of the one that it is a copy of."""
-    place: str = node.getUserData(_PLACE) or ""
-    return place
-
-
 def _is_old(node: minidom.Element) -> bool:
-    """Whether an element is one of xacro without the prefix, and none of a plugin's own."""
+    """Whether an element is one of xacro without the prefix, and not a plugin's own."""
     wanted = _OLD.get(node.tagName)
     if wanted is None or not wanted <= set(node.attributes.keys()):
         return False
     filled = any(each.nodeType == each.ELEMENT_NODE for each in node.childNodes)
-    if node.tagName == "property" and not filled and not node.hasAttribute("value"):
-        return False
-    if node.tagName == "macro" and not filled:
+    can_be_empty = node.tagName != "macro" and (
+        node.tagName != "property" or node.hasAttribute("value")
+    )
+    if not filled and not can_be_empty:
         return False
     outer: Any = node.parentNode
-    while outer is not None:
-        if outer.nodeName == "plugin":
-            return False
+    while outer is not None and outer.nodeName != "plugin":
         outer = outer.parentNode
-    return True
+    return outer is None
 
 
 class _Copied:
-    """Lets a copy of an element be where the element is."""
+    """Gives a copy of an element the line of the original."""
 
     def handle(self, _operation: int, key: str, data: Any, _source: Any, copy: Any) -> None:
         copy.setUserData(key, data, self)
