@@ -20,10 +20,10 @@ from tests.writing.drawn import drawn
 TAPERED = c2d.GearWheel(grouser_count=7, base_thickness=0.02, tip_thickness=0.004)
 
 
-def tree_of(robot: c2d.Robot, form: Format = SDF) -> Tree:
+def tree_of(robot: c2d.Robot, target: Format = SDF) -> Tree:
     text = robot._alone()
     plain = json.loads(text)["robot"]
-    return model_of(plain, text, across_of(plain["gauge"], None, None), friction=1.0, form=form)
+    return model_of(plain, text, across_of(plain["gauge"], None, None), friction=1.0, target=target)
 
 
 def depth_in(shape: Shape, points: np.ndarray) -> np.ndarray:

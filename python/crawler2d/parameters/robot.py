@@ -573,13 +573,13 @@ class Robot(Parameters):
         >>> c2d.read_robot(path).robot.mass == robot.mass
         True
         """
-        from crawler2d.writing.export import written_world  # noqa: PLC0415 - as above
+        from crawler2d.writing.export import export_world  # noqa: PLC0415 - as above
 
         if not isinstance(terrain, Terrain):
             raise ScenarioError("terrain", terrain, "must be a terrain")
         text = Form(self, terrain, drive=Drive(speed=0.0), solver=Solver(time_step=1e-5)).to_json()
         widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return written_world(text, self._alone(), path, **widths)
+        return export_world(text, self._alone(), path, **widths)
 
     @property
     def in_words(self) -> str:
@@ -601,9 +601,9 @@ class Robot(Parameters):
         path: str | os.PathLike[str] | None,
         **how: Any,
     ) -> str:
-        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+        from crawler2d.writing.export import export_robot  # noqa: PLC0415 - costs nothing until used
 
-        return written(self._alone(), format_, path, **how)
+        return export_robot(self._alone(), format_, path, **how)
 
     def _repr_html_(self) -> str | None:
         """Show side view and main figures in a notebook; a broken robot is shown as text."""

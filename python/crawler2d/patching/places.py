@@ -11,7 +11,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Link, Pose, Tree
 from crawler2d.patching.changes import Change
 from crawler2d.reading.sdf import MODEL
-from crawler2d.writing.document import Document, Span, joint_in, links_in, written
+from crawler2d.writing.document import Document, Span, joint_in, lengths, links_in
 from crawler2d.writing.formats import numbers
 
 __all__ = ["change_mjcf", "change_sdf", "change_urdf", "copied", "items_about", "names_of"]
@@ -121,7 +121,7 @@ def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> 
         document.multiply(joint, [change.inertia], "armature")
         if not has_rotor and change.joint.armature > 0.0 and change.inertia != 1.0:  # by a class
             rotor = change.inertia * change.joint.armature
-            document.set_attribute(joint, "armature", written([rotor]))
+            document.set_attribute(joint, "armature", lengths([rotor]))
     _add_mjcf_grousers(document, body, change, tree.by_name[change.link].pose)
 
 
@@ -174,7 +174,7 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
         shift = tree.by_name[change.joint.parent].pose.turn.T @ change.shift
         origin = joint.only("origin")
         if origin is None:
-            document.append(joint, f'<origin xyz="{written(shift)}"/>')
+            document.append(joint, f'<origin xyz="{lengths(shift)}"/>')
         else:
             document.add_to(origin, shift.tolist(), "xyz")
     limit = joint.only("limit")
@@ -240,11 +240,11 @@ def _change_body(document: Document, body: Span, change: Change, link: Link) -> 
             if shape is None:
                 _refuse_body(body.name, "geoms of a class", "must state the sizes of its wheels")
             sizes = [change.round_size * shape.radius, 0.5 * shape.length]
-            document.set_attribute(geom, "size", written(sizes))
+            document.set_attribute(geom, "size", lengths(sizes))
     if inertial is None and (change.share, change.round_size) != (1.0, 1.0) and link.mass > 0.0:
         if len(body.all("geom")) != 1:
             _refuse_body(body.name, "no <inertial>", "must state its mass, for wheels to share it")
-        document.set_attribute(body.all("geom")[0], "mass", written([change.share * link.mass]))
+        document.set_attribute(body.all("geom")[0], "mass", lengths([change.share * link.mass]))
 
 
 def _above(span: Span) -> list[str]:
@@ -258,7 +258,7 @@ def _change_motor(document: Document, motor: Span, change: Change) -> None:
     elif change.effort != 1.0:
         gear = motor.attributes.get("gear", "1").split()
         document.set_attribute(
-            motor, "gear", " ".join([written([float(gear[0]) * change.effort]), *gear[1:]])
+            motor, "gear", " ".join([lengths([float(gear[0]) * change.effort]), *gear[1:]])
         )
     if motor.tag in ("velocity", "intvelocity"):
         document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
@@ -271,17 +271,17 @@ def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pos
     alike = {} if geom is None else geom.attributes
     given = "".join(f' {name}="{alike[name]}"' for name in _INHERITED if name in alike)
     for shape, place in change.grousers_on(pose):
-        where = f'pos="{written(place.place)}" quat="{numbers(place.quaternion)}"'
-        size = f'size="{written(0.5 * shape.size)}"'
+        where = f'pos="{lengths(place.place)}" quat="{numbers(place.quaternion)}"'
+        size = f'size="{lengths(0.5 * shape.size)}"'
         # Its mass is that of the wheel already; without a name, as names must differ.
         document.append(body, f'<geom type="box" {where} {size} mass="0"{given}/>')
 
 
 def _move(document: Document, element: Span, pose: Span | None, shift: Array) -> None:
     if pose is None:
-        document.append(element, f"<pose>{written([*shift, 0.0, 0.0, 0.0])}</pose>")
+        document.append(element, f"<pose>{lengths([*shift, 0.0, 0.0, 0.0])}</pose>")
     elif not pose.text:
-        document.set_text(pose, written([*shift, 0.0, 0.0, 0.0]))
+        document.set_text(pose, lengths([*shift, 0.0, 0.0, 0.0]))
     else:
         document.add_to(pose, shift.tolist())
 
@@ -305,8 +305,8 @@ def _add_sdf_grousers(document: Document, link: Span, change: Change, pose: Pose
     surface = None if first is None else first.only("surface")
     of_wheel = "" if surface is None else document.source(surface)
     for shape, place in change.grousers_on(pose):
-        pose_text = f"<pose>{written(place.place)} {numbers(place.rpy)}</pose>"
-        box = f"<geometry><box><size>{written(shape.size)}</size></box></geometry>"
+        pose_text = f"<pose>{lengths(place.place)} {numbers(place.rpy)}</pose>"
+        box = f"<geometry><box><size>{lengths(shape.size)}</size></box></geometry>"
         for tag, more in (("collision", of_wheel), ("visual", "")):
             document.append(
                 link, f'<{tag} name="{shape.name}_{tag}">{pose_text}{box}{more}</{tag}>'
@@ -315,7 +315,7 @@ def _add_sdf_grousers(document: Document, link: Span, change: Change, pose: Pose
 
 def _add_urdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
     for shape, place in change.grousers_on(pose):
-        origin = f'<origin xyz="{written(place.place)}" rpy="{numbers(place.rpy)}"/>'
-        box = f'<geometry><box size="{written(shape.size)}"/></geometry>'
+        origin = f'<origin xyz="{lengths(place.place)}" rpy="{numbers(place.rpy)}"/>'
+        box = f'<geometry><box size="{lengths(shape.size)}"/></geometry>'
         for tag in ("collision", "visual"):
             document.append(link, f'<{tag} name="{shape.name}_{tag}">{origin}{box}</{tag}>')

@@ -1,4 +1,4 @@
-"""What runs on chassis and flippers in side view: masses, widths, and what a format refuses."""
+"""Wheels and belts of chassis and flippers in side view, masses, widths, and limits of formats."""
 
 from __future__ import annotations
 
@@ -24,15 +24,16 @@ __all__ = [
     "Wheel",
     "across_of",
     "carriers_of",
-    "left_of",
     "refuse_tapering",
-    "refuse_unheld",
+    "refuse_unsupported",
+    "remainder",
     "tensor",
 ]
 
 # Of the gauge, and of the track: those of Absolem's public model are 97 mm wide at a gauge of
 # 397 mm, and those of its flippers half as wide, against the outside of the tracks.
 _TRACK = 0.25
+
 _FLIPPER = 0.5
 
 # A body with less than this share of the mass or the moment of inertia would make a simulation
@@ -49,7 +50,7 @@ _REASONS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Across:
-    """Widths and lateral places.
+    """Widths and lateral positions.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ class Across:
 
     @property
     def flippers(self) -> float:
-        """[m] Lateral place of the left flippers: outside, against the track."""
+        """[m] Lateral position of the left flippers: outside, against the track."""
         return 0.5 * (self.gauge + self.track_width + self.flipper_width)
 
 
@@ -128,7 +129,7 @@ class Carrier:
     end : {"", "front", "rear"}
         Of the robot; empty for the chassis.
     surface : {"wheels", "belt", "grouser_belt", "segmental", "force"}
-        What meets the ground; skids and free wheels are "force".
+        The contact with the ground; skids and free wheels are "force".
     middle : ndarray, shape (2,)
         [m] The middle of its frame in the chassis frame, flippers at their angle.
     direction : ndarray, shape (2,)
@@ -152,7 +153,7 @@ class Carrier:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Format:
-    """What a format can hold.
+    """The abilities of a format.
 
     Parameters
     ----------
@@ -161,11 +162,11 @@ class Format:
     moves_surfaces : bool
         Whether it can move the surface of a shape, as a belt needs.
     has_hulls : bool
-        Whether it can hold the corners of a convex hull.
+        Whether it can represent the corners of a convex hull.
     has_rotors : bool
-        Whether it can hold the rotor inertia of a motor at its joint, and the gain of a servo.
+        Whether it can represent the rotor inertia of a motor at its joint, and the gain of a servo.
     reserved : str
-        A pattern of names that it keeps for itself.
+        A pattern of names that it reserves.
     """
 
     name: str
@@ -200,33 +201,6 @@ def across_of(gauge: float, track_width: float | None, chassis_width: float | No
     )
 
 
-def rest(whole: Part, parts: Iterable[Part]) -> Part | None:
-    """Return what is left of a whole without its parts; None if no body can be that.
-
-    Examples
-    --------
-    >>> rod = Part(mass=3.0, center=np.zeros(2), inertia=0.5)
-    >>> tip = Part(mass=1.0, center=np.array([0.5, 0.0]), inertia=0.0)
-    >>> left = rest(rod, [tip])
-    >>> left.mass, left.center.tolist(), round(left.inertia, 3)
-    (2.0, [-0.25, 0.0], 0.125)
-    """
-    parts = list(parts)
-    mass = whole.mass - sum(part.mass for part in parts)
-    if not mass >= _LEAST * whole.mass:
-        return None
-    moment: Array = whole.mass * whole.center - sum(
-        (part.mass * part.center for part in parts), np.zeros(2)
-    )
-    center = moment / mass
-    inertia = whole.inertia - mass * _squared(center - whole.center)
-    for part in parts:
-        inertia -= part.inertia + part.mass * _squared(part.center - whole.center)
-    if not inertia >= _LEAST * whole.inertia:
-        return None
-    return Part(mass=mass, center=center, inertia=inertia)
-
-
 def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
     """[kg m^2] Widen a moment of inertia to three axes: x along it, y across, z up.
 
@@ -236,14 +210,12 @@ def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
     """
     along = part.inertia * length**2 / (length**2 + height**2)
     across = part.mass * width**2 / 12.0
-    moments: Array = np.diag(
-        [part.inertia - along + across, part.inertia, along + across],
-    )
+    moments: Array = np.diag([part.inertia - along + across, part.inertia, along + across])
     return moments
 
 
 def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
-    """List what carries something, the chassis first.
+    """List the carriers of wheels and belts, the chassis first.
 
     Parameters
     ----------
@@ -284,15 +256,15 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
     return found
 
 
-def left_of(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Part | None, bool]:
-    """Return what is left without parts and wheels, and whether these are hoops.
+def remainder(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Part | None, bool]:
+    """Return what is left of a whole without parts and wheels, and whether these are hoops.
 
     A wheel of a given moment of inertia is lightest as a hoop. It is one only where uniform wheels
     would leave too little.
     """
     wheels = list(wheels)
     for is_hoop in (False, True):
-        left = rest(whole, [*parts, *(wheel.part(is_hoop=is_hoop) for wheel in wheels)])
+        left = _rest(whole, [*parts, *(wheel.part(is_hoop=is_hoop) for wheel in wheels)])
         if left is not None:
             return left, is_hoop
     return None, True
@@ -306,40 +278,42 @@ def track_of(robot: dict[str, Any], end: str) -> tuple[str, dict[str, Any]]:
     return "robot.track", robot["track"]
 
 
-def refuse_unheld(robot: dict[str, Any], carriers: Iterable[Carrier], form: Format) -> None:
-    """Refuse a robot whose tracks or name a format cannot hold.
+def refuse_unsupported(robot: dict[str, Any], carriers: Iterable[Carrier], target: Format) -> None:
+    """Refuse a robot whose tracks or name a format cannot represent.
 
     Parameters
     ----------
     robot : dict
         As in a scenario in JSON.
     carriers : iterable of Carrier
-        What runs on its chassis and flippers.
-    form : Format
+        Its chassis and flippers.
+    target : Format
         The format.
 
     Raises
     ------
     ScenarioError
-        If the track, or that of the flippers, is one of those that no model file holds, or a belt
-        where surfaces do not move; or if the name cannot be written.
+        If the track, or that of the flippers, is one that no model file represents, or a belt where
+        surfaces do not move; or if the name cannot be written.
     """
     for carrier in carriers:
-        if carrier.surface == "wheels" or (carrier.surface == "belt" and form.moves_surfaces):
+        if carrier.surface == "wheels" or (carrier.surface == "belt" and target.moves_surfaces):
             continue
         path, track = track_of(robot, carrier.end)
-        held = "wheels or a smooth belt" if form.moves_surfaces else "wheels"
-        reason = _REASONS[carrier.surface].format(form.name)
-        raise ScenarioError(f"{path}.kind", track["kind"], f"must be {held}: {reason}")
+        supported = "wheels or a smooth belt" if target.moves_surfaces else "wheels"
+        reason = _REASONS[carrier.surface].format(target.name)
+        raise ScenarioError(f"{path}.kind", track["kind"], f"must be {supported}: {reason}")
     name = robot["name"]
     if not all(letter >= " " and letter not in "\x7f\ufffe\uffff" for letter in name):
-        raise ScenarioError("robot.name", name, "must have letters only that XML can hold")
-    if form.reserved and re.fullmatch(form.reserved, name):
-        rule = f"must be no name that {form.name} reserves, with :: in it or between pairs of _"
+        raise ScenarioError("robot.name", name, "must have only characters that XML allows")
+    if target.reserved and re.fullmatch(target.reserved, name):
+        rule = (
+            f"must not be a name that {target.name} reserves, with :: in it or between pairs of _"
+        )
         raise ScenarioError("robot.name", name, rule)
 
 
-def refuse_tapering(robot: dict[str, Any], end: str, form: Format) -> NoReturn:
+def refuse_tapering(robot: dict[str, Any], end: str, target: Format) -> NoReturn:
     """Refuse gear wheels whose grousers taper, of the chassis or of the flippers at an end.
 
     Raises
@@ -348,13 +322,9 @@ def refuse_tapering(robot: dict[str, Any], end: str, form: Format) -> NoReturn:
         Always.
     """
     path, track = track_of(robot, end)
-    rule = f"must be as thick as the tip: {form.name} has boxes for grousers, and no hulls"
+    rule = f"must be as thick as the tip: {target.name} has boxes for grousers, and no hulls"
     thickness = track["wheel"]["base_thickness"]
     raise ScenarioError(f"{path}.wheel.base_thickness", thickness, rule)
-
-
-def _squared(vector: Array) -> float:
-    return float(vector @ vector)
 
 
 def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
@@ -376,7 +346,7 @@ def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
 
 
 def _surface(kinds: set[BodyKind], track: str) -> str:
-    """Tell what meets the ground, from the bodies of a carrier and the kind of its track."""
+    """Return the surface of a carrier, by its bodies and the kind of its track."""
     if BodyKind.SHOE in kinds:
         return "segmental"
     if BodyKind.BELT in kinds:
@@ -392,3 +362,34 @@ def _loop(polygon: Array) -> Part:
     center = shares @ middles
     inertia = shares @ (lengths**2 / 12.0 + ((middles - center) ** 2).sum(axis=1))
     return Part(mass=1.0, center=center, inertia=float(inertia))
+
+
+def _rest(whole: Part, parts: Iterable[Part]) -> Part | None:
+    """Return what is left of a whole without its parts; None if no body can be that.
+
+    Examples
+    --------
+    >>> rod = Part(mass=3.0, center=np.zeros(2), inertia=0.5)
+    >>> tip = Part(mass=1.0, center=np.array([0.5, 0.0]), inertia=0.0)
+    >>> left = _rest(rod, [tip])
+    >>> left.mass, left.center.tolist(), round(left.inertia, 3)
+    (2.0, [-0.25, 0.0], 0.125)
+    """
+    parts = list(parts)
+    mass = whole.mass - sum(part.mass for part in parts)
+    if not mass >= _LEAST * whole.mass:
+        return None
+    moment: Array = whole.mass * whole.center - sum(
+        (part.mass * part.center for part in parts), np.zeros(2)
+    )
+    center = moment / mass
+    inertia = whole.inertia - mass * _squared(center - whole.center)
+    for part in parts:
+        inertia -= part.inertia + part.mass * _squared(part.center - whole.center)
+    if not inertia >= _LEAST * whole.inertia:
+        return None
+    return Part(mass=mass, center=center, inertia=inertia)
+
+
+def _squared(vector: Array) -> float:
+    return float(vector @ vector)

@@ -1,4 +1,4 @@
-"""A text that is changed in places, and the elements of an XML text with their places."""
+"""An XML text that is edited in place, and its elements with their byte offsets."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 
 from crawler2d.writing.formats import exactly, numbers
 
-__all__ = ["Document", "Span", "joint_in", "links_in", "spans_of", "written"]
+__all__ = ["Document", "Span", "joint_in", "lengths", "links_in", "spans_of"]
 
 _QUOTED = rb"\"[^\"]*\"|'[^']*'"
 _OPENING = re.compile(rb"<(?:%s|[^>\"'])*>" % _QUOTED)
@@ -28,7 +28,7 @@ class Span:
     attributes : dict of str to str
         As XML has them, without quotes and entities.
     parent : Span or None
-        What it stands in.
+        The element that contains it.
     start, end : int
         Of all of it.
     inner, outer : int
@@ -38,7 +38,7 @@ class Span:
     children : list of Span
         In their order.
     text : str
-        Its own text, without the space round it.
+        Its own text, without surrounding space.
     """
 
     tag: str
@@ -84,12 +84,12 @@ class Span:
 
 
 class Document:
-    r"""A text with its elements, and the changes that are to be made.
+    r"""A text with its elements, and its pending changes.
 
     Parameters
     ----------
     text : str
-        The whole.
+        All of it.
 
     Examples
     --------
@@ -119,7 +119,7 @@ class Document:
         return b"".join([*parts, self._data[at:]]).decode()
 
     def source(self, span: Span) -> str:
-        """Return an element as it is written."""
+        """Return the text of an element."""
         return self._data[span.start : span.end].decode()
 
     def set_attribute(self, span: Span, name: str, value: str) -> None:
@@ -133,7 +133,7 @@ class Document:
         self._change(at, at, f' {name}="{new}"')
 
     def set_text(self, span: Span, value: str) -> None:
-        """Put a text in the place of all that an element holds."""
+        """Replace the content of an element by a text."""
         new = escape(value)
         if span.is_closed:
             self._open(span, new)
@@ -143,12 +143,12 @@ class Document:
     def add_to(self, span: Span, shift: Sequence[float], attribute: str = "") -> None:
         """Add lengths [m] to the first numbers of a text or an attribute, to the micrometre.
 
-        What is not there counts as 0.
+        Missing numbers count as 0.
         """
         text = span.attributes.get(attribute, "") if attribute else span.text
         words = text.split() or ["0"] * len(shift)
         moved = [round(float(word) + more, 6) for word, more in zip(words, shift, strict=False)]
-        self._write(span, attribute, " ".join([written(moved), *words[len(shift) :]]))
+        self._write(span, attribute, " ".join([lengths(moved), *words[len(shift) :]]))
 
     def multiply(
         self,
@@ -179,15 +179,15 @@ class Document:
             self.set_text(span, value)
 
     def remove(self, span: Span) -> None:
-        """Take an element out, with its line if nothing else is on it."""
+        """Remove an element, with its line if nothing else is on it."""
         self._change(span.start - len(self._indent(span)), span.end, "")
 
     def insert_after(self, span: Span, text: str) -> None:
-        """Put an element behind another one, with the same indent."""
+        """Insert an element behind another one, with the same indent."""
         self._change(span.end, span.end, self._indent(span) + text)
 
     def append(self, span: Span, text: str, *, is_inline: bool = False) -> None:
-        """Put an element behind the last one in another, on a line of its own unless inline."""
+        """Insert an element behind the last one in another, on a line of its own unless inline."""
         if span.children and not is_inline:
             self.insert_after(span.children[-1], text)
         elif span.is_closed:
@@ -196,7 +196,7 @@ class Document:
             self._change(span.outer, span.outer, text)
 
     def _open(self, span: Span, content: str) -> None:
-        """Give an element whose tag closes itself some content."""
+        """Give content to an element whose tag closes itself."""
         opening = self.source(span)[:-2].rstrip()
         self._change(span.start, span.end, f"{opening}>{content}</{span.tag}>")
 
@@ -219,13 +219,13 @@ def links_in(scope: Span, names: Collection[str]) -> list[Span]:
 
 
 def joint_in(scope: Span, name: str) -> Span:
-    """Find a joint of URDF and SDF; a transmission has one without links, which is none."""
+    """Find a joint of URDF and SDF; one of a transmission has no links, and does not count."""
     every = (each for each in scope.within() if each.tag == "joint" and each.only("child"))
     return next(each for each in every if each.name == name)
 
 
 def spans_of(data: bytes) -> Span:
-    """Find the elements of a text that the reader has parsed before.
+    """Find the elements of a text that has been parsed before.
 
     Parameters
     ----------
@@ -278,12 +278,12 @@ def spans_of(data: bytes) -> Span:
     return roots[0]
 
 
-def written(values: Iterable[float]) -> str:
+def lengths(values: Iterable[float]) -> str:
     """Write lengths with as many digits as model files have.
 
     Examples
     --------
-    >>> written((0.1 + 0.2, -1e-13, 12.5))
+    >>> lengths((0.1 + 0.2, -1e-13, 12.5))
     '0.3 0 12.5'
     """
     return " ".join(f"{round(value, 12) + 0.0:.8g}" for value in values)

@@ -1,4 +1,4 @@
-"""Write a robot as a model file, or before an obstacle as a world for Gazebo or MuJoCo."""
+"""Export a robot as a model file, or with its obstacle as a world for Gazebo or MuJoCo."""
 
 from __future__ import annotations
 
@@ -33,12 +33,13 @@ from crawler2d.writing.formats import (
     pose_text,
     sdf_of,
     surface,
+    texts,
     urdf_of,
 )
 from crawler2d.writing.model import Limits, model_of
 from crawler2d.writing.shapes import in_space, lowest
 
-__all__ = ["written", "written_world"]
+__all__ = ["export_robot", "export_world"]
 
 Name = Literal["sdf", "urdf", "mjcf"]
 
@@ -50,12 +51,14 @@ _WRITERS: dict[Name, tuple[Format, Callable[[Model, Pose], XML]]] = {
 
 # Two bodies side by side: room to drift without falling off the obstacle.
 _WIDTH = 2.0  # gauges and track widths
+
 _FLAT = 1e-9  # [m] Heights that differ by less are equal.
 _FORMATS: dict[str, Name] = {".sdf": "sdf", ".world": "sdf", ".xml": "mjcf"}
 
-# In lengths of the robot: what is seen of the ground behind its start and beyond the goal.
+# In lengths of the robot: the visible ground behind its start and beyond the goal.
 _BEHIND, _BEYOND = 2.0, 4.0
-_PLANE = 100.0  # [m] How much of an endless plane is drawn.
+
+_PLANE = 100.0  # [m] Visible size of an endless plane.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +74,7 @@ class Model:
     limits : Limits
         What its motors can do together.
     comment : str
-        Where a file of it comes from, and what in it is not from the robot.
+        The origin of a file of it, and what in it is not from the robot.
     """
 
     tree: Tree
@@ -81,7 +84,7 @@ class Model:
 
 
 class ModelText(str):
-    """The text of a model file: any string, but that a console shows what it is, and not all of it.
+    """The text of a model file: a string of which a console shows only a short form.
 
     Examples
     --------
@@ -108,7 +111,7 @@ class Piece:
     corners : ndarray, shape (n, 2)
         [m] Its outline in side view, counter-clockwise, x forward and y up.
     across, width : float
-        [m] Place of its middle, to the left, and its width.
+        [m] Position of its middle, to the left, and its width.
     friction : float
         [-] Of its surface.
     """
@@ -127,7 +130,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ground:
-    """What the robot drives over.
+    """The ground of a robot.
 
     Parameters
     ----------
@@ -136,7 +139,7 @@ class Ground:
     friction : float
         [-] Of the plane.
     pieces : tuple of Piece
-        What stands on it.
+        The obstacles on it.
     """
 
     level: float
@@ -144,41 +147,7 @@ class Ground:
     pieces: tuple[Piece, ...]
 
 
-def modelled(
-    text: str,
-    name: Name,
-    *,
-    friction: float,
-    track_width: float | None,
-    chassis_width: float | None,
-) -> Model:
-    """Make a model of the robot of a scenario.
-
-    Parameters
-    ----------
-    text : str
-        The scenario in JSON, with the robot on level ground.
-    name : {"sdf", "urdf", "mjcf"}
-        The format, which must be able to hold it.
-    friction, track_width, chassis_width
-        See `Robot.to_sdf`.
-    """
-    robot: dict[str, Any] = json.loads(_core.canonical(text))["robot"]
-    across = across_of(float(robot["gauge"]), track_width, chassis_width)
-    friction = real_number(friction, "friction")
-    if not 0.0 <= friction <= 1e3:
-        raise ScenarioError("friction", friction, "must be between 0 and 1000")
-    tree = model_of(robot, text, across, friction=friction, form=_WRITERS[name][0])
-    comment = _comment(robot, across, friction, _left_out(robot, tree, _WRITERS[name][0]))
-    return Model(tree=tree, across=across, limits=_limits(robot), comment=comment)
-
-
-def placed_model(model: Model, name: Name, stand: Pose) -> XML:
-    """Write a model in a format, its chassis frame where it stands."""
-    return _WRITERS[name][1](model, stand)
-
-
-def written(
+def export_robot(
     text: str,
     name: Name,
     path: str | os.PathLike[str] | None,
@@ -187,31 +156,131 @@ def written(
     track_width: float | None,
     chassis_width: float | None,
 ) -> ModelText:
-    """Write the robot of a scenario; see `Robot.to_sdf`.
+    """Write the robot of a scenario in JSON, on level ground, in a format; see `Robot.to_sdf`."""
+    model = _build_model(text, name, friction, (track_width, chassis_width))
+    stand = Pose(place=np.array([0.0, 0.0, -lowest(model.tree)]))
+    return _save(_WRITERS[name][1](model, stand), model.comment, path)
+
+
+def export_world(
+    text: str,
+    alone: str,
+    path: str | os.PathLike[str],
+    *,
+    track_width: float | None,
+    chassis_width: float | None,
+) -> ModelText:
+    """Write the robot of a scenario at its start; see `Robot.to_world`.
 
     Parameters
     ----------
-    text, name, friction, track_width, chassis_width
-        See `modelled`.
-    path : path or None
-        Where to write the text, too.
+    text : str
+        The scenario in JSON.
+    alone : str
+        The same robot in JSON, on level ground.
+    path : path
+        The file, whose suffix selects the format.
+    track_width, chassis_width
+        See `Robot.to_world`.
     """
-    model = modelled(
-        text, name, friction=friction, track_width=track_width, chassis_width=chassis_width
+    name = _FORMATS.get(Path(path).suffix.lower())
+    if name is None:
+        raise ScenarioError("path", os.fspath(path), "must end in .sdf, .world or .xml")
+    scene, scenario = Scene(text, at_start(text)), json.loads(text)
+    frictions = _frictions(scenario["terrain"])
+    widths = track_width, chassis_width
+    model = _build_model(alone, name, max(frictions.values()), widths)
+    left, right, _, _ = scene.extent()
+    length = right - left
+    ends = (left - _BEHIND * length, max(right, scene.goal) + _BEYOND * length)
+    ground = _ground_of(_core.geometry(text)["lanes"], frictions, model.across, ends)
+    # A start is level unless it says otherwise.
+    stand = Pose(place=in_space(scene.carriers[0].poses[0], 0.0))
+    root = _WRITERS[name][1](model, stand)
+    add_ground = _add_to_mjcf if name == "mjcf" else _add_to_sdf
+    return _save(add_ground(root, ground, scenario["gravity"]), model.comment, path)
+
+
+def _build_model(
+    text: str, name: Name, friction: float, widths: tuple[float | None, float | None]
+) -> Model:
+    """Build a model of the robot of a scenario, with widths of track and chassis.
+
+    Parameters
+    ----------
+    text : str
+        The scenario in JSON, with the robot on level ground.
+    name : {"sdf", "urdf", "mjcf"}
+        The format, which must be able to represent it.
+    friction, widths
+        See `Robot.to_sdf`.
+    """
+    robot: dict[str, Any] = json.loads(_core.canonical(text))["robot"]
+    across = across_of(float(robot["gauge"]), *widths)
+    friction = real_number(friction, "friction")
+    if not 0.0 <= friction <= 1e3:
+        raise ScenarioError("friction", friction, "must be between 0 and 1000")
+    target = _WRITERS[name][0]
+    tree = model_of(robot, text, across, friction=friction, target=target)
+    drivetrain, ends = robot["drivetrain"], ends_of(discs_in(robot["outline"]))
+    limits = Limits(
+        speed=float(drivetrain["max_speed"]),
+        acceleration=float(drivetrain["max_acceleration"]),
+        deceleration=float(drivetrain["max_deceleration"]),
+        track_height=2.0 * max(radius for _, _, radius in ends),
     )
-    stand = Pose(place=np.array([0.0, 0.0, -lowest(model.tree)]))
-    return stored(placed_model(model, name, stand), model.comment, path)
+    comment = [
+        f"Written by crawler2d {_core.build_info()['version']}. Not from the robot:",
+        f"friction {friction:g} of all surfaces; widths of track {across.track_width:g} m,",
+        f"chassis {across.chassis_width:g} m and flippers {across.flipper_width:g} m;",
+        "moments of inertia about x and z; masses of single wheels, shares of their motors;",
+        "limits of half a turn for flippers.",
+        *_left_out(robot, tree, target),
+        f"The robot: {commented(robot)}",
+    ]
+    return Model(tree=tree, across=across, limits=limits, comment="\n".join(comment))
 
 
-def stored(root: XML, comment: str, path: str | os.PathLike[str] | None) -> ModelText:
-    """Write a file, and return its text."""
-    made = ModelText(document(root, comment))
+def _left_out(robot: dict[str, Any], tree: Tree, target: Format) -> list[str]:
+    """Return what the file cannot represent of the motors, such as rotors of belts."""
+    has_motors = target.has_rotors and any(joint.is_unlimited for joint in tree.joints.values())
+    drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
+    given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
+    given |= {f"flippers.{name}": value for name, value in flippers.items()}
+    given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
+    is_held = {
+        "drivetrain.rotor_inertia": has_motors,
+        "drivetrain.no_load_speed": False,
+        "drivetrain.torque_curve": False,
+        "drivetrain.controller": has_motors,
+        "drivetrain.controller.integral": False,
+        "drivetrain.self_locking": False,
+        "flippers.rotor_inertia": target.has_rotors,
+        "flippers.self_locking": False,
+    }
+    names = [name for name, held in is_held.items() if given.get(name) and not held]
+    return [f"Left out, as {target.name} has no place for it: {', '.join(names)}."] if names else []
+
+
+def _save(root: XML, comment: str, path: str | os.PathLike[str] | None) -> ModelText:
+    """Write a file, if there is a path, and return its text."""
+    text = ModelText(document(root, comment))
     if path is not None:
-        Path(path).write_text(made, encoding="utf-8")
-    return made
+        Path(path).write_text(text, encoding="utf-8")
+    return text
 
 
-def ground_of(
+def _frictions(terrain: dict[str, Any]) -> dict[int, float]:
+    """[-] Return the friction of each lane."""
+    if terrain["kind"] != "lanes":
+        return dict.fromkeys(Lane, float(terrain["friction"]))
+    left, right = (float(terrain[side]["friction"]) for side in ("left", "right"))
+    middle = terrain["middle"]
+    under = max(left, right) if middle is None else float(middle["friction"])
+    return {Lane.BOTH: left, Lane.LEFT: left, Lane.RIGHT: right, Lane.MIDDLE: under}
+
+
+def _ground_of(
     lanes: list[tuple[int, Array]],
     frictions: dict[int, float],
     across: Across,
@@ -226,9 +295,9 @@ def ground_of(
     frictions : dict of int to float
         [-] Of each lane.
     across : Across
-        Widths and lateral places of the robot.
+        Widths and lateral positions of the robot.
     ends : tuple of float, shape (2,)
-        [m] From where to where the ground is wanted; the plane goes on.
+        [m] The range of the profiles; the plane is endless.
     """
     profiles = [(lane, _between(points, *ends)) for lane, points in lanes]
     level = min(float(points[:, 1].min()) for _, points in profiles)
@@ -251,96 +320,6 @@ def ground_of(
         for corners in _convex(points, level)
     ]
     return Ground(level=level, friction=max(frictions.values()), pieces=tuple(pieces))
-
-
-def written_world(
-    text: str,
-    alone: str,
-    path: str | os.PathLike[str],
-    *,
-    track_width: float | None,
-    chassis_width: float | None,
-) -> ModelText:
-    """Write the robot of a scenario where it starts; see `Robot.to_world`.
-
-    Parameters
-    ----------
-    text : str
-        The scenario in JSON.
-    alone : str
-        The same robot in JSON, on level ground.
-    path : path
-        The file, whose suffix says in which format.
-    track_width, chassis_width
-        See `Robot.to_world`.
-    """
-    name = _FORMATS.get(Path(path).suffix.lower())
-    if name is None:
-        raise ScenarioError("path", os.fspath(path), "must end in .sdf, .world or .xml")
-    scene = Scene(text, at_start(text))
-    frictions = _frictions(json.loads(text)["terrain"])
-    model = modelled(
-        alone,
-        name,
-        friction=max(frictions.values()),
-        track_width=track_width,
-        chassis_width=chassis_width,
-    )
-    left, right, _, _ = scene.extent()
-    length = right - left
-    ends = (left - _BEHIND * length, max(right, scene.goal) + _BEYOND * length)
-    ground = ground_of(_core.geometry(text)["lanes"], frictions, model.across, ends)
-    # A start is level unless it says otherwise.
-    stand = Pose(place=in_space(scene.carriers[0].poses[0], 0.0))
-    root = placed_model(model, name, stand)
-    add = _add_to_mjcf if name == "mjcf" else _into_world
-    return stored(add(root, ground, json.loads(text)["gravity"]), model.comment, path)
-
-
-def _comment(robot: dict[str, Any], across: Across, friction: float, left_out: list[str]) -> str:
-    """Return where the file comes from, and what in it is not from the robot."""
-    return "\n".join(
-        [
-            f"Written by crawler2d {_core.build_info()['version']}. Not from the robot:",
-            f"friction {friction:g} of all surfaces; widths of track {across.track_width:g} m,",
-            f"chassis {across.chassis_width:g} m and flippers {across.flipper_width:g} m;",
-            "moments of inertia about x and z; masses of single wheels, shares of their motors;",
-            "limits of half a turn for flippers.",
-            *left_out,
-            f"The robot: {commented(robot)}",
-        ]
-    )
-
-
-def _left_out(robot: dict[str, Any], tree: Tree, form: Format) -> list[str]:
-    """Return what the file cannot hold of the motors, such as rotors of belts, without joints."""
-    has_motors = form.has_rotors and any(joint.is_unlimited for joint in tree.joints.values())
-    drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
-    is_held = {
-        "drivetrain.rotor_inertia": has_motors,
-        "drivetrain.no_load_speed": False,
-        "drivetrain.torque_curve": False,
-        "drivetrain.controller": has_motors,
-        "drivetrain.controller.integral": False,
-        "drivetrain.self_locking": False,
-        "flippers.rotor_inertia": form.has_rotors,
-        "flippers.self_locking": False,
-    }
-    given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
-    given |= {f"flippers.{name}": value for name, value in flippers.items()}
-    given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
-    names = [name for name, held in is_held.items() if given.get(name) and not held]
-    return [f"Left out, for {form.name} has no place for it: {', '.join(names)}."] if names else []
-
-
-def _limits(robot: dict[str, Any]) -> Limits:
-    drivetrain, ends = robot["drivetrain"], ends_of(discs_in(robot["outline"]))
-    return Limits(
-        speed=float(drivetrain["max_speed"]),
-        acceleration=float(drivetrain["max_acceleration"]),
-        deceleration=float(drivetrain["max_deceleration"]),
-        track_height=2.0 * max(radius for _, _, radius in ends),
-    )
 
 
 def _between(points: Array, left: float, right: float) -> Array:
@@ -369,22 +348,11 @@ def _convex(points: Array, level: float) -> Iterator[Array]:
 
 def _corners(points: Array) -> Array:
     """Return the corners of a convex polygon: no point twice, and none on a side."""
-    there = np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > _FLAT
-    points = points[there]
+    points = points[np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > _FLAT]
     to, on = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     turns = to[:, 0] * on[:, 1] - to[:, 1] * on[:, 0]
     corners: Array = points[turns > _FLAT * np.linalg.norm(to, axis=1) * np.linalg.norm(on, axis=1)]
     return corners
-
-
-def _frictions(terrain: dict[str, Any]) -> dict[int, float]:
-    """[-] Return the friction of each lane."""
-    if terrain["kind"] != "lanes":
-        return dict.fromkeys(Lane, float(terrain["friction"]))
-    left, right = (float(terrain[side]["friction"]) for side in ("left", "right"))
-    middle = terrain["middle"]
-    under = max(left, right) if middle is None else float(middle["friction"])
-    return {Lane.BOTH: left, Lane.LEFT: left, Lane.RIGHT: right, Lane.MIDDLE: under}
 
 
 def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
@@ -401,7 +369,7 @@ def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
     for number, piece in enumerate(ground.pieces, 1):
         shapes.append((_mjcf_shape(f"ground_{number}", piece, assets), piece.friction))
     for number, (shape, friction) in enumerate(shapes):
-        # With the higher priority its own friction holds, whatever the robot has.
+        # With the higher priority its own friction counts, whatever the robot has.
         given = {"name": f"ground_{number}", "friction": numbers(friction), "priority": "2"}
         world.insert(number, element("geom", **given, **shape))
     return root
@@ -427,50 +395,37 @@ def _placed(piece: Piece) -> tuple[Pose, np.ndarray[Any, Any]]:
     return Pose(place=np.array([x, piece.across, z])), piece.corners - middle
 
 
-def _into_world(root: XML, ground: Ground, gravity: float) -> XML:
+def _add_to_sdf(root: XML, ground: Ground, gravity: float) -> XML:
     """Put the model of an SDF file into a world with a ground and light."""
     (model,) = root
     # The model may have any name but this one.
-    static = element("model", element("static", text="true"), name=f"{model.get('name')}_ground")
+    static = element("model", *texts(static="true"), name=f"{model.get('name')}_ground")
     link = element("link", name="ground")
     static.append(link)
-    plane = element(
-        "plane",
-        element("normal", text="0 0 1"),
-        element("size", text=numbers((_PLANE, _PLANE))),
-    )
+    plane = element("plane", *texts(normal="0 0 1", size=(_PLANE, _PLANE)))
     shapes = [(Pose(place=np.array([0.0, 0.0, ground.level])), plane, ground.friction)]
     shapes += [(*_sdf_shape(piece), piece.friction) for piece in ground.pieces]
     for number, (pose, shape, friction) in enumerate(shapes):
         for tag in ("collision", "visual"):
-            made = element(
-                tag,
-                element("pose", text=pose_text(pose)),
-                element("geometry", shape),
-                name=f"ground_{number}_{tag}",
-            )
+            pose_element, geometry = texts(pose=pose_text(pose)), element("geometry", shape)
+            part = element(tag, *pose_element, geometry, name=f"ground_{number}_{tag}")
             if tag == "collision":
-                made.append(surface(Friction(first=friction, second=friction)))
-            link.append(made)
-    sun = element(
-        "light",
-        element("pose", text="0 0 10 0 0 0"),
-        element("direction", text="-0.3 0.4 -0.9"),
-        name="sun",
-        type="directional",
-    )
-    down = element("gravity", text=numbers((0.0, 0.0, -gravity)))
-    root[:] = [element("world", down, sun, static, model, name="crawler2d")]
+                part.append(surface(Friction(first=friction, second=friction)))
+            link.append(part)
+    light = texts(pose="0 0 10 0 0 0", direction="-0.3 0.4 -0.9")
+    sun = element("light", *light, name="sun", type="directional")
+    down = texts(gravity=(0.0, 0.0, -gravity))
+    root[:] = [element("world", *down, sun, static, model, name="crawler2d")]
     return root
 
 
 def _sdf_shape(piece: Piece) -> tuple[Pose, XML]:
-    """Return a box, or a polygon that is drawn out along its own z, which is to the right."""
+    """Return a box, or a polygon that is extruded along its own z, which is to the right."""
     pose, corners = _placed(piece)
     if piece.is_box:
         size = (np.ptp(corners[:, 0]), piece.width, np.ptp(corners[:, 1]))
-        return pose, element("box", element("size", text=numbers(size)))
+        return pose, element("box", *texts(size=size))
     x, y, z = pose.place.tolist()
     turned = from_rpy((0.5 * math.pi, 0.0, 0.0), (x, y + 0.5 * piece.width, z))
     points = (element("point", text=numbers(corner)) for corner in corners)
-    return turned, element("polyline", *points, element("height", text=numbers(piece.width)))
+    return turned, element("polyline", *points, *texts(height=piece.width))

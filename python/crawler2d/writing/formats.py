@@ -25,6 +25,7 @@ __all__ = [
     "pose_text",
     "sdf_of",
     "surface",
+    "texts",
     "urdf_of",
 ]
 
@@ -38,38 +39,47 @@ SDF = Format(
     has_rotors=False,
     reserved=".*::.*|__.*__",
 )
-"""SDF has meshes in files of their own only. A rotor inertia has a place in extensions of Drake
-only."""
+"""SDF has meshes in separate files only. Only extensions of Drake have a rotor inertia."""
 
 # Newer versions add nothing that is needed here, and DART reads none of them.
 _VERSION = "1.6"
+
 _KINDS = {"hinge": "revolute", "fixed": "fixed"}
 
 URDF = Format(name="URDF", moves_surfaces=False, has_hulls=False, has_rotors=False)
-"""URDF has meshes in files of their own only, and nothing that moves a surface. A rotor inertia has
-a place in extensions of Drake only."""
-_UPPER = [(row, column) for row in range(3) for column in range(row, 3)]
+"""URDF has meshes in separate files only, and nothing that moves a surface. Only extensions of
+Drake have a rotor inertia."""
+
+_MOMENTS = {f"i{'xyz'[i]}{'xyz'[j]}": (i, j) for i in range(3) for j in range(i, 3)}
 
 MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True, has_rotors=True)
 """MJCF has the corners of meshes in the file itself, and surfaces that move."""
 
-# A motor without a controller gives all of its torque where it is off by this share of its largest
-# speed, or this angle.
+# A motor without a controller gives all of its torque where it is off by this fraction of its
+# largest speed, or this angle.
 _OFF_SPEED, _OFF_ANGLE = 0.02, 0.02  # [-] and [rad]
 
 
 def element(tag: str, *children: XML | None, text: str = "", **attributes: str) -> XML:
-    """Make an element with attributes, text and children; None stands for no child."""
-    made = ElementTree.Element(tag, attributes)
-    made.text = text or None
-    made.extend([child for child in children if child is not None])
-    return made
+    """Build an element with attributes, text and children; None stands for no child."""
+    built = ElementTree.Element(tag, attributes)
+    built.text = text or None
+    built.extend([child for child in children if child is not None])
+    return built
+
+
+def texts(**values: str | float | Iterable[float]) -> list[XML]:
+    """Build an element for each text or number."""
+    return [
+        element(tag, text=value if isinstance(value, str) else numbers(value))
+        for tag, value in values.items()
+    ]
 
 
 def numbers(values: Iterable[float] | Array | float) -> str:
     """Write numbers of twelve digits; there is only one zero.
 
-    The last four digits of a sum or a turn are rounding, and nobody wants to read them. The exact
+    The last four digits of a sum or a rotation are rounding, and only clutter the file. The exact
     robot is in the comment.
 
     Examples
@@ -83,7 +93,7 @@ def numbers(values: Iterable[float] | Array | float) -> str:
 def exactly(values: Iterable[float] | Array | float) -> str:
     """Write numbers that read back to the same bits.
 
-    Moments of inertia are: those of thin bodies just obey their inequality, and still must.
+    Moments of inertia need that: those of thin bodies just obey their inequality, and still must.
 
     Examples
     --------
@@ -114,7 +124,7 @@ def document(root: XML, comment: str) -> str:
 
 
 def commented(value: object) -> str:
-    r"""Write plain data as JSON that may stand in a comment: in ASCII, and without two hyphens.
+    r"""Write plain data as JSON for a comment: in ASCII, and without two hyphens.
 
     Examples
     --------
@@ -128,7 +138,7 @@ def commented(value: object) -> str:
 
 def sdf_of(tree: Tree, across: Across, limits: Limits, stand: Pose) -> XML:
     """Write a model, its chassis frame where it stands."""
-    model = element("model", element("pose", text=pose_text(stand)), name=tree.name)
+    model = element("model", *texts(pose=pose_text(stand)), name=tree.name)
     for link in tree.links:
         model.append(_sdf_link(link))
         if link.name in tree.joints:
@@ -144,8 +154,7 @@ def pose_text(pose: Pose) -> str:
 
 def surface(friction: Friction) -> XML:
     """Write coefficients of friction."""
-    first, second = friction.first, friction.second
-    ode = element("ode", element("mu", text=numbers(first)), element("mu2", text=numbers(second)))
+    ode = element("ode", *texts(mu=friction.first, mu2=friction.second))
     return element("surface", element("friction", ode))
 
 
@@ -161,7 +170,7 @@ def urdf_of(tree: Tree) -> XML:
     for link in tree.links:
         friction = _friction(link)
         if friction is not None:
-            pair = (element(f"mu{n}", text=numbers(friction)) for n in (1, 2))
+            pair = texts(mu1=friction, mu2=friction)
             root.append(element("gazebo", *pair, reference=link.name))
     return root
 
@@ -193,7 +202,7 @@ def mjcf_of(tree: Tree, stand: Pose) -> XML:
     return element(
         "mujoco",
         element("compiler", angle="radian", autolimits="true"),
-        # Its steps take the servos implicitly, which others could only do with tiny ones.
+        # It integrates the servos implicitly; other integrators would need tiny steps.
         element("option", integrator="implicitfast"),
         element("asset", *meshes) if meshes else None,
         world,
@@ -208,97 +217,97 @@ def _each(values: Iterable[float] | Array | float) -> Iterator[float]:
 
 
 def _sdf_link(link: Link) -> XML:
-    center = Pose(place=link.center).seen_from(link.pose)
-    upper = [(row, column) for row in range(3) for column in range(row, 3)]
-    moments = link.pose.turn.T @ link.inertia @ link.pose.turn
-    inertia = element(
-        "inertia",
-        *(
-            element(f"i{'xyz'[row]}{'xyz'[column]}", text=exactly(float(moments[row, column])))
-            for row, column in upper
-        ),
+    center, moments = _inertial(link)
+    inertial = element(
+        "inertial",
+        *texts(pose=f"{center} 0 0 0", mass=link.mass),
+        element("inertia", *texts(**moments)),
     )
-    made = element(
-        "link",
-        element("pose", text=pose_text(link.pose)),
-        element(
-            "inertial",
-            element("pose", text=numbers([*center.place, 0.0, 0.0, 0.0])),
-            element("mass", text=numbers(link.mass)),
-            inertia,
-        ),
-        name=link.name,
-    )
+    built = element("link", *texts(pose=pose_text(link.pose)), inertial, name=link.name)
     for shape in link.shapes:
         pose = pose_text(shape.pose.seen_from(link.pose))
         collision, visual = (
-            element(
-                tag, element("pose", text=pose), _sdf_geometry(shape), name=f"{shape.name}_{tag}"
-            )
+            element(tag, *texts(pose=pose), _sdf_geometry(shape), name=f"{shape.name}_{tag}")
             for tag in ("collision", "visual")
         )
         if shape.friction is not None:
             collision.append(surface(shape.friction))
-        made.extend([collision, visual])
-    return made
+        built.extend([collision, visual])
+    return built
+
+
+def _inertial(link: Link) -> tuple[str, dict[str, str]]:
+    """Return centre of mass and moments of inertia in the frame of a link, as texts."""
+    center = Pose(place=link.center).seen_from(link.pose).place
+    tensor = link.pose.turn.T @ link.inertia @ link.pose.turn
+    moments = {name: exactly(float(tensor[i, j])) for name, (i, j) in _MOMENTS.items()}
+    return numbers(center), moments
 
 
 def _sdf_geometry(shape: Shape) -> XML:
     if shape.kind == "box":
-        return element("geometry", element("box", element("size", text=numbers(shape.size))))
-    radius = element("radius", text=numbers(shape.radius))
-    length = element("length", text=numbers(shape.length))
-    return element("geometry", element("cylinder", radius, length))
+        return element("geometry", element("box", *texts(size=shape.size)))
+    return element(
+        "geometry", element("cylinder", *texts(radius=shape.radius, length=shape.length))
+    )
 
 
 def _sdf_joint(joint: Joint) -> XML:
-    made = element(
+    built = element(
         "joint",
-        element("parent", text=joint.parent),
-        element("child", text=joint.child),
+        *texts(parent=joint.parent, child=joint.child),
         name=joint.name,
         type=_KINDS[joint.kind],
     )
-    if joint.kind == "fixed":
-        return made
-    limit = element("limit")
-    bounds = () if joint.is_unlimited else (("lower", joint.lower), ("upper", joint.upper))
-    for name, value in (*bounds, ("effort", joint.effort), ("velocity", joint.velocity)):
-        if value is not None:
-            limit.append(element(name, text=numbers(value)))
-    made.append(element("axis", element("xyz", text=numbers(joint.axis)), limit))
-    return made
+    if joint.kind != "fixed":
+        limits = _limits(joint, "lower", "upper", "effort", "velocity")
+        limit = element("limit", *texts(**limits))
+        built.append(element("axis", *texts(xyz=joint.axis), limit))
+    return built
 
 
-def _plugins(tree: Tree, across: Across, limits: Limits) -> list[XML]:
-    """Return what drives the model, by the topic cmd_vel of its name, and holds its flippers."""
-    return [
-        *(
-            _differential(radius, joints, across, limits)
-            for radius, joints in wheels_by_radius(tree, limits)
-        ),
-        *_tracks(tree, across, limits),
-        *(_servo(joint) for joint in flipper_joints(tree)),
-    ]
+def _limits(joint: Joint, *names: str) -> dict[str, str]:
+    """Return the limits of a joint that are given, as texts."""
+    given = [name for name in names if not (joint.is_unlimited and name in ("lower", "upper"))]
+    values = {name: getattr(joint, name) for name in given}
+    return {name: numbers(value) for name, value in values.items() if value is not None}
 
 
-def _differential(radius: float, joints: list[Joint], across: Across, limits: Limits) -> XML:
-    """Return a drive of wheels of one radius: a drive has one, and all obey the same command."""
-    sides = [
-        element(f"{'left' if joint.place[1] > 0.0 else 'right'}_joint", text=joint.name)
-        for joint in joints
-    ]
-    return _plugin(
-        "DiffDrive",
-        "diff-drive",
-        *sides,
-        element("wheel_separation", text=numbers(across.gauge)),
-        element("wheel_radius", text=numbers(radius)),
-        element("max_linear_velocity", text=numbers(limits.speed)),
-        element("min_linear_velocity", text=numbers(-limits.speed)),
-        element("max_linear_acceleration", text=numbers(limits.acceleration)),
-        element("min_linear_acceleration", text=numbers(-limits.deceleration)),
-    )
+def _plugins(tree: Tree, across: Across, limits: Limits) -> Iterator[XML]:
+    """Yield what drives the model, by the topic cmd_vel of its name, and holds its flippers."""
+    for radius, joints in wheels_by_radius(tree, limits):
+        # A drive has one radius, and all obey the same command.
+        yield _plugin(
+            "DiffDrive",
+            "diff-drive",
+            *(element(f"{_side(joint.place)}_joint", text=joint.name) for joint in joints),
+            *texts(
+                wheel_separation=across.gauge,
+                wheel_radius=radius,
+                max_linear_velocity=limits.speed,
+                min_linear_velocity=-limits.speed,
+                max_linear_acceleration=limits.acceleration,
+                min_linear_acceleration=-limits.deceleration,
+            ),
+        )
+    belts = moved_links(tree)
+    if belts:
+        yield _plugin(
+            "TrackedVehicle",
+            "tracked-vehicle",
+            *(element(f"{_side(link.pose.place)}_track", *texts(link=link.name)) for link in belts),
+            *texts(tracks_separation=across.gauge, tracks_height=limits.track_height),
+        )
+    for link in belts:
+        speeds = texts(link=link.name, min_velocity=-limits.speed, max_velocity=limits.speed)
+        yield _plugin("TrackController", "track-controller", *speeds)
+    for joint in flipper_joints(tree):  # turned to the commanded angle, at first where they are
+        rate = joint.velocity or 0.0
+        names = texts(joint_name=joint.name, use_velocity_commands="true")
+        limits_of_rate = texts(cmd_max=rate, cmd_min=-rate)
+        yield _plugin(
+            "JointPositionController", "joint-position-controller", *names, *limits_of_rate
+        )
 
 
 def _plugin(system: str, file: str, *children: XML) -> XML:
@@ -306,74 +315,28 @@ def _plugin(system: str, file: str, *children: XML) -> XML:
     return element("plugin", *children, filename=f"gz-sim-{file}-system", name=name)
 
 
-def _tracks(tree: Tree, across: Across, limits: Limits) -> list[XML]:
-    """Return a controller for each belt, and what commands all of them."""
-    belts = moved_links(tree)
-    if not belts:
-        return []
-    sides = [
-        element(
-            f"{'left' if link.pose.place[1] > 0.0 else 'right'}_track",
-            element("link", text=link.name),
-        )
-        for link in belts
-    ]
-    vehicle = _plugin(
-        "TrackedVehicle",
-        "tracked-vehicle",
-        *sides,
-        element("tracks_separation", text=numbers(across.gauge)),
-        element("tracks_height", text=numbers(limits.track_height)),
-    )
-    controllers = [
-        _plugin(
-            "TrackController",
-            "track-controller",
-            element("link", text=link.name),
-            element("min_velocity", text=numbers(-limits.speed)),
-            element("max_velocity", text=numbers(limits.speed)),
-        )
-        for link in belts
-    ]
-    return [vehicle, *controllers]
-
-
-def _servo(joint: Joint) -> XML:
-    """Return what turns a flipper to the angle that is commanded, at first where it is."""
-    return _plugin(
-        "JointPositionController",
-        "joint-position-controller",
-        element("joint_name", text=joint.name),
-        element("use_velocity_commands", text="true"),
-        element("cmd_max", text=numbers(joint.velocity or 0.0)),
-        element("cmd_min", text=numbers(-(joint.velocity or 0.0))),
-    )
+def _side(place: Array) -> str:
+    return "left" if place[1] > 0.0 else "right"
 
 
 def _urdf_link(link: Link) -> XML:
-    center = Pose(place=link.center).seen_from(link.pose)
-    moments = link.pose.turn.T @ link.inertia @ link.pose.turn
-    inertia = {f"i{'xyz'[i]}{'xyz'[j]}": exactly(float(moments[i, j])) for i, j in _UPPER}
-    made = element(
-        "link",
-        element(
-            "inertial",
-            _origin(Pose(place=center.place)),
-            element("mass", value=numbers(link.mass)),
-            element("inertia", **inertia),
-        ),
-        name=link.name,
+    center, moments = _inertial(link)
+    inertial = element(
+        "inertial",
+        element("origin", xyz=center, rpy="0 0 0"),
+        element("mass", value=numbers(link.mass)),
+        element("inertia", **moments),
     )
+    built = element("link", inertial, name=link.name)
     for shape in link.shapes:
-        origin = shape.pose.seen_from(link.pose)
+        pose = shape.pose.seen_from(link.pose)
         for tag in ("collision", "visual"):
-            made.append(
-                element(tag, _origin(origin), _urdf_geometry(shape), name=f"{shape.name}_{tag}")
-            )
+            name = f"{shape.name}_{tag}"
+            built.append(element(tag, _origin(pose), _urdf_geometry(shape), name=name))
     friction = _friction(link)
     if friction is not None:
-        made.append(element("contact", element("lateral_friction", value=numbers(friction))))
-    return made
+        built.append(element("contact", element("lateral_friction", value=numbers(friction))))
+    return built
 
 
 def _origin(pose: Pose) -> XML:
@@ -394,7 +357,7 @@ def _friction(link: Link) -> float | None:
 
 def _urdf_joint(joint: Joint, link: Link, parent: Link) -> XML:
     kind = {"fixed": "fixed", "hinge": "continuous" if joint.is_unlimited else "revolute"}
-    made = element(
+    built = element(
         "joint",
         element("parent", link=joint.parent),
         element("child", link=joint.child),
@@ -402,26 +365,21 @@ def _urdf_joint(joint: Joint, link: Link, parent: Link) -> XML:
         name=joint.name,
         type=kind[joint.kind],
     )
-    if joint.kind == "fixed":
-        return made
-    limits = [("effort", joint.effort), ("velocity", joint.velocity)]
-    if not joint.is_unlimited:
-        limits += [("lower", joint.lower), ("upper", joint.upper)]
-    given = {name: numbers(value) for name, value in limits if value is not None}
-    axis = link.pose.turn.T @ joint.axis
-    made.extend([element("axis", xyz=numbers(axis)), element("limit", **given)])
-    return made
+    if joint.kind != "fixed":
+        axis = element("axis", xyz=numbers(link.pose.turn.T @ joint.axis))
+        limits = _limits(joint, "effort", "velocity", "lower", "upper")
+        built.extend([axis, element("limit", **limits)])
+    return built
 
 
 def _body(link: Link, pose: Pose) -> XML:
-    center = Pose(place=link.center).seen_from(link.pose)
-    moments = link.pose.turn.T @ link.inertia @ link.pose.turn
-    order = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    center, moments = _inertial(link)
+    order = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     inertial = element(
         "inertial",
-        pos=numbers(center.place),
+        pos=center,
         mass=numbers(link.mass),
-        fullinertia=exactly(float(moments[i, j]) for i, j in order),
+        fullinertia=" ".join(moments[name] for name in order),
     )
     geoms = [_geom(shape, link) for shape in link.shapes]
     return element("body", inertial, *geoms, name=link.name, **_placed(pose))
@@ -438,11 +396,11 @@ def _geom(shape: Shape, link: Link) -> XML:
     else:
         given["mesh"] = shape.name
     if shape.friction is not None:
-        # Of two surfaces the larger friction holds, unless one has the higher priority.
+        # Of two surfaces the larger friction counts, unless one has the higher priority.
         given |= {"friction": numbers(shape.friction.first), "priority": "1"}
     if shape.surface_speed:
         given["surfacevel"] = numbers(_surface_velocity(shape))
-    # Parts of the robot do not touch each other, but everything else.
+    # Parts of the robot touch everything but each other.
     return element("geom", **given, contype="1", conaffinity="0")
 
 
@@ -458,13 +416,12 @@ def _surface_velocity(shape: Shape) -> list[float]:
 
 
 def _mjcf_joint(joint: Joint, link: Link) -> XML:
-    made = element("joint", name=joint.name, type="hinge")
-    made.set("axis", numbers(link.pose.turn.T @ joint.axis))
+    given = {"name": joint.name, "type": "hinge", "axis": numbers(link.pose.turn.T @ joint.axis)}
     if not joint.is_unlimited:
-        made.set("range", numbers((joint.lower, joint.upper)))
+        given["range"] = numbers((joint.lower, joint.upper))
     if joint.armature:
-        made.set("armature", numbers(joint.armature))
-    return made
+        given["armature"] = numbers(joint.armature)
+    return element("joint", **given)
 
 
 def _motor(joint: Joint) -> XML | None:

@@ -1,8 +1,9 @@
-"""From a robot in side view to a tree of links in three dimensions, and what of it is driven."""
+"""From a robot in side view to a tree of links in three dimensions, with motors at its joints."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from crawler2d.common.bodies import discs_in, ends_of
 from crawler2d.errors import ScenarioError
-from crawler2d.model_tree import NOWHERE, Joint, Link, Pose, Shape, Tree
+from crawler2d.model_tree import NOWHERE, Array, Joint, Link, Pose, Shape, Tree
 from crawler2d.writing.carriers import (
     Across,
     Carrier,
@@ -18,9 +19,9 @@ from crawler2d.writing.carriers import (
     Part,
     Wheel,
     carriers_of,
-    left_of,
     refuse_tapering,
-    refuse_unheld,
+    refuse_unsupported,
+    remainder,
     tensor,
 )
 from crawler2d.writing.shapes import Solids, belly_shapes, belt_shapes, gear_shapes, in_space
@@ -29,6 +30,7 @@ __all__ = ["Limits", "flipper_joints", "model_of", "moved_links", "wheels_by_rad
 
 CHASSIS = "chassis"
 """The root link; its frame is the chassis frame."""
+
 _SIDES = (("left", 1.0), ("right", -1.0))
 _AXLE = np.array([0.0, 1.0, 0.0])  # A wheel that turns about it by a positive angle drives forward.
 _HALF_TURN = math.pi  # [rad] by which a flipper may turn either way
@@ -36,7 +38,7 @@ _HALF_TURN = math.pi  # [rad] by which a flipper may turn either way
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What the motors of a robot can do together.
+    """The limits of all motors of a robot together.
 
     Parameters
     ----------
@@ -55,9 +57,9 @@ class Limits:
 
 
 def model_of(
-    robot: dict[str, Any], text: str, across: Across, *, friction: float, form: Format
+    robot: dict[str, Any], text: str, across: Across, *, friction: float, target: Format
 ) -> Tree:
-    """Make the tree of a robot.
+    """Build the tree of a robot.
 
     Parameters
     ----------
@@ -69,26 +71,26 @@ def model_of(
         Widths and lateral places.
     friction : float
         [-] Of all surfaces.
-    form : Format
-        What the format can hold.
+    target : Format
+        The format.
 
     Raises
     ------
     ScenarioError
-        If the format cannot hold its tracks, or masses are left that no body can have.
+        If the format cannot represent its tracks, or masses are left that no body can have.
     """
     carriers = carriers_of(robot, text)
-    refuse_unheld(robot, carriers, form)
-    return _Model(robot, carriers, across, friction, form).tree()
+    refuse_unsupported(robot, carriers, target)
+    return _Model(robot, carriers, across, friction, target).tree()
 
 
 def wheels_by_radius(tree: Tree, limits: Limits) -> list[tuple[float, list[Joint]]]:
     """[m] Return the joints of all wheels, by the radius at which they have the largest speed."""
-    found: dict[float, list[Joint]] = {}
+    joints: dict[float, list[Joint]] = {}
     for joint in tree.joints.values():
         if joint.is_unlimited and joint.velocity:
-            found.setdefault(joint.velocity, []).append(joint)
-    return [(limits.speed / velocity, joints) for velocity, joints in found.items()]
+            joints.setdefault(joint.velocity, []).append(joint)
+    return [(limits.speed / velocity, group) for velocity, group in joints.items()]
 
 
 def flipper_joints(tree: Tree) -> list[Joint]:
@@ -112,13 +114,13 @@ class _Model:
         carriers: list[Carrier],
         across: Across,
         friction: float,
-        form: Format,
+        target: Format,
     ) -> None:
         self.robot = robot
         self.chassis, *self.arms = carriers
         self.across = across
         self.friction = friction
-        self.form = form
+        self.target = target
         outline, drivetrain = robot["outline"], robot["drivetrain"]
         self.speed = float(drivetrain["max_speed"])
         # [N] Of one side; its torque acts at the radius of the belt round the rear end.
@@ -130,7 +132,7 @@ class _Model:
         # [N s/m] Of its controller; None: it holds the speed.
         controller = drivetrain.get("controller")
         self.gain = None if controller is None else controller["gain"] / belt_radius**2
-        # [m] The end axles, on which flippers pivot, and what the track takes between them.
+        # [m] The end axles, on which flippers pivot, and the size of the track between them.
         self.axles = {"rear": np.array(rear[:2]), "front": np.array(front[:2])}
         self.length = front[0] - rear[0]
         self.radius = max(rear[2], front[2])
@@ -143,7 +145,7 @@ class _Model:
             self.add_arms(arm)
         return Tree(
             name=self.robot["name"] or "robot",
-            format=self.form.name,
+            format=self.target.name,
             file="",
             links=tuple(self.links),
             joints=self.joints,
@@ -151,7 +153,7 @@ class _Model:
         )
 
     def add_chassis(self) -> None:
-        """Add what is left of the masses without flippers and tracks, the belly, and the tracks."""
+        """Add the chassis with the remaining mass, its belly, and the tracks."""
         robot = self.robot
         whole = Part(
             mass=robot["mass"],
@@ -159,27 +161,26 @@ class _Model:
             inertia=robot["moment_of_inertia"],
         )
         arms = [self.rod(arm.end) for arm in self.arms for _ in _SIDES]
-        belt = self.belt()
+        loop, mass = self.chassis.loop, 0.5 * robot["track_mass"]
+        belt = None
+        if loop is not None:
+            belt = Part(mass=mass, center=loop.center, inertia=mass * loop.inertia)
         tracks = [] if belt is None else [belt, belt]
-        left, is_hoop = left_of(whole, [*arms, *tracks], 2 * self.chassis.wheels)
+        left, is_hoop = remainder(whole, [*arms, *tracks], 2 * self.chassis.wheels)
         if left is None:
             rule = "must, as the mass, be more than that of tracks and flippers where they are"
             raise ScenarioError("robot.moment_of_inertia", robot["moment_of_inertia"], rule)
         belly = None if robot["belly"] is None else np.array(robot["belly"])
         sizes = np.ptp(belly, axis=0) if belly is not None else (self.length, self.radius)
-        solids = Solids(
-            name=CHASSIS, across=0.0, width=self.across.chassis_width, friction=self.friction
-        )
-        has_hulls = self.form.has_hulls
+        width, has_hulls = self.across.chassis_width, self.target.has_hulls
+        solids = self.solids(CHASSIS, 0.0, width)
         self.links.append(
             Link(
                 name=CHASSIS,
                 pose=Pose(),
                 mass=left.mass,
                 center=in_space(left.center, 0.0),
-                inertia=tensor(
-                    left, length=sizes[0], height=sizes[1], width=self.across.chassis_width
-                ),
+                inertia=tensor(left, length=sizes[0], height=sizes[1], width=width),
                 shapes=() if belly is None else tuple(belly_shapes(belly, solids, hulls=has_hulls)),
             )
         )
@@ -191,13 +192,6 @@ class _Model:
                 name = f"{side}_wheel_{number}"
                 self.add_wheel(name, CHASSIS, self.chassis, wheel, y, is_hoop=is_hoop)
 
-    def belt(self) -> Part | None:
-        """Return the belt of one side as a loop; None if the chassis has wheels."""
-        loop, mass = self.chassis.loop, 0.5 * self.robot["track_mass"]
-        if loop is None:
-            return None
-        return Part(mass=mass, center=loop.center, inertia=mass * loop.inertia)
-
     def rod(self, end: str) -> Part:
         """Return a flipper at angle 0."""
         flippers, sign = self.robot["flippers"], _sign(end)
@@ -207,70 +201,48 @@ class _Model:
 
     def add_track(self, name: str, y: float, belt: Part) -> None:
         """Add a belt: fixed to the chassis, while its surface moves."""
-        width = self.across.track_width
-        height = 2.0 * self.radius
+        width, height = self.across.track_width, 2.0 * self.radius
+        solids = self.solids(name, y, width, self.speed)
         self.add(
-            Link(
-                name=name,
-                pose=Pose(place=np.array([0.0, y, 0.0])),
-                mass=belt.mass,
-                center=in_space(belt.center, y),
-                inertia=tensor(belt, length=self.length + height, height=height, width=width),
-                shapes=self.belt_shapes(name, self.chassis, y, width),
-            ),
-            Joint(
-                name=f"{name}_joint",
-                kind="fixed",
-                parent=CHASSIS,
-                child=name,
-                place=np.array([0.0, y, 0.0]),
-                axis=_AXLE,
-            ),
+            name,
+            CHASSIS,
+            np.array([0.0, y, 0.0]),
+            belt,
+            inertia=tensor(belt, length=self.length + height, height=height, width=width),
+            shapes=belt_shapes(self.chassis.discs, solids),
+            kind="fixed",
         )
-
-    def belt_shapes(self, name: str, carrier: Carrier, y: float, width: float) -> tuple[Shape, ...]:
-        solids = Solids(name=name, across=y, width=width, friction=self.friction, speed=self.speed)
-        return tuple(belt_shapes(carrier.discs, solids))
 
     def add_arms(self, arm: Carrier) -> None:
         """Add the flippers at one end, which are uniform rods with all that they carry."""
         flippers, sign = self.robot["flippers"], _sign(arm.end)
         rod = self.rod(arm.end)
         turned = Part(mass=rod.mass, center=arm.middle, inertia=rod.inertia)
-        left, is_hoop = left_of(turned, [], arm.wheels)
+        left, is_hoop = remainder(turned, [], arm.wheels)
         if left is None:
             rule = "must be such that a rod of that length has more inertia than the wheels on it"
             raise ScenarioError("robot.flippers.length", flippers["length"], rule)
-        pivot, width = self.axles[arm.end], self.across.flipper_width
+        width = self.across.flipper_width
         radius = max(flippers["root_radius"], flippers["tip_radius"])
         moments = tensor(left, length=flippers["length"], height=radius, width=width)
         (x, z) = arm.direction
         turn = np.array([[x, 0.0, -z], [0.0, 1.0, 0.0], [z, 0.0, x]])
         for side, lateral in _SIDES:
             name, y = f"{arm.end}_{side}_flipper", lateral * self.across.flippers
-            has_belt = arm.loop is not None
+            solids = self.solids(name, y, width, self.speed)
             self.add(
-                Link(
-                    name=name,
-                    pose=Pose(place=in_space(pivot, y)),
-                    mass=left.mass,
-                    center=in_space(left.center, y),
-                    inertia=turn @ moments @ turn.T,
-                    shapes=self.belt_shapes(name, arm, y, width) if has_belt else (),
-                ),
-                Joint(
-                    name=f"{name}_joint",
-                    kind="hinge",
-                    parent=CHASSIS,
-                    child=name,
-                    place=in_space(pivot, y),
-                    axis=-sign * _AXLE,  # upwards is positive
-                    lower=-_HALF_TURN,
-                    upper=_HALF_TURN,
-                    effort=flippers["torque_limit"],
-                    velocity=flippers["rate_limit"],
-                    armature=flippers.get("rotor_inertia", 0.0),
-                ),
+                name,
+                CHASSIS,
+                in_space(self.axles[arm.end], y),
+                left,
+                inertia=turn @ moments @ turn.T,
+                shapes=belt_shapes(arm.discs, solids) if arm.loop is not None else (),
+                axis=-sign * _AXLE,  # upwards is positive
+                lower=-_HALF_TURN,
+                upper=_HALF_TURN,
+                effort=flippers["torque_limit"],
+                velocity=flippers["rate_limit"],
+                armature=flippers.get("rotor_inertia", 0.0),
             )
             for number, wheel in enumerate(arm.wheels, 1):
                 self.add_wheel(f"{name}_wheel_{number}", name, arm, wheel, y, is_hoop=is_hoop)
@@ -279,49 +251,69 @@ class _Model:
         self, name: str, parent: str, carrier: Carrier, wheel: Wheel, y: float, *, is_hoop: bool
     ) -> None:
         """Add a wheel with a motor of its own: an equal share of the force of its side."""
-        part, place = wheel.part(is_hoop=is_hoop), in_space(wheel.center, y)
+        part = wheel.part(is_hoop=is_hoop)
         count = max(1, len(self.chassis.wheels))
         # Of the rotor, which the wheels of the chassis share; those of flippers have none.
         rotor = 0.0 if carrier.end else self.rotor / count
         width = self.across.flipper_width if carrier.end else self.across.track_width
         self.add(
+            name,
+            parent,
+            in_space(wheel.center, y),
+            part,
+            inertia=tensor(part, length=1.0, height=1.0, width=width),
+            shapes=self.wheel_shapes(wheel, self.solids(name, y, width), carrier.end),
+            effort=self.force / count * wheel.radius,
+            velocity=self.speed / wheel.radius,
+            armature=rotor * wheel.radius**2,
+            gain=None if self.gain is None else self.gain / count * wheel.radius**2,
+        )
+
+    def wheel_shapes(self, wheel: Wheel, solids: Solids, end: str) -> Sequence[Shape]:
+        if wheel.outline is None:
+            return [solids.cylinder(0, wheel.center, wheel.radius)]
+        hulls = self.target.has_hulls
+        shapes = gear_shapes(wheel.outline, solids, wheel.center, hulls=hulls)
+        if shapes is None:
+            refuse_tapering(self.robot, end, self.target)
+        return shapes
+
+    def solids(self, name: str, y: float, width: float, speed: float = 0.0) -> Solids:
+        return Solids(name=name, across=y, width=width, friction=self.friction, speed=speed)
+
+    def add(
+        self,
+        name: str,
+        parent: str,
+        place: Array,
+        part: Part,
+        *,
+        inertia: Array,
+        shapes: Sequence[Shape],
+        kind: str = "hinge",
+        axis: Array = _AXLE,
+        **motor: Any,
+    ) -> None:
+        """Add a link on a joint at its origin."""
+        self.links.append(
             Link(
                 name=name,
                 pose=Pose(place=place),
                 mass=part.mass,
-                center=place,
-                inertia=tensor(part, length=1.0, height=1.0, width=width),
-                shapes=self.wheel_shapes(name, wheel, y, width, carrier.end),
-            ),
-            Joint(
-                name=f"{name}_joint",
-                kind="hinge",
-                parent=parent,
-                child=name,
-                place=place,
-                axis=_AXLE,
-                effort=self.force / count * wheel.radius,
-                velocity=self.speed / wheel.radius,
-                armature=rotor * wheel.radius**2,
-                gain=None if self.gain is None else self.gain / count * wheel.radius**2,
-            ),
+                center=in_space(part.center, place[1]),
+                inertia=inertia,
+                shapes=tuple(shapes),
+            )
         )
-
-    def wheel_shapes(
-        self, name: str, wheel: Wheel, y: float, width: float, end: str
-    ) -> tuple[Shape, ...]:
-        solids = Solids(name=name, across=y, width=width, friction=self.friction)
-        if wheel.outline is None:
-            return (solids.cylinder(0, wheel.center, wheel.radius),)
-        hulls = self.form.has_hulls
-        shapes = gear_shapes(wheel.outline, solids, wheel.center, hulls=hulls)
-        if shapes is None:
-            refuse_tapering(self.robot, end, self.form)
-        return tuple(shapes)
-
-    def add(self, link: Link, joint: Joint) -> None:
-        self.links.append(link)
-        self.joints[link.name] = joint
+        self.joints[name] = Joint(
+            name=f"{name}_joint",
+            kind=kind,
+            parent=parent,
+            child=name,
+            place=place,
+            axis=axis,
+            **motor,
+        )
 
 
 def _sign(end: str) -> float:

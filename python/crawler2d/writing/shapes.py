@@ -21,22 +21,23 @@ __all__ = [
 
 _UPRIGHT = from_rpy((-0.5 * math.pi, 0.0, 0.0))
 """Turns the axis of a cylinder, its z, to the left."""
+
 _SAME = 1e-9  # [-] of the radius: what rounding leaves of equal lengths
 _THIN = 0.001  # [m] Depth of the box behind an edge with a corner sharper than a right angle.
-_SHARE = 0.05  # that depth at most, of the height of the belly over the edge
+_DEPTH = 0.05  # that depth at most, relative to the height of the belly over the edge
 _LEVELS = 64  # depths that are tried for the largest box
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solids:
-    """Makes shapes of one width at one place across the robot.
+    """Builds shapes of one width at one lateral position.
 
     Parameters
     ----------
     name : str
-        With which the names of all begin.
+        The beginning of their names.
     across, width : float
-        [m] Place of the middle, to the left, and width.
+        [m] Position of the middle, to the left, and width.
     friction : float
         [-] Of their surfaces.
     speed : float
@@ -101,14 +102,13 @@ class Run:
 
 
 def in_space(point: Array, across: float) -> Array:
-    """[m] Return where a point of the side view is in a model: x forward, y to the left, z up."""
-    placed: Array = np.array([point[0], across, point[1]])
-    return placed
+    """[m] Return a point of the side view in a model: x forward, y to the left, z up."""
+    return np.array([point[0], across, point[1]])
 
 
 def lowest(tree: Tree) -> float:
     """[m] Return the height of the lowest point of all shapes."""
-    return min((_low(shape) for link in tree.links for shape in link.shapes), default=0.0)
+    return min((_bottom(shape) for link in tree.links for shape in link.shapes), default=0.0)
 
 
 def grousers_of(outline: Array) -> tuple[float, Array]:
@@ -146,16 +146,16 @@ def gear_shapes(
     outline : ndarray, shape (n, 2)
         [m] About the axle, turned as the wheel starts.
     solids : Solids
-        Makes the shapes.
+        Builds the shapes.
     center : ndarray, shape (2,)
         [m] Its axle.
     hulls : bool
-        Whether the format holds convex hulls. Without them a grouser must be a box.
+        Whether the format has convex hulls. Without them a grouser must be a box.
 
     Returns
     -------
     list of Shape or None
-        None if the grousers taper, and the format holds boxes only.
+        None if the grousers taper, and the format has boxes only.
     """
     root, grousers = grousers_of(outline)
     shapes = [solids.cylinder(0, center, root)]
@@ -165,7 +165,7 @@ def gear_shapes(
         if abs(wide - thick) <= _SAME * root:
             low, high = corners[[0, 3]].mean(axis=0), corners[[1, 2]].mean(axis=0)
             middle, height = 0.5 * (low + high), math.hypot(*(high - low))
-            # Seen from the root, the outline runs from right to left: the box is turned about.
+            # The outline runs from right to left over the root, and so the box is rotated.
             shapes.append(solids.box(number, center + middle, -base / wide, thick, height))
         elif hulls:
             shapes.append(solids.prism(number, center + corners))
@@ -175,21 +175,10 @@ def gear_shapes(
 
 
 def runs_round(discs: Array) -> list[Run]:
-    """Find the straight runs of the belt that is taut round discs.
-
-    Parameters
-    ----------
-    discs : ndarray, shape (n, 3)
-        [m] Centres and radii.
-
-    Returns
-    -------
-    list of Run
-        In no order.
-    """
+    """Find the straight runs of the belt that is taut round discs: centres and radii [m]."""
     centers, radii = discs[:, :2], discs[:, 2]
     tolerance = _SAME * float(np.abs(discs).max())
-    found = []
+    runs = []
     for start in range(len(discs)):
         for end in range(len(discs)):
             normal = _tangent(discs[start], discs[end])
@@ -202,8 +191,8 @@ def runs_round(discs: Array) -> list[Run]:
             touching = np.flatnonzero(reach >= reach[start] - tolerance)
             along = centers[touching] @ np.array([-normal[1], normal[0]])
             if start == touching[along.argmin()] and end == touching[along.argmax()]:
-                found.append(Run(start=start, end=end, normal=normal))
-    return found
+                runs.append(Run(start=start, end=end, normal=normal))
+    return runs
 
 
 def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
@@ -211,7 +200,7 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
 
     The middle of each box lies as deep as its surface is from the axis about which that turns.
     """
-    # The box between two equal discs is that of its upper run, and so is not turned about.
+    # The box between two equal discs is that of its upper run, and so is not rotated.
     runs = sorted(runs_round(discs), key=lambda run: -float(run.normal[1]))
     ends = sorted({number for run in runs for number in (run.start, run.end)})
     shapes = [
@@ -221,15 +210,15 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
     middles: list[Array] = []
     for run in runs:
         first, last = discs[run.start], discs[run.end]
-        # So deep that its inner corners still lie within both discs.
+        # Its inner corners still lie within both discs.
         depth = 2.0 * float(min(first[2], last[2]))
         from_, to = (disc[:2] + disc[2] * run.normal for disc in (first, last))
         middle = 0.5 * (from_ + to) - 0.5 * depth * run.normal
         if any(math.hypot(*(middle - other)) <= _SAME * depth for other in middles):
-            continue  # the box between two equal discs has both runs
+            continue  # the box between two equal discs covers both runs
         middles.append(middle)
         length = math.hypot(*(to - from_))
-        # z points out of the belt, so that x points against the way round.
+        # z points out of the belt, and so x against the direction of travel.
         along = np.array([run.normal[1], -run.normal[0]])
         shapes.append(solids.box(len(shapes), middle, along, length, depth))
     return shapes
@@ -238,17 +227,17 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
 def belly_shapes(corners: Array, solids: Solids, *, hulls: bool) -> list[Shape]:
     """Return the parts of the belly.
 
-    Boxes lie inside it and along its edges. A corner sharper than a right angle is cut off, as far
-    from it as a thin box needs.
+    Boxes lie inside it and along its edges. A corner sharper than a right angle is cut off to make
+    room for a thin box.
 
     Parameters
     ----------
     corners : ndarray, shape (n, 2)
         [m] Convex, counter-clockwise.
     solids : Solids
-        Makes the shapes.
+        Builds the shapes.
     hulls : bool
-        Whether the format holds convex hulls.
+        Whether the format has convex hulls.
     """
     edges = [_Edge(corners, number) for number in range(len(corners))]
     if len(corners) == 4 and all(edge.is_square for edge in edges):
@@ -260,7 +249,7 @@ def belly_shapes(corners: Array, solids: Solids, *, hulls: bool) -> list[Shape]:
     return boxes + [edge.box(n, edge.depth, solids) for n, edge in enumerate(edges, 1)]
 
 
-def _low(shape: Shape) -> float:
+def _bottom(shape: Shape) -> float:
     if shape.kind == "hull":
         return float(shape.points[:, 2].min())
     if shape.kind == "cylinder":
@@ -270,7 +259,7 @@ def _low(shape: Shape) -> float:
 
 
 def _tangent(start: Array, end: Array) -> Array | None:
-    """Return the normal of the outer tangent from a disc to another, to the right of the way."""
+    """Return the normal of the outer tangent from a disc to another, on its right."""
     (x, y), narrower = end[:2] - start[:2], start[2] - end[2]
     distance = math.hypot(x, y)
     if distance <= abs(narrower):
@@ -282,7 +271,7 @@ def _tangent(start: Array, end: Array) -> Array | None:
 
 
 class _Edge:
-    """An edge of a convex polygon, with rectangles inside the polygon that have a side on it."""
+    """An edge of a convex polygon, and the rectangles on it inside the polygon."""
 
     def __init__(self, corners: Array, number: int) -> None:
         self.start = corners[number]
@@ -295,14 +284,13 @@ class _Edge:
         self.height = float(self.places[:, 1].max())
 
     def within(self, depth: float) -> tuple[float, float]:
-        """[m] Return from where to where along the edge a rectangle of this depth fits."""
+        """[m] Return the range along the edge in which a rectangle of this depth fits."""
         crossed = []
         for (x0, y0), (x1, y1) in zip(self.places, np.roll(self.places, -1, axis=0), strict=True):
-            if min(y0, y1) <= depth <= max(y0, y1):
-                share = 0.0 if y0 == y1 else (depth - y0) / (y1 - y0)
-                crossed.append(x0 + share * (x1 - x0))
-                if y0 == y1:
-                    crossed.append(x1)
+            if y0 == y1 == depth:
+                crossed += [x0, x1]
+            elif y0 != y1 and min(y0, y1) <= depth <= max(y0, y1):
+                crossed.append(x0 + (depth - y0) / (y1 - y0) * (x1 - x0))
         if not crossed:
             return 0.0, 0.0
         return max(0.0, min(crossed)), min(self.length, max(crossed))
@@ -332,7 +320,7 @@ class _Edge:
             left, right = self.within(middle)
             fits = right - left >= self.length * (1.0 - _SAME)
             low, high = (middle, high) if fits else (low, middle)
-        thin = min(_THIN, _SHARE * self.height)
+        thin = min(_THIN, _DEPTH * self.height)
         return max(low, thin)
 
     def box(self, number: int, depth: float, solids: Solids) -> Shape:
