@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import patched
+from crawler2d.patching.patch import patch_file
 from tests.reading.carts import quietly
 from tests.writing.drawn import drawn
 
@@ -42,7 +42,7 @@ def check(number: int, name: str, folder: Path) -> bool:
     except c2d.ScenarioError:
         return False
     try:
-        patch = patched(reading, robot)  # which reads it again, and compares
+        patch = patch_file(reading, robot)  # which reads it again, and compares
     except c2d.ScenarioError as error:
         # Wheels that weigh a quarter of the robot move its centre of mass where they are uneven.
         assert error.path == "the changed file, read again: center_of_mass"  # noqa: PT017

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import _left, _summary, patched
+from crawler2d.patching.patch import _left, _summary, patch_file
 from crawler2d.writing.document import Document, spans_of
 from tests.reading.carts import FILES, ROBOTS, WHEELS, pair, quietly, urdf
 
@@ -44,7 +44,7 @@ def test_a_line_of_another_number_of_wheels_reads_back(
 ) -> None:
     reading = quietly(FILES / name)
     robot = on_chassis(reading, count)
-    again = reread(reading, patched(reading, robot).text, tmp_path).robot
+    again = reread(reading, patch_file(reading, robot).text, tmp_path).robot
     assert again.track == c2d.LineOfWheels(count)
     assert again.mass == pytest.approx(robot.mass, rel=1e-6)
     assert again.center_of_mass == pytest.approx(robot.center_of_mass, abs=1e-6)
@@ -72,7 +72,7 @@ def test_more_and_larger_wheels_keep_the_rotor_of_their_side(where: str, tmp_pat
     )
     reading = quietly(path)
     for radius in (None, 0.1):
-        again = reread(reading, patched(reading, on_chassis(reading, 5, radius)).text, tmp_path)
+        again = reread(reading, patch_file(reading, on_chassis(reading, 5, radius)).text, tmp_path)
         was, found = (
             (each.drivetrain, each.outline.rear_radius) for each in (reading.robot, again.robot)
         )
@@ -91,7 +91,7 @@ def test_larger_wheels_keep_speed_and_force(name: str, tmp_path: Path) -> None:
     reading = quietly(FILES / name)
     track = c2d.LineOfWheels(5, wheel_radius=0.1)
     robot = replace(reading.robot, track=track)
-    again = reread(reading, patched(reading, robot).text, tmp_path).robot
+    again = reread(reading, patch_file(reading, robot).text, tmp_path).robot
     assert again.outline.front_radius == pytest.approx(0.1)
     assert len(again.wheels()) == len(robot.wheels())
     assert again.drivetrain.max_speed == pytest.approx(reading.robot.drivetrain.max_speed)
@@ -109,7 +109,7 @@ def test_gear_wheels_read_back(name: str, tmp_path: Path) -> None:
     assert arms is not None
     arms = replace(arms, track=c2d.LineOfWheels(2))  # those of the flippers stay round
     robot = replace(reading.robot, track=c2d.LineOfWheels(4, wheel=gear), flippers=arms)
-    again = reread(reading, patched(reading, robot).text, tmp_path).robot
+    again = reread(reading, patch_file(reading, robot).text, tmp_path).robot
     assert isinstance(again.track, c2d.LineOfWheels)
     assert again.track.count == 4
     found = again.track.wheel
@@ -125,7 +125,7 @@ def test_gear_wheels_read_back(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", CARTS)
 def test_wheels_of_flippers_change_where_they_hang(name: str, tmp_path: Path) -> None:
     reading = quietly(FILES / name)
-    again = reread(reading, patched(reading, with_own_flippers(reading)).text, tmp_path).robot
+    again = reread(reading, patch_file(reading, with_own_flippers(reading)).text, tmp_path).robot
     assert again.track == reading.robot.track
     assert again.flippers is not None
     assert again.flippers.track == c2d.LineOfWheels(3)
@@ -145,14 +145,14 @@ def without_wheels(text: str) -> str:
 @pytest.mark.parametrize("name", CARTS)
 def test_only_wheels_are_changed(name: str) -> None:
     reading = quietly(FILES / name)
-    text = patched(reading, on_chassis(reading, 4)).text
+    text = patch_file(reading, on_chassis(reading, 4)).text
     assert text.count("left_flipper_tip") == reading.text.count("left_flipper_tip") > 0
     assert without_wheels(text) == without_wheels(reading.text)
 
 
 def test_a_diff_names_the_file_and_applies_to_it() -> None:
     reading = quietly(FILES / "cart.urdf")
-    patch = patched(reading, on_chassis(reading, 4))
+    patch = patch_file(reading, on_chassis(reading, 4))
     assert patch.diff.startswith("--- cart.urdf\n+++ cart.urdf (other wheels)\n@@")
     removed = [line[1:] for line in patch.diff.splitlines()[2:] if line.startswith("-")]
     added = [line[1:] for line in patch.diff.splitlines()[2:] if line.startswith("+")]
@@ -176,7 +176,7 @@ def test_what_drives_a_wheel_drives_its_copy(tmp_path: Path) -> None:
     path = tmp_path / "cart.urdf"
     path.write_text(urdf(WHEELS, drives, plugin), encoding="utf-8")
     reading = quietly(path)
-    root = ElementTree.fromstring(patched(reading, on_chassis(reading, 3)).text)
+    root = ElementTree.fromstring(patch_file(reading, on_chassis(reading, 3)).text)
     joints = [each.get("name") for each in root.findall("joint")]
     assert len(joints) == len(set(joints)) == 6
     assert sorted(each.text or "" for each in root.iter("joint_name")) == sorted(map(str, joints))
@@ -195,7 +195,7 @@ def test_a_plugin_learns_of_larger_wheels(tmp_path: Path) -> None:
     path = tmp_path / "cart.urdf"
     path.write_text(urdf(WHEELS, plugin), encoding="utf-8")
     reading = quietly(path)
-    text = patched(reading, on_chassis(reading, 2, radius=0.1)).text
+    text = patch_file(reading, on_chassis(reading, 2, radius=0.1)).text
     assert "<wheel_radius>0.1</wheel_radius>" in text
     assert "<wheel_separation>0.3</wheel_separation>" in text
 
@@ -204,7 +204,7 @@ def test_double_wheels_are_copied_side_by_side(tmp_path: Path) -> None:
     path = tmp_path / "cart.urdf"
     path.write_text(urdf(WHEELS, pair("twin", 0.2, y=0.25), pair("back", -0.2, y=0.25)))
     reading = quietly(path)
-    again = reread(reading, patched(reading, on_chassis(reading, 3)).text, tmp_path)
+    again = reread(reading, patch_file(reading, on_chassis(reading, 3)).text, tmp_path)
     assert again.robot.track == c2d.LineOfWheels(3)
     assert len(again.wheels) == 12
 
@@ -216,42 +216,42 @@ def test_public_models_change_their_wheels() -> None:
         assert arms is not None
         assert isinstance(arms.track, c2d.LineOfWheels)
         more = replace(arms, track=c2d.LineOfWheels(arms.track.count + 1))
-        patch = patched(reading, replace(reading.robot, flippers=more))
+        patch = patch_file(reading, replace(reading.robot, flippers=more))
         assert patch.text.count("<link name=") == reading.text.count("<link name=") + 4
 
 
 def test_what_cannot_be_changed_is_refused_by_name(tmp_path: Path) -> None:
     reading = quietly(FILES / "cart.urdf")
     with pytest.raises(c2d.ScenarioError, match="must have other wheels than the file"):
-        patched(reading, reading.robot)
+        patch_file(reading, reading.robot)
     belted = replace(reading.robot.drivetrain, torque_sharing="track")
     with pytest.raises(c2d.ScenarioError, match="tracks of the chassis must be wheels"):
-        patched(reading, replace(reading.robot, drivetrain=belted, track=c2d.BeltTrack()))
+        patch_file(reading, replace(reading.robot, drivetrain=belted, track=c2d.BeltTrack()))
     with pytest.raises(c2d.ScenarioError, match=r"robot\.flippers must be where the file has them"):
-        patched(reading, replace(reading.robot, flippers=None))
+        patch_file(reading, replace(reading.robot, flippers=None))
     heavier = replace(on_chassis(reading, 4), mass=reading.robot.mass + 1.0)
     with pytest.raises(c2d.ScenarioError, match="the changed file, read again: mass"):
-        patched(reading, heavier)
+        patch_file(reading, heavier)
     foreign = tmp_path / "cart.urdf"
     foreign.write_bytes(
         b"<?xml version='1.0' encoding='latin-1'?><!-- \xe9 -->" + urdf(WHEELS).encode()
     )
     with pytest.raises(c2d.ScenarioError, match="must be UTF-8"):
-        patched(quietly(foreign), on_chassis(reading, 4))
+        patch_file(quietly(foreign), on_chassis(reading, 4))
 
 
 def test_a_patch_warns_of_nothing() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         reading = c2d.read_robot(FILES / "cart.sdf")
-        patched(reading, on_chassis(reading, 4))
+        patch_file(reading, on_chassis(reading, 4))
 
 
 def test_a_count_of_wheels_in_a_plugin_is_named_when_wheels_are_added() -> None:
     text = "<model>\n<plugin>\n<num_wheel_pairs>4</num_wheel_pairs></plugin>\n</model>"
     root = spans_of(text.encode())
-    added: Any = SimpleNamespace(fate="added", is_none=False)
-    changed: Any = SimpleNamespace(fate="changed", is_none=False)
+    added: Any = SimpleNamespace(action="added", is_none=False)
+    changed: Any = SimpleNamespace(action="changed", is_none=False)
     left = _left([added, added], root, text)
     assert left == ("num_wheel_pairs in line 3 is still 4",)
     assert "by hand (there are 2 wheels more): num_wheel" in _summary([added, added], [], left)

@@ -157,7 +157,7 @@ def test_of_several_models_in_a_world_one_must_be_named(tmp_path: Path) -> None:
     model = (FILES / "cart.sdf").read_text().partition("<model")[2].rpartition("</model>")[0]
     worlds = "".join(f"<model{model.replace('cart', name)}</model>" for name in ("one", "two"))
     text = f'<sdf version="1.9"><world name="w">{worlds}</world></sdf>'
-    with pytest.raises(c2d.ScenarioError, match="must hold one model that is not static"):
+    with pytest.raises(c2d.ScenarioError, match="must have one model that is not static"):
         read(tmp_path, text, "w.sdf")
     assert read(tmp_path, text, "w.sdf", model="two").robot.name == "two"
     with pytest.raises(c2d.ScenarioError, match="model must be one of one, two"):
@@ -231,10 +231,12 @@ def across_x(name: str) -> str:
 
 def test_forward_must_be_given_where_nothing_tells(tmp_path: Path) -> None:
     text = urdf(across_x("a"), across_x("b"))
-    with pytest.raises(c2d.ScenarioError, match=r'forward must be given, as "\+y" or "-y"'):
+    with pytest.raises(
+        c2d.ScenarioError, match=r'forward is ambiguous, .* pass forward="\+y" or "-y"'
+    ):
         read(tmp_path, text)
     assert read(tmp_path, text, forward="-y").notes[0] == "forward was given: -y is forward"
-    with pytest.raises(c2d.ScenarioError, match="forward must be across the axes of the wheels"):
+    with pytest.raises(c2d.ScenarioError, match="forward must be normal to the axes of the wheels"):
         read(tmp_path, text, forward="+x")
 
 

@@ -358,7 +358,7 @@ def test_of_several_bodies_the_one_that_can_drive_is_read(tmp_path: Path) -> Non
 def test_an_older_sdf_is_refused_with_what_converts_it(tmp_path: Path) -> None:
     for version in ('version="1.3"', ""):
         text = tracked(DRUMS).replace('version="1.7"', version)
-        refused(tmp_path, text, '"gz sdf -p FILE" writes a file', "tank.sdf")
+        refused(tmp_path, text, '"gz sdf -p FILE" rewrites a file', "tank.sdf")
 
 
 def test_a_body_with_two_joints_that_carries_nothing_is_fixed(tmp_path: Path) -> None:

@@ -52,12 +52,12 @@ def test_a_wheel_in_the_middle_is_refused(tmp_path: Path) -> None:
 
 def test_wheels_on_slides_are_refused_as_suspension(tmp_path: Path) -> None:
     kind = 'type="prismatic"><axis xyz="0 0 1"/>' + LIMIT
-    refused(tmp_path, on_links(kind), "a side view holds no suspension")
+    refused(tmp_path, on_links(kind), "a side view has no suspension")
 
 
 def test_wheels_on_a_steered_joint_are_refused(tmp_path: Path) -> None:
     kind = 'type="revolute"><axis xyz="0 0 1"/>' + LIMIT
-    refused(tmp_path, on_links(kind), "a side view holds no steering")
+    refused(tmp_path, on_links(kind), "a side view has no steering")
 
 
 def test_wheels_on_a_rocker_are_refused(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_wheels_on_a_rocker_are_refused(tmp_path: Path) -> None:
         for side, sign in SIDES
         for x in (-0.2, 0.2)
     )
-    refused(tmp_path, urdf(arms, wheels), "a side view holds no rocker")
+    refused(tmp_path, urdf(arms, wheels), "a side view has no rocker")
 
 
 def test_wheels_on_a_floating_joint_are_refused(tmp_path: Path) -> None:
@@ -325,7 +325,9 @@ def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
 
 def test_joints_of_missing_links_are_left_out_or_refused_on_request(tmp_path: Path) -> None:
     mount = '<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>'
-    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves joints', missing="refuse")
+    refused(
+        tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves out joints', missing="refuse"
+    )
     reading = read(tmp_path, urdf(WHEELS, mount))
     assert "mount" in reading.doubts[0]
 

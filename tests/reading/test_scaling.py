@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import patched
+from crawler2d.patching.patch import patch_file
 from tests.reading.carts import FILES, ROBOTS, quietly
 
 
@@ -45,7 +45,7 @@ def test_the_engineer_that_is_ten_times_too_large_says_so_and_is_read_a_tenth_as
 
 def test_a_changed_file_is_written_in_metres(tmp_path: Path) -> None:
     found = quietly(ROBOTS / "eng.urdf", mesh="leave_out", scale=0.1)
-    patch = patched(found, found.robot.with_track(c2d.LineOfWheels(3)))
+    patch = patch_file(found, found.robot.with_track(c2d.LineOfWheels(3)))
     assert "all lengths times 0.1" in patch.summary
     (tmp_path / "eng.urdf").write_text(patch.text, encoding="utf-8")
     again = quietly(tmp_path / "eng.urdf", mesh="leave_out")

@@ -15,7 +15,7 @@ from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
 from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.parameters.robot import Robot
-from crawler2d.patching.patch import labelled, patched
+from crawler2d.patching.patch import add_label, patch_file
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
@@ -105,7 +105,7 @@ def change_of(audit: Audited, repair: Repair) -> Change:
     assert audit.reading is not None
     label = words.repair_sentence(repair)
     with _quietly():
-        patch = patched(audit.reading, repair.robot, f"crawler2d, {label}")
+        patch = patch_file(audit.reading, repair.robot, f"crawler2d, {label}")
     return Change(
         text=patch.text, label=label, diff=patch.diff, summary=patch.summary, left=patch.left
     )
@@ -153,7 +153,7 @@ def _on_belts(audit: Audited, robot: Robot, repair: Repair | None) -> Change:
         text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
     held = "" if is_mjcf or read.tree.format.startswith("SDF") else ", as URDF holds no belts"
     return Change(
-        text=labelled(text, f"crawler2d, {label}"),
+        text=add_label(text, f"crawler2d, {label}"),
         label=label,
         summary=f"written anew as {'MJCF' if is_mjcf else 'SDF'}{held}",
         ending=".sdf" if held else "",

@@ -1,4 +1,4 @@
-"""Wheels in the text of an SDF, a URDF or an MJCF: places, sizes, masses and limits, and copies."""
+"""Edits of wheels in the text of an SDF, a URDF or an MJCF: pose, size, mass, limits, copies."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ from crawler2d.reading.sdf import MODEL
 from crawler2d.writing.document import Document, Span, joint_in, lengths, links_in
 from crawler2d.writing.formats import numbers
 
-__all__ = ["change_mjcf", "change_sdf", "change_urdf", "copied", "items_about", "names_of"]
+__all__ = ["change_mjcf", "change_sdf", "change_urdf", "copy_elements", "items_about", "names_of"]
 
 _NO_NAMES = ("class", "childclass", "material", "mesh", "type", "filename")
-"""Attributes whose values name something else than links and joints."""
+"""Attributes whose values are not names of links and joints."""
 
 _WITH_NAMES = ("transmission", "actuator")
 """Elements that are about one joint, and need names of their own."""
+
 _NOT_ROUND = ("box", "mesh", "ellipsoid", "plane", "hfield")
 _INHERITED = ("class", "friction", "condim", "priority", "contype", "conaffinity", "solref")
 _ROUNDS = ("cylinder", "sphere", "capsule")
 
 
 def names_of(scope: Span, links: Collection[str], joint: str) -> set[str]:
-    """Return the names of a wheel, and of all that MJCF has within its bodies."""
+    """Return the names of a wheel, and of all parts in its bodies in MJCF."""
     names = {*links, joint}
     for body in scope.within():
         if body.tag == "body" and body.name in links:
@@ -38,7 +39,7 @@ def names_of(scope: Span, links: Collection[str], joint: str) -> set[str]:
 def items_about(scope: Span, names: Collection[str]) -> list[Span]:
     """Return the outermost elements that are about a wheel.
 
-    These are its links and joints; what names one of them in an attribute, such as a motor; a
+    These are its links and joints; elements with one of them in an attribute, such as a motor; a
     transmission with its joint; and of a plugin each setting that is one of its names.
 
     Parameters
@@ -48,16 +49,16 @@ def items_about(scope: Span, names: Collection[str]) -> list[Span]:
     names : collection of str
         Of the wheel.
     """
-    found = []
+    items = []
     for child in scope.children:
         if _is_about(child, names):
-            found.append(child)
+            items.append(child)
         elif child.tag not in ("link", "joint"):
-            found += items_about(child, names)
-    return found
+            items += items_about(child, names)
+    return items
 
 
-def copied(
+def copy_elements(
     document: Document,
     items: list[Span],
     names: Mapping[str, str],
@@ -74,14 +75,14 @@ def copied(
     names : mapping of str to str
         The new name of each.
     change : callable
-        What to do with the copies, together in one element.
+        Changes the copies, together in one element.
 
     Returns
     -------
     list of str
         The text of each copy.
     """
-    # Each stands in what it stands in: a motor is known by the <actuator> round it.
+    # Each keeps its parent: a motor is recognized by its <actuator>.
     tags = [item.parent.tag if item.parent is not None else "" for item in items]
     whole = "".join(
         f"<{tag}>{document.source(item)}</{tag}>" for tag, item in zip(tags, items, strict=True)
@@ -103,7 +104,7 @@ def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> 
     body = next(each for each in every if each.name == change.link)
     if change.shift.any():
         if body.parent is not None and body.parent.tag == "frame":
-            _refuse_body(change.link, "a <frame>", "must stand in another body itself, to be moved")
+            _refuse_body(change.link, "a <frame>", "must be in another body itself, to be moved")
         shift = tree.by_name[change.joint.parent].pose.turn.T @ change.shift
         document.add_to(body, shift.tolist(), "pos")
     for each in every:
@@ -129,7 +130,7 @@ def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> N
     """Change a wheel; the arguments are those of `change_urdf`."""
     links = links_in(scope, change.links)
     joint = joint_in(scope, change.joint.name)
-    # What is given in the frame of the wheel moves with it; a joint usually is.
+    # Parts in the frame of the wheel move with it; a joint usually does.
     for each, usual in [*((link, MODEL) for link in links), (joint, change.link)]:
         pose = each.only("pose")
         frame = usual if pose is None else pose.attributes.get("relative_to", "") or usual
@@ -142,9 +143,9 @@ def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> N
             if value is not None and not value.text.startswith(("-", "inf")):
                 document.multiply(value, [factor])
     for link in links:
-        if change.share != 1.0 and link.only("inertial/mass") is None:
+        if change.mass != 1.0 and link.only("inertial/mass") is None:
             _refuse_element(link, "no mass", "must state its mass, for wheels to share it")
-        document.multiply(link.only("inertial/mass"), [change.share])
+        document.multiply(link.only("inertial/mass"), [change.mass])
         inertia = link.only("inertial/inertia")
         for moment in inertia.children if inertia is not None else ():
             document.multiply(moment, [change.inertia], is_exact=True)
@@ -165,7 +166,7 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
     scope : Span
         The element in which its links and joints are.
     change : Change
-        What becomes of it.
+        The change.
     tree : Tree
         The model as it was read.
     """
@@ -181,7 +182,7 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
     document.multiply(limit, [change.effort], "effort")
     document.multiply(limit, [1.0 / change.size], "velocity")
     for link in links_in(scope, change.links):
-        document.multiply(link.only("inertial/mass"), [change.share], "value")
+        document.multiply(link.only("inertial/mass"), [change.mass], "value")
         inertia = link.only("inertial/inertia")
         for name in inertia.attributes if inertia is not None else ():
             document.multiply(inertia, [change.inertia], name, is_exact=True)
@@ -228,7 +229,7 @@ def _refuse_body(body: str, value: str, rule: str) -> NoReturn:
 def _change_body(document: Document, body: Span, change: Change, link: Link) -> None:
     inertial = body.only("inertial")
     if inertial is not None:
-        document.multiply(inertial, [change.share], "mass")
+        document.multiply(inertial, [change.mass], "mass")
         for name, count in (("diaginertia", 3), ("fullinertia", 6)):
             document.multiply(inertial, [change.inertia] * count, name, is_exact=True)
     geoms = [geom for geom in body.all("geom") if geom.attributes.get("type") not in _NOT_ROUND]
@@ -241,10 +242,10 @@ def _change_body(document: Document, body: Span, change: Change, link: Link) -> 
                 _refuse_body(body.name, "geoms of a class", "must state the sizes of its wheels")
             sizes = [change.round_size * shape.radius, 0.5 * shape.length]
             document.set_attribute(geom, "size", lengths(sizes))
-    if inertial is None and (change.share, change.round_size) != (1.0, 1.0) and link.mass > 0.0:
+    if inertial is None and (change.mass, change.round_size) != (1.0, 1.0) and link.mass > 0.0:
         if len(body.all("geom")) != 1:
             _refuse_body(body.name, "no <inertial>", "must state its mass, for wheels to share it")
-        document.set_attribute(body.all("geom")[0], "mass", lengths([change.share * link.mass]))
+        document.set_attribute(body.all("geom")[0], "mass", lengths([change.mass * link.mass]))
 
 
 def _above(span: Span) -> list[str]:
@@ -252,7 +253,7 @@ def _above(span: Span) -> list[str]:
 
 
 def _change_motor(document: Document, motor: Span, change: Change) -> None:
-    """Change what a motor can do; that of a `motor` without a limit of force is its gear."""
+    """Change the limits of a motor; that of a `motor` without a limit of force is its gear."""
     if "forcerange" in motor.attributes or motor.tag != "motor":
         document.multiply(motor, [change.effort] * 2, "forcerange")
     elif change.effort != 1.0:
@@ -273,7 +274,7 @@ def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pos
     for shape, place in change.grousers_on(pose):
         where = f'pos="{lengths(place.place)}" quat="{numbers(place.quaternion)}"'
         size = f'size="{lengths(0.5 * shape.size)}"'
-        # Its mass is that of the wheel already; without a name, as names must differ.
+        # Its mass is part of the wheel's; it has no name, as names must differ.
         document.append(body, f'<geom type="box" {where} {size} mass="0"{given}/>')
 
 
