@@ -23,7 +23,7 @@ from typing import Any, Self
 
 import pytest
 
-from crawler2d.reading.child import serve
+from crawler2d.reading.parsing import serve
 
 PATIENCE = 30  # [s] Of the clock, as the reader has it.
 ROOT = Path(__file__).parents[2]
@@ -61,7 +61,7 @@ class StandingChild:
     def __enter__(self) -> Self:
         self.start()
         self.patch = pytest.MonkeyPatch()
-        self.patch.setattr("crawler2d.reading.child.subprocess.run", self.run)
+        self.patch.setattr("crawler2d.reading.parsing.subprocess.run", self.run)
         return self
 
     def __exit__(

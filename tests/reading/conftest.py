@@ -26,4 +26,4 @@ def standing_children(request: pytest.FixtureRequest, monkeypatch: pytest.Monkey
     """Pay for imports once, a third of a second a file: for tests of what is read alone."""
     if sys.platform != "win32":
         children: StandingChildren = request.getfixturevalue("children")
-        monkeypatch.setattr("crawler2d.reading.child.subprocess.run", children.run)
+        monkeypatch.setattr("crawler2d.reading.parsing.subprocess.run", children.run)

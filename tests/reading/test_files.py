@@ -308,6 +308,6 @@ def test_an_include_is_not_larger_than_a_model(tmp_path: Path) -> None:
 
 
 def test_a_child_that_waits_is_ended_by_the_clock() -> None:
-    wait = "import os; from crawler2d.reading import child; child.CLOCK = 0.1; child._limit()"
+    wait = "import os; from crawler2d.reading import parsing; parsing.CLOCK = 0.1; parsing._limit()"
     done = subprocess.run([sys.executable, "-c", f"{wait}; os.read(os.pipe()[0], 1)"], check=False)
     assert done.returncode == -signal.SIGALRM

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.elements import parse_xml
 from crawler2d.reading.files import VARIABLES, Files
 from crawler2d.reading.log import Doubt
+from crawler2d.reading.parsing import parse_xml
 from crawler2d.reading.xacro import expand_xacro
 from tests.reading.carts import WHEELS, XACRO, collision, read, refused, urdf
 from tests.robots.tree_keys import Key, keys

@@ -53,20 +53,14 @@ class Assembly:
 
     Parameters
     ----------
-    tree : Tree
-        The model.
-    engine : str
-        The engine whose laws drive its motors.
     log : ReadLog
-        Takes notes, doubts and sources.
+        The model, and the record of notes, doubts and sources.
     view : SideView
         The side view.
     base : Base
         The chassis frame in the side view.
     """
 
-    tree: Tree
-    engine: str
     log: ReadLog
     view: SideView = field(init=False)
     base: Base = field(init=False)
@@ -79,7 +73,7 @@ class Assembly:
         ScenarioError
             If the model has what a side view cannot represent, or breaks a rule of a robot.
         """
-        tree, log = self.tree, self.log
+        log, tree = self.log, self.log.tree
         surfaces = surfaces_of(tree)
         log.doubts += surfaces.doubts
         view = side_view(tree, surfaces, forward, tolerance)
@@ -116,27 +110,17 @@ class Assembly:
         if not mass > 0.0:
             raise ScenarioError(str(tree.at), mass, "must have links with a mass > 0 kg")
         sum_at = lines([link.at for link in tree.links], "sum at angle 0" if by_end else "sum")
-        log.sources |= {
-            "robot.name": str(tree.at),
-            "robot.mass": lines([link.mass_at for link in tree.links], "sum"),
-            "robot.center_of_mass": sum_at,
-            "robot.moment_of_inertia": sum_at,
-        }
+        mass_at = lines([link.mass_at for link in tree.links], "sum")
+        log.cite("robot", name=str(tree.at), mass=mass_at)
+        log.cite("robot", center_of_mass=sum_at, moment_of_inertia=sum_at)
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
         outline = _outline_of(log, base, bent)
         # The estimate of Robot.simple: 1.6 times what holds it on 45 degrees.
         simple = Robot.simple(mass, axle_distance=1.0, radius=rear.radius)
         lever = rear.radius - simple.outline.grouser_height
-        drivetrain = drivetrain_of(
-            log,
-            tree,
-            driven,
-            track,
-            engine=self.engine,
-            radius=rear.radius,
-            torque=simple.drivetrain.max_torque * rear.radius / lever,
-        )
-        flippers = flippers_of(log, by_end, mass, engine=self.engine, is_mjcf=tree.format == "MJCF")
+        torque = simple.drivetrain.max_torque * rear.radius / lever
+        drivetrain = drivetrain_of(log, driven, track, radius=rear.radius, torque=torque)
+        flippers = flippers_of(log, by_end, mass)
         if flippers is not None and isinstance(flippers.track, BeltTrack):
             drivetrain = replace(drivetrain, torque_sharing="track")
         self.list_runners(pairs, by_end)
@@ -234,7 +218,7 @@ class Assembly:
         flat = [self.base.of(silhouette(shape, self.view)) for _, shape in gear.shapes]
         corners = hull(np.concatenate(flat)) if flat else []
         if len(corners) < 3:
-            self.log.sources["robot.belly"] = f"{self.tree.at}: no collision shape on the chassis"
+            self.log.sources["robot.belly"] = f"{self.log.at}: no collision shape on the chassis"
             return None
         self.log.sources["robot.belly"] = lines([shape.at for _, shape in gear.shapes], "hull")
         places = self.base.of(centers(driven))
@@ -308,7 +292,7 @@ def assemble(
     tree: Tree, *, forward: str | None, tolerance: float, engine: str, ground: float
 ) -> tuple[Robot, float, Assembly]:
     """Build the robot of a tree; return it with its friction on the ground and its assembly."""
-    work = Assembly(tree=tree, engine=engine, log=ReadLog(at=tree.at))
+    work = Assembly(log=ReadLog(tree=tree, engine=engine))
     robot = work.robot(forward, tolerance)
     runners = [runner for _, runner in work.log.rows]
     friction, source, places = combine_friction(runners, work.view, engine, ground)

@@ -249,7 +249,7 @@ def combine_friction(
 
 
 def rotor_inertia(
-    log: ReadLog, path: str, inertias: Sequence[float], joints: Sequence[Joint], *, engine: str
+    log: ReadLog, path: str, inertias: Sequence[float], joints: Sequence[Joint]
 ) -> float:
     """[kg m^2] Return the rotor inertia of one side as the engine has it, and log its source.
 
@@ -263,14 +263,12 @@ def rotor_inertia(
         [kg m^2] Of both sides, or of all wheels with motors of their own: their mean counts.
     joints : sequence of Joint
         The joints of the motors.
-    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
-        The engine.
     """
+    laws = ENGINES[log.engine]
     stating = [joint for joint in joints if joint.armature > 0.0]
     places = lines([joint.dynamics_at for joint in stating], "sum of one side")
-    is_ignored = "armature" in ENGINES[engine].ignored
-    if not stating or is_ignored:
-        where = f"{places}: none in {ENGINES[engine].name}" if stating else f"{log.at}: none"
+    if not stating or "armature" in laws.ignored:
+        where = f"{places}: none in {laws.name}" if stating else f"{log.at}: none"
         log.sources[path] = where
         return 0.0
     log.sources[path] = places
@@ -280,24 +278,13 @@ def rotor_inertia(
     return sum(inertias) / len(inertias)
 
 
-def warn_ignored(log: ReadLog, joints: Sequence[Joint], *, engine: str, is_mjcf: bool) -> None:
-    """Doubt the figures of joints that the engine ignores, each once.
-
-    Parameters
-    ----------
-    log : ReadLog
-        Takes the doubts.
-    joints : sequence of Joint
-        Those of all wheels, or of all flippers.
-    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
-        The engine.
-    is_mjcf : bool
-        Whether the file is MJCF, whose speeds are limits of commands, which all engines obey.
-    """
-    laws = ENGINES[engine]
+def warn_ignored(log: ReadLog, joints: Sequence[Joint]) -> None:
+    """Doubt the figures of joints of all wheels, or all flippers, that the engine ignores."""
+    laws = ENGINES[log.engine]
     for name, reason in laws.ignored.items():
         stating = [joint for joint in joints if _states(joint, name)]
-        if stating and not (is_mjcf and name == "velocity"):
+        # The speeds of MJCF are limits of commands, which all engines obey.
+        if stating and not (log.tree.format == "MJCF" and name == "velocity"):
             first = stating[0]
             where = getattr(first, f"{name}_at", first.dynamics_at)
             path = f"{where}: {name}[{list_names([joint.name for joint in stating])}]"
@@ -305,9 +292,7 @@ def warn_ignored(log: ReadLog, joints: Sequence[Joint], *, engine: str, is_mjcf:
             log.doubt(path, value, f"has no effect in {laws.name}: {reason}")
 
 
-def report_losses(
-    log: ReadLog, joints: Sequence[Joint], lost: float, limit: float, *, engine: str
-) -> None:
+def report_losses(log: ReadLog, joints: Sequence[Joint], lost: float, limit: float) -> None:
     """Report the torque that damping and friction take at full speed: no motor here has them.
 
     Parameters
@@ -318,17 +303,14 @@ def report_losses(
         Of the motors.
     lost, limit : float
         [N m] Loss and limit of one side.
-    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
-        The engine.
     """
     if not lost > 0.0:
         return
     first = next(joint for joint in joints if _states(joint, "damping", "friction"))
-    path, name = f"{first.dynamics_at}: joint[{first.name}]", ENGINES[engine].name
+    path, name = f"{first.dynamics_at}: joint[{first.name}]", ENGINES[log.engine].name
     part = f"{lost:.3g} of {limit:.3g} N m of a side"
     if lost > _LARGE * limit:
-        reason = f"is lost to damping and friction in {name}, but not here"
-        log.doubt(path, part, reason)
+        log.doubt(path, part, f"is lost to damping and friction in {name}, but not here")
     else:
         log.notes.append(f"{path}: damping and friction take {part} in {name}, and none here")
 
@@ -341,14 +323,7 @@ def resistance(joint: Joint, rate: float, engine: str) -> float:
 
 
 def drivetrain_of(
-    log: ReadLog,
-    tree: Tree,
-    pairs: list[Pair],
-    track: Track,
-    *,
-    engine: str,
-    radius: float,
-    torque: float,
+    log: ReadLog, pairs: list[Pair], track: Track, *, radius: float, torque: float
 ) -> Drivetrain:
     """Return speed and torque of the tracks.
 
@@ -356,19 +331,16 @@ def drivetrain_of(
     ----------
     log : ReadLog
         Takes the sources of the figures, and doubts about figures that the engine ignores.
-    tree : Tree
-        The model.
     pairs : list of Pair
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     track : Track
         The model of the track of the chassis.
-    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
-        The engine that drives it.
     radius : float
         [m] Of the rear end, at which the torque of a robot acts.
     torque : float
         [N m] The estimate for a motor without limit.
     """
+    tree, engine = log.tree, log.engine
     log.notes.append(ENGINES[engine].in_words(is_belt=isinstance(track, BeltTrack)))
     speed, speed_source = _speed(tree, pairs)
     sides = [_wheels(tree, pairs, side, engine) for side in ("left", "right")]
@@ -387,28 +359,19 @@ def drivetrain_of(
         if isinstance(track, LineOfWheels) and len(set(efforts)) == 1:
             sharing = "wheel"
     of_simple, none = estimate("that of Robot.simple"), f"{tree.at}: none"
-    log.sources |= {
-        f"robot.drivetrain.{name}": source
-        for name, source in {
-            "max_speed": speed_source,
-            "max_acceleration": of_simple,
-            "max_deceleration": of_simple,
-            "max_torque": torque_source,
-            "torque_sharing": sharing_source,
-            "no_load_speed": none,
-            "torque_curve": none,
-            "self_locking": none,
-        }.items()
-    }
-    warn_ignored(log, joints, engine=engine, is_mjcf=tree.format == "MJCF")
+    log.cite("robot.drivetrain", max_speed=speed_source)
+    log.cite("robot.drivetrain", max_acceleration=of_simple, max_deceleration=of_simple)
+    log.cite("robot.drivetrain", max_torque=torque_source, torque_sharing=sharing_source)
+    log.cite("robot.drivetrain", no_load_speed=none, torque_curve=none, self_locking=none)
+    warn_ignored(log, joints)
     lost = 0.5 * sum(resistance(joint, speed / own, engine) * radius / own for joint, own in wheels)
-    report_losses(log, joints, lost, torque, engine=engine)
+    report_losses(log, joints, lost, torque)
     # At the sprocket a wheel's rotor counts by the square of the ratio of their rates.
     rotors = [[joint.armature * (radius / own) ** 2 for joint, own in side] for side in sides]
     inertias = [sum(side) for side in rotors]
     if sharing == "wheel":
         inertias = [len(side) * rotor for side in rotors for rotor in side]
-    controller = _controller(log, wheels, engine=engine, radius=radius)
+    controller = _controller(log, wheels, radius)
     gain_torque = torque if controller is None else controller.gain * speed / radius
     if gain_torque < torque and has_limits:
         path = f"{joints[0].gain_at}: gain[{joints[0].name}]"
@@ -420,9 +383,7 @@ def drivetrain_of(
         max_deceleration=_DECELERATION,
         max_torque=torque,
         torque_sharing=sharing,
-        rotor_inertia=rotor_inertia(
-            log, "robot.drivetrain.rotor_inertia", inertias, joints, engine=engine
-        ),
+        rotor_inertia=rotor_inertia(log, "robot.drivetrain.rotor_inertia", inertias, joints),
         controller=controller,
     )
 
@@ -492,13 +453,11 @@ def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[t
     return wheels
 
 
-def _controller(
-    log: ReadLog, wheels: Sequence[tuple[Joint, float]], *, engine: str, radius: float
-) -> PI | None:
+def _controller(log: ReadLog, wheels: Sequence[tuple[Joint, float]], radius: float) -> PI | None:
     """Return the controller of one side: the servos of its wheels, if the engine has such."""
     gains = [(joint.gain or 0.0) * (radius / own) ** 2 for joint, own in wheels]
-    if not ENGINES[engine].has_gain or not gains or not min(gains) > 0.0:
-        log.sources["robot.drivetrain.controller"] = f"{log.at}: none"
+    if not ENGINES[log.engine].has_gain or not gains or not min(gains) > 0.0:
+        log.cite("robot.drivetrain", controller=f"{log.at}: none")
         return None
     places = lines([joint.gain_at for joint, _ in wheels], "sum of one side")
     log.sources["robot.drivetrain.controller"] = places

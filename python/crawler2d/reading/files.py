@@ -48,6 +48,7 @@ VARIABLES = {
     "ROS_ROOT": (),
 }
 """By variable the path of a package in one of its folders; without a pattern, anywhere below."""
+
 _NAME = re.compile(rb"<name\s*>([^<]+)</name\s*>")
 _ALLOWED = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+ -]*")
 _LARGEST = 64_000  # [bytes] of a manifest
@@ -80,6 +81,7 @@ _FLAGS = os.O_RDONLY
 
 for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
     _FLAGS |= getattr(os, _name, 0)
+
 _ELSEWHERE = "is not among the files of the model"
 
 
@@ -226,6 +228,8 @@ class Files:
     ----------
     folder : Path
         That of the model, with all links resolved.
+    packages : Packages
+        The packages that it may name.
     doubts : list of Doubt
         Files that stand in for those of packages that are not found.
 
@@ -249,7 +253,7 @@ class Files:
         self._model = _real(model, "path")
         self.folder = self._model.parent
         self._given = {name: _real(folder, "packages") for name, folder in packages.items()}
-        self._packages = Packages(self.folder, self._given, _read_regular)
+        self.packages = Packages(self.folder, self._given, _read_regular)
         named = [folder for variable in VARIABLES for folder in folders(variable)]
         self._roots = [_package_around(self.folder), *self._given.values(), *named]
         self._left = LARGEST_TOGETHER
@@ -261,11 +265,6 @@ class Files:
         """The parameters, for another process."""
         packages = {name: str(folder) for name, folder in self._given.items()}
         return {"model": str(self._model), "packages": packages}
-
-    @property
-    def looked(self) -> str:
-        """The folders and variables that are searched, for errors."""
-        return self._packages.looked
 
     def model(self) -> bytes:
         """Read the model itself; see `read`."""
@@ -296,7 +295,7 @@ class Files:
         """
         path = self.path(name, at=at)
         inside = any(path.is_relative_to(root) for root in self._roots)
-        if not inside and not self._packages.hold(path) and path not in self._taken.values():
+        if not inside and not self.packages.hold(path) and path not in self._taken.values():
             rule = (
                 "must be in the folder or package of its model, in another package of its tree, or"
                 " in a folder that is named: packages={name: folder}"
@@ -315,29 +314,21 @@ class Files:
         self._left -= len(data)
         return data
 
-    def package(self, name: str) -> Path | None:
-        """Return the folder of a package; None if there is none."""
-        return self._packages.find(name)
-
-    def settings(self) -> list[Path]:
-        """List the YAML files in the package of the model, or else in its repository."""
-        return self._packages.files((".yaml", ".yml"))
-
     def path(self, name: str, *, at: str) -> Path:
         """Return the path of a file that a model names; see `read`."""
         match = _IN_PACKAGE.fullmatch(name)
         if match is None:
             return _real(self.folder / name.removeprefix("file://"), at)
         package, inside = match[1] or match[2] or "", match[3]
-        folder = self.package(package)
+        folder = self.packages.find(package)
         if folder is not None:
             return _real(folder / inside.lstrip("/"), at)
         if name not in self._taken:
-            taken = self._packages.file(package, inside)
+            taken = self.packages.file(package, inside)
             if taken is None:
                 rule = (
-                    f"must be in a package that is found in {self.looked}, or whose folder is"
-                    " given: packages={name: folder}"
+                    f"must be in a package that is found in {self.packages.looked}, or whose folder"
+                    " is given: packages={name: folder}"
                 )
                 raise ScenarioError(at, name, rule) from _absent(name)
             self._taken[name] = taken

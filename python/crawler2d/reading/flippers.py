@@ -184,9 +184,7 @@ def arms_at(
     return {end: ends[end] for end in ("front", "rear") if end in ends}
 
 
-def flippers_of(
-    log: ReadLog, by_end: dict[str, AtEnd], mass: float, *, engine: str, is_mjcf: bool
-) -> Flippers | None:
+def flippers_of(log: ReadLog, by_end: dict[str, AtEnd], mass: float) -> Flippers | None:
     """Return the flippers with the sources of their figures, driven by an engine."""
     if not by_end:
         log.sources["robot.flippers"] = f"{log.at}: none"
@@ -204,26 +202,23 @@ def flippers_of(
         of_radius["root_radius"] = estimate("that of the tip: no wheel is at the pivot")
         reason = "is that of the tip: no wheel of theirs is at the pivot"
         log.doubt("robot.flippers.root_radius", first.root_radius, reason)
-    of_mass = lines([link.mass_at for arm in arms for link in arm.links], "sum")
-    of_track = [shape.size_at for runner in runners for shape in runner.surfaces]
-    log.sources |= {
-        f"robot.flippers.{name}": source
-        for name, source in {
-            "length": lines([runner.pose_at for runner in outer]),
-            **of_radius,
-            "mass": of_mass,
-            "ends": lines([arm.joint.at for arm in arms]),
-            "angle": lines([arm.links[0].pose_at for arm in arms]),
-            "track": lines(of_track, "sizes"),
-            "self_locking": f"{log.at}: none",
-        }.items()
-    }
+    surfaces = [shape.size_at for runner in runners for shape in runner.surfaces]
+    log.cite(
+        "robot.flippers",
+        length=lines([runner.pose_at for runner in outer]),
+        **of_radius,
+        mass=lines([link.mass_at for arm in arms for link in arm.links], "sum"),
+        ends=lines([arm.joint.at for arm in arms]),
+        angle=lines([arm.links[0].pose_at for arm in arms]),
+        track=lines(surfaces, "sizes"),
+        self_locking=f"{log.at}: none",
+    )
     rate, torque = _limits(log, ends, mass)
     motors = [motor for end in ends for motor in end.motors]
     joints = [joint for joint, _ in motors]
-    warn_ignored(log, joints, engine=engine, is_mjcf=is_mjcf)
-    lost = max(resistance(joint, rate, engine) / count for joint, count in motors)
-    report_losses(log, joints, lost, torque, engine=engine)
+    warn_ignored(log, joints)
+    lost = max(resistance(joint, rate, log.engine) / count for joint, count in motors)
+    report_losses(log, joints, lost, torque)
     rotors = [joint.armature / count for joint, count in motors]
     own, least = sum(pair.mass for pair in pairs) / len(pairs), _LIGHTEST * mass
     if own < least:
@@ -240,9 +235,7 @@ def flippers_of(
         angle=first.angle,
         rate_limit=rate,
         torque_limit=torque,
-        rotor_inertia=rotor_inertia(
-            log, "robot.flippers.rotor_inertia", rotors, joints, engine=engine
-        ),
+        rotor_inertia=rotor_inertia(log, "robot.flippers.rotor_inertia", rotors, joints),
         track=first.track,
     )
 

@@ -13,12 +13,12 @@ import numpy as np
 from crawler2d.common.arrays import real_number
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Link, Tree
-from crawler2d.reading.elements import parse_xml
 from crawler2d.reading.engines import ENGINES
 from crawler2d.reading.files import Files
 from crawler2d.reading.log import Doubt, add_doubts, list_names
 from crawler2d.reading.meshes import Meshes, MeshRule
 from crawler2d.reading.mjcf import read_mjcf
+from crawler2d.reading.parsing import parse_xml
 from crawler2d.reading.sdf import read_sdf
 from crawler2d.reading.urdf import read_urdf
 from crawler2d.reading.wheels import farthest, subtrees

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from crawler2d.errors import ScenarioError, ScenarioWarning
-from crawler2d.model_tree import Where
+from crawler2d.model_tree import Tree, Where
 from crawler2d.reading.wheels import Runner
 
 __all__ = ["Doubt", "ReadLog", "Sources", "add_doubts", "estimate", "lines", "list_names"]
@@ -65,12 +65,14 @@ class Sources(Mapping[str, str]):
 
 @dataclass(slots=True, kw_only=True)
 class ReadLog:
-    """What is recorded while a robot is built from a model.
+    """What is recorded while a robot is built from a model, by the laws of an engine.
 
     Parameters
     ----------
-    at : Where
-        Line of the model.
+    tree : Tree
+        The model.
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
+        The engine.
     sources : dict of str to str
         By path.
     notes : list of str
@@ -81,11 +83,21 @@ class ReadLog:
         All wheels and drums, each with its carrier, in the order of the table.
     """
 
-    at: Where
+    tree: Tree
+    engine: str
     sources: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     doubts: list[Doubt] = field(default_factory=list)
     rows: list[tuple[str, Runner]] = field(default_factory=list)
+
+    @property
+    def at(self) -> Where:
+        """Line of the model."""
+        return self.tree.at
+
+    def cite(self, path: str, **sources: str) -> None:
+        """Record the sources of figures of a part of the robot."""
+        self.sources |= {f"{path}.{name}": source for name, source in sources.items()}
 
     def doubt(self, path: object, value: object, reason: str) -> None:
         """Record a probable mistake."""

@@ -20,10 +20,9 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Shape, Unread
-from crawler2d.reading.child import ask_child, no_more_files, serve
-from crawler2d.reading.elements import Element
 from crawler2d.reading.files import LARGEST_TOGETHER, Files, reason_of
 from crawler2d.reading.log import Doubt
+from crawler2d.reading.parsing import Element, ask_child, no_more_files, serve
 
 __all__ = ["MOST_CORNERS", "MeshRule", "Meshes"]
 

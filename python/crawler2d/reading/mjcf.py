@@ -29,10 +29,9 @@ from crawler2d.model_tree import (
     from_quaternion,
     unit,
 )
-from crawler2d.reading.child import ask_child, no_more_files, serve
-from crawler2d.reading.elements import Element
 from crawler2d.reading.files import LARGEST_TOGETHER, Files, reason_of
 from crawler2d.reading.meshes import MOST_CORNERS, Meshes
+from crawler2d.reading.parsing import Element, ask_child, no_more_files, serve
 from crawler2d.reading.parts import collisions, ellipsoid, order_links
 
 __all__ = ["read_mjcf"]

@@ -13,7 +13,6 @@ import numpy as np
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import (
     Array,
-    Friction,
     Joint,
     Link,
     Plugin,
@@ -24,9 +23,9 @@ from crawler2d.model_tree import (
     Where,
     unit,
 )
-from crawler2d.reading.elements import Element, real
 from crawler2d.reading.log import Doubt
 from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.parsing import Element, real
 
 __all__ = [
     "Limit",
@@ -82,17 +81,14 @@ _LONGEST_NAME = 200
 
 
 def shape_of(
+    shape: Shape,
     collision: Element,
+    meshes: Meshes,
     *,
-    name: str,
-    pose: Pose,
-    pose_at: Element,
-    friction: Friction | None,
     numbers: Numbers,
     mesh_name: Callable[[Element], str],
-    meshes: Meshes,
 ) -> Shape | Unread | None:
-    """Read the geometry of a collision; None if it is empty."""
+    """Return a shape with the geometry of its collision; None if that is empty."""
     geometry = collision.needed("geometry")
     kinds = [child for child in geometry.children if child.tag != "empty"]
     if not kinds:
@@ -101,15 +97,8 @@ def shape_of(
         kinds[1].refuse(kinds[1].tag, "must be the only shape of its collision")
     (element,) = kinds
     kind = element.tag
-    shape = Shape(
-        name=name,
-        kind=kind,
-        pose=pose,
-        friction=friction,
-        at=collision.where,
-        pose_at=pose_at.where,
-        size_at=(element.only("radius") or element).where,
-    )
+    size_at = (element.only("radius") or element).where
+    shape = replace(shape, kind=kind, size_at=size_at, at=collision.where)
     if kind == "mesh":
         has_scale = element.only("scale") is not None or "scale" in element.attributes
         scale = numbers(element, "scale", 3) if has_scale else [1.0, 1.0, 1.0]
@@ -127,7 +116,7 @@ def shape_of(
         shape = replace(shape, size=np.array(sizes))
     elif kind in ("cone", "ellipsoid"):
         points = _cone(*sizes) if kind == "cone" else ellipsoid(sizes)
-        shape = replace(shape, kind="hull", points=pose.at(points))
+        shape = replace(shape, kind="hull", points=shape.pose.at(points))
     else:
         length = sizes[1] if kind != "sphere" else 0.0
         shape = replace(shape, kind=kind, radius=sizes[0], length=length)

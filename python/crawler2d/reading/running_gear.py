@@ -22,7 +22,7 @@ from crawler2d.reading.wheels import (
     is_parallel,
     radius_about,
     subtrees,
-    wheel_of,
+    wheel_shapes,
 )
 
 __all__ = [
@@ -254,8 +254,7 @@ def _refuse_alone(runner: Runner, side: str, view: SideView) -> NoReturn:
 
 def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     """Return the direction of the most axes of wheels and of the drums of tracks, horizontal."""
-    hanging = subtrees(tree)
-    axes = [joint.axis for joint in tree.joints.values() if wheel_of(tree, joint, hanging)]
+    axes = [tree.joints[child].axis for child in wheel_shapes(tree)]
     axes += [
         shape.axis
         for link in tree.links
@@ -315,11 +314,7 @@ class _Sorting:
         self.hanging = subtrees(tree)
         self.moved = surfaces.moved
         self.links = tree.by_name
-        self.wheels = {
-            child: shapes
-            for child, joint in tree.joints.items()
-            if (shapes := wheel_of(tree, joint, self.hanging))
-        }
+        self.wheels = wheel_shapes(tree)
         self.turning = {n for child in self.wheels for n in self.hanging[child]}
         self.carrier: dict[str, Joint | None] = {}
 

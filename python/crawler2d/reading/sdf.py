@@ -23,9 +23,9 @@ from crawler2d.model_tree import (
     from_rpy,
     unit,
 )
-from crawler2d.reading.elements import Element, real
 from crawler2d.reading.log import Doubt
 from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.parsing import Element, real
 from crawler2d.reading.parts import (
     coefficient,
     collision_ancestors,
@@ -376,15 +376,19 @@ class _Model:
         if bitmask is not None and re.fullmatch(r"0x0+|0+", bitmask.text):
             return None  # it meets nothing
         pose = self.frames.inside(collision, part.name, part.scope)
-        return shape_of(
-            collision,
+        shape = Shape(
             name=collision.attributes.get("name", part.name),
+            kind="",
             pose=pose,
-            pose_at=next(collision.all("pose"), collision),
             friction=self.friction(collision, pose, part.scope),
+            pose_at=next(collision.all("pose"), collision).where,
+        )
+        return shape_of(
+            shape,
+            collision,
+            self.meshes,
             numbers=lambda element, name, count: element.needed(name).reals(count),
             mesh_name=lambda mesh: mesh.needed("uri").text,
-            meshes=self.meshes,
         )
 
     def friction(self, collision: Element, pose: Pose, scope: str) -> Friction | None:

@@ -21,7 +21,7 @@ from crawler2d.reading.wheels import (
     is_parallel,
     radius_about,
     subtrees,
-    wheel_of,
+    wheel_shapes,
 )
 
 __all__ = ["Surfaces", "refuse_unread", "surfaces_of"]
@@ -125,7 +125,7 @@ def refuse_unread(tree: Tree) -> None:
     lacking = {link.name: link for link in tree.links if link.unread and not link.shapes}
     moved = moved_links(tree)
     hanging = subtrees(tree)
-    tops = list(_tops(tree, hanging))
+    tops = list(_tops(tree))
     if not tops:
         _refuse_bare(tree, hanging)
     if not lacking:
@@ -166,11 +166,7 @@ class _Search:
             is_rigid = joint is not None and joint.kind == "fixed"
             self.body[link.name] = self.body[joint.parent] if joint and is_rigid else link.name
         hanging = subtrees(tree)
-        self.wheels = {
-            child: shapes
-            for child, joint in tree.joints.items()
-            if (shapes := wheel_of(tree, joint, hanging))
-        }
+        self.wheels = wheel_shapes(tree)
         self.turning = {name for child in self.wheels for name in hanging[child]}
 
     def drums(self) -> tuple[list[_Drum], list[_Drum]]:
@@ -272,10 +268,11 @@ def _in_side_view(place: Array, axis: Array) -> Array:
     return np.array([place @ forward, place[2], place @ axis])
 
 
-def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
+def _tops(tree: Tree) -> Iterator[float]:
     """[m] Yield the height of the top of each wheel and drum."""
-    for joint in tree.joints.values():
-        for _, shape in wheel_of(tree, joint, hanging):
+    for child, parts in wheel_shapes(tree).items():
+        joint = tree.joints[child]
+        for _, shape in parts:
             yield float(joint.place[2]) + (radius_about(shape, joint.place, joint.axis) or 0.0)
     for shape in surfaces_of(tree).moved:
         if shape.radius > 0.0:

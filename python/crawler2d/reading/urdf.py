@@ -21,9 +21,9 @@ from crawler2d.model_tree import (
     from_rpy,
     unit,
 )
-from crawler2d.reading.elements import Element, real
 from crawler2d.reading.log import Doubt
 from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.parsing import Element, real
 from crawler2d.reading.parts import (
     Limit,
     coefficient,
@@ -219,15 +219,19 @@ def _shape(
     pose = pose.then(_origin(collision, meshes.doubts))
     if friction is not None and friction.direction is not None:
         friction = replace(friction, direction=unit(pose.along(friction.direction)))
-    return shape_of(
-        collision,
+    shape = Shape(
         name=collision.attributes.get("name") or link.attribute("name"),
+        kind="",
         pose=pose,
-        pose_at=_origin_element(collision),
         friction=friction,
+        pose_at=_origin_element(collision).where,
+    )
+    return shape_of(
+        shape,
+        collision,
+        meshes,
         numbers=lambda element, name, count: element.reals(count, name),
         mesh_name=lambda mesh: mesh.attribute("filename"),
-        meshes=meshes,
     )
 
 

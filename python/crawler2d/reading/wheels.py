@@ -22,7 +22,7 @@ __all__ = [
     "is_parallel",
     "radius_about",
     "subtrees",
-    "wheel_of",
+    "wheel_shapes",
 ]
 
 PARALLEL = 0.05
@@ -33,6 +33,7 @@ _OFF_AXIS = 0.02
 
 # The hull of a mesh counts as round if its silhouette nowhere falls short by more than this share.
 _OUT_OF_ROUND = 0.05
+
 _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
 
 ALIKE = 2e-3
@@ -41,6 +42,7 @@ ALIKE = 2e-3
 _SHARP = 1e-5
 """[-] Corners are one if they are nearer than this, relative to their distance from the axle: those
 on both sides of a prism, which MuJoCo keeps as float32."""
+
 _MOST_CORNERS = 64  # A prism has eight; its mesh may repeat each for every facet.
 _COUNT = range(3, 201)  # of grousers of a gear wheel
 
@@ -283,20 +285,24 @@ def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
     )
 
 
-def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tuple[Link, Shape]]:
-    """Return the shapes of the wheel on a joint; none if it carries no wheel.
+def wheel_shapes(tree: Tree) -> dict[str, list[tuple[Link, Shape]]]:
+    """Return the shapes of each wheel by its link.
 
     A wheel turns without limit. All that turns with it is round about its axis, or one of equal
     grousers evenly round it.
     """
-    names = hanging[joint.child]
-    if not joint.is_unlimited or any(not tree.joints[n].is_locked for n in names[1:]):
-        return []
-    links = tree.by_name
-    pairs = [(links[name], shape) for name in names for shape in links[name].shapes]
-    shapes = [shape for _, shape in pairs]
-    is_round = all(radius_about(shape, joint.place, joint.axis) is not None for shape in shapes)
-    return pairs if is_round or grousers_on(shapes, joint) is not None else []
+    hanging, links = subtrees(tree), tree.by_name
+    wheels = {}
+    for child, joint in tree.joints.items():
+        names = hanging[child]
+        if not joint.is_unlimited or any(not tree.joints[n].is_locked for n in names[1:]):
+            continue
+        pairs = [(links[name], shape) for name in names for shape in links[name].shapes]
+        shapes = [shape for _, shape in pairs]
+        is_round = all(radius_about(each, joint.place, joint.axis) is not None for each in shapes)
+        if pairs and (is_round or grousers_on(shapes, joint) is not None):
+            wheels[child] = pairs
+    return wheels
 
 
 def _grouser(

@@ -18,11 +18,10 @@ from typing import Any, NamedTuple, NoReturn
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.child import ask_child, serve
-from crawler2d.reading.elements import parse_xml
 from crawler2d.reading.expressions import NAMES, NotAllowed, copy_data, evaluate
 from crawler2d.reading.files import Files
 from crawler2d.reading.log import Doubt
+from crawler2d.reading.parsing import ask_child, parse_xml, serve
 from crawler2d.reading.xacro_tree import XacroFiles, XacroMacros
 
 __all__ = ["expand_xacro"]
@@ -137,7 +136,7 @@ class Settings:
     def _tables(self) -> list[dict[str, Setting]]:
         """The settings at the beginning of lines, by file; unreadable files are skipped."""
         tables, left = [], _MOST_BYTES
-        for path in self._files.settings()[:_MOST_FILES]:
+        for path in self._files.packages.files((".yaml", ".yml"))[:_MOST_FILES]:
             try:
                 data = self._files.read(str(path), at=path.name, most=min(_LARGEST, left))
             except ScenarioError:

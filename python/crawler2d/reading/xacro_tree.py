@@ -13,9 +13,9 @@ from xml.dom import minidom
 from xml.sax.saxutils import escape
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import parse_xml
 from crawler2d.reading.files import Files, is_absent
 from crawler2d.reading.log import Doubt
+from crawler2d.reading.parsing import parse_xml
 
 __all__ = ["XacroFiles", "XacroMacros"]
 
@@ -114,18 +114,18 @@ class XacroFiles:
 
     def find(self, name: str) -> str:
         """Return the folder of a package, or the call itself: it may not be needed."""
-        folder = self.files.package(name)
+        folder = self.files.packages.find(name)
         if folder is not None:
             return str(folder)
         if self.leave_out:
             return f"$(find {name})"
         rule = (
-            f"must have its packages, which are looked for in {self.files.looked}:"
+            f"must have its packages, which are looked for in {self.files.packages.looked}:"
             ' packages={name: folder} gives their folders, missing="leave_out" leaves out includes'
             " of others"
         )
         others = _FIND.findall(next(iter(self.texts.values())))
-        lost = [each for each in others if self.files.package(each) is None]
+        lost = [each for each in others if self.files.packages.find(each) is None]
         place = self.place([f"{how} {each}" for each in (name, *lost) for how in _FINDS])
         raise ScenarioError(place, ", ".join(dict.fromkeys([*lost, name])), rule)
 
