@@ -128,32 +128,20 @@ def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> 
 
 def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
     """Change a wheel; the arguments are those of `change_urdf`."""
-    links = links_in(scope, change.links)
     joint = joint_in(scope, change.joint.name)
+    links = [(link, MODEL) for link in links_in(scope, change.links)]
     # Parts in the frame of the wheel move with it; a joint usually does.
-    for each, usual in [*((link, MODEL) for link in links), (joint, change.link)]:
+    for each, usual in [*links, (joint, change.link)]:
         pose = each.only("pose")
         frame = usual if pose is None else pose.attributes.get("relative_to", "") or usual
         if change.shift.any() and frame not in change.links:
-            _move(document, each, pose, _turned(change.shift, frame, tree, each))
+            _move(document, each, pose, _rotate_shift(change.shift, frame, tree, each))
     limit = joint.only("axis/limit")
-    if limit is not None:
-        for name, factor in (("effort", change.effort), ("velocity", 1.0 / change.size)):
-            value = limit.only(name)
-            if value is not None and not value.text.startswith(("-", "inf")):
-                document.multiply(value, [factor])
-    for link in links:
-        if change.mass != 1.0 and link.only("inertial/mass") is None:
-            _refuse_element(link, "no mass", "must state its mass, for wheels to share it")
-        document.multiply(link.only("inertial/mass"), [change.mass])
-        inertia = link.only("inertial/inertia")
-        for moment in inertia.children if inertia is not None else ():
-            document.multiply(moment, [change.inertia], is_exact=True)
-        for shape in link.all("collision", "visual"):
-            for kind in _ROUNDS:
-                document.multiply(shape.only(f"geometry/{kind}/radius"), [change.round_size])
-        if link.name == change.link:
-            _add_sdf_grousers(document, link, change, tree.by_name[change.link].pose)
+    for name, factor in (("effort", change.effort), ("velocity", 1.0 / change.size)):
+        value = None if limit is None else limit.only(name)
+        if value is not None and not value.text.startswith(("-", "inf")):
+            document.multiply(value, [factor])
+    _change_links(document, scope, change, tree, is_urdf=False)
 
 
 def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> None:
@@ -181,16 +169,7 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
     limit = joint.only("limit")
     document.multiply(limit, [change.effort], "effort")
     document.multiply(limit, [1.0 / change.size], "velocity")
-    for link in links_in(scope, change.links):
-        document.multiply(link.only("inertial/mass"), [change.mass], "value")
-        inertia = link.only("inertial/inertia")
-        for name in inertia.attributes if inertia is not None else ():
-            document.multiply(inertia, [change.inertia], name, is_exact=True)
-        for shape in link.all("collision", "visual"):
-            for each in (shape.only(f"geometry/{kind}") for kind in _ROUNDS):
-                document.multiply(each, [change.round_size], "radius")
-        if link.name == change.link:
-            _add_urdf_grousers(document, link, change, tree.by_name[change.link].pose)
+    _change_links(document, scope, change, tree, is_urdf=True)
 
 
 def _is_about(span: Span, names: Collection[str]) -> bool:
@@ -287,36 +266,53 @@ def _move(document: Document, element: Span, pose: Span | None, shift: Array) ->
         document.add_to(pose, shift.tolist())
 
 
-def _turned(shift: Array, frame: str, tree: Tree, element: Span) -> Array:
+def _rotate_shift(shift: Array, frame: str, tree: Tree, element: Span) -> Array:
     """[m] Return a shift of the model in the frame in which an element is given."""
     if frame == MODEL:
         return shift
     if frame not in tree.by_name:
-        _refuse_element(element, frame, "must be placed in the frame of a link or of the model")
-    turned: Array = np.asarray(tree.by_name[frame].pose.turn.T @ shift)
-    return turned
+        _refuse(element, frame, "must be placed in the frame of a link or of the model")
+    rotated: Array = np.asarray(tree.by_name[frame].pose.turn.T @ shift)
+    return rotated
 
 
-def _refuse_element(element: Span, value: str, rule: str) -> NoReturn:
+def _refuse(element: Span, value: str, rule: str) -> NoReturn:
     raise ScenarioError(f"{element.tag}[{element.name}]", value, rule)
 
 
-def _add_sdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
-    first = link.only("collision")
-    surface = None if first is None else first.only("surface")
+def _change_links(
+    document: Document, scope: Span, change: Change, tree: Tree, *, is_urdf: bool
+) -> None:
+    """Change mass, moments of inertia and radii: attributes in URDF, elements in SDF."""
+    for link in links_in(scope, change.links):
+        mass, inertia = link.only("inertial/mass"), link.only("inertial/inertia")
+        if mass is None and change.mass != 1.0 and not is_urdf:
+            _refuse(link, "no mass", "must state its mass, for wheels to share it")
+        document.multiply(mass, [change.mass], "value" if is_urdf else "")
+        if inertia is not None:
+            for name in inertia.attributes if is_urdf else ():
+                document.multiply(inertia, [change.inertia], name, is_exact=True)
+            for moment in () if is_urdf else inertia.children:
+                document.multiply(moment, [change.inertia], is_exact=True)
+        for shape in link.all("collision", "visual"):
+            for kind in _ROUNDS:
+                radius = shape.only(f"geometry/{kind}" if is_urdf else f"geometry/{kind}/radius")
+                document.multiply(radius, [change.round_size], "radius" if is_urdf else "")
+        if link.name == change.link:
+            pose = tree.by_name[change.link].pose
+            _add_grousers(document, link, change, pose, is_urdf=is_urdf)
+
+
+def _add_grousers(
+    document: Document, link: Span, change: Change, pose: Pose, *, is_urdf: bool
+) -> None:
+    surface = link.only("collision/surface")
     of_wheel = "" if surface is None else document.source(surface)
-    for shape, place in change.grousers_on(pose):
-        pose_text = f"<pose>{lengths(place.place)} {numbers(place.rpy)}</pose>"
-        box = f"<geometry><box><size>{lengths(shape.size)}</size></box></geometry>"
+    for shape, local in change.grousers_on(pose):
+        place, angles, size = lengths(local.place), numbers(local.rpy), lengths(shape.size)
+        text = f"<pose>{place} {angles}</pose><geometry><box><size>{size}</size></box></geometry>"
+        if is_urdf:
+            origin = f'<origin xyz="{place}" rpy="{angles}"/>'
+            text = f'{origin}<geometry><box size="{size}"/></geometry>'
         for tag, more in (("collision", of_wheel), ("visual", "")):
-            document.append(
-                link, f'<{tag} name="{shape.name}_{tag}">{pose_text}{box}{more}</{tag}>'
-            )
-
-
-def _add_urdf_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
-    for shape, place in change.grousers_on(pose):
-        origin = f'<origin xyz="{lengths(place.place)}" rpy="{numbers(place.rpy)}"/>'
-        box = f'<geometry><box size="{lengths(shape.size)}"/></geometry>'
-        for tag in ("collision", "visual"):
-            document.append(link, f'<{tag} name="{shape.name}_{tag}">{origin}{box}</{tag}>')
+            document.append(link, f'<{tag} name="{shape.name}_{tag}">{text}{more}</{tag}>')

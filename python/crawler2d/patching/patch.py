@@ -56,7 +56,7 @@ class Patch:
     text : str
         All of it.
     diff : str
-        What differs from the file that was read, as a unified diff.
+        The differences from the file that was read, as a unified diff.
     summary : str
         The numbers of added, removed and changed wheels and of lines that differ, and the settings
         of plugins that may depend on wheels and are unchanged.

@@ -105,7 +105,7 @@ def copy_data(value: Any) -> Any:
 
 
 class _Evaluation:
-    """One expression: what it may still do."""
+    """The evaluation of one expression, with its remaining steps."""
 
     def __init__(self, text: str, names: Mapping[str, Any]) -> None:
         self.text = text

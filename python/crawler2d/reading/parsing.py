@@ -27,7 +27,6 @@ from crawler2d.reading.log import Doubt
 
 __all__ = ["Element", "ask_child", "no_more_files", "parse_xml", "real", "serve"]
 
-
 # [m, kg, ...] No robot has a larger figure; a larger effort or limit of an angle is no limit.
 _LARGEST = 1e6
 
@@ -59,7 +58,7 @@ class Element:
     attributes : dict of str to str
         As in the file.
     parent : Element or None
-        What it stands in.
+        The element that contains it.
     where : Where
         File and line of its opening tag.
     """

@@ -1,4 +1,4 @@
-"""What SDF and URDF share: shapes, inertias, joints, plugins, and the order of links in a tree."""
+"""Shapes, inertias, joints and plugins of SDF and URDF, and the order of links in a tree."""
 
 from __future__ import annotations
 

@@ -306,7 +306,7 @@ def _sign_by_names(tree: Tree, ahead: Array) -> tuple[float, str] | None:
 
 
 class _Sorting:
-    """Walks down the tree; what hangs on a link is known when it is its turn."""
+    """Sorts links from the root down; the carrier of each is that of its parent, or its joint."""
 
     def __init__(self, tree: Tree, view: SideView, surfaces: Surfaces) -> None:
         self.tree = tree

@@ -28,10 +28,10 @@ __all__ = [
 PARALLEL = 0.05
 """[rad] Axes within this angle count as parallel: files have 3.1415 for pi, and toe-in."""
 
-# A wheel sits on its axis, but for the rounding of files: a share of its radius.
+# A wheel may be off its axis by rounding: relative to its radius.
 _OFF_AXIS = 0.02
 
-# The hull of a mesh counts as round if its silhouette nowhere falls short by more than this share.
+# The hull of a mesh counts as round if its silhouette falls short by at most this, relatively.
 _OUT_OF_ROUND = 0.05
 
 _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)

@@ -72,7 +72,7 @@ class Model:
     across : Across
         Widths and lateral places.
     limits : Limits
-        What its motors can do together.
+        The limits of all motors together.
     comment : str
         The origin of a file of it, and what in it is not from the robot.
     """
@@ -330,7 +330,7 @@ def _between(points: Array, left: float, right: float) -> Array:
 
 
 def _convex(points: Array, level: float) -> Iterator[Array]:
-    """Cut what is below a profile and above a level into convex polygons.
+    """Cut the area between a profile and a level into convex polygons.
 
     A cut goes straight down from each inner corner of the ground, where no track can touch it.
     """

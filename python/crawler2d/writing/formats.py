@@ -1,4 +1,4 @@
-"""A tree of links as SDF, URDF and MJCF, with what drives it in each."""
+"""A tree of links as SDF, URDF and MJCF, with its drives in each."""
 
 from __future__ import annotations
 
@@ -274,7 +274,7 @@ def _limits(joint: Joint, *names: str) -> dict[str, str]:
 
 
 def _plugins(tree: Tree, across: Across, limits: Limits) -> Iterator[XML]:
-    """Yield what drives the model, by the topic cmd_vel of its name, and holds its flippers."""
+    """Yield the drives of the model, commanded by cmd_vel of its name, and servos of its flippers."""
     for radius, joints in wheels_by_radius(tree, limits):
         # A drive has one radius, and all obey the same command.
         yield _plugin(
