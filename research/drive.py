@@ -6,65 +6,47 @@ import math
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+import crawler2d as c2d
 from crawler2d import _core
 from crawler2d.errors import raise_first
-from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.fields import json_pointer
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Drive
-from crawler2d.parameters.track import ForceTrack, Track
-from crawler2d.presets import terrains
-from crawler2d.presets.robots import engineer
-from crawler2d.results.outcome import Outcome
-from crawler2d.runs.batch import BatchInterrupted
+from crawler2d.parameters.track import Track
 from crawler2d.runs.progress import Reporter, reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
-from research.columns import aligned, mm
 from research.models import study_models
+from research.study import Job, Study, add_legend, make_panels, style
+from research.tables import aligned_table, grouped, mm
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from crawler2d.parameters.terrain import Terrain
 
-__all__ = [
-    "FIRM",
-    "INERTIAS",
-    "OBSTACLES",
-    "SPEEDS",
-    "Case",
-    "HighestEdge",
-    "Plan",
-    "cases",
-    "design",
-    "highest_edges",
-    "highest_edges_text",
-    "other_cases",
-    "paired_text",
-]
 
 INERTIAS = (0.0, 0.005, 0.02, 0.04, 0.1, 0.2, 0.5)
 """[kg m^2] Rotor inertia of a track."""
-SPEEDS = (0.1, 0.2, 0.4)
+_SPEEDS = (0.1, 0.2, 0.4)
 """[m/s]"""
-OBSTACLES = ("step", "knife edge")
+_OBSTACLES = ("step", "knife edge")
 FIRM = "firm"
 """Name of the motor that holds its speed through any blow."""
 
-_QUICK = (
+_FAST = (
     *("belt", "line of 3", "line of 5", "line of 9", "24 all round"),
     *("force on skids", "force on wheels"),
 )
 # Their runs cost ten times as much. Those of chains cost even more, and are left out.
-_DEAR = ("belt with grousers", "line of 3 gears", "line of 5 gears")
+_SLOW = ("belt with grousers", "line of 3 gears", "line of 5 gears")
 _FRICTION = 0.5
 _THICKNESS = 0.002
 # [kg m^2], [N m] A mass of 74 t at the belt holds its speed against a robot of 21 kg, and a torque
@@ -76,6 +58,8 @@ _UNIT = 0.001
 _COUNT = 150
 _FIRST = 32
 _REACH = 8
+# Models with a colour of their own in the figure; others are dashed.
+_COLORS = 7
 # [m] What is left of the way to the edge at full speed, before draws of +- 46 mm.
 _STEADY = 0.1
 # [s], [m] A run may last this long and as long as this takes at full speed; it goes some 1.4 m.
@@ -90,7 +74,7 @@ class Case(NamedTuple):
     track: Track
     obstacle: str
     speed: float
-    drives: Mapping[str, Drivetrain]
+    drives: Mapping[str, c2d.Drivetrain]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,43 +120,43 @@ class Plan:
 
 def design() -> list[Case]:
     """List the cases of the study: all speeds and rotors, but not of models that cost much."""
-    return cases() + cases(_DEAR, speeds=(0.4,), inertias=(0.0, 0.04, 0.5))
+    return cases() + cases(_SLOW, speeds=(0.4,), inertias=(0.0, 0.04, 0.5))
 
 
 def cases(
-    models: Sequence[str] = _QUICK,
-    obstacles: Sequence[str] = OBSTACLES,
-    speeds: Sequence[float] = SPEEDS,
+    models: Sequence[str] = _FAST,
+    obstacles: Sequence[str] = _OBSTACLES,
+    speeds: Sequence[float] = _SPEEDS,
     inertias: Sequence[float] = INERTIAS,
 ) -> list[Case]:
     """List the cases with rotors, and last the firm motor, which a force track has no use for."""
-    robot = engineer(flippers=None)
+    robot = c2d.robots.engineer(flippers=None)
     own = robot.drivetrain
     rotors = {f"{each:g}": replace(own, rotor_inertia=each) for each in inertias}
     strong = replace(own, rotor_inertia=_FIRM_ROTOR, max_torque=_FIRM_TORQUE)
     tracks = study_models(robot.outline.axle_distance)
-    found = []
+    asked = []
     for model in models:
         track = tracks[model].track
-        firm = {} if isinstance(track, ForceTrack) else {FIRM: strong}
-        found += [
+        firm = {} if isinstance(track, c2d.ForceTrack) else {FIRM: strong}
+        asked += [
             Case(model, track, obstacle, speed, rotors | firm)
             for obstacle in obstacles
             for speed in speeds
         ]
-    return found
+    return asked
 
 
 def other_cases() -> list[Case]:
     """List the cases with other drives, each without a rotor and with one of 0.04 kg m^2."""
-    own = engineer(flippers=None).drivetrain
+    own = c2d.robots.engineer(flippers=None).drivetrain
     kinds = {
         "ideal": own,
         "no load 1.39 m/s": replace(own, no_load_speed=1.39),
         "no load 0.8 m/s": replace(own, no_load_speed=0.8),
-        "gain 20": replace(own, controller=PI(gain=20.0)),
-        "gain 5": replace(own, controller=PI(gain=5.0)),
-        "gain 1": replace(own, controller=PI(gain=1.0)),
+        "gain 20": replace(own, controller=c2d.PI(gain=20.0)),
+        "gain 5": replace(own, controller=c2d.PI(gain=5.0)),
+        "gain 1": replace(own, controller=c2d.PI(gain=1.0)),
     }
     drives = {
         name + with_rotor: replace(drive, rotor_inertia=inertia)
@@ -196,7 +180,7 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
     BatchInterrupted
         On Ctrl-C; the store keeps what was finished.
     """
-    found: list[HighestEdge] = []
+    rows: list[HighestEdge] = []
     cells = sum(len(case.drives) for case in asked)
     with _simulator(plan, cells) as simulator:
         for _, own in groupby(asked, key=lambda case: (case.model, case.obstacle)):
@@ -206,9 +190,9 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
                 for name, drivetrain in case.drives.items():
                     guesses, reach = simulator.highest(case, drivetrain, guesses, reach), 1
                     first = first or guesses
-                    found.append(_row(case, name, guesses, first))
+                    rows.append(_row(case, name, guesses, first))
                     simulator.report(1)
-    return found
+    return rows
 
 
 def _row(case: Case, drive: str, units: Sequence[int], first: Sequence[int]) -> HighestEdge:
@@ -250,12 +234,12 @@ def _simulator(plan: Plan, cells: int) -> Iterator[_Simulator]:
             yield _Simulator(collector, report, _draws(plan))
     except RowsInterrupted as interrupt:
         kept = "" if store is None else str(store)
-        raise BatchInterrupted(runs_of(interrupt.rows), kept) from None
+        raise c2d.BatchInterrupted(runs_of(interrupt.rows), kept) from None
 
 
 def _draws(plan: Plan) -> NDArray[np.float64]:
     """[m] Draw what is added to the approach, and the phase: shape (repeats, 2)."""
-    outline = engineer().outline
+    outline = c2d.robots.engineer().outline
     quarter = 0.125 * outline.axle_distance
     numbers = np.random.default_rng(plan.seed).uniform(size=(plan.repeats, 2))
     return np.column_stack(
@@ -269,7 +253,7 @@ class _Simulator:
         self._collector, self._draws = collector, draws
 
     def highest(
-        self, case: Case, drivetrain: Drivetrain, guesses: Sequence[int], reach: int
+        self, case: Case, drivetrain: c2d.Drivetrain, guesses: Sequence[int], reach: int
     ) -> list[int]:
         """Return the highest edge that each draw clears, in units."""
         whole = _core.Passed(_scenario(case, drivetrain).to_json(), None)
@@ -296,7 +280,7 @@ class _Simulator:
         batch = self._collector.batch(checked)
         made = self._collector.rows(batch, lambda _more: None)
         raise_first([row.error for row in made])
-        return [row.outcome == Outcome.CLEARED for row in made]
+        return [row.outcome == c2d.Outcome.CLEARED for row in made]
 
 
 def _search(guess: int, reach: int) -> Generator[int, bool, int]:
@@ -319,51 +303,109 @@ def _search(guess: int, reach: int) -> Generator[int, bool, int]:
         reach = min(2 * reach, _REACH)
 
 
-def _scenario(case: Case, drivetrain: Drivetrain) -> Scenario:
-    robot = engineer(flippers=None, track=case.track)
-    return Scenario(
+def _scenario(case: Case, drivetrain: c2d.Drivetrain) -> c2d.Scenario:
+    robot = c2d.robots.engineer(flippers=None, track=case.track)
+    return c2d.Scenario(
         replace(robot, drivetrain=drivetrain),
         _terrain(case.obstacle),
-        drive=Drive(speed=case.speed),
+        drive=c2d.Drive(speed=case.speed),
         duration=_STANDING + _TRAVEL / case.speed,
     )
 
 
 def _terrain(obstacle: str) -> Terrain:
     if obstacle == "step":
-        return terrains.step(0.05, friction=_FRICTION)
-    return terrains.knife_edge(0.05, thickness=_THICKNESS, friction=_FRICTION)
+        return c2d.terrains.step(0.05, friction=_FRICTION)
+    return c2d.terrains.knife_edge(0.05, thickness=_THICKNESS, friction=_FRICTION)
 
 
-def highest_edges_text(found: Sequence[HighestEdge]) -> str:
+def highest_edges_text(rows: Sequence[HighestEdge]) -> str:
     """Write one row per case and one column per drive."""
-    drives = list(dict.fromkeys(row.drive for row in found))
-    own: dict[tuple[str, str, float], dict[str, HighestEdge]] = {}
-    for row in found:
-        own.setdefault((row.model, row.obstacle, row.speed), {})[row.drive] = row
-    rows = [
-        (model, obstacle, f"{speed:g}", *(_cell(each.get(drive)) for drive in drives))
-        for (model, obstacle, speed), each in own.items()
-    ]
-    head = ("highest edge [mm]", "obstacle", "[m/s]", *drives)
-    return aligned(head, rows, left=[1])
+    drives = list(grouped(rows, "drive"))
+    lines = []
+    for (model, obstacle, speed), case in grouped(rows, "model", "obstacle", "speed").items():
+        heights = {row.drive: f"{mm(row.height)} ({mm(row.low)} to {mm(row.high)})" for row in case}
+        lines.append((model, obstacle, f"{speed:g}", *(heights.get(each, "-") for each in drives)))
+    return aligned_table(("highest edge [mm]", "obstacle", "[m/s]", *drives), lines, left=[1])
 
 
-def _cell(row: HighestEdge | None) -> str:
-    if row is None:
-        return "-"
-    return f"{mm(row.height)} ({mm(row.low)} to {mm(row.high)})"
-
-
-def paired_text(found: Sequence[HighestEdge]) -> str:
+def paired_text(rows: Sequence[HighestEdge]) -> str:
     """Write how often a draw clears more, or less, with each drive than with the first."""
-    first = found[0].drive
-    others = [row for row in found if row.drive != first]
-    rows = []
-    for drive in dict.fromkeys(row.drive for row in others):
-        own = [row for row in others if row.drive == drive]
+    (first, _), *others = grouped(rows, "drive").items()
+    lines = []
+    for drive, own in others:
         count = sum(len(row.heights) for row in own)
         higher, lower = sum(row.higher for row in own), sum(row.lower for row in own)
-        rows.append((drive, *map(str, (count, higher, count - higher - lower, lower))))
+        lines.append((drive, *map(str, (count, higher, count - higher - lower, lower))))
     head = (f"draws beside {first}", "count", "higher", "equal", "lower")
-    return aligned(head, rows)
+    return aligned_table(head, lines)
+
+
+def plot_drive(rows: Sequence[HighestEdge]) -> Figure:
+    """Draw the heights that half of the runs clear, one row per obstacle, one column per speed.
+
+    Parameters
+    ----------
+    rows : sequence of HighestEdge
+        The drives of each case in one order, which is that of the x axis.
+    """
+    obstacles, speeds, models, drives = (
+        list(grouped(rows, name)) for name in ("obstacle", "speed", "model", "drive")
+    )
+    cases = grouped(rows, "model", "obstacle", "speed")
+    size = (3.2 * len(speeds) + 2.0, 3.0 * len(obstacles) + 0.6)
+    figure, axes = make_panels(len(obstacles), len(speeds), size, sharex=True, sharey="row")
+    for (line, column), ax in np.ndenumerate(axes):
+        obstacle, speed = obstacles[line], speeds[column]
+        for index, model in enumerate(models):
+            own = cases.get((model, obstacle, speed), [])
+            # Moved apart, so that intervals do not hide each other.
+            aside = 0.06 * (index - 0.5 * (len(models) - 1))
+            below = [1e3 * (row.height - row.low) for row in own]
+            above = [1e3 * (row.high - row.height) for row in own]
+            ax.errorbar(
+                [drives.index(row.drive) + aside for row in own],
+                [1e3 * row.height for row in own],
+                [below, above],
+                **style(index),
+                linestyle="-" if index < _COLORS else "--",
+                markersize=4.0,
+                linewidth=1.2,
+                elinewidth=0.7,
+                label=model,
+            )
+        ax.set_title(f"{obstacle}, {speed:g} m/s", fontsize="medium")
+        ax.set_xticks(range(len(drives)), drives, fontsize="small")
+        ax.grid(alpha=0.25)
+    for ax, obstacle in zip(axes[:, 0], obstacles, strict=True):
+        ax.set_ylabel("cleared by half of the runs [mm]")
+        tallest = max(row.high for row in rows if row.obstacle == obstacle)
+        ax.set_ylim(0.0, 1e3 * 1.05 * tallest + 1.0)
+    for ax in axes[-1]:
+        ax.set_xlabel("rotor inertia of a track [kg m²]")
+    add_legend(figure, axes[0, 0], "right center", fontsize="small", ncols=1)
+    count = len(rows[0].heights)
+    figure.suptitle(
+        f"Engineer without flippers, friction 0.5: median and interval of {count} draws"
+    )
+    return figure
+
+
+def _run_drive(job: Job) -> None:
+    plan = Plan(store=job.out / "drive.sqlite", **job.sampling)
+    asked, others = design(), other_cases()
+    if not job.full:
+        plan = replace(plan, repeats=3)
+        asked = cases(("line of 5",), speeds=(0.4,), inertias=(0.0, 0.1))
+        others = others[:1]
+    rotors, drives = highest_edges(asked, plan), highest_edges(others, plan)
+    tables = (highest_edges_text(rotors), paired_text(rotors), highest_edges_text(drives))
+    job.report("drive", "\n\n\n".join(tables))
+    job.write_rows({"drive": [*rotors, *drives]})
+    job.draw({"drive": partial(plot_drive, rotors)})
+
+
+DRIVE = Study(
+    text="The highest edge that the Engineer clears with rotors in its motors; runs are stored.",
+    run=_run_drive,
+)

@@ -1,29 +1,52 @@
-"""The track models of the seizure study, each with its source in the paper."""
+"""The robots and the track models of the studies; each model with its source in the paper."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any, NamedTuple
 
-from crawler2d.parameters.track import (
-    BeltTrack,
-    CircumferentialWheels,
-    ForceTrack,
-    GearWheel,
-    GrouserBeltTrack,
-    HybridWheels,
-    LineOfWheels,
-    RoundWheel,
-    SegmentalTrack,
-    Track,
-)
-from research.paper.published import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
+import crawler2d as c2d
+from crawler2d.parameters.track import Track
+from research.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
 
-__all__ = ["StudyModel", "gear_pairs", "study_models"]
+FRICTION = 0.9
+"""[-] Between track and ground: an estimate, like those of the robot."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StudyModel:
+def study_robot(*, flippers: bool = False, **parts: Any) -> c2d.Robot:
+    """Make the robot of the studies: the Engineer without rotors, as models for simulators are.
+
+    Parameters
+    ----------
+    flippers : bool
+        Whether it has its own.
+    **parts
+        See `engineer`.
+    """
+    return c2d.robots.engineer(flippers="built" if flippers else None, **parts).without_rotors()
+
+
+def study_robots() -> dict[str, c2d.Robot]:
+    """List the robot of the seizure study, and variants that test its estimates.
+
+    The centre of mass moves up with a raised arm, and forward with an arm or flippers stretched
+    out. The belly hangs lower, or is removed. The motors are twice as strong: a gear wheel that
+    hooks into an edge needs more torque than a round one that slides on it.
+    """
+    base = study_robot()
+    strong = replace(base.drivetrain, max_torque=2.0 * base.drivetrain.max_torque)
+    return {
+        "preset": base,
+        "mass 20 mm up": study_robot(center_of_mass=(0.0, 0.04)),
+        "mass 30 mm forward": study_robot(center_of_mass=(0.03, 0.02)),
+        "belly at 20 mm": study_robot(belly_clearance=0.020),
+        "no belly": replace(base, belly=None),
+        "torque doubled": replace(base, drivetrain=strong),
+    }
+
+
+class StudyModel(NamedTuple):
     """A track model and where it comes from."""
 
     track: Track
@@ -51,46 +74,34 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
     >>> study_models(0.365)["line of 3"].source
     'Fig. 3'
     """
-    gear = GearWheel()
+    gear = c2d.GearWheel()
     end, low = 0.5 * axle_distance, -0.034
-    hybrid = (
-        (-end, 0.0, 0.064),
-        (-0.07, low, 0.03),
-        (0.0, low, 0.03),
-        (0.07, low, 0.03),
-        (end, 0.0, 0.064),
-    )
+    small = [(x, low, 0.03) for x in (-0.07, 0.0, 0.07)]
+    hybrid = ((-end, 0.0, 0.064), *small, (end, 0.0, 0.064))
+    touching, spaced = axle_distance / 6.0, 0.02
     return {
-        "belt": StudyModel(track=BeltTrack(), source="ours"),
-        "belt with grousers": StudyModel(track=GrouserBeltTrack(), source="ours"),
-        "chain of 22 shoes": StudyModel(
-            track=SegmentalTrack(shoe_count=22), source="2.3, Figs. 9, 10"
-        ),
-        "force on skids": StudyModel(track=ForceTrack(), source="2.1"),
-        "force on wheels": StudyModel(track=ForceTrack(support="wheels"), source="2.1"),
-        "line of 3": StudyModel(track=LineOfWheels(3), source="Fig. 3", row=LWA_ROUND),
+        "belt": StudyModel(c2d.BeltTrack(), "ours"),
+        "belt with grousers": StudyModel(c2d.GrouserBeltTrack(), "ours"),
+        "chain of 22 shoes": StudyModel(c2d.SegmentalTrack(shoe_count=22), "2.3, Figs. 9, 10"),
+        "force on skids": StudyModel(c2d.ForceTrack(), "2.1"),
+        "force on wheels": StudyModel(c2d.ForceTrack(support="wheels"), "2.1"),
+        "line of 3": StudyModel(c2d.LineOfWheels(3), "Fig. 3", LWA_ROUND),
         "line of 4, touching": StudyModel(
-            track=LineOfWheels(4, wheel_radius=axle_distance / 6.0), source="Fig. 2", row=LWA_ROUND
+            c2d.LineOfWheels(4, wheel_radius=touching), "Fig. 2", LWA_ROUND
         ),
-        "line of 5": StudyModel(track=LineOfWheels(5), source="Fig. 1", row=LWA_ROUND),
-        "line of 9": StudyModel(track=LineOfWheels(9), source="Fig. 1", row=LWA_ROUND),
-        "line of 3 gears": StudyModel(
-            track=LineOfWheels(3, wheel=gear), source="Figs. 11, 13", row=LWA_GEAR
-        ),
-        "line of 5 gears": StudyModel(
-            track=LineOfWheels(5, wheel=gear), source="Figs. 11, 13", row=LWA_GEAR
-        ),
-        "24 all round": StudyModel(
-            track=CircumferentialWheels(24), source="Figs. 5, 6", row=CWA_ROUND
-        ),
+        "line of 5": StudyModel(c2d.LineOfWheels(5), "Fig. 1", LWA_ROUND),
+        "line of 9": StudyModel(c2d.LineOfWheels(9), "Fig. 1", LWA_ROUND),
+        "line of 3 gears": StudyModel(c2d.LineOfWheels(3, wheel=gear), "Figs. 11, 13", LWA_GEAR),
+        "line of 5 gears": StudyModel(c2d.LineOfWheels(5, wheel=gear), "Figs. 11, 13", LWA_GEAR),
+        "24 all round": StudyModel(c2d.CircumferentialWheels(24), "Figs. 5, 6", CWA_ROUND),
         "24 gears all round": StudyModel(
-            track=CircumferentialWheels(24, wheel=gear), source="Fig. 12", row=CWA_GEAR
+            c2d.CircumferentialWheels(24, wheel=gear), "Fig. 12", CWA_GEAR
         ),
         "16 all round, spaced": StudyModel(
-            track=CircumferentialWheels(16, wheel_radius=0.02), source="Fig. 7", row=CWA_ROUND
+            c2d.CircumferentialWheels(16, wheel_radius=spaced), "Fig. 7", CWA_ROUND
         ),
-        "hybrid": StudyModel(track=HybridWheels(hybrid), source="Fig. 8"),
-        "hybrid gears": StudyModel(track=HybridWheels(hybrid, wheel=gear), source="ours"),
+        "hybrid": StudyModel(c2d.HybridWheels(hybrid), "Fig. 8"),
+        "hybrid gears": StudyModel(c2d.HybridWheels(hybrid, wheel=gear), "ours"),
     }
 
 
@@ -116,11 +127,8 @@ def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
     pairs = {}
     for name, model in models.items():
         track = model.track
-        if not isinstance(track, (LineOfWheels, CircumferentialWheels, HybridWheels)):
-            continue
-        if not isinstance(track.wheel, GearWheel):
-            continue
-        twin = names.get(replace(track, wheel=RoundWheel()))
-        if twin is not None:
-            pairs[name] = twin
+        if isinstance(track, (c2d.LineOfWheels, c2d.CircumferentialWheels, c2d.HybridWheels)):
+            twin = names.get(replace(track, wheel=c2d.RoundWheel()))
+            if isinstance(track.wheel, c2d.GearWheel) and twin is not None:
+                pairs[name] = twin
     return pairs

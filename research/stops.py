@@ -1,26 +1,30 @@
-"""Why the runs of the seizure study stopped, and how gear wheels compare with round ones."""
+"""Why the runs of the seizure study stopped, gear wheels compared with round ones, and replays."""
 
 from __future__ import annotations
 
 import math
+import re
+import textwrap
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crawler2d.results.outcome import Outcome
+import crawler2d as c2d
 from crawler2d.sweeps.axes import short_name
 from crawler2d.sweeps.statistics import clustered
+from research.tables import aligned_table, grouped, mm, percent
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["FIGURES", "STOPS", "TRIED", "Against", "Stops", "gear_against_round", "stops"]
 
-STOPS = tuple(str(outcome) for outcome in Outcome if outcome.is_stop)
+STOPS = tuple(str(outcome) for outcome in c2d.Outcome if outcome.is_stop)
 """Outcomes that are stops, by name."""
 
 TRIED = (
@@ -34,6 +38,13 @@ FIGURES = (
     *("freed_by_torque", "freed_by_friction", "unnatural_stops", "unnatural_passes"),
 )
 """Counts of `Stops` by which gear and round wheels are compared."""
+
+
+_PERCENTS = (
+    *("jammed", "unnatural_stops", "freed_by_torque"),
+    *("freed_by_friction", "freed_by_no_belly"),
+)
+"""Counts of `Stops` that are written as percentages of the stops."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +91,7 @@ class Stops:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Against:
+class WheelRate:
     """How often something happened to one model of a pair that differs only in its wheels."""
 
     robot: str
@@ -100,6 +111,23 @@ class Against:
     high: float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replay:
+    """A run written as a page."""
+
+    file: str
+    model: str
+    obstacle: str
+    height: float
+    """[m]"""
+    repeat: int
+    outcome: str
+    mechanism: str
+    """Mechanism of the stop; "" if there is none."""
+    sentence: str
+    """The sentence of the diagnosis; "" if the run did not stop."""
+
+
 def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stops]:
     """Count how the runs of a sweep over track and height ended, one row per model.
 
@@ -117,13 +145,13 @@ def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stop
     ]
 
 
-def gear_against_round(
+def compare_wheels(
     table: xarray.Dataset,
     obstacle: str,
     pairs: Mapping[str, str],
     robot: str = "preset",
     belt: str = "belt",
-) -> list[Against]:
+) -> list[WheelRate]:
     """Compare models with gear wheels with the same models with round ones.
 
     Parameters
@@ -139,7 +167,7 @@ def gear_against_round(
 
     Returns
     -------
-    list of Against
+    list of WheelRate
         Round and gear wheels of each pair, and of all pairs together.
     """
     # Runs of one repeat share their draws, at all heights and of all models: a cluster.
@@ -147,30 +175,172 @@ def gear_against_round(
         {row.model: row for row in stops(table.isel(repeat=[k]), obstacle, belt)}
         for k in range(table.sizes["repeat"])
     ]
-    groups = [(name, [name]) for gear, plain in pairs.items() for name in (plain, gear)]
+    groups = [(name, [name]) for pair in pairs.items() for name in reversed(pair)]
     groups += [("all of these", list(names)) for names in (pairs.values(), pairs.keys())]
     wheels = ("round", "gear") * (len(pairs) + 1)
-    found = []
+    rates = []
     for (name, own), wheel in zip(groups, wheels, strict=True):
-        counts = [sum(rows[each].count for each in own) for rows in repeats]
+        runs = [sum(rows[each].count for each in own) for rows in repeats]
         for figure in FIGURES:
             times = [sum(getattr(rows[each], figure) for each in own) for rows in repeats]
-            rate, low, high = clustered(times, counts)
-            found.append(
-                Against(
+            rate, low, high = clustered(times, runs)
+            rates.append(
+                WheelRate(
                     robot=robot,
                     obstacle=obstacle,
                     model=name,
                     wheel=wheel,
                     figure=figure,
                     found=sum(times),
-                    count=sum(counts),
+                    count=sum(runs),
                     rate=rate,
                     low=low,
                     high=high,
                 )
             )
-    return found
+    return rates
+
+
+def write_replays(
+    tables: Mapping[str, xarray.Dataset],
+    folder: Path,
+    belt: str = "belt",
+    threads: int | None = None,
+) -> list[Replay]:
+    """Simulate the clearest runs again, and write each as a page.
+
+    One run for each outcome and mechanism of a stop; and the belt where it cleared what stopped
+    the first of these. The clearest run is one that a closed track is freed from and, among these,
+    the one with the deepest edge.
+
+    Parameters
+    ----------
+    tables : mapping of str to xarray.Dataset
+        Sweeps over track and height by obstacle, with the trials of `TRIED`.
+    folder : Path
+        Folder for the pages; created if missing. Pages of earlier studies are removed.
+    belt : str
+        The model that is a belt.
+    threads : int, optional
+        See `simulate_many`.
+    """
+    chosen = _clearest(tables)
+    twins = [place._replace(model=belt) for place in chosen]
+    chosen += [each for each in twins if each.of(tables)["outcome"].item() == "cleared"][:1]
+    scenarios = [c2d.Scenario.from_json(place.of(tables)["scenario"].item()) for place in chosen]
+    runs = c2d.simulate_many(scenarios, trials="auto", threads=threads)
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("*.html"):
+        old.unlink()
+    replays = []
+    for place, run in zip(chosen, runs, strict=True):
+        outcome, mechanism = str(run.outcome), str(run.mechanism or "")
+        names = (place.model, place.obstacle, outcome, mechanism)
+        file = "-".join(re.sub(r"\W+", "_", name) for name in names if name) + ".html"
+        run.to_html(folder / file)
+        replays.append(
+            Replay(
+                file=file,
+                **place._asdict(),
+                outcome=outcome,
+                mechanism=mechanism,
+                sentence=str(run.diagnosis or ""),
+            )
+        )
+    return replays
+
+
+def stops_text(stops: Iterable[Stops]) -> str:
+    """Write how the runs of each model ended, and what held those that stopped."""
+    rows = [
+        (
+            row.model,
+            row.obstacle,
+            *(str(n) if n else "-" for n in (row.count, row.cleared)),
+            *(str(getattr(row, name) or "-") for name in STOPS),
+            f"{row.mechanism or 'none'}, {row.of_mechanism}" if row.stopped else "-",
+            *(_of_stops(getattr(row, name), row) for name in _PERCENTS),
+            str(row.unnatural_passes or "-"),
+            *("-" if math.isnan(d) else f"{1e3 * d:.1f}" for d in (row.depth, row.root_depth)),
+        )
+        for row in stops
+    ]
+    head = (
+        *("model", "obstacle", "runs", "cleared"),
+        *(name.replace("_", " ") for name in STOPS),
+        *("mechanism", "jammed [%]", "closed [%]", "torque [%]", "friction [%]", "no belly [%]"),
+        "passes",
+        *("depth [mm]", "roots [mm]"),
+    )
+    return (
+        "How the runs ended, all heights together. Of those that stopped: the commonest\n"
+        "mechanism; the share with ground jammed in a track; the share that a closed track frees,\n"
+        "in the pose of the stop or set down clear of the ground; and those that twice the\n"
+        "torque, twice the friction and taking the belly off free, all by trial. Passes are\n"
+        "unnatural ones: the belt of the same repeat did not clear. Depths are medians of the\n"
+        "edges that seized, below the circumscribed circles and below the root circles.\n\n"
+    ) + aligned_table(head, rows, left=(1, 9))
+
+
+def wheels_text(rates: Sequence[WheelRate]) -> str:
+    """Compare gear wheels with round ones, two rows per pair, with their intervals."""
+    rows = []
+    for (robot, model, wheel), own in grouped(rates, "robot", "model", "wheel").items():
+        texts = (f"{percent(row.rate)} ({percent(row.low)} to {percent(row.high)})" for row in own)
+        rows.append((model, robot, wheel, str(own[0].count), *texts))
+    figures = (name.replace("_", " ") for name in grouped(rates, "figure"))
+    head = ("model", "robot", "wheels", "runs", *figures)
+    obstacle = rates[0].obstacle
+    return (
+        f"Gear wheels beside round ones on {obstacle}s, all heights together: shares of all runs\n"
+        "[%], with 95 % intervals of repeats. Freed by: twice the torque, twice the friction.\n"
+        "Unnatural: stops that a closed track leaves, passes where the belt does not get over.\n\n"
+    ) + aligned_table(head, rows, left=(1, 2))
+
+
+def replays_text(replays: Iterable[Replay], folder: str) -> str:
+    """Write which runs can be replayed, and the diagnosis of each."""
+    lines = []
+    for replay in replays:
+        place = f"{replay.obstacle} of {mm(replay.height)} mm, repeat {replay.repeat}"
+        lines.append(f"{folder}/{replay.file}")
+        lines.append(textwrap.indent(f"{replay.model}, {place}:", "    "))
+        lines += textwrap.wrap(
+            replay.sentence or replay.outcome, 92, initial_indent="    ", subsequent_indent="    "
+        )
+    return "Runs to look at: one per kind of stop, and a belt:\n\n" + "\n".join(lines)
+
+
+class _Place(NamedTuple):
+    """The place of a run in the sweeps."""
+
+    obstacle: str
+    model: str
+    height: float
+    repeat: int
+
+    def of(self, tables: Mapping[str, xarray.Dataset]) -> xarray.Dataset:
+        """Return the run that is there."""
+        where = {"track": self.model, "height": self.height, "repeat": self.repeat}
+        return tables[self.obstacle].sel(where)
+
+
+def _clearest(tables: Mapping[str, xarray.Dataset]) -> list[_Place]:
+    """Choose one run for each outcome and mechanism of a stop."""
+    best: dict[tuple[str, str], tuple[tuple[bool, float], _Place]] = {}
+    for obstacle, table in tables.items():
+        outcomes = table["outcome"].to_numpy()
+        for index in np.argwhere(np.isin(outcomes, STOPS)):
+            run = table.isel(dict(zip(table["outcome"].dims, map(int, index), strict=True)))
+            ending = (run["outcome"].item(), run["mechanism"].item())
+            freed = any(run[f"freed_by_{short_name(trial)}"].item() for trial in TRIED[:2])
+            clarity = (freed, run["intrusion_depth"].item())
+            # Of equal runs the last: models with wheels come after the mere forces.
+            if ending not in best or clarity >= best[ending][0]:
+                where = (run[name].item() for name in ("track", "height", "repeat"))
+                best[ending] = (clarity, _Place(obstacle, *where))
+    endings = sorted(best, key=lambda ending: (STOPS.index(ending[0]), ending[1]))
+    return [best[ending][1] for ending in endings]
 
 
 def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops:
@@ -189,7 +359,7 @@ def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops
     return Stops(
         obstacle=obstacle,
         model=model,
-        count=sum(counts[each] for each in Outcome),
+        count=sum(counts[each] for each in c2d.Outcome),
         cleared=counts["cleared"],
         **{name: counts[name] for name in STOPS},
         mechanism=str(mechanism),
@@ -212,3 +382,7 @@ def _count(chosen: NDArray[np.bool_]) -> int:
 
 def _median(values: NDArray[np.float64]) -> float:
     return float(np.median(values)) if values.size else math.nan
+
+
+def _of_stops(count: int, row: Stops) -> str:
+    return percent(count / row.stopped) if row.stopped else "-"

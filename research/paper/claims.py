@@ -2,19 +2,153 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from research.paper import claims_ground as ground
-from research.paper import claims_models as models
-from research.paper.claim import Claim
+import numpy as np
+
+import crawler2d as c2d
+from research.models import study_robot
+from research.paper import TABLE_1
+from research.paper.design import PRESET, STRONG, climb, layouts, models_of
+from research.paper.performance import measure_factors
+from research.tables import markdown_table, mm
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from crawler2d.parameters.terrain import Terrain
+    from crawler2d.sweeps.found import Found
+    from research.paper.design import Setting, Work
+    from research.paper.figures import Shaking
 
-    from research.paper.design import Work
-    from research.paper.phases import Shaking
 
-__all__ = ["claims"]
+_OFTEN, _SELDOM = 0.9, 0.1
+"""[-] A model whose rate is at least the one clears an obstacle; one up to the other does not."""
+_ALIKE = 0.9
+"""[-] A real-time factor that is at least this share of another is none the worse for it."""
+_STEP = 1e-3
+"""[s] The time step that the paper's simulator takes by default."""
+_FIELD = "random step field"
+_HEIGHT = 0.04
+"""[m] Of the sharp edges: one that all these models clear on a wide step."""
+_PAIRS = {"line of 3": "line of 3 gears", "16 all round, spaced": "16 gears all round, spaced"}
+"""The paper's two layouts, with round wheels and with gears."""
+_COMPARED = "real-time factors on level ground, no flippers, one thread of this machine"
+
+
+class _Count(NamedTuple):
+    """How many runs of a model cleared."""
+
+    label: str
+    cleared: int
+    runs: int
+
+    @property
+    def rate(self) -> float:
+        return self.cleared / self.runs if self.runs else math.nan
+
+    def __str__(self) -> str:
+        return f"{self.label} {self.cleared} of {self.runs}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Check:
+    """One thing that must be so if the claim holds."""
+
+    what: str
+    found: str
+    """The figures, with counts."""
+    holds: bool | None
+    """None if so few runs do not tell."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """A claim with its checks."""
+
+    section: str
+    """Where the paper says so."""
+    text: str
+    experiment: str
+    checks: tuple[Check, ...] = ()
+    """None if it cannot be asked here."""
+
+    @property
+    def verdict(self) -> str:
+        """Whether it holds: in part if only some of the checks do.
+
+        Examples
+        --------
+        >>> yes, no, open = (Check(what="", found="", holds=each) for each in (True, False, None))
+        >>> for checks in ((yes, yes), (no,), (yes, no), (open, no), ()):
+        ...     print(Claim(section="", text="", experiment="", checks=checks).verdict)
+        holds
+        does not hold
+        holds in part
+        not shown
+        cannot be asked here
+        """
+        held = [check.holds for check in self.checks]
+        if not held:
+            return "cannot be asked here"
+        if all(held):
+            return "holds"
+        if any(held):
+            return "holds in part"
+        return "not shown" if None in held else "does not hold"
+
+
+def check_clears(
+    what: str, counts: Iterable[tuple[str, int, int]], *, never: bool = False
+) -> Check:
+    """Check that every model clears in at least 90 % of the runs, or in at most 10 %.
+
+    Parameters
+    ----------
+    what : str
+        What must be so.
+    counts : iterable of str, int and int
+        Label, runs that cleared and all runs of each.
+    never : bool
+        Whether they must not clear.
+
+    Examples
+    --------
+    >>> check_clears("gears clear", [("3 gears", 18, 20), ("5 gears", 0, 20)]).found
+    '3 gears 18 of 20, 5 gears 0 of 20'
+    """
+    models = [_Count(*each) for each in counts]
+    holds = all(each.rate <= _SELDOM if never else each.rate >= _OFTEN for each in models)
+    return Check(what=what, found=", ".join(map(str, models)), holds=holds)
+
+
+def check_fewer(what: str, less: tuple[str, int, int], more: tuple[str, int, int]) -> Check:
+    """Check that one model clears less often than another, by Newcombe's 95 % interval.
+
+    It does not if its rate is no lower, and so few runs do not tell if the interval holds 0.
+
+    Parameters
+    ----------
+    what : str
+        What must be so.
+    less, more : tuple of str, int and int
+        Label, runs that cleared and all runs.
+
+    Examples
+    --------
+    >>> check = check_fewer("heavier sticks more", ("heavy", 2, 20), ("light", 15, 20))
+    >>> check.holds, check.found
+    (True, 'heavy 2 of 20, light 15 of 20: difference -0.65 (-0.81 to -0.35)')
+    """
+    difference, low, high = c2d.newcombe(*less[1:], *more[1:])
+    counts = f"{_Count(*less)}, {_Count(*more)}"
+    return Check(
+        what=what,
+        found=f"{counts}: difference {difference:+.2f} ({low:+.2f} to {high:+.2f})",
+        holds=True if high < 0.0 else None if difference < 0.0 else False,
+    )
+
 
 _NOT_HERE = (
     Claim(
@@ -49,14 +183,438 @@ def claims(work: Work, shaken: Sequence[Shaking]) -> list[Claim]:
     """
     print("Claims", flush=True)
     return [
-        ground.gears_end_seizure(work),
-        ground.chains_stick(work),
-        ground.mass_sticks(work),
-        *ground.lines_are_flat(work),
-        ground.force_is_flat(work),
-        models.geometry(),
-        *models.costs(work),
-        *models.shaking_of_gears(work, shaken),
-        models.odometry_of_gears(work),
+        gears_end_seizure(work),
+        _chains_stick(work),
+        _mass_sticks(work),
+        *_lines_are_flat(work),
+        force_is_flat(work),
+        geometry(),
+        *_costs(work),
+        *shaking_of_gears(work, shaken),
+        _odometry_of_gears(work),
         *_NOT_HERE,
     ]
+
+
+def gears_end_seizure(work: Work) -> Claim:
+    """Drive round wheels and gears over edges of two thicknesses, with strong motors."""
+    pairs = {
+        "line of 3": "line of 3 gears",
+        "line of 5": "line of 5 gears",
+        "24 all round": "24 gears all round",
+        "16 all round, spaced": "16 gears all round, spaced",
+    }
+    edges = {
+        f"{mm(thickness)} mm": c2d.terrains.knife_edge(_HEIGHT, thickness=thickness)
+        for thickness in (0.002, 0.010)
+    }
+    belt = "belt with grousers"
+    runs = _cross(work, STRONG, edges, [*pairs, *pairs.values(), belt])
+    checks = []
+    for edge in edges:
+        for plain, gears in pairs.items():
+            check = check_clears(f"{gears} clear an edge {edge} thick", [_count(runs, gears, edge)])
+            both = f"{check.found}; round wheels: {_count(runs, plain, edge)}"
+            checks.append(replace(check, found=both))
+    belts = ", ".join(str(_count(runs, belt, edge, edge)) for edge in edges)
+    return Claim(
+        section="3, 4.1.1",
+        text="gears end seizure on sharp edges",
+        experiment=f"edges {mm(_HEIGHT)} mm high, no flippers, {STRONG.max_torque:g} N m a"
+        f" sprocket; a belt with grousers clears {belts}",
+        checks=tuple(checks),
+    )
+
+
+def _chains_stick(work: Work) -> Claim:
+    """Drive a chain over small sharp edges, which fit between its shoes."""
+    heights = (0.005, 0.010, 0.020, 0.040)
+    edges = {
+        f"{1e3 * height:.0f} mm": c2d.terrains.knife_edge(height, thickness=0.002)
+        for height in heights
+    }
+    chain, *others = ("chain of 22 shoes", "belt with grousers")
+    checks = []
+    for setting in (PRESET, STRONG):
+        runs = _cross(work, setting, edges, [chain, *others])
+        own = runs.sel(model=chain)
+        ends = own["outcome"].to_numpy()
+        pinched = int((own["mechanism"].to_numpy() == "pinched").sum())
+        stuck = int((own["jammed"].to_numpy() & (ends != "cleared")).sum())
+        counts = ", ".join(str(_count(runs, chain, edge, edge)) for edge in edges)
+        checks.append(
+            Check(
+                what=f"some runs of the chain end in a jam ({setting.max_torque:g} N m)",
+                found=f"{stuck} of {ends.size} jammed, {pinched} pinched between shoes; cleared:"
+                f" {counts}",
+                holds=stuck > 0,
+            )
+        )
+    return Claim(
+        section="2.3",
+        text="a chain sticks when a sharp or small obstacle gets between its segments",
+        experiment="edges 2 mm thick and 5 to 40 mm high, no flippers, chain of 22 shoes",
+        checks=tuple(checks),
+    )
+
+
+def _mass_sticks(work: Work) -> Claim:
+    """Drive lines of round wheels over step fields with twice the mass, and motors to match."""
+    names = ("line of 3", "line of 5")
+    motors = replace(PRESET, max_torque=2.0 * PRESET.max_torque)
+    models = models_of(names, motors)
+    for name in names:
+        light = models[name]["robot"]
+        models[f"{name}, twice the mass"] = {"robot": _heavier(light, 1.0)}
+        models[f"{name}, twice mass and torque"] = {"robot": _heavier(light, 2.0)}
+    runs = _over_fields(work, models, motors.friction)
+    return Claim(
+        section="2.2",
+        text="a heavy robot sticks more on a line of wheels",
+        experiment=f"random step fields, flippers, {motors.max_torque:g} N m a sprocket",
+        checks=tuple(
+            check_fewer(
+                f"{name}: {what} clears less",
+                _count(runs, f"{name}, {what}", _FIELD),
+                _count(runs, name, _FIELD),
+            )
+            for what in ("twice the mass", "twice mass and torque")
+            for name in names
+        ),
+    )
+
+
+def _lines_are_flat(work: Work) -> tuple[Claim, Claim]:
+    """Drive lines of 3, 5 and 9 round wheels over step fields, with two kinds of motors."""
+    names = ("line of 3", "line of 5", "line of 9")
+    more, flat = [], []
+    for setting in (PRESET, STRONG):
+        runs = _over_fields(work, models_of(names, setting), setting.friction)
+        counts = [_count(runs, name, _FIELD) for name in names]
+        motors = f"{setting.max_torque:g} N m"
+        more.append(check_fewer(f"3 wheels clear less than 9 ({motors})", counts[0], counts[-1]))
+        flat += [
+            check_clears(f"{count.label} does not clear ({motors})", [count], never=True)
+            for count in counts
+        ]
+    return (
+        Claim(
+            section="2.2",
+            text="more wheels in a line solve the sticking in part",
+            experiment="random step fields, flippers, round wheels; what they cost is below",
+            checks=tuple(more),
+        ),
+        Claim(
+            section="2.2",
+            text="lines of wheels are suitable only for flat ground",
+            experiment="the same runs",
+            checks=tuple(flat),
+        ),
+    )
+
+
+def force_is_flat(work: Work) -> Claim:
+    """Push a robot along by a force, on the flat and off it, and compare it with a belt."""
+    grounds: Mapping[str, Terrain] = {
+        "flat": c2d.terrains.flat(),
+        "slope of 35 deg": c2d.terrains.ramp(TABLE_1.declared_max_slope),
+        "step of 60 mm": c2d.terrains.step(0.06),
+        "edge of 40 mm": c2d.terrains.knife_edge(_HEIGHT),
+    }
+    names = ("belt", "force on skids", "force on wheels")
+    runs = _cross(work, PRESET, grounds, names)
+    checks = []
+    for ground in grounds:
+        belt, *forces = (_count(runs, name, ground) for name in names)
+        off = max(abs(each.rate - belt.rate) for each in forces)
+        alike = ground == "flat"
+        checks.append(
+            Check(
+                what=f"{ground}: {'as' if alike else 'unlike'} the belt",
+                found=", ".join(map(str, (belt, *forces))),
+                holds=off <= 0.1 if alike else off > 0.5,
+            )
+        )
+    return Claim(
+        section="2.1",
+        text="a robot driven by a mere force is realistic on flat ground alone",
+        experiment="no flippers, the preset; unlike: a rate that differs by more than a half",
+        checks=tuple(checks),
+    )
+
+
+def geometry() -> Claim:
+    """Compare how far the lower runs of the layouts lie within the track as built; no run."""
+    known, bare = layouts(), study_robot()
+    names = ("16 all round, spaced", "24 all round", "line of 3", "line of 5", "line of 9")
+    uneven = {name: unevenness(known[name].on(bare)) for name in names}
+
+    def nearer(all_round: str, line: str) -> Check:
+        (deep, mean), (other_deep, other_mean) = uneven[all_round], uneven[line]
+        return Check(
+            what=f"the wheels {all_round} are nearer to the track than the {line}",
+            found=f"{_mm(mean, 1)} off on average, {_mm(deep)} at most; {line}"
+            f" {_mm(other_mean, 1)}, {_mm(other_deep)}",
+            holds=mean < other_mean,
+        )
+
+    return Claim(
+        section="2.2",
+        text="small wheels all round have the greater similarity in geometry",
+        experiment="mean gap between the wheels and the lower run of the track as built; no run",
+        checks=tuple(
+            nearer(*pair)
+            for pair in (
+                ("16 all round, spaced", "line of 3"),
+                ("24 all round", "line of 5"),
+                ("24 all round", "line of 9"),
+            )
+        ),
+    )
+
+
+def unevenness(robot: c2d.Robot) -> tuple[float, float]:
+    """[m] Measure how deep the lower run of wheels lies within that of the track as built.
+
+    Parameters
+    ----------
+    robot : Robot
+        With wheels, and equal ends.
+
+    Returns
+    -------
+    tuple of 2 floats
+        Greatest and mean gap between the ground under the end axles and the wheels; where there is
+        a slot, up to the belly.
+
+    Examples
+    --------
+    Wheels of radius r that stand p apart leave r - sqrt(r^2 - p^2 / 4):
+
+    >>> import crawler2d as c2d
+    >>> deep, _ = unevenness(c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5)))
+    >>> round(1e3 * deep, 2), round(64 - (64**2 - (365 / 8) ** 2) ** 0.5, 2)
+    (19.12, 19.12)
+    """
+    outline, wheels = robot.outline, robot.wheels()
+    half = 0.5 * outline.axle_distance
+    x = np.linspace(-half, half, 20001)
+    belly = min((y for _, y in robot.belly or ()), default=math.inf)
+    lowest = np.full_like(x, belly)
+    for at, height, radius in zip(wheels["x"], wheels["y"], wheels["radius"], strict=True):
+        inside = radius**2 - (x - at) ** 2
+        bottom = height - np.sqrt(np.maximum(inside, 0.0))
+        lowest = np.where(inside >= 0.0, np.minimum(lowest, bottom), lowest)
+    gaps = lowest + outline.rear_radius
+    return float(gaps.max()), float(gaps.mean())
+
+
+def _costs(work: Work) -> tuple[Claim, ...]:
+    """Compare real-time factors: gears and round wheels, all round and in a line, and a chain."""
+    models = models_of(
+        [*_PAIRS, *_PAIRS.values(), "line of 9", "chain of 22 shoes"], flippers=False
+    )
+    base = climb(c2d.terrains.flat(), study_robot())
+    factors = {
+        solver: measure_factors(work, scenario, models)["factor"].sel(motion="driving")
+        for solver, scenario in (
+            ("default accuracy", base),
+            ("steps of 1 ms", base.replace({"solver.time_step": _STEP})),
+        )
+    }
+
+    def compare(one: str, other: str, *, slower: bool) -> tuple[Check, ...]:
+        checks = []
+        for solver, by_model in factors.items():
+            ours, theirs = (by_model.sel(model=name).item() for name in (one, other))
+            checks.append(
+                Check(
+                    what=f"{one} is {'slower than' if slower else 'as fast as'} {other} ({solver})",
+                    found=f"{ours:.0f} and {theirs:.0f}",
+                    holds=(ours < _ALIKE * theirs) == slower,
+                )
+            )
+        return tuple(checks)
+
+    def slower(*pairs: tuple[str, str]) -> tuple[Check, ...]:
+        return tuple(check for pair in pairs for check in compare(*pair, slower=True))
+
+    as_fast = [compare(gears, plain, slower=False) for plain, gears in _PAIRS.items()]
+    return (
+        Claim(
+            section="3",
+            text="gears solve the problem without sacrificing computational performance",
+            experiment=_COMPARED,
+            # By solver, then by pair.
+            checks=tuple(check for checks in zip(*as_fast, strict=True) for check in checks),
+        ),
+        Claim(
+            section="2.2",
+            text="more wheels in a line cost performance",
+            experiment=_COMPARED,
+            checks=slower(("line of 9", "line of 3")),
+        ),
+        Claim(
+            section="2.2, 3",
+            text="small wheels all round are slower than a line of large ones",
+            experiment=_COMPARED,
+            checks=slower(
+                ("16 all round, spaced", "line of 3"),
+                ("16 gears all round, spaced", "line of 3 gears"),
+            ),
+        ),
+        Claim(
+            section="2.3",
+            text="segmental tracks have a low computational efficiency",
+            experiment=_COMPARED,
+            checks=slower(("chain of 22 shoes", "16 all round, spaced")),
+        ),
+    )
+
+
+def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Claim]:
+    """Compare the shaking of gears in the runs of eq. (1), and with that of round wheels."""
+    by_place = {(each.count, round(6 * each.fraction)): each for each in shaken}
+    third = []
+    for count in (3, 5):
+        step, turned, half = (by_place[count, sixths] for sixths in (0, 2, 3))
+        swings = f"{_mm(step.swing, 2)} in step, {_mm(turned.swing, 2)} at a third"
+        third += [
+            Check(
+                what=f"{count} gears: a third at least halves the swing in height",
+                found=swings,
+                holds=turned.swing <= 0.5 * step.swing,
+            ),
+            Check(
+                what=f"{count} gears: a third swings less than a half",
+                found=f"{_mm(turned.swing, 2)} at a third, {_mm(half.swing, 2)} at a half",
+                holds=turned.swing < half.swing,
+            ),
+        ]
+    runs = _drive_level(work, c2d.studies.ride, [*_PAIRS, *_PAIRS.values(), "belt with grousers"])
+    vibration = runs["vibration"]
+    shakes = {name: vibration.sel(model=name).item() for name in vibration["model"].to_numpy()}
+    rough = tuple(
+        Check(
+            what=f"{gears} shake the robot on level ground",
+            found=f"{shakes[gears]:.2f} m/s^2, round wheels {shakes[plain]:.2f}, a belt with"
+            f" grousers {shakes['belt with grousers']:.2f}",
+            holds=shakes[gears] > 10.0 * shakes[plain],
+        )
+        for plain, gears in _PAIRS.items()
+    )
+    return (
+        Claim(
+            section="3",
+            text="gears shake the robot on a flat surface",
+            experiment="vertical acceleration, root mean square, no flippers; shake: ten times as"
+            " much as round wheels",
+            checks=rough,
+        ),
+        Claim(
+            section="3, eq. (1)",
+            text="turning each gear by a third of theta avoids excessive shaking",
+            experiment="swing of the chassis in height at 0.4 m/s on level ground",
+            checks=tuple(third),
+        ),
+    )
+
+
+def _odometry_of_gears(work: Work) -> Claim:
+    """Measure how far the odometry of gears is off, with the radius that the paper takes."""
+    runs = _drive_level(
+        work, c2d.studies.odometry, [name for pair in _PAIRS.items() for name in pair]
+    )
+    error = runs["odometry_error"]
+    errors = {name: error.sel(model=name).item() for name in error["model"].to_numpy()}
+    return Claim(
+        section="3",
+        text="the protrusions of gears complicate odometry",
+        experiment="way by the circumscribed radius less the way of the robot, on level ground;"
+        " complicate: by a thousandth or more",
+        checks=tuple(
+            Check(
+                what=f"the odometry of {gears} is off",
+                found=f"{1e2 * errors[gears]:+.2f} %, round wheels {1e2 * errors[plain]:+.2f} %",
+                holds=abs(errors[gears]) >= 1e-3 > abs(errors[plain]),
+            )
+            for plain, gears in _PAIRS.items()
+        ),
+    )
+
+
+def claims_text(claims: Sequence[Claim]) -> str:
+    """List the claims with their verdicts."""
+    rows = [
+        (str(number), claim.text, f"**{claim.verdict}**") for number, claim in enumerate(claims, 1)
+    ]
+    return markdown_table(("", "claim", "verdict"), rows)
+
+
+def checks_text(claims: Sequence[Claim]) -> str:
+    """List the experiment and the checks behind each verdict."""
+    verdicts = {True: "yes", False: "no", None: "not shown"}
+    rows = []
+    for number, claim in enumerate(claims, 1):
+        rows.append((str(number), f"section {claim.section}: {claim.experiment}", "", ""))
+        rows += [
+            (str(number), check.what, verdicts[check.holds], check.found) for check in claim.checks
+        ]
+    head = ("claim", "experiment, then what it must show", "shown", "found")
+    return f"Counts are runs that cleared of all.\n\n{markdown_table(head, rows)}"
+
+
+def _drive_level(work: Work, study: Any, names: Sequence[str]) -> Found:
+    """Drive layouts without flippers over level ground."""
+    base = c2d.Scenario(
+        study_robot(), c2d.terrains.flat(), drive=c2d.Drive(speed=TABLE_1.max_speed)
+    )
+    repeats, models = work.design.driving_repeats, models_of(names, flippers=False)
+    runs: Found = study(base, models=models, repeats=repeats, **work.sampling)
+    return work.count(runs)
+
+
+def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:
+    """Double all masses of a robot; multiply the torque of its motors and of its arms' with it."""
+    arms = robot.flippers
+    return replace(
+        robot,
+        mass=2.0 * robot.mass,
+        moment_of_inertia=2.0 * robot.moment_of_inertia,
+        track_mass=2.0 * robot.track_mass,
+        drivetrain=replace(robot.drivetrain, max_torque=motors * robot.drivetrain.max_torque),
+        flippers=None
+        if arms is None
+        else replace(arms, mass=2.0 * arms.mass, torque_limit=motors * arms.torque_limit),
+    )
+
+
+def _cross(work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]) -> Found:
+    """Drive layouts without flippers over some grounds."""
+    models = models_of(names, setting, flippers=False)
+    return _success(work, grounds, models, work.design.claim_repeats)
+
+
+def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> Found:
+    """Drive robots over as many fields as Table 2 has, and the same ones."""
+    field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
+    return _success(work, field, models, work.design.field_repeats)
+
+
+def _success(
+    work: Work, grounds: Mapping[str, Any], models: Mapping[str, Any], repeats: int
+) -> Found:
+    base = climb(next(iter(grounds.values())))
+    return work.count(
+        c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
+    )
+
+
+def _count(runs: Found, model: str, ground: str, label: str = "") -> _Count:
+    own = runs.sel(model=model, terrain=ground)
+    cleared = int((own["outcome"].to_numpy() == "cleared").sum())
+    return _Count(label or model, cleared, own["count"].item())
+
+
+def _mm(length: float, digits: int = 0) -> str:
+    return f"{1e3 * length:.{digits}f} mm"

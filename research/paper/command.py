@@ -1,69 +1,255 @@
 """The paper, reproduced: its Tables 1 to 3, eq. (1), its claims and its figures.
 
-Everything is simulated under settings that were chosen beforehand, and set beside what the paper
+Everything is simulated under settings that were chosen beforehand, and compared with what the paper
 has. A store keeps every run: after Ctrl-C the same call goes on where it was.
 """
 
 from __future__ import annotations
 
 import argparse
-import sys
 import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from crawler2d.runs.batch import BatchInterrupted
-from research.paper.design import FULL, QUICK, Work
-from research.paper.parts import PARTS, Pages
+import crawler2d as c2d
+from research.paper import GEAR_MODEL_OTHERWISE, figures, performance, table_2
+from research.paper.claims import checks_text, claims, claims_text
+from research.paper.design import FULL, QUICK, Setting, Work, layouts
+from research.study import Job, Study
+from research.tables import spliced
 
-__all__ = ["add_arguments", "run"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from crawler2d.sweeps.found import Found
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``python -m research paper``."""
-    parser.add_argument("--full", action="store_true", help="all of it; an hour or two")
-    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results")
-    parser.add_argument("--threads", type=int, default=None, help="default: all cores")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
+STORE = "paper.sqlite"
+"""The file that keeps every run."""
+
+_SLOWEST = {"24 gears all round", "chain of 22 shoes"}
+"""Layouts of ours whose runs take longer than those of all others together: they come last."""
+
+_ORDER = (
+    *("chosen beforehand", "table 2", "all layouts", "failures", "table 1", "table 3"),
+    *("highest obstacles", "real-time factors", "equation (1)", "claims", "checks", "figures"),
+)
+"""Of the sections in the page."""
+
+_REPLAYS = "replays_paper"
+"""The folder of the pages that replay Figs. 4 and 5: the study empties its own."""
+
+Sections = Iterator[tuple[str, str]]
+"""Names of sections with their text."""
+
+
+@dataclass(slots=True)
+class Pages:
+    """What is written: the page of all sections, after every part; tables, pictures, replays.
+
+    Attributes
+    ----------
+    job : Job
+        What was asked for.
+    work : Work
+        What is made.
+    sections : dict of str to str
+        Those that have been made, by name.
+    fields : list of pair of Setting and Found
+        The runs of Table 2, so far.
+    blocks : dict of str to Found
+        Those over the parallelepiped of Table 3, by setting.
+    """
+
+    job: Job
+    work: Work
+    sections: dict[str, str] = field(default_factory=dict)
+    fields: list[tuple[Setting, Found]] = field(default_factory=list)
+    blocks: dict[str, Found] = field(default_factory=dict)
+
+    @property
+    def into(self) -> Path | None:
+        """Another page, written by hand, with marks where sections go."""
+        page: Path | None = self.job.options.into
+        return page
+
+    @property
+    def text(self) -> str:
+        """The page."""
+        parts = [
+            f"## {name[0].upper()}{name[1:]}\n\n{self.sections[name]}"
+            for name in _ORDER
+            if name in self.sections
+        ]
+        return "\n\n".join(("# The paper, reproduced", self._head(), *parts))
+
+    def add(self, name: str, text: str) -> None:
+        """Add a section, or replace it, and write the page."""
+        self.sections[name] = text
+        (self.job.out / "paper.md").write_text(f"{self.text}\n", encoding="utf-8")
+        self.splice({"how it was made": self._head(), name: text})
+
+    def splice(self, parts: Mapping[str, str]) -> None:
+        """Put parts between their marks in the other page."""
+        if self.into is not None:
+            page = self.into.read_text(encoding="utf-8")
+            self.into.write_text(spliced(page, parts), encoding="utf-8")
+
+    def write_rows(self, **tables: Sequence[Any]) -> None:
+        """Write rows of dataclasses as paper_NAME.csv."""
+        self.job.write_rows({f"paper_{name}": rows for name, rows in tables.items()})
+
+    def draw(self, **drawings: Callable[[], Figure]) -> None:
+        """Draw figures as paper_NAME.png, beside the other page, too, if that shows them."""
+        for name, drawing in drawings.items():
+            shown = self.into is not None and f"paper_{name}.png" in self.into.read_text("utf-8")
+            also = [self.into.parent] if self.into is not None and shown else []
+            self.job.draw({f"paper_{name}": drawing}, also)
+
+    def _head(self) -> str:
+        design = self.work.design
+        build = ", ".join(f"{name} {value}" for name, value in c2d.build_info().items())
+        quick = "**A quick run, to see what comes out: few repeats.** " * (design == QUICK)
+        tried = self.work.tried
+        return (
+            f"{quick}Build: {build}. Seed {self.work.seed}; {design.field_repeats} runs a cell of"
+            f" Table 2, {design.height_repeats} a height, {design.claim_repeats} a cell of a claim."
+            f" Tried in all: {tried['runs']} runs in {tried['settings']} cells of layout, motors,"
+            " friction and ground; a cell that two questions share counts twice."
+        )
+
+
+def _chosen(_work: Work, _pages: Pages) -> Sections:
+    yield "chosen beforehand", table_2.chosen_text()
+
+
+def _paper_fields(work: Work, pages: Pages) -> Sections:
+    columns = set(table_2.COLUMNS.values()) - {GEAR_MODEL_OTHERWISE}
+    yield from _fields(work, pages, _names(work, columns))
+
+
+def _fields_read_otherwise(work: Work, pages: Pages) -> Sections:
+    yield from _fields(work, pages, _names(work, {GEAR_MODEL_OTHERWISE}))
+
+
+def _other_fields(work: Work, pages: Pages) -> Sections:
+    ours = _names(work, {""})
+    for slow in (False, True):
+        yield from _fields(work, pages, [name for name in ours if (name in _SLOWEST) == slow])
+
+
+def _names(work: Work, columns: set[str]) -> list[str]:
+    """Name the layouts for Table 2 that stand for some columns, "" for those that are ours."""
+    chosen = work.design.field_layouts or tuple(layouts())
+    return [name for name in chosen if table_2.COLUMNS.get(name, "") in columns]
+
+
+def _fields(work: Work, pages: Pages, names: Sequence[str]) -> Sections:
+    for setting_and_runs in table_2.cross_fields(work, names):
+        pages.fields.append(setting_and_runs)
+        rows = [row for setting, runs in pages.fields for row in table_2.cells(setting, runs)]
+        yield "all layouts", table_2.layouts_text(rows)
+        pairs = table_2.compare(rows)
+        pages.write_rows(table_2=rows, table_2_beside=pairs)
+        yield "table 2", table_2.table_2_text(pairs)
+        pages.draw(table_2=partial(table_2.plot_table_2, pairs))
+    failed = table_2.failures(pages.fields, work.store)
+    pages.write_rows(failures=failed)
+    yield "failures", table_2.failures_text(table_2.sum_failures(failed), table_2.COLUMNS)
+
+
+def _tables_1_and_3(work: Work, pages: Pages) -> Sections:
+    driven, factors = performance.driving(work), performance.computing(work)
+    slopes = performance.steepest_slopes(work)
+    heights, pages.blocks = performance.highest_obstacles(work)
+    pages.write_rows(driving=driven, computing=factors, slopes=slopes, heights=heights)
+    yield "table 1", performance.table_1_text(slopes, driven)
+    yield "table 3", performance.table_3_text(driven)
+    yield "highest obstacles", performance.heights_text(heights)
+    yield "real-time factors", performance.computing_text(factors)
+
+
+def _equation(work: Work, pages: Pages) -> Sections:
+    angles, shaken = figures.phases(work), figures.shaking(work)
+    pages.write_rows(phases=angles, shaking=shaken)
+    yield "equation (1)", figures.equation_text(angles, shaken)
+
+
+def _claims(work: Work, _pages: Pages) -> Sections:
+    settled = claims(work, figures.shaking(work))
+    yield "claims", claims_text(settled)
+    yield "checks", checks_text(settled)
+
+
+def _figures(work: Work, pages: Pages) -> Sections:
+    if not pages.blocks:
+        _, pages.blocks = performance.highest_obstacles(work)
+    stuck = figures.stuck_runs(pages.blocks)
+    figures.write_stuck(stuck, pages.job.out / _REPLAYS)
+    pages.draw(layouts=figures.plot_layouts, stuck=partial(figures.plot_stuck, stuck))
+    yield "figures", figures.figures_text(stuck, _REPLAYS)
+
+
+class _Part(NamedTuple):
+    """A part of the reproduction."""
+
+    name: str
+    option: str
+    """By which ``--table`` chooses it."""
+    make: Callable[[Work, Pages], Sections]
+
+
+_PARTS = (
+    _Part("what was chosen beforehand", "chosen", _chosen),
+    _Part("Table 2, the paper's layouts", "2", _paper_fields),
+    _Part("eq. (1)", "eq1", _equation),
+    _Part("Tables 1 and 3", "3", _tables_1_and_3),
+    _Part("figures", "figures", _figures),
+    _Part("claims", "claims", _claims),
+    _Part("Table 2, gears read otherwise", "2", _fields_read_otherwise),
+    _Part("Table 2, other layouts", "2", _other_fields),
+)
+"""What the paper itself has comes first: small gears all round take longest."""
+
+
+def add_page_option(parser: argparse.ArgumentParser, text: str) -> None:
+    """Add the option of a page to splice into."""
+    parser.add_argument("--into", type=Path, default=None, help=text)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--table",
-        choices=sorted({part.option for part in PARTS}),
+        choices=sorted({part.option for part in _PARTS}),
         action="append",
         help="only this part; may be given more than once",
     )
-    parser.add_argument(
-        "--into", type=Path, default=None, help="a page in Markdown whose tables to replace"
-    )
+    add_page_option(parser, "a page in Markdown whose tables to replace")
 
 
-def run(options: argparse.Namespace) -> int:
-    """Reproduce the paper; returns the exit status."""
-    out: Path = options.out
-    out.mkdir(parents=True, exist_ok=True)
-    work = Work(
-        store=out / "paper.sqlite",
-        design=FULL if options.full else QUICK,
-        seed=options.seed,
-        threads=options.threads,
-    )
-    pages = Pages(out, work, options.into)
-    chosen = [part for part in PARTS if options.table is None or part.option in options.table]
-    spent = _minutes()
-    try:
-        for part in chosen:
-            begin = _minutes()
+def _run_paper(job: Job) -> None:
+    wanted = job.options.table
+    work = Work(store=job.out / STORE, design=FULL if job.full else QUICK, **job.sampling)
+    pages = Pages(job, work)
+    start, processor = time.perf_counter(), time.process_time()
+    for part in _PARTS:
+        if wanted is None or part.option in wanted:
+            begin = time.perf_counter()
             for name, text in part.make(work, pages):
                 pages.add(name, text)
-            now = _minutes()
-            print(f"{part.name}: {now[0] - begin[0]:.1f} min", flush=True)
-    except BatchInterrupted as interrupt:
-        print(interrupt, file=sys.stderr)
-        return 130
-    elapsed, processor = (now - then for now, then in zip(_minutes(), spent, strict=True))
+            print(f"{part.name}: {(time.perf_counter() - begin) / 60.0:.1f} min", flush=True)
+    elapsed = (time.perf_counter() - start) / 60.0
+    processor = (time.process_time() - processor) / 60.0
     cost = f"{elapsed:.1f} min, {processor:.1f} min of processor time"
-    print(f"\n{pages.text}\n\n{cost}; tables, pictures and replays are in {out}")
-    return 0
+    print(f"\n{pages.text}\n\n{cost}; tables, pictures and replays are in {job.out}")
 
 
-def _minutes() -> tuple[float, float]:
-    """[min] Read the clock, and that of the processor."""
-    return time.perf_counter() / 60.0, time.process_time() / 60.0
+PAPER = Study(
+    text=__doc__ or "",
+    run=_run_paper,
+    full="all of it; an hour or two",
+    add_options=_add_options,
+)

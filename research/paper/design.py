@@ -1,20 +1,36 @@
-"""How much of the paper is repeated, and how its runs are made."""
+"""How much of the paper is repeated, with which layouts and motors, and how runs are made.
+
+Which layout stands for which row follows from the text of the paper, not from what comes out.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import crawler2d as c2d
+from crawler2d.parameters.track import Track
 from crawler2d.studies.campaign import RateSampling, Sampling
-from crawler2d.sweeps.sequential import Until
+from research.models import study_models, study_robot
+from research.paper import (
+    CWA_GEAR,
+    CWA_ROUND,
+    GEAR_MODEL,
+    GEAR_MODEL_OTHERWISE,
+    LWA_GEAR,
+    LWA_ROUND,
+    REAL_ROBOT,
+    TABLE_1,
+)
 
 if TYPE_CHECKING:
+    from crawler2d.parameters.terrain import Terrain
     from crawler2d.sweeps.found import Found
 
-__all__ = ["FULL", "QUICK", "Design", "Work"]
 
 # [-] No interval is so narrow: the number of runs decides.
 _NO_WIDTH = 1e-9
@@ -97,12 +113,168 @@ class Work:
             "progress": self.progress,
         }
 
-    def how(self, repeats: int) -> RateSampling:
+    def sampling_of(self, repeats: int) -> RateSampling:
         """Return the keywords of a study of rates whose cells all have the same number of runs."""
-        until = Until(width=_NO_WIDTH, least=repeats, most=repeats)
+        until = c2d.Until(width=_NO_WIDTH, least=repeats, most=repeats)
         return {**self.sampling, "until": until}
 
-    def counted(self, found: Found) -> Found:
+    def count(self, found: Found) -> Found:
         """Count what a study has tried, and return it; what two studies share counts twice."""
         self.tried.update({name: found.attrs[name] for name in ("settings", "runs")})
         return found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """What the motors can do, and how the ground grips."""
+
+    name: str
+    max_torque: float
+    """[N m] Of one sprocket; of one wheel if each has its own motor."""
+    friction: float
+    """[-] Between track and ground."""
+    reason: str
+    """Where it comes from."""
+    a_wheel: bool = False
+    """Whether every wheel has a motor of its own; a track without wheels has one sprocket."""
+    rotor_inertia: float | None = None
+    """[kg m^2] Of the motor of one track, at its sprocket; None takes the robot's."""
+
+    def on(self, robot: c2d.Robot) -> c2d.Robot:
+        """Give a robot these motors."""
+        sharing, torque = "track", self.max_torque
+        if self.a_wheel and isinstance(
+            robot.track, (c2d.LineOfWheels, c2d.CircumferentialWheels, c2d.HybridWheels)
+        ):
+            # The core gives each of the N wheels of a side 1/N of the torque of a sprocket.
+            sharing, torque = "wheel", torque * robot.wheels()["side"].tolist().count("left")
+        inertia = self.rotor_inertia
+        drivetrain = replace(
+            robot.drivetrain,
+            max_torque=torque,
+            torque_sharing=sharing,  # type: ignore[arg-type] # a plain str to mypy
+            rotor_inertia=robot.drivetrain.rotor_inertia if inertia is None else inertia,
+        )
+        return replace(robot, drivetrain=drivetrain)
+
+
+PRESET = Setting(
+    name="preset",
+    max_torque=6.0,
+    friction=0.9,
+    reason="the preset without rotors; both figures are estimates (6 N m holds the 45 degrees of"
+    " Table 1 with a margin of 1.6)",
+)
+STRONG = Setting(
+    name="strong motors",
+    max_torque=60.0,
+    friction=0.9,
+    reason="ten times the torque: motors that hold their speed",
+)
+PUBLIC = Setting(
+    name="public simulation",
+    max_torque=100.0,
+    friction=1.0,
+    a_wheel=True,
+    reason="the public simulation model: an effort of 100 N m a wheel, and the smaller of its"
+    " friction, 100, and the ground's, 1.0 by default",
+)
+SETTINGS = (PRESET, STRONG, PUBLIC)
+
+
+_SPACED_GEARS = "16 gears all round, spaced"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layout:
+    """A model of the track of the Engineer with its flippers."""
+
+    track: Track
+    source: str
+    """Figure or section of the paper, or "ours"."""
+    arms: Track | None = None
+    """The track of the flippers; None takes the model of the robot's."""
+
+    def on(self, robot: c2d.Robot) -> c2d.Robot:
+        """Put it on a robot, and on its flippers if it has some."""
+        arms = robot.flippers
+        arms = None if arms is None else replace(arms, track=self.arms)
+        return replace(robot, track=self.track, flippers=arms)
+
+
+class Reading(NamedTuple):
+    """Which layout stands for which row or column of the paper."""
+
+    row: str
+    """As in the paper's tables."""
+    layout: str
+    """One of `layouts`."""
+    reason: str
+    """From the text of the paper alone."""
+
+
+READINGS = (
+    Reading(
+        CWA_ROUND, "16 all round, spaced", "section 3 starts from Fig. 7: small wheels, spaced"
+    ),
+    Reading(
+        LWA_ROUND,
+        "line of 3",
+        "Fig. 3 is by the same team, and eq. (1) turns the wheels by thirds",
+    ),
+    Reading(
+        CWA_GEAR,
+        _SPACED_GEARS,
+        "section 3 replaces the wheels of Fig. 7 by gears of the same size (Fig. 12)",
+    ),
+    Reading(LWA_GEAR, "line of 3 gears", "the line of large wheels, with gears instead (Fig. 13)"),
+    Reading(GEAR_MODEL, "line of 3 gears", "the model that the paper ends up with (Fig. 13)"),
+    Reading(
+        GEAR_MODEL_OTHERWISE,
+        _SPACED_GEARS,
+        "Figs. 15 to 17, of these fields, show small gears all round",
+    ),
+    Reading(
+        REAL_ROBOT,
+        "belt with grousers",
+        "our choice: it has the outline and the grousers of the robot",
+    ),
+)
+"""From the text; all other layouts stand beside them as ours."""
+
+
+def layouts() -> dict[str, Layout]:
+    """List all layouts by name: the track models of the study, and small gears with spaces.
+
+    The flippers take the model of the robot. Wheels that touch on the robot, or are placed by hand,
+    have no place on an arm that tapers: there a line of four wheels takes theirs, which is about
+    where four touch.
+
+    Examples
+    --------
+    >>> layouts()["16 all round, spaced"].source
+    'Fig. 7'
+    """
+    models = study_models(study_robot().outline.axle_distance)
+    four, gears = c2d.LineOfWheels(4), c2d.LineOfWheels(4, wheel=c2d.GearWheel())
+    arms = {"line of 4, touching": four, "hybrid": four, "hybrid gears": gears}
+    known = {
+        name: Layout(track=model.track, source=model.source, arms=arms.get(name))
+        for name, model in models.items()
+    }
+    spaced = c2d.CircumferentialWheels(16, wheel_radius=0.02, wheel=c2d.GearWheel())
+    return known | {_SPACED_GEARS: Layout(track=spaced, source="Fig. 12")}
+
+
+def models_of(
+    names: Iterable[str], setting: Setting = PRESET, *, flippers: bool = True
+) -> dict[str, Any]:
+    """Put layouts with the motors of a setting on the robot, as studies take their `models`."""
+    known, robot = layouts(), study_robot(flippers=flippers)
+    return {name: {"robot": setting.on(known[name].on(robot))} for name in names}
+
+
+def climb(ground: Terrain, robot: c2d.Robot | None = None) -> c2d.Scenario:
+    """Drive a robot, by default that with flippers, with the gait `Climb` at the paper's speed."""
+    drive = c2d.Drive(speed=TABLE_1.max_speed, gait=c2d.Climb())
+    return c2d.Scenario(robot or study_robot(flippers=True), ground, drive=drive)

@@ -1,38 +1,109 @@
-"""The paper's Figs. 1 to 14 drawn from the models; Figs. 4 and 5 from runs that stopped."""
+"""The paper's eq. (1) and its Figs. 1 to 14: from the models, and from runs that stopped."""
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crawler2d.common.extras import extra
+import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK, BLUE, ORANGE
 from crawler2d.drawings.views import robot_alone
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.track import SegmentalTrack, Track
-from crawler2d.presets import terrains
-from crawler2d.presets.robots import engineer
-from research.paper.layouts import layouts
-from research.paper.phases import grouser_angle
+from crawler2d.parameters.track import Track
+from research.models import study_robot
+from research.paper import CWA_ROUND, LWA_ROUND, TABLE_1
+from research.paper.design import READINGS, layouts
+from research.study import make_panels
+from research.tables import markdown_table, mm
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping
+    from pathlib import Path
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
 
-    from crawler2d.parameters.robot import Robot
-    from research.paper.stuck import Stuck
+    from crawler2d.sweeps.found import Found
+    from research.paper.design import Work
 
-__all__ = ["DRAWN", "NOT_DRAWN", "Drawn", "plot_layouts", "plot_stuck"]
+
+_PHASED: dict[str, Track] = {
+    **{
+        f"line of {count}": c2d.LineOfWheels(count, wheel=c2d.GearWheel())
+        for count in (2, 3, 4, 5, 9)
+    },
+    **{
+        f"{count} all round": c2d.CircumferentialWheels(
+            count, wheel_radius=0.02, wheel=c2d.GearWheel()
+        )
+        for count in (16, 24)
+    },
+}
+"""Gears whose angles are compared with the formula; those of the flippers are, too."""
+
+_SHAKEN = tuple((count, fraction) for count in (3, 5) for fraction in (0.0, 1.0 / 3.0, 0.5))
+"""Wheels of a line and phase fraction: in step, as in eq. (1), at a half."""
+
+# [s] When the speed is steady, and how long one looks at it: 17 grouser pitches at 0.4 m/s.
+_STEADY, _LOOK = 3.0, 2.0
+# [m] Corners that are as far from the axle lie this close to one circle.
+_SAME = 1e-9
+
 
 _COLUMNS = 3
+_STUCK = {4: LWA_ROUND, 5: CWA_ROUND}
+"""The figures that runs stand for, and which row of the paper each shows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drawn:
+class Phase:
+    """The starting angles of the gears of one robot, beside eq. (1)."""
+
+    model: str
+    count: int
+    """Gears of one side, with those of the flipper."""
+    off: float
+    """[rad] Largest difference from the formula."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shaking:
+    """How a line of gears shakes the robot on level ground at a steady speed."""
+
+    count: int
+    fraction: float
+    """[-] Of the angle between two grousers, from wheel to wheel: a third in eq. (1)."""
+    swing: float
+    """[m] From the lowest to the highest position of the chassis."""
+    rocking: float
+    """[rad] From the smallest to the greatest angle of the chassis."""
+    vibration: float
+    """[m/s^2] Vertical acceleration over the whole run, root mean square."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stuck:
+    """A run that stands for a figure of the paper."""
+
+    figure: int
+    model: str
+    where: str
+    """Setting and obstacle, in words."""
+    run: c2d.Run
+    """With its history."""
+
+    @property
+    def file(self) -> str:
+        """The name of its page."""
+        return f"figure_{self.figure}.html"
+
+
+class Drawn(NamedTuple):
     """A figure of the paper that is drawn from a model."""
 
     number: int
@@ -46,30 +117,24 @@ def _drawn() -> tuple[Drawn, ...]:
     track = {name: layout.track for name, layout in layouts().items()}
     gears = track["line of 3 gears"]
     return (
-        Drawn(number=1, caption="line of wheels that overlap", track=track["line of 5"]),
-        Drawn(number=2, caption="line of wheels that touch", track=track["line of 4, touching"]),
-        Drawn(number=3, caption="line of wheels with broad spaces", track=track["line of 3"]),
-        Drawn(number=6, caption="small wheels, tightly packed", track=track["24 all round"]),
-        Drawn(number=7, caption="small wheels with spaces", track=track["16 all round, spaced"]),
-        Drawn(number=8, caption="wheels of varying sizes (b)", track=track["hybrid"]),
-        Drawn(number=9, caption="chain of shoes on a guide", track=track["chain of 22 shoes"]),
-        Drawn(
-            number=10,
-            caption="chain of shoes round a sprocket",
-            track=SegmentalTrack(mechanism="sprocket"),
-        ),
-        Drawn(number=11, caption="single gear wheel", track=gears, view="wheel"),
-        Drawn(
-            number=12, caption="small gears all round", track=track["16 gears all round, spaced"]
-        ),
-        Drawn(number=13, caption="line of large gears", track=gears),
-        Drawn(number=14, caption="the angle theta of eq. (1)", track=gears, view="angle"),
+        Drawn(1, "line of wheels that overlap", track["line of 5"]),
+        Drawn(2, "line of wheels that touch", track["line of 4, touching"]),
+        Drawn(3, "line of wheels with broad spaces", track["line of 3"]),
+        Drawn(6, "small wheels, tightly packed", track["24 all round"]),
+        Drawn(7, "small wheels with spaces", track["16 all round, spaced"]),
+        Drawn(8, "wheels of varying sizes (b)", track["hybrid"]),
+        Drawn(9, "chain of shoes on a guide", track["chain of 22 shoes"]),
+        Drawn(10, "chain of shoes round a sprocket", c2d.SegmentalTrack(mechanism="sprocket")),
+        Drawn(11, "single gear wheel", gears, "wheel"),
+        Drawn(12, "small gears all round", track["16 gears all round, spaced"]),
+        Drawn(13, "line of large gears", gears),
+        Drawn(14, "the angle theta of eq. (1)", gears, "angle"),
     )
 
 
 DRAWN = _drawn()
 
-NOT_DRAWN = {
+_NOT_DRAWN = {
     "4": "a run of the simulator; here a replay of a line of large wheels that seizes",
     "5": "a run of the simulator; here a replay of small wheels that seize",
     "8 (a)": "a photograph of another robot, the Talon; its model is that of (b)",
@@ -79,25 +144,143 @@ NOT_DRAWN = {
 """What the others show."""
 
 
-def plot_layouts() -> Figure:
-    """Draw the layouts of the figures, one panel each, without flippers.
+def phases(work: Work) -> list[Phase]:
+    """Compare the starting angles of all gears with those of the formula."""
+    robot = study_robot(flippers=True)
+    runs = _runs([robot.with_track(track) for track in _PHASED.values()], work)
+    return [
+        Phase(
+            model=model,
+            count=len(gears),
+            off=max(off_formula(*gear) for gear in gears),
+        )
+        for model, run in zip(_PHASED, runs, strict=True)
+        for gears in [gear_angles(run)]
+    ]
+
+
+def off_formula(number: int, angle: float, pitch: float) -> float:
+    """[rad] Measure how far an angle is off eq. (1), x = theta / 3 n, up to whole grousers.
+
+    Examples
+    --------
+    >>> round(off_formula(4, 0.1 + 1.0 / 3.0, 1.0), 3)
+    0.1
+    """
+    turns = (angle - pitch / 3.0 * number) / pitch
+    return abs(turns - round(turns)) * pitch
+
+
+def gear_angles(run: c2d.Run) -> list[tuple[int, float, float]]:
+    """Read the angles of all gears off their outlines, before anything has turned.
 
     Returns
     -------
-    Figure
-        Not shown and not saved.
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is missing; the message names the extra to install.
+    list of tuple of int, float and float
+        For each gear its number n, counted from 1 at the rear on the chassis and on the flipper,
+        and the angle of a grouser and theta of eq. (1), as below.
     """
-    figures = extra("matplotlib.figure", "plot")
+    gears: list[tuple[int, float, float]] = []
+    numbers: Counter[str] = Counter()
+    columns = (run.bodies[name] for name in ("kind", "carrier", "outline"))
+    for kind, carrier, outline in zip(*columns, strict=True):
+        if kind == c2d.BodyKind.WHEEL and len(outline):
+            numbers[carrier] += 1
+            gears.append((numbers[carrier], *_grouser_angle(outline)))
+    return gears
+
+
+def shaking(work: Work) -> list[Shaking]:
+    """Drive lines of gears over level ground."""
+    tracks = [
+        c2d.LineOfWheels(count, wheel=c2d.GearWheel(phase_fraction=fraction))
+        for count, fraction in _SHAKEN
+    ]
+    robot = study_robot()
+    runs = _runs([robot.with_track(track) for track in tracks], work)
+    return [
+        Shaking(
+            count=count,
+            fraction=fraction,
+            swing=float(np.ptp(run.position[run.time > _STEADY, 1])),
+            rocking=float(np.ptp(run.chassis_angle[run.time > _STEADY])),
+            vibration=run.metrics["vertical_acceleration"],
+        )
+        for (count, fraction), run in zip(_SHAKEN, runs, strict=True)
+    ]
+
+
+def equation_text(phases: Sequence[Phase], shaken: Sequence[Shaking]) -> str:
+    """Say how the gears' starting angles compare with eq. (1), and how much they shake."""
+    count = 2 * sum(phase.count for phase in phases)
+    off = max(phase.off for phase in phases)
+    table = [
+        (
+            str(row.count),
+            f"{row.fraction:.3f}",
+            f"{1e3 * row.swing:.2f}",
+            f"{math.degrees(row.rocking):.2f}",
+            f"{row.vibration:.2f}",
+        )
+        for row in shaken
+    ]
+    head = ("gears", "phase fraction", "swing [mm]", "rocking [deg]", "vibration [m/s^2]")
+    return "\n\n".join(
+        (
+            f"The starting angles of {count} gears, of {len(phases)} robots with their flippers,"
+            f" are those of eq. (1) within {off:.0e} rad (up to whole grousers).",
+            "Lines of gears on level ground at 0.4 m/s, no flippers: how far the chassis goes up"
+            " and down and to and fro, and its vertical acceleration, root mean square.",
+            markdown_table(head, table),
+        )
+    )
+
+
+def stuck_runs(tables: Mapping[str, Found]) -> list[Stuck]:
+    """Take, for each figure, the first run that seized with an edge between two wheels.
+
+    Parameters
+    ----------
+    tables : mapping of str to Found
+        What was run over the parallelepiped of Table 3, by setting, with the dimensions `model`,
+        `height` and `repeat`: a sharp corner on level ground, as in the figures.
+
+    Returns
+    -------
+    list of Stuck
+        Of the first setting in which there is one, the lowest height, the first repeat; a figure
+        without such a run is left out.
+    """
+    models = {reading.row: reading.layout for reading in READINGS}
+    stuck = []
+    for number, row in _STUCK.items():
+        for setting, table in tables.items():
+            own = table.sel(model=models[row]).transpose("height", "repeat", ...)
+            held = (own["outcome"] == "seized") & (own["stop_carrier"] == "chassis")
+            places = np.argwhere(held.to_numpy())
+            if places.size:
+                height, repeat = places[0]
+                one = own.isel(height=height, repeat=repeat)
+                run = c2d.simulate(c2d.Scenario.from_json(one["scenario"].item()))
+                where = f"{setting}, block of {mm(one['height'].item())} mm"
+                stuck.append(Stuck(figure=number, model=models[row], where=where, run=run))
+                break
+    return stuck
+
+
+def write_stuck(stuck: Sequence[Stuck], folder: Path) -> None:
+    """Write each run as a page that replays it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for each in stuck:
+        each.run.to_html(folder / each.file)
+
+
+def plot_layouts() -> Figure:
+    """Draw the layouts of the figures, one panel each, without flippers."""
     rows = -(-len(DRAWN) // _COLUMNS)
-    figure: Figure = figures.Figure(figsize=(4.6 * _COLUMNS, 2.7 * rows), layout="constrained")
-    axes = figure.subplots(rows, _COLUMNS, squeeze=False)
+    figure, axes = make_panels(rows, _COLUMNS, (4.6 * _COLUMNS, 2.7 * rows))
     for ax, drawn in zip(axes.flat, DRAWN, strict=True):
-        robot = engineer(flippers=None, track=drawn.track)
+        robot = study_robot(track=drawn.track)
         if drawn.view == "robot":
             robot.plot(ax).legend().remove()
         else:
@@ -108,23 +291,67 @@ def plot_layouts() -> Figure:
     return figure
 
 
-def plot_stuck(found: Sequence[Stuck]) -> Figure:
+def plot_stuck(stuck: Sequence[Stuck]) -> Figure:
     """Draw the ends of the runs that stand for Figs. 4 and 5, one panel each."""
-    figures = extra("matplotlib.figure", "plot")
-    figure: Figure = figures.Figure(figsize=(6.5 * len(found), 4.2), layout="constrained")
-    for ax, stuck in zip(figure.subplots(1, len(found), squeeze=False).flat, found, strict=True):
-        run = stuck.run
+    figure, axes = make_panels(1, len(stuck), (6.5 * len(stuck), 4.2))
+    for ax, each in zip(axes.flat, stuck, strict=True):
+        run = each.run
         run.plot(ax, time=run.time[-1], trials=False)
-        ax.set_title(f"Fig. {stuck.figure}: {stuck.model}, {stuck.where}", loc="left")
+        ax.set_title(f"Fig. {each.figure}: {each.model}, {each.where}", loc="left")
         x, y = run.position[-1]
         ax.set(xlim=(x - 0.35, x + 0.65), ylim=(y - 0.25, y + 0.4))
         ax.get_legend().remove()
     return figure
 
 
-def _draw_wheel(ax: Axes, robot: Robot, *, with_angle: bool) -> None:
+def figures_text(stuck: Sequence[Stuck], folder: str) -> str:
+    """List the figures: what is drawn, what is replayed from a folder, what can be neither."""
+    rows = [(str(each.number), each.caption, "drawn") for each in DRAWN]
+    replayed = {str(each.figure): f"replayed in `{folder}/{each.file}`" for each in stuck}
+    rows += [(number, what, replayed.get(number, "")) for number, what in _NOT_DRAWN.items()]
+    diagnoses = [
+        f"Fig. {each.figure}, {each.model}, {each.where}: {each.run.diagnosis}" for each in stuck
+    ]
+    table = markdown_table(
+        ("figure", "what it shows", "here"),
+        sorted(rows, key=lambda row: int(row[0].split()[0])),
+    )
+    return "\n\n".join((table, *diagnoses))
+
+
+def _grouser_angle(outline: ArrayLike) -> tuple[float, float]:
+    """Read the angle of a grouser off the outline of a gear, and theta of eq. (1).
+
+    Parameters
+    ----------
+    outline : array_like, shape (n, 2)
+        [m] Corners about the axle; those at the tips, two to a grouser, are the farthest.
+
+    Returns
+    -------
+    tuple of 2 floats
+        [rad] From the x axis to the middle of a grouser, up to whole grousers; and theta, from one
+        grouser to the next.
+    """
+    corners = np.asarray(outline)
+    far = np.hypot(*corners.T)
+    tips = corners[far > far.max() - _SAME]
+    grousers = len(tips) // 2
+    angles = np.arctan2(tips[:, 1], tips[:, 0])
+    middle = float(np.angle(np.mean(np.exp(1j * grousers * angles)))) / grousers
+    return middle, 2.0 * math.pi / grousers
+
+
+def _runs(robots: list[c2d.Robot], work: Work) -> list[c2d.Run]:
+    drive, ground = c2d.Drive(speed=TABLE_1.max_speed), c2d.terrains.flat()
+    duration = _STEADY + _LOOK  # too short to reach the goal, where a run would end
+    scenarios = [c2d.Scenario(robot, ground, drive=drive, duration=duration) for robot in robots]
+    return c2d.simulate_many(scenarios, threads=work.threads, progress=False)
+
+
+def _draw_wheel(ax: Axes, robot: c2d.Robot, *, with_angle: bool) -> None:
     """Draw the rearmost wheel alone; mark the angle between two of its grousers."""
-    scene = robot_alone(Scenario(robot, terrains.flat()).to_json())
+    scene = robot_alone(c2d.Scenario(robot, c2d.terrains.flat()).to_json())
     x, radius = -0.5 * robot.outline.axle_distance, robot.outline.rear_radius
     wheel = scene.outline(0, 0) - (x, 0.0)
     ax.fill(*wheel.T, facecolor="none", edgecolor=BLACK, linewidth=1.2)
@@ -133,7 +360,7 @@ def _draw_wheel(ax: Axes, robot: Robot, *, with_angle: bool) -> None:
     ax.set(xlim=(-2.0 * radius, 2.0 * radius), ylim=(-1.2 * radius, 1.2 * radius))
     if not with_angle:
         return
-    first, theta = grouser_angle(wheel)
+    first, theta = _grouser_angle(wheel)
     arc = first + theta * np.linspace(0.0, 1.0, 41)
     for angle in (first, first + theta):
         ax.plot((0.0, radius * np.cos(angle)), (0.0, radius * np.sin(angle)), color=BLUE)

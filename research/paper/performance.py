@@ -3,39 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.settings import Climb, Drive
-from crawler2d.presets import terrains
-from crawler2d.presets.robots import engineer
-from crawler2d.studies.driving import acceleration, braking_distance, max_speed
-from crawler2d.studies.obstacles import max_obstacle, max_slope
-from crawler2d.studies.riding import real_time_factor
-from research.paper.layouts import READINGS, layouts
-from research.paper.published import TABLE_1, TABLE_3
-from research.paper.settings import PRESET, SETTINGS, Setting
+import crawler2d as c2d
+from research.models import study_robot
+from research.paper import REAL_ROBOT, RPM, TABLE_1, TABLE_3
+from research.paper.design import PRESET, READINGS, SETTINGS, climb, models_of
+from research.tables import gaps, grouped, markdown_table, mm, percent
 
 if TYPE_CHECKING:
+    from crawler2d.parameters.terrain import Terrain
     from crawler2d.sweeps.found import Found
-    from research.paper.design import Work
+    from research.paper.design import Setting, Work
 
-__all__ = [
-    "BESIDE_TABLE_3",
-    "Computing",
-    "Driving",
-    "Height",
-    "Slope",
-    "computing",
-    "driving",
-    "highest_obstacles",
-    "steepest_slopes",
-]
 
-_ROWS = {row.model for row in TABLE_3}
-BESIDE_TABLE_3 = {reading.row: reading.layout for reading in READINGS if reading.row in _ROWS}
+_PAPER = {row.model: row for row in TABLE_3}
+ROWS = {reading.row: reading.layout for reading in READINGS if reading.row in _PAPER}
 """By row of Table 3, the layout that stands for it."""
 
 _THICKNESS = 0.1
@@ -125,17 +110,21 @@ class Computing:
 
 def driving(work: Work) -> list[Driving]:
     """Measure speed, braking and acceleration of every row of Table 3."""
-    base, models = _scenario(PRESET, terrains.flat(friction=PRESET.friction)), _models(PRESET)
-    repeats, command = work.design.driving_repeats, TABLE_1.max_speed
     print("Table 3, driving", flush=True)
-    how, count = work.sampling, work.counted
-    full = count(max_speed(base, models=models, repeats=repeats, **how))
-    slow = count(max_speed(base, models=models, speed=command, repeats=repeats, **how))
-    up = count(acceleration(base, models=models, speed=command, repeats=repeats, **how))
-    down = count(braking_distance(base, models=models, speed=command, repeats=repeats, **how))
+    base = _scenario(PRESET, c2d.terrains.flat(friction=PRESET.friction))
+    command = TABLE_1.max_speed
+    options: Any = {
+        "models": models_of(ROWS.values()),
+        "repeats": work.design.driving_repeats,
+        **work.sampling,
+    }
+    full = work.count(c2d.studies.max_speed(base, **options))
+    slow = work.count(c2d.studies.max_speed(base, speed=command, **options))
+    up = work.count(c2d.studies.acceleration(base, speed=command, **options))
+    down = work.count(c2d.studies.braking_distance(base, speed=command, **options))
 
-    def of(found: Found, name: str, model: str) -> Any:
-        return found[name].sel(model=model).item()
+    def of(runs: Found, name: str, model: str) -> Any:
+        return runs[name].sel(model=model).item()
 
     return [
         Driving(
@@ -150,29 +139,24 @@ def driving(work: Work) -> list[Driving]:
             acceleration=of(up, "acceleration", model),
             acceleration_limit=of(up, "limit", model),
         )
-        for row, model in BESIDE_TABLE_3.items()
+        for row, model in ROWS.items()
     ]
 
 
 def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, Found]]:
     """Find the highest parallelepiped, in every setting; returns the runs, too, by setting."""
-    papers = {row.model: row.max_height for row in TABLE_3}
     heights, repeats = work.design.heights, work.design.height_repeats
     rows, tables = [], {}
     for setting in SETTINGS:
         print(f"Table 3, highest obstacle, {setting.name}", flush=True)
-        block = terrains.barrier(heights[0], _THICKNESS, friction=setting.friction)
-        found = work.counted(
-            max_obstacle(
-                _scenario(setting, block),
-                models=_models(setting),
-                heights=heights,
-                **work.how(repeats),
-            )
+        base = _scenario(
+            setting, c2d.terrains.barrier(heights[0], _THICKNESS, friction=setting.friction)
         )
-        tables[setting.name] = found
-        for row, model in BESIDE_TABLE_3.items():
-            own = found.sel(model=model)
+        models, options = models_of(ROWS.values(), setting), work.sampling_of(repeats)
+        runs = work.count(c2d.studies.max_obstacle(base, models=models, heights=heights, **options))
+        tables[setting.name] = runs
+        for row, model in ROWS.items():
+            own = runs.sel(model=model)
             highest = own["highest"].item()
             rates = zip(heights, own["rate"].to_numpy().tolist(), strict=True)
             rows.append(
@@ -180,7 +164,7 @@ def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, Found]]:
                     setting=setting.name,
                     row=row,
                     model=model,
-                    paper=papers[row],
+                    paper=_PAPER[row].max_height,
                     highest=highest,
                     gaps=tuple(h for h, rate in rates if h < highest and rate < 0.5),
                     limit=own["limit"].item(),
@@ -197,20 +181,15 @@ def steepest_slopes(work: Work) -> list[Slope]:
     """
     rows = []
     declared, measured = TABLE_1.declared_max_slope, TABLE_1.max_slope
+    repeats, models = work.design.slope_repeats, models_of(ROWS.values(), flippers=False)
     for friction in (PRESET.friction, 1.0):
         print(f"Table 1, slopes, friction {friction:g}", flush=True)
-        base = Scenario(
-            engineer(flippers=None).without_rotors(),
-            terrains.ramp(declared, friction=friction),
-            drive=Drive(speed=TABLE_1.max_speed),
-        )
-        known = layouts()
-        models = {name: {"robot": known[name].on(base.robot)} for name in BESIDE_TABLE_3.values()}
-        how = work.how(work.design.slope_repeats)
-        angles = work.design.angles
-        found = work.counted(max_slope(base, models=models, angles=angles, **how))
-        for row, model in BESIDE_TABLE_3.items():
-            own = found.sel(model=model)
+        ground = c2d.terrains.ramp(declared, friction=friction)
+        base = c2d.Scenario(study_robot(), ground, drive=c2d.Drive(speed=TABLE_1.max_speed))
+        angles, options = work.design.angles, work.sampling_of(repeats)
+        runs = work.count(c2d.studies.max_slope(base, models=models, angles=angles, **options))
+        for row, model in ROWS.items():
+            own = runs.sel(model=model)
             rows.append(
                 Slope(
                     friction=friction,
@@ -221,7 +200,7 @@ def steepest_slopes(work: Work) -> list[Slope]:
                     declared=own["rate"].sel(angle=declared).item(),
                     measured=own["rate"].sel(angle=measured).item(),
                     limit=own["limit"].item(),
-                    repeats=work.design.slope_repeats,
+                    repeats=repeats,
                 )
             )
     return rows
@@ -230,27 +209,22 @@ def steepest_slopes(work: Work) -> list[Slope]:
 def computing(work: Work) -> list[Computing]:
     """Measure how fast the rows of Table 3 are simulated: standing, driving, in a field."""
     print("Table 3, real-time factor", flush=True)
-    flat = _scenario(PRESET, terrains.flat(friction=PRESET.friction))
-    field = flat.replace({"terrain": terrains.random_stepfield(friction=PRESET.friction)})
+    models = models_of(ROWS.values())
     level, rough = (
-        real_time_factor(
-            base,
-            models=_models(PRESET),
-            duration=_SPAN,
-            repeats=work.design.computing_repeats,
-            progress=work.progress,
+        measure_factors(work, _scenario(PRESET, ground), models)
+        for ground in (
+            c2d.terrains.flat(friction=PRESET.friction),
+            c2d.terrains.random_stepfield(friction=PRESET.friction),
         )
-        for base in (flat, field)
     )
-    papers = {row.model: row.real_time_factor for row in TABLE_3}
     rows = []
-    for row, model in BESIDE_TABLE_3.items():
+    for row, model in ROWS.items():
         own, there = level["factor"].sel(model=model), rough.sel(model=model, motion="driving")
         rows.append(
             Computing(
                 row=row,
                 model=model,
-                paper=papers[row],
+                paper=_PAPER[row].real_time_factor,
                 standing=own.sel(motion="standing").item(),
                 driving=own.sel(motion="driving").item(),
                 in_field=there["factor"].item(),
@@ -260,11 +234,151 @@ def computing(work: Work) -> list[Computing]:
     return rows
 
 
-def _scenario(setting: Setting, ground: Any) -> Scenario:
-    drive = Drive(speed=TABLE_1.max_speed, gait=Climb())
-    return Scenario(setting.on(engineer().without_rotors()), ground, drive=drive)
+def measure_factors(work: Work, base: c2d.Scenario, models: Any) -> Found:
+    """Measure real-time factors on one thread of this machine."""
+    return c2d.studies.real_time_factor(
+        base,
+        models=models,
+        duration=_SPAN,
+        repeats=work.design.computing_repeats,
+        progress=work.progress,
+    )
 
 
-def _models(setting: Setting) -> Mapping[str, Mapping[str, Any]]:
-    known, robot = layouts(), engineer().without_rotors()
-    return {name: {"robot": setting.on(known[name].on(robot))} for name in BESIDE_TABLE_3.values()}
+def _scenario(setting: Setting, ground: Terrain) -> c2d.Scenario:
+    return climb(ground, setting.on(study_robot(flippers=True)))
+
+
+def table_1_text(slopes: Sequence[Slope], rows: Sequence[Driving]) -> str:
+    """Compare the paper's Table 1 with ours."""
+    robot = TABLE_1
+    stand_in = next(row for row in rows if row.row == REAL_ROBOT)
+    figures = [
+        (
+            "max. speed [m/s]",
+            f"{robot.max_speed:g}",
+            f"{robot.declared_max_speed:g}",
+            f"{stand_in.full_speed:.2f}, limited by {stand_in.full_speed_limit}",
+        ),
+        (
+            "max. turn rate [rpm]",
+            f"{robot.max_turn_rate / RPM:.1f}",
+            "-",
+            "a side view has no turning",
+        ),
+        (
+            "max. slope [deg]",
+            _deg(robot.max_slope),
+            _deg(robot.declared_max_slope),
+            "see below: at most the arc tangent of the friction",
+        ),
+        (
+            "stopping distance [m]",
+            f"{robot.stopping_distance:g}",
+            "-",
+            f"{stand_in.braking:.3f} from 0.4 m/s, limited by {stand_in.braking_limit}",
+        ),
+    ]
+    table = [
+        (
+            f"{row.friction:g}",
+            row.model,
+            f"{math.degrees(row.closed_form):.1f}",
+            "none" if math.isnan(row.steepest) else _deg(row.steepest),
+            percent(row.declared),
+            percent(row.measured),
+            row.limit.replace("_", " "),
+        )
+        for row in slopes
+    ]
+    head = ("friction", "layout", "arc tangent", "steepest tried", "35 deg", "45 deg", "then")
+    return "\n\n".join(
+        (
+            markdown_table(("", "real robot", "declared", f"ours: {stand_in.model}"), figures),
+            f"Slopes without flippers, {slopes[0].repeats} runs each: the steepest [deg] that half"
+            " of the runs climbed, and the shares [%] that climbed 35 and 45 degrees.",
+            markdown_table(head, table),
+        )
+    )
+
+
+def table_3_text(rows: Sequence[Driving]) -> str:
+    """Compare speed, braking and acceleration in the paper's Table 3 with ours, row by row."""
+    driven = [
+        (
+            row.row,
+            row.model,
+            f"{theirs.max_speed:g}",
+            f"{row.speed:.3f} ({row.full_speed:.2f})",
+            f"{theirs.braking_distance:g}",
+            f"{row.braking:.3f}",
+            f"{theirs.acceleration:g}",
+            f"{row.acceleration:.3f}",
+            f"{theirs.max_turn_rate / RPM:.1f}",
+        )
+        for row in rows
+        for theirs in [_PAPER[row.row]]
+    ]
+    limits = {limit for row in rows for limit in (row.speed_limit, row.full_speed_limit)}
+    inputs = {limit for row in rows for limit in (row.braking_limit, row.acceleration_limit)}
+    head = (
+        *("row of the paper", "layout", "speed, paper", "ours", "braking, paper", "ours"),
+        *("acceleration, paper", "ours", "turning [rpm], paper"),
+    )
+    return (
+        "Speed [m/s], commanded 0.4 m/s and in brackets at full command; braking distance [m] from"
+        " 0.4 m/s; acceleration [m/s^2]. Acceleration and deceleration of a drivetrain are *inputs*"
+        " of our robots: 0.2 and 4 m/s^2 were taken from the row of the real robot, so these two"
+        " columns show only that every layout can follow. What limits speed, found by doubling:"
+        f" {', '.join(sorted(limits))}; acceleration and braking: {', '.join(sorted(inputs))}. A"
+        " side view has no turning: the paper's rates stand alone."
+        f"\n\n{markdown_table(head, driven)}"
+    )
+
+
+def heights_text(heights: Sequence[Height]) -> str:
+    """Compare the highest obstacles of the paper's Table 3 with ours."""
+    climbed = [
+        (own[0].model, mm(own[0].paper), *map(_height, own))
+        for own in grouped(heights, "row").values()
+    ]
+    head = ("layout", "paper", *grouped(heights, "setting"))
+    return (
+        "Highest parallelepiped [mm] on level ground, 100 mm thick, with flippers and the gait"
+        f" `Climb`: the greatest height that half of {heights[0].repeats} runs cleared, in"
+        " brackets lower ones that they did not; then how most runs end on the next."
+        f"\n\n{markdown_table(head, climbed)}"
+    )
+
+
+def computing_text(factors: Sequence[Computing]) -> str:
+    """Compare the real-time factors of the paper's Table 3 with ours."""
+    costs = [
+        (
+            row.row,
+            row.model,
+            f"{row.paper:g}",
+            f"{row.standing:.0f}",
+            f"{row.driving:.0f}",
+            f"{row.in_field:.0f} ({row.moved:.2f})",
+        )
+        for row in factors
+    ]
+    head = ("row of the paper", "layout", "paper", "standing", "driving", "in a field")
+    return (
+        "The paper's real-time factor is that of Gazebo, in three dimensions, on its machine; ours"
+        " is simulated time by processor time of one thread of this machine, in side view:"
+        " standing and driving on level ground, and driving in a random step field (in brackets"
+        " how far it came there [m]). Only ratios within a column can be compared."
+        f"\n\n{markdown_table(head, costs)}"
+    )
+
+
+def _height(row: Height) -> str:
+    if math.isnan(row.highest):
+        return f"none; {row.limit.replace('_', ' ')}"
+    return f"{mm(row.highest)}{gaps(row.gaps)}; {row.limit.replace('_', ' ')}"
+
+
+def _deg(angle: float) -> str:
+    return f"{math.degrees(angle):.0f}"

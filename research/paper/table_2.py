@@ -1,0 +1,454 @@
+"""The paper's Table 2: every layout over random step fields, where and why runs fail."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import crawler2d as c2d
+from crawler2d.drawings.scene import BLACK
+from crawler2d.parameters.terrain import RandomStepfield
+from crawler2d.sweeps.store import Store
+from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
+from research.paper.design import READINGS, SETTINGS, Setting, climb, layouts, models_of
+from research.study import add_legend, make_panels, style
+from research.tables import counts, grouped, markdown_table, percent
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+    from crawler2d.results.record import Row
+    from crawler2d.sweeps.found import Found
+    from research.paper.design import Work
+
+
+FIELDS: Mapping[str, RandomStepfield] = {
+    "random RSE": c2d.terrains.random_stepfield(),
+    "horizontal barrier": c2d.terrains.stepfield_with_barrier(),
+    "diagonal barrier": c2d.terrains.stepfield_with_barrier(yaw=math.radians(45.0)),
+}
+"""By the paper's names. It gives no dimensions: these are the defaults, and half a right angle."""
+
+COLUMNS = {reading.layout: reading.row for reading in READINGS if reading.row in TABLE_2[0].columns}
+"""By layout, the column of Table 2 that it stands for."""
+
+PLACES = ("before", "at", "beyond")
+"""Where a robot ended, as seen from the barrier."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FieldCell:
+    """One layout in one field, all runs together."""
+
+    setting: str
+    obstacle: str
+    """As in `FIELDS`."""
+    model: str
+    column: str
+    """The column of Table 2 that it stands for; "" if it is ours."""
+    cleared: int
+    count: int
+    """Runs with a result."""
+    rate: float
+    low: float
+    """[-] Lower bound of Wilson's 95 % interval: the number of runs was fixed beforehand."""
+    high: float
+    others: str
+    """Outcomes of the runs that did not clear, with their number."""
+    computing_time: float
+    """[s] Of all runs on one thread."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """A rate of the paper's Table 2 and ours."""
+
+    setting: str
+    obstacle: str
+    column: str
+    model: str
+    paper: float
+    """[-] Of 20 runs."""
+    cleared: int
+    count: int
+    difference: float
+    """[-] As in `Agreement`, like what follows."""
+    low: float
+    high: float
+    verdict: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """A run that did not clear."""
+
+    setting: str
+    obstacle: str
+    model: str
+    repeat: int
+    outcome: str
+    mechanism: str
+    """How the ground that holds it is held; "" if it did not stop, or none is."""
+    carrier: str
+    """What carries the track that holds that ground: "chassis" or "front flipper"; "" if none."""
+    x: float
+    """[m] Position of the chassis where it stopped, or at the end."""
+    ground_x: float
+    """[m] Where that ground is; nan if there is none."""
+    place: str
+    """One of `PLACES`; "" in a field without a barrier."""
+    sentence: str
+    """The sentence of the diagnosis; "" if it did not stop."""
+    identity: str
+    """Of its scenario, by which the store finds it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failures:
+    """The failures of one layout in one field."""
+
+    setting: str
+    obstacle: str
+    model: str
+    count: int
+    has_barrier: bool
+    before: int
+    """How many are before the barrier."""
+    outcomes: str
+    """With their numbers, the commonest first."""
+    mechanisms: str
+    """Of the stops, with their numbers."""
+    in_flippers: int
+    """How many are held by the track of a flipper."""
+
+
+def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Found]]:
+    """Drive some layouts over the fields, in one setting after the other.
+
+    Yields
+    ------
+    tuple of Setting and Found
+        Dimensions `model`, `terrain` and `repeat`; every run has a field of its own, the same for
+        every layout and setting.
+    """
+    for setting in SETTINGS if names else ():
+        print(f"Table 2, {setting.name}: {', '.join(names)}", flush=True)
+        yield setting, cross(setting, names, work, work.design.field_repeats)
+
+
+def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) -> Found:
+    """Drive some layouts over the fields in one setting; see `cross_fields`."""
+    grounds = {name: replace(field, friction=setting.friction) for name, field in FIELDS.items()}
+    base = climb(next(iter(grounds.values())))
+    models = models_of(names, setting)
+    return work.count(
+        c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
+    )
+
+
+def cells(setting: Setting, runs: Found) -> list[FieldCell]:
+    """Count how the runs of `cross_fields` ended, one row per layout and field."""
+    rows = []
+    for model in runs["model"].to_numpy().tolist():
+        for obstacle in runs["terrain"].to_numpy().tolist():
+            own = runs.sel(model=model, terrain=obstacle)
+            outcomes = own["outcome"].to_numpy().tolist()
+            cleared, count = outcomes.count("cleared"), own["count"].item()
+            rate, low, high = c2d.wilson(cleared, count)
+            rows.append(
+                FieldCell(
+                    setting=setting.name,
+                    obstacle=obstacle,
+                    model=model,
+                    column=COLUMNS.get(model, ""),
+                    cleared=cleared,
+                    count=count,
+                    rate=rate,
+                    low=low,
+                    high=high,
+                    others=counts(each for each in outcomes if each != "cleared"),
+                    computing_time=own["wall_time"].sum().item(),
+                )
+            )
+    return rows
+
+
+def compare(rows: Sequence[FieldCell]) -> list[Comparison]:
+    """Compare our rates with those of the paper's Table 2, with the verdict on each."""
+    shares = {(each.obstacle, name): s for each in TABLE_2 for name, s in each.columns.items()}
+    own = {(row.setting, row.obstacle, row.model): row for row in rows if row.count}
+    return [
+        Comparison(
+            setting=row.setting,
+            obstacle=row.obstacle,
+            column=column,
+            model=model,
+            paper=shares[row.obstacle, column],
+            cleared=row.cleared,
+            count=row.count,
+            **asdict(agreement(row.cleared, row.count, shares[row.obstacle, column])),
+        )
+        for setting in SETTINGS
+        for obstacle in FIELDS
+        for model, column in COLUMNS.items()
+        if (row := own.get((setting.name, obstacle, model)))
+    ]
+
+
+def barrier_of(field: RandomStepfield, gauge: float) -> tuple[float, float] | None:
+    """Return where the barrier of a field begins and ends, or None if there is none.
+
+    Parameters
+    ----------
+    field : RandomStepfield
+        With its barrier across the middle.
+    gauge : float
+        [m] Between the tracks, which meet a turned barrier one after the other.
+
+    Returns
+    -------
+    tuple of 2 floats or None
+        [m] From the first track's front face to the last track's rear face.
+
+    Examples
+    --------
+    >>> low, high = barrier_of(RandomStepfield(barrier_height=0.15), 0.2)
+    >>> round(low, 3), round(high, 3)
+    (0.45, 0.55)
+    """
+    if field.barrier_height == 0.0:
+        return None
+    yaw = field.barrier_yaw
+    half = 0.5 * (gauge * abs(math.tan(yaw)) + field.barrier_thickness / math.cos(yaw))
+    middle = 0.5 * field.posts * field.post
+    return middle - half, middle + half
+
+
+def place_of(x: float, half_length: float, barrier: tuple[float, float] | None) -> str:
+    """Say where a track of some half length [m] about x [m] is, as seen from a barrier.
+
+    Flippers are left out: stretched out, they reach farther ahead.
+
+    Examples
+    --------
+    >>> [place_of(x, 0.25, (0.45, 0.55)) for x in (0.1, 0.5, 0.9)]
+    ['before', 'at', 'beyond']
+    """
+    if barrier is None:
+        return ""
+    if x + half_length < barrier[0]:
+        return "before"
+    return "beyond" if x - half_length > barrier[1] else "at"
+
+
+def failures(tables: Iterable[tuple[Setting, Found]], store: Path) -> list[Failure]:
+    """List the runs of `cross_fields` that did not clear, with what the store knows of them.
+
+    Parameters
+    ----------
+    tables : iterable of Setting and Found
+        What was made under each setting, with the dimensions `model`, `terrain` and `repeat`.
+    store : Path
+        Where the runs are.
+    """
+    failed: dict[str, tuple[Setting, str, str, int]] = {}
+    for setting, table in tables:
+        runs = table[["outcome", "identity"]].transpose("model", "terrain", "repeat")
+        models, obstacles = (runs[name].to_numpy().tolist() for name in ("model", "terrain"))
+        places = np.argwhere(~np.isin(runs["outcome"].to_numpy(), ["cleared", ""]))
+        for model, obstacle, repeat in places.tolist():
+            identity = str(runs["identity"].to_numpy()[model, obstacle, repeat])
+            failed[identity] = (setting, models[model], obstacles[obstacle], repeat)
+    with Store(store) as kept:
+        rows = kept.found(list(failed))
+    return [_failure(rows[identity], *place) for identity, place in failed.items()]
+
+
+def sum_failures(rows: Sequence[Failure]) -> list[Failures]:
+    """Sum failures up, one row per setting, field and layout, in the order of their appearance."""
+    return [
+        Failures(
+            setting=setting,
+            obstacle=obstacle,
+            model=model,
+            count=len(own),
+            has_barrier=any(each.place for each in own),
+            before=sum(each.place == "before" for each in own),
+            outcomes=_endings(each.outcome for each in own),
+            mechanisms=_endings(each.mechanism for each in own if each.mechanism),
+            in_flippers=sum(each.carrier.endswith("flipper") for each in own),
+        )
+        for (setting, obstacle, model), own in grouped(rows, "setting", "obstacle", "model").items()
+    ]
+
+
+def chosen_text() -> str:
+    """List what was chosen before any run: layouts for rows, and settings."""
+    settings = [
+        (
+            each.name,
+            f"{each.max_torque:g} N m a {'wheel' if each.a_wheel else 'sprocket'}",
+            f"{each.friction:g}",
+            each.reason,
+        )
+        for each in SETTINGS
+    ]
+    return "\n\n".join(
+        (
+            markdown_table(("row of the paper", "layout", "why"), READINGS),
+            markdown_table(("setting", "motors", "friction", "why"), settings),
+            "Without wheels that is the torque of the sprocket.",
+        )
+    )
+
+
+def table_2_text(rows: Sequence[Comparison]) -> str:
+    """Compare the paper's Table 2 with ours: counts, difference with its interval, verdict."""
+    settings, table = list(grouped(rows, "setting")), []
+    for (obstacle, model), pairs in grouped(rows, "obstacle", "model").items():
+        own = {row.setting: _comparison(row) for row in pairs}
+        texts = (own.get(setting, "") for setting in settings)
+        table.append((obstacle, model, percent(pairs[0].paper), *texts))
+    head = ("field", "layout", "paper [%]", *settings)
+    note = (
+        "Cells: our runs that cleared; the difference from the paper's rate in percentage points,"
+        " with Newcombe's 95 % interval (20 runs of the paper); the verdict. *Agrees*: within"
+        f" {100 * WITHIN:.0f} points. Otherwise *differs* if the interval excludes 0, *open* if it"
+        " contains 0."
+    )
+    return f"{note}\n\n{markdown_table(head, table)}"
+
+
+def layouts_text(rows: Sequence[FieldCell]) -> str:
+    """List the rates of all layouts, fields side by side."""
+    settings, models, table = grouped(rows, "setting"), grouped(rows, "model"), []
+    for model, layout in layouts().items():
+        if model in models:
+            own = grouped(models[model], "setting")
+            rates = (
+                " / ".join(percent(row.rate) for row in own.get(setting, ()))
+                for setting in settings
+            )
+            table.append((model, layout.source, *rates))
+    runs = " or ".join(map(str, sorted({row.count for row in rows})))
+    widest = max((max(row.rate - row.low, row.high - row.rate) for row in rows), default=0.0)
+    note = (
+        f"Runs that cleared [%], of {runs} a cell: {', '.join(grouped(rows, 'obstacle'))}."
+        f" Wilson's 95 % intervals, in `paper_table_2.csv`, reach at most {percent(widest)} points"
+        " either way."
+    )
+    return f"{note}\n\n{markdown_table(('layout', 'from', *settings), table)}"
+
+
+def failures_text(rows: Sequence[Failures], models: Collection[str]) -> str:
+    """Say where and why runs failed: a sum for every setting, and rows for some layouts."""
+    sums, table = [], []
+    for setting, own in grouped(rows, "setting").items():
+        before, count = (
+            sum(getattr(row, name) for row in own if row.has_barrier)
+            for name in ("before", "count")
+        )
+        sums.append(
+            f"- {setting}: {sum(row.count for row in own)} runs of all layouts failed; of the"
+            f" {count} with a barrier, {before} ended before it."
+        )
+        table += [
+            (
+                setting,
+                row.obstacle,
+                row.model,
+                str(row.count),
+                str(row.before) if row.has_barrier else "-",
+                row.outcomes,
+                row.mechanisms or "-",
+                str(row.in_flippers or "-"),
+            )
+            for row in own
+            if row.model in models
+        ]
+    head = (
+        *("setting", "field", "layout", "failures", "before the barrier"),
+        *("outcomes", "how the ground is held", "by a flipper's track"),
+    )
+    note = (
+        "A run ended *before the barrier* if its tracks had not reached it; flippers may have."
+        " `paper_failures.csv` has every failure with its place and its sentence."
+    )
+    return "\n\n".join((note, "\n".join(sums), markdown_table(head, table)))
+
+
+def plot_table_2(rows: Sequence[Comparison]) -> Figure:
+    """Draw the rates of the paper and ours with Wilson's intervals, one panel per field.
+
+    Parameters
+    ----------
+    rows : sequence of Comparison
+        Up to three settings.
+    """
+    fields, models = list(grouped(rows, "obstacle")), list(grouped(rows, "model"))
+    settings, pairs = list(grouped(rows, "setting")), grouped(rows, "obstacle", "model")
+    figure, axes = make_panels(1, len(fields), (4.4 * len(fields), 4.4), sharey=True)
+    for ax, field in zip(axes.flat, fields, strict=True):
+        for place, model in enumerate(models):
+            own = pairs[field, model]
+            points = [("the paper", round(PAPER_RUNS * own[0].paper), PAPER_RUNS)]
+            points += [(row.setting, row.cleared, row.count) for row in own]
+            for step, (label, cleared, count) in enumerate(points):
+                rate, low, high = c2d.wilson(cleared, count)
+                x = place + 0.16 * (step - 1.5)
+                look = {"color": BLACK, "marker": "D"}
+                if step:
+                    look = style(settings.index(label), of_three=True)
+                ax.vlines(x, 100 * low, 100 * high, color=look["color"], linewidth=1.6)
+                named = {"label": label} if place == 0 else {}
+                ax.plot(x, 100 * rate, linestyle="", **look, **named)
+        ax.set_xticks(range(len(models)), [model.replace(", ", ",\n") for model in models])
+        ax.tick_params(axis="x", labelsize="small", rotation=20)
+        ax.set(ylim=(-4.0, 104.0), xlim=(-0.5, len(models) - 0.5))
+        ax.set_title(field, loc="left", fontsize="medium")
+        ax.grid(alpha=0.25, axis="y")
+    axes[0, 0].set_ylabel("cleared [%]")
+    add_legend(figure, axes[0, 0], "upper center")
+    return figure
+
+
+def _failure(row: Row, setting: Setting, model: str, obstacle: str, repeat: int) -> Failure:
+    scenario, why = c2d.Scenario.from_json(row.scenario), row.why()
+    inside = None if why is None else why.intrusion
+    x = row.metrics.get("final_x", math.nan) if why is None else why.position[0]
+    field, outline = scenario.terrain, scenario.robot.outline
+    if not isinstance(field, RandomStepfield):
+        raise TypeError(f"these runs are over step fields, got {field.kind}")
+    barrier = barrier_of(field, scenario.robot.gauge)
+    half_length = 0.5 * outline.axle_distance + outline.front_radius
+    return Failure(
+        setting=setting.name,
+        obstacle=obstacle,
+        model=model,
+        repeat=repeat,
+        outcome=row.outcome,
+        mechanism="" if why is None else str(why.mechanism or ""),
+        carrier="" if inside is None else inside.carrier,
+        x=x,
+        ground_x=math.nan if inside is None else inside.x,
+        place=place_of(x, half_length, barrier),
+        sentence="" if why is None else str(why),
+        identity=row.identity,
+    )
+
+
+def _endings(names: Iterable[str]) -> str:
+    return counts(name.replace("_", " ") for name in names)
+
+
+def _comparison(row: Comparison) -> str:
+    points = [f"{100 * each:+.0f}" for each in (row.difference, row.low, row.high)]
+    return (
+        f"{row.cleared} of {row.count}; {points[0]} ({points[1]} to {points[2]}): **{row.verdict}**"
+    )
