@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,14 +15,13 @@ from crawler2d import _core
 from crawler2d.errors import raise_first
 from crawler2d.parameters.fields import json_pointer
 from crawler2d.parameters.track import Track
-from crawler2d.runs.progress import Reporter, reporter, thread_count
+from crawler2d.runs.progress import reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
 from research.models import study_models
 from research.study import Job, Study, add_legend, make_panels, style
 from research.tables import aligned_table, grouped, mm
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from matplotlib.figure import Figure
@@ -130,11 +127,10 @@ def cases(
     inertias: Sequence[float] = INERTIAS,
 ) -> list[Case]:
     """List the cases with rotors, and last the firm motor, which a force track has no use for."""
-    robot = c2d.robots.engineer(flippers=None)
-    own = robot.drivetrain
+    own = c2d.robots.engineer(flippers=None).drivetrain
     rotors = {f"{each:g}": replace(own, rotor_inertia=each) for each in inertias}
     strong = replace(own, rotor_inertia=_FIRM_ROTOR, max_torque=_FIRM_TORQUE)
-    tracks = study_models(robot.outline.axle_distance)
+    tracks = study_models()
     asked = []
     for model in models:
         track = tracks[model].track
@@ -181,17 +177,26 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
         On Ctrl-C; the store keeps what was finished.
     """
     rows: list[HighestEdge] = []
-    cells = sum(len(case.drives) for case in asked)
-    with _simulator(plan, cells) as simulator:
-        for _, own in groupby(asked, key=lambda case: (case.model, case.obstacle)):
-            guesses, reach = [_FIRST] * plan.repeats, _REACH
-            for case in own:
-                first: list[int] = []
-                for name, drivetrain in case.drives.items():
-                    guesses, reach = simulator.highest(case, drivetrain, guesses, reach), 1
-                    first = first or guesses
-                    rows.append(_row(case, name, guesses, first))
-                    simulator.report(1)
+    draws, cells = _draws(plan), sum(len(case.drives) for case in asked)
+    try:
+        with (
+            Collector((), store=plan.store, threads=thread_count(plan.threads)) as collector,
+            reporter(plan.progress, cells, unit="cell") as report,
+        ):
+            for own in grouped(asked, "model", "obstacle").values():
+                units, reach = [_FIRST] * plan.repeats, _REACH
+                for case in own:
+                    first: list[int] = []
+                    for name, drivetrain in case.drives.items():
+                        scenario = _scenario(case, drivetrain)
+                        searches = [_search(guess, reach) for guess in units]
+                        units, reach = _highest(collector, scenario, searches, draws), 1
+                        first = first or units
+                        rows.append(_row(case, name, units, first))
+                        report(1)
+    except RowsInterrupted as interrupt:
+        kept = "" if plan.store is None else str(plan.store)
+        raise c2d.BatchInterrupted(runs_of(interrupt.rows), kept) from None
     return rows
 
 
@@ -222,21 +227,6 @@ def _rank(count: int) -> int:
     return rank
 
 
-@contextmanager
-def _simulator(plan: Plan, cells: int) -> Iterator[_Simulator]:
-    threads = thread_count(plan.threads)
-    store = plan.store
-    try:
-        with (
-            Collector((), store=store, threads=threads) as collector,
-            reporter(plan.progress, cells, unit="cell") as report,
-        ):
-            yield _Simulator(collector, report, _draws(plan))
-    except RowsInterrupted as interrupt:
-        kept = "" if store is None else str(store)
-        raise c2d.BatchInterrupted(runs_of(interrupt.rows), kept) from None
-
-
 def _draws(plan: Plan) -> NDArray[np.float64]:
     """[m] Draw what is added to the approach, and the phase: shape (repeats, 2)."""
     outline = c2d.robots.engineer().outline
@@ -247,40 +237,32 @@ def _draws(plan: Plan) -> NDArray[np.float64]:
     )
 
 
-class _Simulator:
-    def __init__(self, collector: Collector, report: Reporter, draws: NDArray[np.float64]) -> None:
-        self.report = report
-        self._collector, self._draws = collector, draws
-
-    def highest(
-        self, case: Case, drivetrain: c2d.Drivetrain, guesses: Sequence[int], reach: int
-    ) -> list[int]:
-        """Return the highest edge that each draw clears, in units."""
-        whole = _core.Passed(_scenario(case, drivetrain).to_json(), None)
-        run_up = case.speed**2 / (2.0 * drivetrain.max_acceleration) + _STEADY
-        searches = [_search(guess, reach) for guess in guesses]
-        asked = {draw: next(search) for draw, search in enumerate(searches)}
-        found = [0] * len(guesses)
-        while asked:
-            drawn = self._draws[list(asked)] + (run_up, 0.0)
-            heights = _UNIT * np.array(list(asked.values()))
-            cleared = self._cleared(whole, np.column_stack([heights, drawn]))
-            answers = dict(zip(asked, cleared, strict=True))
-            asked = {}
-            for draw, answer in answers.items():
-                try:
-                    asked[draw] = searches[draw].send(answer)
-                except StopIteration as end:
-                    found[draw] = end.value
-        return found
-
-    def _cleared(self, whole: _core.Passed, rows: NDArray[np.float64]) -> list[bool]:
-        checked = whole.varied([(json_pointer(path), False) for path in _FIELDS], rows)
+def _highest(
+    collector: Collector,
+    scenario: c2d.Scenario,
+    searches: Sequence[Generator[int, bool, int]],
+    draws: NDArray[np.float64],
+) -> list[int]:
+    """Return the highest edge that each draw clears, in units."""
+    whole = _core.Passed(scenario.to_json(), None)
+    acceleration = scenario.robot.drivetrain.max_acceleration
+    run_up = scenario.drive.speed**2 / (2.0 * acceleration) + _STEADY
+    asked = {draw: next(search) for draw, search in enumerate(searches)}
+    highest = [0] * len(searches)
+    while asked:
+        drawn = draws[list(asked)] + (run_up, 0.0)
+        values = np.column_stack([_UNIT * np.array(list(asked.values())), drawn])
+        checked = whole.varied([(json_pointer(path), False) for path in _FIELDS], values)
         raise_first(checked)
-        batch = self._collector.batch(checked)
-        made = self._collector.rows(batch, lambda _more: None)
-        raise_first([row.error for row in made])
-        return [row.outcome == c2d.Outcome.CLEARED for row in made]
+        rows = collector.rows(collector.batch(checked), lambda _more: None)
+        raise_first([row.error for row in rows])
+        tried, asked = list(asked), {}
+        for draw, row in zip(tried, rows, strict=True):
+            try:
+                asked[draw] = searches[draw].send(row.outcome == c2d.Outcome.CLEARED)
+            except StopIteration as end:
+                highest[draw] = end.value
+    return highest
 
 
 def _search(guess: int, reach: int) -> Generator[int, bool, int]:
@@ -304,19 +286,15 @@ def _search(guess: int, reach: int) -> Generator[int, bool, int]:
 
 
 def _scenario(case: Case, drivetrain: c2d.Drivetrain) -> c2d.Scenario:
-    robot = c2d.robots.engineer(flippers=None, track=case.track)
+    ground: Terrain = c2d.terrains.step(0.05, friction=_FRICTION)
+    if case.obstacle != "step":
+        ground = c2d.terrains.knife_edge(0.05, thickness=_THICKNESS, friction=_FRICTION)
     return c2d.Scenario(
-        replace(robot, drivetrain=drivetrain),
-        _terrain(case.obstacle),
+        replace(c2d.robots.engineer(flippers=None, track=case.track), drivetrain=drivetrain),
+        ground,
         drive=c2d.Drive(speed=case.speed),
         duration=_STANDING + _TRAVEL / case.speed,
     )
-
-
-def _terrain(obstacle: str) -> Terrain:
-    if obstacle == "step":
-        return c2d.terrains.step(0.05, friction=_FRICTION)
-    return c2d.terrains.knife_edge(0.05, thickness=_THICKNESS, friction=_FRICTION)
 
 
 def highest_edges_text(rows: Sequence[HighestEdge]) -> str:

@@ -56,50 +56,35 @@ class StudyModel(NamedTuple):
     """The row of the paper's Table 3 with this kind of model; None if there is none."""
 
 
-def study_models(axle_distance: float) -> dict[str, StudyModel]:
-    """List the track models of the study by name.
-
-    Parameters
-    ----------
-    axle_distance : float
-        [m] Axle distance of the robot; in a line of four, wheels of a sixth of it touch.
-
-    Returns
-    -------
-    dict of str to StudyModel
-        The models, in the order of the tables.
+def study_models() -> dict[str, StudyModel]:
+    """List the track models of the study by name, in the order of the tables.
 
     Examples
     --------
-    >>> study_models(0.365)["line of 3"].source
+    >>> study_models()["line of 3"].source
     'Fig. 3'
     """
-    gear = c2d.GearWheel()
+    line, around, gear = c2d.LineOfWheels, c2d.CircumferentialWheels, c2d.GearWheel()
+    axle_distance = study_robot().outline.axle_distance
+    touching = axle_distance / 6.0  # the radius of wheels in a line of four
     end, low = 0.5 * axle_distance, -0.034
     small = [(x, low, 0.03) for x in (-0.07, 0.0, 0.07)]
     hybrid = ((-end, 0.0, 0.064), *small, (end, 0.0, 0.064))
-    touching, spaced = axle_distance / 6.0, 0.02
     return {
         "belt": StudyModel(c2d.BeltTrack(), "ours"),
         "belt with grousers": StudyModel(c2d.GrouserBeltTrack(), "ours"),
         "chain of 22 shoes": StudyModel(c2d.SegmentalTrack(shoe_count=22), "2.3, Figs. 9, 10"),
         "force on skids": StudyModel(c2d.ForceTrack(), "2.1"),
         "force on wheels": StudyModel(c2d.ForceTrack(support="wheels"), "2.1"),
-        "line of 3": StudyModel(c2d.LineOfWheels(3), "Fig. 3", LWA_ROUND),
-        "line of 4, touching": StudyModel(
-            c2d.LineOfWheels(4, wheel_radius=touching), "Fig. 2", LWA_ROUND
-        ),
-        "line of 5": StudyModel(c2d.LineOfWheels(5), "Fig. 1", LWA_ROUND),
-        "line of 9": StudyModel(c2d.LineOfWheels(9), "Fig. 1", LWA_ROUND),
-        "line of 3 gears": StudyModel(c2d.LineOfWheels(3, wheel=gear), "Figs. 11, 13", LWA_GEAR),
-        "line of 5 gears": StudyModel(c2d.LineOfWheels(5, wheel=gear), "Figs. 11, 13", LWA_GEAR),
-        "24 all round": StudyModel(c2d.CircumferentialWheels(24), "Figs. 5, 6", CWA_ROUND),
-        "24 gears all round": StudyModel(
-            c2d.CircumferentialWheels(24, wheel=gear), "Fig. 12", CWA_GEAR
-        ),
-        "16 all round, spaced": StudyModel(
-            c2d.CircumferentialWheels(16, wheel_radius=spaced), "Fig. 7", CWA_ROUND
-        ),
+        "line of 3": StudyModel(line(3), "Fig. 3", LWA_ROUND),
+        "line of 4, touching": StudyModel(line(4, wheel_radius=touching), "Fig. 2", LWA_ROUND),
+        "line of 5": StudyModel(line(5), "Fig. 1", LWA_ROUND),
+        "line of 9": StudyModel(line(9), "Fig. 1", LWA_ROUND),
+        "line of 3 gears": StudyModel(line(3, wheel=gear), "Figs. 11, 13", LWA_GEAR),
+        "line of 5 gears": StudyModel(line(5, wheel=gear), "Figs. 11, 13", LWA_GEAR),
+        "24 all round": StudyModel(around(24), "Figs. 5, 6", CWA_ROUND),
+        "24 gears all round": StudyModel(around(24, wheel=gear), "Fig. 12", CWA_GEAR),
+        "16 all round, spaced": StudyModel(around(16, wheel_radius=0.02), "Fig. 7", CWA_ROUND),
         "hybrid": StudyModel(c2d.HybridWheels(hybrid), "Fig. 8"),
         "hybrid gears": StudyModel(c2d.HybridWheels(hybrid, wheel=gear), "ours"),
     }
@@ -120,7 +105,7 @@ def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
 
     Examples
     --------
-    >>> gear_pairs(study_models(0.365))["line of 3 gears"]
+    >>> gear_pairs(study_models())["line of 3 gears"]
     'line of 3'
     """
     names = {model.track: name for name, model in models.items()}

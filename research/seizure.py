@@ -84,10 +84,6 @@ def _base() -> c2d.Scenario:
     return c2d.Scenario(study_robot(), _obstacle("step", 0.1), drive=c2d.Drive(speed=0.4))
 
 
-def _models() -> dict[str, StudyModel]:
-    return study_models(study_robot().outline.axle_distance)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweeps:
     """The simulations of the study; each method runs one sweep, with the same draws.
@@ -110,7 +106,7 @@ class Sweeps:
 
     design: Design = FULL
     base: c2d.Scenario = field(default_factory=_base)
-    models: Mapping[str, StudyModel] = field(default_factory=_models)
+    models: Mapping[str, StudyModel] = field(default_factory=study_models)
     seed: int = 0
     threads: int | None = None
     progress: bool = True

@@ -147,10 +147,7 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
             model=place["track"],
             height=place["height"],
             cleared=outcomes.count("cleared"),
-            count=own["count"].item(),
-            rate=own["rate"].item(),
-            low=own["low"].item(),
-            high=own["high"].item(),
+            **{name: own[name].item() for name in ("count", "rate", "low", "high")},
             poses=own["distinct"].item(),
             others=counts(each for each in outcomes if each != "cleared"),
         )
@@ -271,10 +268,7 @@ def posts(runs: Mapping[tuple[float, bool], c2d.Run]) -> list[Post]:
             outcome=str(run.outcome),
             mechanism=str(run.mechanism or ""),
             bodies=" ".join(map(str, run.events["bodies"][row])),
-            start=float(run.events["start"][row]),
-            end=float(run.events["end"][row]),
-            depth=float(run.events["depth"][row]),
-            force=float(run.events["force"][row]),
+            **{name: float(run.events[name][row]) for name in ("start", "end", "depth", "force")},
         )
         for (height, belly), run in runs.items()
         for row in np.flatnonzero(run.events["kind"] == "intrusion")
@@ -391,9 +385,11 @@ def posts_text(posts: Iterable[Post]) -> str:
 
 def paper_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
     """Write the paper's Tables 2 and 3, with our models below the rows of their kind."""
+    places = ("barrier", "step", "knife edge")
     success = [
         (row.obstacle, percent(row.cwa), percent(row.lwa), percent(row.gear)) for row in TABLE_2
     ]
+    head = ("model", *places, "RTF", "speed", "braking", "acceleration", "turning")
     rows: list[tuple[str, ...]] = []
     by_model = grouped(climbs, "model")
     for theirs in TABLE_3:
@@ -411,7 +407,7 @@ def paper_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str
         )
         for name in (name for name, model in models.items() if model.row == theirs.model):
             heights = {climb.obstacle: _highest(climb) for climb in by_model[name]}
-            own = (heights[place] for place in ("barrier", "step", "knife edge"))
+            own = (heights[place] for place in places)
             factor = _real_time_factor(by_model[name])
             rows.append((f"    ours: {name}", *own, factor, *("", "", "", "")))
     return "\n\n".join(
@@ -422,14 +418,7 @@ def paper_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str
             "the paper's 150 and 200 mm are those of a robot with flippers. A side view has no\n"
             "turning. Heights in mm, speed in m/s, braking in m, acceleration in m/s^2, turning\n"
             "in revolutions per minute.",
-            aligned_table(
-                (
-                    *("model", "barrier", "step", "knife edge"),
-                    *("RTF", "speed", "braking", "acceleration", "turning"),
-                ),
-                rows,
-                left=(1, 2, 3),
-            ),
+            aligned_table(head, rows, left=(1, 2, 3)),
         )
     )
 

@@ -31,7 +31,7 @@ CHAINS_FULL = replace(
 """Steps of 30 to 160 mm."""
 CHAINS_QUICK = replace(seizure.QUICK, heights={"step": (0.06, 0.10)}, repeats=4)
 _TRACKS = 4
-"""How many of `chain_models` are tracks."""
+"""How many models the left panel of the figure has."""
 
 _ACCURACIES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5)
 """[m] Of the solver."""
@@ -91,15 +91,10 @@ def chain_models() -> Mapping[str, StudyModel]:
     mapping of str to StudyModel
         Tracks first, then wheels.
     """
-    models = study_models(study_robot().outline.axle_distance)
     finer = StudyModel(c2d.SegmentalTrack(shoe_count=44), "ours")
-    return {
-        "belt with grousers": models["belt with grousers"],
-        "chain of 22 shoes": models["chain of 22 shoes"],
-        "chain of 44 shoes": finer,
-        "line of 3 gears": models["line of 3 gears"],
-        "24 gears all round": models["24 gears all round"],
-    }
+    known = study_models() | {"chain of 44 shoes": finer}
+    tracks = ("belt with grousers", "chain of 22 shoes", "chain of 44 shoes")
+    return {name: known[name] for name in (*tracks, "line of 3 gears", "24 gears all round")}
 
 
 def plot_chains(cells: Sequence[Cell]) -> Figure:
@@ -126,11 +121,8 @@ def plot_chains(cells: Sequence[Cell]) -> Figure:
 
 def chain_steps(
     heights: Sequence[float] = _CHAIN_HEIGHTS,
-    *,
-    repeats: int = 40,
-    seed: int = 0,
-    threads: int | None = None,
     accuracies: Sequence[float] = _ACCURACIES,
+    **sampling: Any,
 ) -> list[ChainStep]:
     """Run the Engineer's chain of 22 shoes on flat ground and steps, with the same draws.
 
@@ -138,10 +130,10 @@ def chain_steps(
     ----------
     heights : sequence of float
         [m] Heights of the steps.
-    repeats, seed, threads : int
-        See `sweep`.
     accuracies : sequence of float
         [m] Of the solver.
+    **sampling
+        Repeats, seed and threads; see `sweep`.
 
     Returns
     -------
@@ -151,17 +143,12 @@ def chain_steps(
     robot = study_robot(track=c2d.SegmentalTrack(shoe_count=22))
     drive = c2d.Drive(speed=0.4)
     base = c2d.Scenario(robot, c2d.terrains.step(heights[0], friction=FRICTION), drive=drive)
-    table = c2d.sweep(
-        base,
-        {"solver.accuracy": list(accuracies), "terrain.height": list(heights)},
-        repeats=repeats,
-        seed=seed,
-        wall_time=True,
-        threads=threads,
-    )
+    over: dict[Any, Any] = {"solver.accuracy": list(accuracies), "terrain.height": list(heights)}
+    table = c2d.sweep(base, over, wall_time=True, **sampling)
     level = c2d.Scenario(robot, c2d.terrains.flat(friction=FRICTION), drive=drive, duration=_FLAT)
     rides = c2d.simulate_many(
-        [level.replace({"solver.accuracy": accuracy}) for accuracy in accuracies], threads=threads
+        [level.replace({"solver.accuracy": accuracy}) for accuracy in accuracies],
+        threads=sampling.get("threads"),
     )
     rates = rates_of(table)
     rows = []
@@ -223,11 +210,8 @@ def flipper_robots() -> dict[str, c2d.Robot]:
 
 def highest_steps(
     heights: Sequence[float] = _FLIPPER_HEIGHTS,
-    *,
-    repeats: int = 6,
-    seed: int = 0,
-    threads: int | None = None,
     models: Mapping[str, StudyModel] | None = None,
+    **sampling: Any,
 ) -> list[HighestStep]:
     """Run every robot with every track model over steps, with the gait `Climb`.
 
@@ -235,10 +219,10 @@ def highest_steps(
     ----------
     heights : sequence of float
         [m] Heights of the steps, ascending.
-    repeats, seed, threads : int
-        See `sweep`.
     models : mapping of str to StudyModel, optional
         The models; by default those of the study that flippers can have.
+    **sampling
+        Repeats, seed and threads; see `sweep`.
 
     Returns
     -------
@@ -246,8 +230,7 @@ def highest_steps(
         One per robot and model.
     """
     if models is None:
-        known = study_models(study_robot().outline.axle_distance)
-        models = {name: model for name, model in known.items() if name not in _WITHOUT}
+        models = {name: model for name, model in study_models().items() if name not in _WITHOUT}
     over: dict[Any, Any] = {
         "robot.track": {name: model.track for name, model in models.items()},
         "terrain.height": list(heights),
@@ -256,9 +239,7 @@ def highest_steps(
     for name, robot in flipper_robots().items():
         drive = c2d.Drive(speed=0.4, gait=None if robot.flippers is None else c2d.Climb())
         base = c2d.Scenario(robot, c2d.terrains.step(heights[0], friction=FRICTION), drive=drive)
-        table = c2d.sweep(
-            base, over, repeats=repeats, seed=seed, threads=threads, on_error="record"
-        )
+        table = c2d.sweep(base, over, on_error="record", **sampling)
         often = rates_of(table)["rate"] >= 0.5
         for label, model in models.items():
             cleared = np.flatnonzero(often.sel(track=label).to_numpy()).tolist()
@@ -330,15 +311,8 @@ def _run_flippers(job: Job) -> None:
     job.report("flippers", highest_steps_text(steps))
 
 
-CHAINS = Study(
-    text="Chains of shoes on steps, compared with simpler models.",
-    run=_run_chains,
-)
-CHAIN_STEPS = Study(
-    text="How finely a chain of shoes must be stepped.",
-    run=_run_chain_steps,
-)
+CHAINS = Study(text="Chains of shoes on steps, compared with simpler models.", run=_run_chains)
+CHAIN_STEPS = Study(text="How finely a chain of shoes must be stepped.", run=_run_chain_steps)
 FLIPPERS = Study(
-    text="The highest step that the Engineer climbs with its flippers.",
-    run=_run_flippers,
+    text="The highest step that the Engineer climbs with its flippers.", run=_run_flippers
 )

@@ -259,7 +259,10 @@ def stops_text(stops: Iterable[Stops]) -> str:
             *(str(n) if n else "-" for n in (row.count, row.cleared)),
             *(str(getattr(row, name) or "-") for name in STOPS),
             f"{row.mechanism or 'none'}, {row.of_mechanism}" if row.stopped else "-",
-            *(_of_stops(getattr(row, name), row) for name in _PERCENTS),
+            *(
+                percent(getattr(row, name) / row.stopped) if row.stopped else "-"
+                for name in _PERCENTS
+            ),
             str(row.unnatural_passes or "-"),
             *("-" if math.isnan(d) else f"{1e3 * d:.1f}" for d in (row.depth, row.root_depth)),
         )
@@ -382,7 +385,3 @@ def _count(chosen: NDArray[np.bool_]) -> int:
 
 def _median(values: NDArray[np.float64]) -> float:
     return float(np.median(values)) if values.size else math.nan
-
-
-def _of_stops(count: int, row: Stops) -> str:
-    return percent(count / row.stopped) if row.stopped else "-"

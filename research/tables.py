@@ -14,9 +14,9 @@ from typing import Any, TypeVar
 _Row = TypeVar("_Row")
 
 
-def mm(length: float) -> str:
+def mm(length: float, digits: int = 0) -> str:
     """Write a length [m] in millimetres."""
-    return f"{1e3 * length:.0f}"
+    return f"{1e3 * length:.{digits}f}"
 
 
 def in_mm(heights: Iterable[float]) -> str:

@@ -179,10 +179,9 @@ def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
         been tried more often.
     """
     tried: dict[Setting, list[DriveCell]] = {}
-    for friction in drives.frictions:
-        for setting in drives.settings():
-            if setting.friction == friction:
-                tried[setting] = _cross(work, setting, drives.runs)
+    for settings in grouped(drives.settings(), "friction").values():
+        for setting in settings:
+            tried[setting] = _cross(work, setting, drives.runs)
         yield [cell for each in tried.values() for cell in each]
     for setting, rows in tried.items():
         if wanted := layouts_left(rows):
@@ -262,8 +261,8 @@ def cell_verdict(row: DriveCell, hits: int) -> str:
 def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
     """Say how many runs there are, how many drives are left, and which come nearest."""
     runs = []
-    for model, own in grouped(rows, "model").items():
-        least, most = min(row.count for row in own), max(row.count for row in own)
+    for model, cells_of in grouped(rows, "model").items():
+        least, most = min(row.count for row in cells_of), max(row.count for row in cells_of)
         runs.append(f"{least if least == most else f'{least} to {most}'} of {model}")
     drives = {(row.torque, row.inertia) for row in rows}
     frictions = ", ".join(f"{each:g}" for each in sorted({row.friction for row in rows}))
@@ -318,14 +317,9 @@ class _Grid:
     torques: tuple[float, ...]
     inertias: tuple[float, ...]
 
-    def x(self, torque: float) -> float:
-        return _place(torque, self.torques)
-
-    def y(self, inertia: float) -> float:
-        return _place(inertia, self.inertias)
-
-    def tile(self, drive: DriveCell | Verdict) -> tuple[float, float]:
-        return self.x(drive.torque), self.y(drive.inertia)
+    def tile(self, torque: float, inertia: float) -> tuple[float, float]:
+        """Return where a drive lies."""
+        return _place(torque, self.torques), _place(inertia, self.inertias)
 
     def prepare(self, ax: Axes, *, named: bool) -> None:
         """Set limits and ticks; without names where a neighbour has them."""
@@ -395,7 +389,7 @@ def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> 
             rate = row.cleared / row.count
             side = "below" if rate < hits / PAPER_RUNS else "above"
             color = _COLORS.get(cell_verdict(row, hits), _COLORS[side])
-            _tile(ax, grid.tile(row), color, f"{row.cleared}/{row.count}")
+            _tile(ax, grid.tile(row.torque, row.inertia), color, f"{row.cleared}/{row.count}")
 
 
 def _draw_verdicts(ax: Axes, verdicts: Sequence[Verdict], grid: _Grid) -> None:
@@ -405,15 +399,15 @@ def _draw_verdicts(ax: Axes, verdicts: Sequence[Verdict], grid: _Grid) -> None:
         color = GREEN if each.is_left else straight
         chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
         text = f"{each.differing} differ\np {chance}"
-        _tile(ax, grid.tile(each), color, text, above=_ABOVE)
+        _tile(ax, grid.tile(each.torque, each.inertia), color, text, above=_ABOVE)
     corners = zip(_REAL_TORQUES, real_inertias(), strict=True)
-    (left, low), (right, high) = ((grid.x(torque), grid.y(each)) for torque, each in corners)
+    (left, low), (right, high) = (grid.tile(*corner) for corner in corners)
     xs, ys = (left, right, right, left, left), (low, low, high, high, low)
     ax.plot(xs, ys, color=VIOLET, linewidth=2.0)
-    ax.plot(grid.x(PRESET.max_torque), grid.y(0.0), "o", **_POINT)
+    ax.plot(*grid.tile(PRESET.max_torque, 0.0), "o", **_POINT)
     # The motors of the three wheels that the model has on a side.
     public = PUBLIC.on(study_robot(track="public")).drivetrain
-    ax.plot(grid.x(public.max_torque), grid.y(0.0), "^", **_POINT)
+    ax.plot(*grid.tile(public.max_torque, 0.0), "^", **_POINT)
 
 
 def _tile(ax: Axes, place: tuple[float, float], color: str, text: str, above: float = 0.0) -> None:
@@ -440,13 +434,11 @@ def _explain(figure: Figure, verdicts: Sequence[Verdict]) -> None:
         fontsize=13,
     )
     patches, lines = extra("matplotlib.patches", "plot"), extra("matplotlib.lines", "plot")
-    words = {
-        "agrees": "cleared / runs: agrees with the paper",
-        "open": "open",
-        "below": "below the paper",
-        "above": "above it",
-    }
-    handles = [patches.Patch(color=_COLORS[key], label=text) for key, text in words.items()]
+    words = ("cleared / runs: agrees with the paper", "open", "below the paper", "above it")
+    handles = [
+        patches.Patch(color=color, label=text)
+        for color, text in zip(_COLORS.values(), words, strict=True)
+    ]
     handles += [
         lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
         lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),

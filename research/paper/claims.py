@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -34,7 +35,29 @@ _HEIGHT = 0.04
 """[m] Of the sharp edges: one that all these models clear on a wide step."""
 _PAIRS = {"line of 3": "line of 3 gears", "16 all round, spaced": "16 gears all round, spaced"}
 """The paper's two layouts, with round wheels and with gears."""
-_COMPARED = "real-time factors on level ground, no flippers, one thread of this machine"
+_SLOWER = "slower than"
+_COSTS = (
+    (
+        "3",
+        "gears solve the problem without sacrificing computational performance",
+        "as fast as",
+        [(gears, plain) for plain, gears in _PAIRS.items()],
+    ),
+    ("2.2", "more wheels in a line cost performance", _SLOWER, [("line of 9", "line of 3")]),
+    (
+        "2.2, 3",
+        "small wheels all round are slower than a line of large ones",
+        _SLOWER,
+        [("16 all round, spaced", "line of 3"), ("16 gears all round, spaced", "line of 3 gears")],
+    ),
+    (
+        "2.3",
+        "segmental tracks have a low computational efficiency",
+        _SLOWER,
+        [("chain of 22 shoes", "16 all round, spaced")],
+    ),
+)
+"""Claims on computing time: section, text, and how the first model of each pair compares."""
 
 
 class _Count(NamedTuple):
@@ -353,8 +376,8 @@ def geometry() -> Claim:
         (deep, mean), (other_deep, other_mean) = uneven[all_round], uneven[line]
         return Check(
             what=f"the wheels {all_round} are nearer to the track than the {line}",
-            found=f"{_mm(mean, 1)} off on average, {_mm(deep)} at most; {line}"
-            f" {_mm(other_mean, 1)}, {_mm(other_deep)}",
+            found=f"{mm(mean, 1)} mm off on average, {mm(deep)} mm at most; {line}"
+            f" {mm(other_mean, 1)} mm, {mm(other_deep)} mm",
             holds=mean < other_mean,
         )
 
@@ -409,67 +432,41 @@ def unevenness(robot: c2d.Robot) -> tuple[float, float]:
     return float(gaps.max()), float(gaps.mean())
 
 
-def _costs(work: Work) -> tuple[Claim, ...]:
+def _costs(work: Work) -> list[Claim]:
     """Compare real-time factors: gears and round wheels, all round and in a line, and a chain."""
-    models = models_of(
-        [*_PAIRS, *_PAIRS.values(), "line of 9", "chain of 22 shoes"], flippers=False
+    names = {name for *_, pairs in _COSTS for pair in pairs for name in pair}
+    models, base = (
+        models_of(sorted(names), flippers=False),
+        climb(c2d.terrains.flat(), flippers=False),
     )
-    base = climb(c2d.terrains.flat(), study_robot())
+    solvers = {
+        "default accuracy": base,
+        "steps of 1 ms": base.replace({"solver.time_step": _STEP}),
+    }
     factors = {
-        solver: measure_factors(work, scenario, models)["factor"].sel(motion="driving")
-        for solver, scenario in (
-            ("default accuracy", base),
-            ("steps of 1 ms", base.replace({"solver.time_step": _STEP})),
-        )
+        name: measure_factors(work, scenario, models)["factor"].sel(motion="driving")
+        for name, scenario in solvers.items()
     }
 
-    def compare(one: str, other: str, *, slower: bool) -> tuple[Check, ...]:
-        checks = []
-        for solver, by_model in factors.items():
-            ours, theirs = (by_model.sel(model=name).item() for name in (one, other))
-            checks.append(
-                Check(
-                    what=f"{one} is {'slower than' if slower else 'as fast as'} {other} ({solver})",
-                    found=f"{ours:.0f} and {theirs:.0f}",
-                    holds=(ours < _ALIKE * theirs) == slower,
-                )
-            )
-        return tuple(checks)
+    def compare(one: str, other: str, solver: str, relation: str) -> Check:
+        ours, theirs = (factors[solver].sel(model=name).item() for name in (one, other))
+        return Check(
+            what=f"{one} is {relation} {other} ({solver})",
+            found=f"{ours:.0f} and {theirs:.0f}",
+            holds=(ours < _ALIKE * theirs) == (relation == _SLOWER),
+        )
 
-    def slower(*pairs: tuple[str, str]) -> tuple[Check, ...]:
-        return tuple(check for pair in pairs for check in compare(*pair, slower=True))
-
-    as_fast = [compare(gears, plain, slower=False) for plain, gears in _PAIRS.items()]
-    return (
+    return [
         Claim(
-            section="3",
-            text="gears solve the problem without sacrificing computational performance",
-            experiment=_COMPARED,
-            # By solver, then by pair.
-            checks=tuple(check for checks in zip(*as_fast, strict=True) for check in checks),
-        ),
-        Claim(
-            section="2.2",
-            text="more wheels in a line cost performance",
-            experiment=_COMPARED,
-            checks=slower(("line of 9", "line of 3")),
-        ),
-        Claim(
-            section="2.2, 3",
-            text="small wheels all round are slower than a line of large ones",
-            experiment=_COMPARED,
-            checks=slower(
-                ("16 all round, spaced", "line of 3"),
-                ("16 gears all round, spaced", "line of 3 gears"),
+            section=section,
+            text=text,
+            experiment="real-time factors on level ground, no flippers, one thread of this machine",
+            checks=tuple(
+                compare(*pair, solver, relation) for pair, solver in product(pairs, solvers)
             ),
-        ),
-        Claim(
-            section="2.3",
-            text="segmental tracks have a low computational efficiency",
-            experiment=_COMPARED,
-            checks=slower(("chain of 22 shoes", "16 all round, spaced")),
-        ),
-    )
+        )
+        for section, text, relation, pairs in _COSTS
+    ]
 
 
 def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Claim]:
@@ -478,7 +475,7 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
     third = []
     for count in (3, 5):
         step, turned, half = (by_place[count, sixths] for sixths in (0, 2, 3))
-        swings = f"{_mm(step.swing, 2)} in step, {_mm(turned.swing, 2)} at a third"
+        swings = f"{mm(step.swing, 2)} mm in step, {mm(turned.swing, 2)} mm at a third"
         third += [
             Check(
                 what=f"{count} gears: a third at least halves the swing in height",
@@ -487,7 +484,7 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
             ),
             Check(
                 what=f"{count} gears: a third swings less than a half",
-                found=f"{_mm(turned.swing, 2)} at a third, {_mm(half.swing, 2)} at a half",
+                found=f"{mm(turned.swing, 2)} mm at a third, {mm(half.swing, 2)} mm at a half",
                 holds=turned.swing < half.swing,
             ),
         ]
@@ -614,7 +611,3 @@ def _count(runs: Found, model: str, ground: str, label: str = "") -> _Count:
     own = runs.sel(model=model, terrain=ground)
     cleared = int((own["outcome"].to_numpy() == "cleared").sum())
     return _Count(label or model, cleared, own["count"].item())
-
-
-def _mm(length: float, digits: int = 0) -> str:
-    return f"{1e3 * length:.{digits}f} mm"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -126,39 +126,23 @@ def _chosen(_work: Work, _pages: Pages) -> Sections:
     yield "chosen beforehand", table_2.chosen_text()
 
 
-def _paper_fields(work: Work, pages: Pages) -> Sections:
-    columns = set(table_2.COLUMNS.values()) - {GEAR_MODEL_OTHERWISE}
-    yield from _fields(work, pages, _names(work, columns))
-
-
-def _fields_read_otherwise(work: Work, pages: Pages) -> Sections:
-    yield from _fields(work, pages, _names(work, {GEAR_MODEL_OTHERWISE}))
-
-
-def _other_fields(work: Work, pages: Pages) -> Sections:
-    ours = _names(work, {""})
-    for slow in (False, True):
-        yield from _fields(work, pages, [name for name in ours if (name in _SLOWEST) == slow])
-
-
-def _names(work: Work, columns: set[str]) -> list[str]:
-    """Name the layouts for Table 2 that stand for some columns, "" for those that are ours."""
+def _fields(work: Work, pages: Pages, columns: Collection[str]) -> Sections:
+    """Make Table 2 with the layouts that stand for some columns, "" for those that are ours."""
     chosen = work.design.field_layouts or tuple(layouts())
-    return [name for name in chosen if table_2.COLUMNS.get(name, "") in columns]
-
-
-def _fields(work: Work, pages: Pages, names: Sequence[str]) -> Sections:
-    for setting_and_runs in table_2.cross_fields(work, names):
-        pages.fields.append(setting_and_runs)
-        rows = [row for setting, runs in pages.fields for row in table_2.cells(setting, runs)]
-        yield "all layouts", table_2.layouts_text(rows)
-        pairs = table_2.compare(rows)
-        pages.write_rows(table_2=rows, table_2_beside=pairs)
-        yield "table 2", table_2.table_2_text(pairs)
-        pages.draw(table_2=partial(table_2.plot_table_2, pairs))
+    names = [name for name in chosen if table_2.COLUMNS.get(name, "") in columns]
+    for slow in (False, True):
+        batch = [name for name in names if (name in _SLOWEST) == slow]
+        for setting_and_runs in table_2.cross_fields(work, batch):
+            pages.fields.append(setting_and_runs)
+            rows = [row for each in pages.fields for row in table_2.cells(*each)]
+            yield "all layouts", table_2.layouts_text(rows)
+            pairs = table_2.compare(rows)
+            pages.write_rows(table_2=rows, table_2_beside=pairs)
+            yield "table 2", table_2.table_2_text(pairs)
+            pages.draw(table_2=partial(table_2.plot_table_2, pairs))
     failed = table_2.failures(pages.fields, work.store)
     pages.write_rows(failures=failed)
-    yield "failures", table_2.failures_text(table_2.sum_failures(failed), table_2.COLUMNS)
+    yield "failures", table_2.failures_text(failed, table_2.COLUMNS)
 
 
 def _tables_1_and_3(work: Work, pages: Pages) -> Sections:
@@ -202,15 +186,16 @@ class _Part(NamedTuple):
     make: Callable[[Work, Pages], Sections]
 
 
+_COLUMNS = set(table_2.COLUMNS.values()) - {GEAR_MODEL_OTHERWISE}
 _PARTS = (
     _Part("what was chosen beforehand", "chosen", _chosen),
-    _Part("Table 2, the paper's layouts", "2", _paper_fields),
+    _Part("Table 2, the paper's layouts", "2", partial(_fields, columns=_COLUMNS)),
     _Part("eq. (1)", "eq1", _equation),
     _Part("Tables 1 and 3", "3", _tables_1_and_3),
     _Part("figures", "figures", _figures),
     _Part("claims", "claims", _claims),
-    _Part("Table 2, gears read otherwise", "2", _fields_read_otherwise),
-    _Part("Table 2, other layouts", "2", _other_fields),
+    _Part("Table 2, gears read otherwise", "2", partial(_fields, columns={GEAR_MODEL_OTHERWISE})),
+    _Part("Table 2, other layouts", "2", partial(_fields, columns={""})),
 )
 """What the paper itself has comes first: small gears all round take longest."""
 
@@ -248,8 +233,5 @@ def _run_paper(job: Job) -> None:
 
 
 PAPER = Study(
-    text=__doc__ or "",
-    run=_run_paper,
-    full="all of it; an hour or two",
-    add_options=_add_options,
+    text=__doc__ or "", run=_run_paper, full="all of it; an hour or two", add_options=_add_options
 )

@@ -15,17 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import crawler2d as c2d
 from crawler2d.parameters.track import Track
 from crawler2d.studies.campaign import RateSampling, Sampling
+from research import paper
 from research.models import study_models, study_robot
-from research.paper import (
-    CWA_GEAR,
-    CWA_ROUND,
-    GEAR_MODEL,
-    GEAR_MODEL_OTHERWISE,
-    LWA_GEAR,
-    LWA_ROUND,
-    REAL_ROBOT,
-    TABLE_1,
-)
 
 if TYPE_CHECKING:
     from crawler2d.parameters.terrain import Terrain
@@ -106,17 +97,14 @@ class Work:
     @property
     def sampling(self) -> Sampling:
         """The keywords of a study that measures."""
-        return {
-            "seed": self.seed,
-            "threads": self.threads,
-            "store": self.store,
-            "progress": self.progress,
-        }
+        return Sampling(
+            seed=self.seed, threads=self.threads, store=self.store, progress=self.progress
+        )
 
     def sampling_of(self, repeats: int) -> RateSampling:
         """Return the keywords of a study of rates whose cells all have the same number of runs."""
         until = c2d.Until(width=_NO_WIDTH, least=repeats, most=repeats)
-        return {**self.sampling, "until": until}
+        return RateSampling(**self.sampling, until=until)
 
     def count(self, found: Found) -> Found:
         """Count what a study has tried, and return it; what two studies share counts twice."""
@@ -215,27 +203,31 @@ class Reading(NamedTuple):
 
 READINGS = (
     Reading(
-        CWA_ROUND, "16 all round, spaced", "section 3 starts from Fig. 7: small wheels, spaced"
+        paper.CWA_ROUND,
+        "16 all round, spaced",
+        "section 3 starts from Fig. 7: small wheels, spaced",
     ),
     Reading(
-        LWA_ROUND,
+        paper.LWA_ROUND,
         "line of 3",
         "Fig. 3 is by the same team, and eq. (1) turns the wheels by thirds",
     ),
     Reading(
-        CWA_GEAR,
+        paper.CWA_GEAR,
         _SPACED_GEARS,
         "section 3 replaces the wheels of Fig. 7 by gears of the same size (Fig. 12)",
     ),
-    Reading(LWA_GEAR, "line of 3 gears", "the line of large wheels, with gears instead (Fig. 13)"),
-    Reading(GEAR_MODEL, "line of 3 gears", "the model that the paper ends up with (Fig. 13)"),
     Reading(
-        GEAR_MODEL_OTHERWISE,
+        paper.LWA_GEAR, "line of 3 gears", "the line of large wheels, with gears instead (Fig. 13)"
+    ),
+    Reading(paper.GEAR_MODEL, "line of 3 gears", "the model that the paper ends up with (Fig. 13)"),
+    Reading(
+        paper.GEAR_MODEL_OTHERWISE,
         _SPACED_GEARS,
         "Figs. 15 to 17, of these fields, show small gears all round",
     ),
     Reading(
-        REAL_ROBOT,
+        paper.REAL_ROBOT,
         "belt with grousers",
         "our choice: it has the outline and the grousers of the robot",
     ),
@@ -255,7 +247,7 @@ def layouts() -> dict[str, Layout]:
     >>> layouts()["16 all round, spaced"].source
     'Fig. 7'
     """
-    models = study_models(study_robot().outline.axle_distance)
+    models = study_models()
     four, gears = c2d.LineOfWheels(4), c2d.LineOfWheels(4, wheel=c2d.GearWheel())
     arms = {"line of 4, touching": four, "hybrid": four, "hybrid gears": gears}
     known = {
@@ -274,7 +266,7 @@ def models_of(
     return {name: {"robot": setting.on(known[name].on(robot))} for name in names}
 
 
-def climb(ground: Terrain, robot: c2d.Robot | None = None) -> c2d.Scenario:
-    """Drive a robot, by default that with flippers, with the gait `Climb` at the paper's speed."""
-    drive = c2d.Drive(speed=TABLE_1.max_speed, gait=c2d.Climb())
-    return c2d.Scenario(robot or study_robot(flippers=True), ground, drive=drive)
+def climb(ground: Terrain, setting: Setting = PRESET, *, flippers: bool = True) -> c2d.Scenario:
+    """Drive the robot with the motors of a setting, the gait `Climb` and the paper's speed."""
+    drive = c2d.Drive(speed=paper.TABLE_1.max_speed, gait=c2d.Climb())
+    return c2d.Scenario(setting.on(study_robot(flippers=flippers)), ground, drive=drive)

@@ -149,11 +149,7 @@ def phases(work: Work) -> list[Phase]:
     robot = study_robot(flippers=True)
     runs = _runs([robot.with_track(track) for track in _PHASED.values()], work)
     return [
-        Phase(
-            model=model,
-            count=len(gears),
-            off=max(off_formula(*gear) for gear in gears),
-        )
+        Phase(model=model, count=len(gears), off=max(off_formula(*gear) for gear in gears))
         for model, run in zip(_PHASED, runs, strict=True)
         for gears in [gear_angles(run)]
     ]

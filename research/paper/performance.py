@@ -14,9 +14,8 @@ from research.paper.design import PRESET, READINGS, SETTINGS, climb, models_of
 from research.tables import gaps, grouped, markdown_table, mm, percent
 
 if TYPE_CHECKING:
-    from crawler2d.parameters.terrain import Terrain
     from crawler2d.sweeps.found import Found
-    from research.paper.design import Setting, Work
+    from research.paper.design import Work
 
 
 _PAPER = {row.model: row for row in TABLE_3}
@@ -111,36 +110,29 @@ class Computing:
 def driving(work: Work) -> list[Driving]:
     """Measure speed, braking and acceleration of every row of Table 3."""
     print("Table 3, driving", flush=True)
-    base = _scenario(PRESET, c2d.terrains.flat(friction=PRESET.friction))
-    command = TABLE_1.max_speed
+    base = climb(c2d.terrains.flat(friction=PRESET.friction))
     options: Any = {
         "models": models_of(ROWS.values()),
         "repeats": work.design.driving_repeats,
         **work.sampling,
     }
-    full = work.count(c2d.studies.max_speed(base, **options))
-    slow = work.count(c2d.studies.max_speed(base, speed=command, **options))
-    up = work.count(c2d.studies.acceleration(base, speed=command, **options))
-    down = work.count(c2d.studies.braking_distance(base, speed=command, **options))
-
-    def of(runs: Found, name: str, model: str) -> Any:
-        return runs[name].sel(model=model).item()
-
-    return [
-        Driving(
-            row=row,
-            model=model,
-            full_speed=of(full, "speed", model),
-            full_speed_limit=of(full, "limit", model),
-            speed=of(slow, "speed", model),
-            speed_limit=of(slow, "limit", model),
-            braking=of(down, "braking_distance", model),
-            braking_limit=of(down, "limit", model),
-            acceleration=of(up, "acceleration", model),
-            acceleration_limit=of(up, "limit", model),
-        )
-        for row, model in ROWS.items()
-    ]
+    command: Any = {"speed": TABLE_1.max_speed, **options}
+    studies = {
+        "full_speed": ("speed", c2d.studies.max_speed(base, **options)),
+        "speed": ("speed", c2d.studies.max_speed(base, **command)),
+        "acceleration": ("acceleration", c2d.studies.acceleration(base, **command)),
+        "braking": ("braking_distance", c2d.studies.braking_distance(base, **command)),
+    }
+    rows = []
+    for row, model in ROWS.items():
+        values: dict[str, Any] = {}
+        for name, (variable, runs) in studies.items():
+            own = runs.sel(model=model)
+            values |= {name: own[variable].item(), f"{name}_limit": own["limit"].item()}
+        rows.append(Driving(row=row, model=model, **values))
+    for _, runs in studies.values():
+        work.count(runs)
+    return rows
 
 
 def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, Found]]:
@@ -149,9 +141,8 @@ def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, Found]]:
     rows, tables = [], {}
     for setting in SETTINGS:
         print(f"Table 3, highest obstacle, {setting.name}", flush=True)
-        base = _scenario(
-            setting, c2d.terrains.barrier(heights[0], _THICKNESS, friction=setting.friction)
-        )
+        block = c2d.terrains.barrier(heights[0], _THICKNESS, friction=setting.friction)
+        base = climb(block, setting)
         models, options = models_of(ROWS.values(), setting), work.sampling_of(repeats)
         runs = work.count(c2d.studies.max_obstacle(base, models=models, heights=heights, **options))
         tables[setting.name] = runs
@@ -211,27 +202,25 @@ def computing(work: Work) -> list[Computing]:
     print("Table 3, real-time factor", flush=True)
     models = models_of(ROWS.values())
     level, rough = (
-        measure_factors(work, _scenario(PRESET, ground), models)
+        measure_factors(work, climb(ground), models)
         for ground in (
             c2d.terrains.flat(friction=PRESET.friction),
             c2d.terrains.random_stepfield(friction=PRESET.friction),
         )
     )
-    rows = []
-    for row, model in ROWS.items():
-        own, there = level["factor"].sel(model=model), rough.sel(model=model, motion="driving")
-        rows.append(
-            Computing(
-                row=row,
-                model=model,
-                paper=_PAPER[row].real_time_factor,
-                standing=own.sel(motion="standing").item(),
-                driving=own.sel(motion="driving").item(),
-                in_field=there["factor"].item(),
-                moved=there["moved"].item(),
-            )
+    factor, field = level["factor"], rough.sel(motion="driving")
+    return [
+        Computing(
+            row=row,
+            model=model,
+            paper=_PAPER[row].real_time_factor,
+            standing=factor.sel(model=model, motion="standing").item(),
+            driving=factor.sel(model=model, motion="driving").item(),
+            in_field=field["factor"].sel(model=model).item(),
+            moved=field["moved"].sel(model=model).item(),
         )
-    return rows
+        for row, model in ROWS.items()
+    ]
 
 
 def measure_factors(work: Work, base: c2d.Scenario, models: Any) -> Found:
@@ -245,14 +234,9 @@ def measure_factors(work: Work, base: c2d.Scenario, models: Any) -> Found:
     )
 
 
-def _scenario(setting: Setting, ground: Terrain) -> c2d.Scenario:
-    return climb(ground, setting.on(study_robot(flippers=True)))
-
-
 def table_1_text(slopes: Sequence[Slope], rows: Sequence[Driving]) -> str:
     """Compare the paper's Table 1 with ours."""
-    robot = TABLE_1
-    stand_in = next(row for row in rows if row.row == REAL_ROBOT)
+    robot, stand_in = TABLE_1, next(row for row in rows if row.row == REAL_ROBOT)
     figures = [
         (
             "max. speed [m/s]",

@@ -109,25 +109,6 @@ class Failure:
     """Of its scenario, by which the store finds it."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Failures:
-    """The failures of one layout in one field."""
-
-    setting: str
-    obstacle: str
-    model: str
-    count: int
-    has_barrier: bool
-    before: int
-    """How many are before the barrier."""
-    outcomes: str
-    """With their numbers, the commonest first."""
-    mechanisms: str
-    """Of the stops, with their numbers."""
-    in_flippers: int
-    """How many are held by the track of a flipper."""
-
-
 def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Found]]:
     """Drive some layouts over the fields, in one setting after the other.
 
@@ -270,24 +251,6 @@ def failures(tables: Iterable[tuple[Setting, Found]], store: Path) -> list[Failu
     return [_failure(rows[identity], *place) for identity, place in failed.items()]
 
 
-def sum_failures(rows: Sequence[Failure]) -> list[Failures]:
-    """Sum failures up, one row per setting, field and layout, in the order of their appearance."""
-    return [
-        Failures(
-            setting=setting,
-            obstacle=obstacle,
-            model=model,
-            count=len(own),
-            has_barrier=any(each.place for each in own),
-            before=sum(each.place == "before" for each in own),
-            outcomes=_endings(each.outcome for each in own),
-            mechanisms=_endings(each.mechanism for each in own if each.mechanism),
-            in_flippers=sum(each.carrier.endswith("flipper") for each in own),
-        )
-        for (setting, obstacle, model), own in grouped(rows, "setting", "obstacle", "model").items()
-    ]
-
-
 def chosen_text() -> str:
     """List what was chosen before any run: layouts for rows, and settings."""
     settings = [
@@ -346,31 +309,28 @@ def layouts_text(rows: Sequence[FieldCell]) -> str:
     return f"{note}\n\n{markdown_table(('layout', 'from', *settings), table)}"
 
 
-def failures_text(rows: Sequence[Failures], models: Collection[str]) -> str:
+def failures_text(failed: Sequence[Failure], models: Collection[str]) -> str:
     """Say where and why runs failed: a sum for every setting, and rows for some layouts."""
     sums, table = [], []
-    for setting, own in grouped(rows, "setting").items():
-        before, count = (
-            sum(getattr(row, name) for row in own if row.has_barrier)
-            for name in ("before", "count")
-        )
+    for setting, runs in grouped(failed, "setting").items():
+        with_barrier = [run for run in runs if run.place]
         sums.append(
-            f"- {setting}: {sum(row.count for row in own)} runs of all layouts failed; of the"
-            f" {count} with a barrier, {before} ended before it."
+            f"- {setting}: {len(runs)} runs of all layouts failed; of the {len(with_barrier)} with"
+            f" a barrier, {_before(with_barrier)} ended before it."
         )
         table += [
             (
                 setting,
-                row.obstacle,
-                row.model,
-                str(row.count),
-                str(row.before) if row.has_barrier else "-",
-                row.outcomes,
-                row.mechanisms or "-",
-                str(row.in_flippers or "-"),
+                obstacle,
+                model,
+                str(len(own)),
+                str(_before(own)) if own[0].place else "-",
+                _endings(run.outcome for run in own),
+                _endings(run.mechanism for run in own if run.mechanism) or "-",
+                str(sum(run.carrier.endswith("flipper") for run in own) or "-"),
             )
-            for row in own
-            if row.model in models
+            for (obstacle, model), own in grouped(runs, "obstacle", "model").items()
+            if model in models
         ]
     head = (
         *("setting", "field", "layout", "failures", "before the barrier"),
@@ -441,6 +401,10 @@ def _failure(row: Row, setting: Setting, model: str, obstacle: str, repeat: int)
         sentence="" if why is None else str(why),
         identity=row.identity,
     )
+
+
+def _before(runs: Iterable[Failure]) -> int:
+    return sum(run.place == "before" for run in runs)
 
 
 def _endings(names: Iterable[str]) -> str:
