@@ -36,7 +36,7 @@ def study(repeats: int, path: Path) -> None:
     for obstacle, heights in list(FULL.heights.items())[len(results.data) :]:
         base = _on(robot, obstacle, heights[0])
         over = {
-            "robot.track": _tracks(robot.outline.axle_distance),
+            "robot.track": _tracks(),
             "terrain.height": list(heights),
             "solver.engine": _ENGINES,
         }
@@ -62,18 +62,18 @@ def _on(robot: c2d.Robot, obstacle: str, height: float) -> Scenario:
 
 def _ground(obstacle: str, height: float) -> Any:
     if obstacle == "step":
-        return c2d.terrains.step(height, friction=_FRICTION)
-    return c2d.terrains.barrier(height, _THICKNESS[obstacle], friction=_FRICTION)
+        return c2d.terrains.step(height, friction=FRICTION)
+    return c2d.terrains.barrier(height, _THICKNESS[obstacle], friction=FRICTION)
 
 
-def _tracks(axle_distance: float) -> dict[str, Track]:
+def _tracks() -> dict[str, Track]:
     """List the models that rapier holds on one motor for all wheels, as the study has them."""
-    robot = c2d.robots.engineer(flippers=None).without_rotors()
+    robot = study_robot()
     in_rapier = c2d.Scenario(
         robot, c2d.terrains.step(0.05), solver=c2d.Solver(engine="rapier")
     ).replace
     held = {}
-    for name, model in study_models(axle_distance).items():
+    for name, model in study_models().items():
         try:
             in_rapier({"robot.track": model.track}).validate()
         except c2d.ScenarioError:

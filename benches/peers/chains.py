@@ -514,7 +514,7 @@ def _blocks(engine: str, place: Place, setting: Setting) -> float:
 
 def _own_blocks(track: Track, terrain: Terrain) -> float:
     """[s] The same for the Engineer."""
-    robot = c2d.robots.engineer(flippers=None, track=track).without_rotors()
+    robot = study_robot(track=track)
     drivetrain = replace(robot.drivetrain, max_acceleration=2.0, max_torque=20.0)
     built = replace(robot, drivetrain=drivetrain)
     return _of_simulation(Scenario(built, terrain, drive=c2d.Drive(speed=SPEED)))

@@ -12,6 +12,7 @@ import crawler2d as c2d
 from crawler2d import Scenario
 from crawler2d.parameters.terrain import Lane
 from crawler2d.parameters.track import Track, Wheel
+from research.models import study_robot
 
 WHEELS = (3, 6, 12, 24, 48, 96)
 GROUSERS = (6, 12, 24, 48)
@@ -173,5 +174,5 @@ def _over(track: Track, panel: str) -> Scenario:
 
 
 def _on(track: Track, terrain: Lane, duration: float = _SHORT) -> Scenario:
-    robot = c2d.robots.engineer(flippers=None, track=track).without_rotors()
+    robot = study_robot(track=track)
     return Scenario(robot, terrain, duration=duration)

@@ -97,7 +97,7 @@ def test_the_page_has_the_table_of_the_results() -> None:
 
 
 def test_rapier_holds_rows_gears_and_wheels_all_round_of_the_study() -> None:
-    held = study._tracks(0.365)
+    held = study._tracks()
     assert {"line of 3", "line of 5 gears", "24 all round", "24 gears all round"} <= set(held)
     assert "belt" not in held
 

@@ -50,7 +50,7 @@ from crawler2d.parameters.terrain import (
     Step,
     Terrain,
 )
-from research.markdown import spliced
+from research.tables import spliced
 
 CELL = Cell(
     group="plane",

@@ -4,13 +4,18 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.sweeps.statistics import newcombe
-from research.markdown import markdown_table, spliced
-from research.paper import published
-from research.paper.agreement import PAPER_RUNS, agreement
-from research.paper.claim import Check, Claim, clears, fewer
-from research.paper.fields import BESIDE_TABLE_2, FieldCell, beside
-from research.paper.fields_report import table_2_text
-from research.paper.layouts import GEAR_MODEL, GEAR_MODEL_OTHERWISE
+from research.paper import (
+    CWA_ROUND,
+    GEAR_MODEL,
+    GEAR_MODEL_OTHERWISE,
+    LWA_ROUND,
+    PAPER_RUNS,
+    TABLE_2,
+    agreement,
+)
+from research.paper.claims import Check, Claim, check_clears, check_fewer
+from research.paper.table_2 import COLUMNS, FieldCell, compare, table_2_text
+from research.tables import markdown_table, spliced
 
 
 @pytest.mark.parametrize(
@@ -45,7 +50,7 @@ def cell(model: str, cleared: int) -> FieldCell:
         setting="preset",
         obstacle="horizontal barrier",
         model=model,
-        column=BESIDE_TABLE_2.get(model, ""),
+        column=COLUMNS.get(model, ""),
         cleared=cleared,
         count=100,
         rate=rate,
@@ -57,17 +62,17 @@ def cell(model: str, cleared: int) -> FieldCell:
 
 
 def test_each_column_of_table_2_stands_beside_its_layout() -> None:
-    row = next(row for row in published.TABLE_2 if row.obstacle == "horizontal barrier")
-    found = beside([cell(model, 10) for model in (*BESIDE_TABLE_2, "belt")])
+    row = next(row for row in TABLE_2 if row.obstacle == "horizontal barrier")
+    found = compare([cell(model, 10) for model in (*COLUMNS, "belt")])
     papers = {each.column: each.paper for each in found}
     assert papers == {
-        published.CWA_ROUND: row.cwa,
-        published.LWA_ROUND: row.lwa,
+        CWA_ROUND: row.cwa,
+        LWA_ROUND: row.lwa,
         GEAR_MODEL: row.gear,
         GEAR_MODEL_OTHERWISE: row.gear,
     }
     verdicts = {each.column: each.verdict for each in found}
-    assert verdicts[published.LWA_ROUND] == "agrees"
+    assert verdicts[LWA_ROUND] == "agrees"
     assert verdicts[GEAR_MODEL] == "differs"
     text = table_2_text(found)
     assert "| 10 | 10 of 100; +0 (-21 to +10): **agrees** |" in text
@@ -75,10 +80,10 @@ def test_each_column_of_table_2_stands_beside_its_layout() -> None:
 
 
 def test_a_claim_holds_in_part_if_some_of_its_checks_do() -> None:
-    gears = clears("gears clear", [("three", 18, 20), ("five", 20, 20)])
-    knife = clears("gears clear a knife", [("five", 17, 20)])
+    gears = check_clears("gears clear", [("three", 18, 20), ("five", 20, 20)])
+    knife = check_clears("gears clear a knife", [("five", 17, 20)])
     assert (gears.holds, knife.holds) == (True, False)
-    assert clears("stays", [("three", 2, 20)], never=True).holds
+    assert check_clears("stays", [("three", 2, 20)], never=True).holds
     assert Claim(section="3", text="", experiment="", checks=(gears, knife)).verdict == (
         "holds in part"
     )
@@ -86,7 +91,7 @@ def test_a_claim_holds_in_part_if_some_of_its_checks_do() -> None:
 
 def test_few_runs_do_not_show_that_heavy_robots_stick_more() -> None:
     def check(heavy: int, light: int, count: int) -> Check:
-        return fewer("sticks more", ("heavy", heavy, count), ("light", light, count))
+        return check_fewer("sticks more", ("heavy", heavy, count), ("light", light, count))
 
     assert check(1, 2, 5).holds is None
     assert check(20, 40, 100).holds is True

@@ -8,11 +8,10 @@ import pytest
 
 import crawler2d as c2d
 from research.__main__ import main
-from research.paper import chart, drives
-from research.paper.drives_plot import real_inertias
-from research.paper.fields import BESIDE_TABLE_2
-from research.paper.joint import TABLES, DriveCell
-from research.paper.settings import PRESET
+from research.paper import chart
+from research.paper.chart import TABLES, DriveCell, Drives, real_inertias
+from research.paper.design import PRESET
+from research.paper.table_2 import COLUMNS
 
 # Too weak to come as far as a field: that ends soon, and the paper's table excludes it.
 TINY = (
@@ -34,7 +33,7 @@ def test_chart_tables_and_page_come_out(tmp_path: Path, capsys: pytest.CaptureFi
     found = rows(tmp_path / "paper_drives.csv")
     assert len(found) == 2 * 4 * 3  # drives, layouts, fields
     counts = {row["model"]: row["count"] for row in found}
-    assert counts == dict(zip(BESIDE_TABLE_2, "3321", strict=True))
+    assert counts == dict(zip(COLUMNS, "3321", strict=True))
     assert {row["cleared"] for row in found} == {"0"}
     joint = rows(tmp_path / "paper_drives_joint.csv")
     assert {row["reading"] for row in joint} == {"large gears", "small gears"}
@@ -52,7 +51,7 @@ def test_drives_that_are_left_are_tried_more_often(
     def first_reading(rows: Sequence[DriveCell]) -> set[str]:
         return {model for _, model in TABLES["large gears"]} if rows[0].torque == 0.1 else set()
 
-    monkeypatch.setattr(drives, "layouts_left", first_reading)
+    monkeypatch.setattr(chart, "layouts_left", first_reading)
     assert main(["chart", "--out", str(tmp_path), *TINY, "--most", "3"]) == 0
     counts = {(row["torque"], row["count"]) for row in rows(tmp_path / "paper_drives.csv")}
     assert counts == {*(("0.05", each) for each in "321"), *(("0.1", each) for each in "31")}
@@ -71,7 +70,7 @@ def test_ctrl_c_ends_it_with_its_own_exit_code(
 
 def test_a_drive_has_the_rotor_that_is_asked_for_or_the_robots() -> None:
     robot = c2d.robots.engineer()
-    (setting,) = drives.Drives(
+    (setting,) = Drives(
         torques=(8.0,), inertias=(0.1,), frictions=(0.5,), runs=(1, 1, 1, 1), most=1
     ).settings()
     driven = setting.on(robot).drivetrain

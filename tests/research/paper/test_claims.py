@@ -7,13 +7,17 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from research.paper.claims import claims
-from research.paper.claims_ground import force_is_flat, gears_end_seizure
-from research.paper.claims_models import geometry, shaking_of_gears, unevenness
-from research.paper.design import QUICK, Work
-from research.paper.layouts import layouts
-from research.paper.phases import gear_angles, off_formula, phases, shaking
-from research.paper.report import claims_text, equation_text
+from research.paper.claims import (
+    claims,
+    claims_text,
+    force_is_flat,
+    gears_end_seizure,
+    geometry,
+    shaking_of_gears,
+    unevenness,
+)
+from research.paper.design import QUICK, Work, layouts
+from research.paper.figures import equation_text, gear_angles, off_formula, phases, shaking
 
 
 def work(folder: Path) -> Work:

@@ -9,8 +9,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.sweeps.store import Store
+from research import paper
 from research.__main__ import main
-from research.paper import command, parts, performance, published
+from research.paper import command, performance, table_2
 from research.paper.design import FULL, QUICK
 from research.paper.figures import DRAWN
 
@@ -30,11 +31,10 @@ TINY = replace(
 def _tiny(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a quick run be a tiny one, with the two layouts that are simulated fastest."""
     monkeypatch.setattr(command, "QUICK", TINY)
-    monkeypatch.setattr(parts, "QUICK", TINY)
-    whole = performance.BESIDE_TABLE_3
-    fast = {row: whole[row] for row in (published.CWA_ROUND, published.LWA_ROUND)}
-    fast[published.REAL_ROBOT] = "belt"
-    monkeypatch.setattr(performance, "BESIDE_TABLE_3", fast)
+    whole = performance.ROWS
+    fast = {row: whole[row] for row in (paper.CWA_ROUND, paper.LWA_ROUND)}
+    fast[paper.REAL_ROBOT] = "belt"
+    monkeypatch.setattr(performance, "ROWS", fast)
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -101,7 +101,7 @@ def test_ctrl_c_ends_it_with_its_own_exit_code(
     def interrupted(*_: object) -> object:
         raise c2d.BatchInterrupted([])
 
-    monkeypatch.setattr(parts, "cross_fields", interrupted)
+    monkeypatch.setattr(table_2, "cross_fields", interrupted)
     assert main(["paper", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
     # What had been made before is there.
@@ -122,6 +122,4 @@ def test_the_full_design_repeats_more_than_the_paper() -> None:
     assert FULL.field_repeats == 100
     assert FULL.field_layouts == ()
     for design in (FULL, QUICK, TINY):
-        assert {published.TABLE_1.max_slope, published.TABLE_1.declared_max_slope} <= set(
-            design.angles
-        )
+        assert {paper.TABLE_1.max_slope, paper.TABLE_1.declared_max_slope} <= set(design.angles)

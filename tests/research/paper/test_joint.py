@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from research.paper.agreement import PAPER_RUNS
-from research.paper.joint import TABLES, DriveCell, Judged, Table, judged, verdict
+from research.paper import PAPER_RUNS
+from research.paper.chart import TABLES, DriveCell, Table, Verdict, cell_verdict, compare_drive
 
 stats = pytest.importorskip("scipy.stats")
 
@@ -42,9 +42,9 @@ def driven(rng: np.random.Generator, torque: float, inertia: float, count: int) 
     ]
 
 
-def judge(rng: np.random.Generator, table: Table, count: int) -> dict[tuple[float, float], Judged]:
+def judge(rng: np.random.Generator, table: Table, count: int) -> dict[tuple[float, float], Verdict]:
     return {
-        (torque, inertia): judged(driven(rng, torque, inertia, count), table)
+        (torque, inertia): compare_drive(driven(rng, torque, inertia, count), table)
         for torque in TORQUES
         for inertia in INERTIAS
     }
@@ -81,8 +81,8 @@ def test_few_runs_of_ours_exclude_little() -> None:
         DriveCell(torque=1.0, inertia=0.0, friction=0.5, obstacle=o, model=m, cleared=0, count=1)
         for o, m in CELLS
     ]
-    few = judged(rows, table)
-    many = judged([replace(row, count=20) for row in rows], table)
+    few = compare_drive(rows, table)
+    many = compare_drive([replace(row, count=20) for row in rows], table)
     assert few.probability > 100.0 * many.probability
     assert many.differing == len(CELLS)
 
@@ -93,7 +93,7 @@ def test_the_deviance_is_of_beta_binomial_chances() -> None:
         DriveCell(torque=1.0, inertia=0.0, friction=0.5, obstacle=o, model=m, cleared=k, count=n)
         for (o, m), k, n in ((cell, 3, 7), (other, 5, 5))
     ]
-    found = judged(rows, table, "two cells")
+    found = compare_drive(rows, table, "two cells")
     chances = stats.betabinom.logpmf([8, 20], 20, [3.5, 5.5], [4.5, 0.5])
     best = stats.binom.logpmf([8, 20], 20, [0.4, 1.0])
     assert found.deviance == pytest.approx(2.0 * float((best - chances).sum()), rel=1e-9)
@@ -109,18 +109,18 @@ def test_the_probability_is_that_of_the_tables_that_the_drive_gives() -> None:
     exact = float(chances[deviances >= deviances[14] - 1e-9].sum())
     # Of 20,000 draws; four standard errors.
     within = 4.0 * math.sqrt(exact * (1.0 - exact) / 20_000)
-    assert judged([row], table).probability == pytest.approx(exact, abs=within)
+    assert compare_drive([row], table).probability == pytest.approx(exact, abs=within)
 
 
 def test_each_reading_has_nine_cells_of_the_paper() -> None:
     for table in TABLES.values():
         assert sorted(table.values()) == [0, 0, 0, 0, 2, 3, 8, 20, 20]
     row = driven(np.random.default_rng(0), 1000.0, 1.0, 20)[0]
-    assert verdict(replace(row, cleared=20), 20) == "agrees"
-    assert verdict(replace(row, cleared=0), 20) == "differs"
+    assert cell_verdict(replace(row, cleared=20), 20) == "agrees"
+    assert cell_verdict(replace(row, cleared=0), 20) == "differs"
 
 
 def test_a_cell_without_runs_is_told() -> None:
     rows = driven(np.random.default_rng(0), 10.0, 0.1, 5)[1:]
     with pytest.raises(ValueError, match="no runs of"):
-        judged(rows, TABLES["large gears"])
+        compare_drive(rows, TABLES["large gears"])

@@ -5,11 +5,10 @@ import warnings
 import pytest
 
 import crawler2d as c2d
-from research.paper import published
-from research.paper.fields import BESIDE_TABLE_2, FIELDS
-from research.paper.layouts import GEAR_MODEL, READINGS, layouts
-from research.paper.performance import BESIDE_TABLE_3
-from research.paper.settings import PRESET, PUBLIC, SETTINGS, STRONG
+from research import paper
+from research.paper.design import PRESET, PUBLIC, READINGS, SETTINGS, STRONG, layouts
+from research.paper.performance import ROWS
+from research.paper.table_2 import COLUMNS, FIELDS
 
 ROBOT = c2d.robots.engineer()
 
@@ -26,22 +25,22 @@ def test_every_layout_makes_a_valid_robot_in_every_setting() -> None:
 def test_the_layouts_are_those_that_the_paper_names() -> None:
     known = layouts()
     chosen = {reading.row: known[reading.layout].track for reading in READINGS}
-    small = chosen[published.CWA_ROUND]
+    small = chosen[paper.CWA_ROUND]
     assert small == c2d.CircumferentialWheels(16, wheel_radius=0.02)
-    assert chosen[published.LWA_ROUND] == c2d.LineOfWheels(3)
+    assert chosen[paper.LWA_ROUND] == c2d.LineOfWheels(3)
     # The small wheels were replaced one for one.
-    gears = chosen[published.CWA_GEAR]
+    gears = chosen[paper.CWA_GEAR]
     assert isinstance(gears, c2d.CircumferentialWheels)
     assert (gears.count, gears.wheel_radius) == (16, 0.02)
-    assert chosen[GEAR_MODEL] == c2d.LineOfWheels(3, wheel=c2d.GearWheel())
-    assert chosen[published.LWA_GEAR] == chosen[GEAR_MODEL]
+    assert chosen[paper.GEAR_MODEL] == c2d.LineOfWheels(3, wheel=c2d.GearWheel())
+    assert chosen[paper.LWA_GEAR] == chosen[paper.GEAR_MODEL]
     assert all(reading.reason for reading in READINGS)
 
 
 def test_every_row_and_column_of_the_paper_has_a_layout() -> None:
-    assert set(BESIDE_TABLE_3) == {row.model for row in published.TABLE_3}
-    assert {published.CWA_ROUND, published.LWA_ROUND, GEAR_MODEL} <= set(BESIDE_TABLE_2.values())
-    assert list(FIELDS) == [row.obstacle for row in published.TABLE_2]
+    assert set(ROWS) == {row.model for row in paper.TABLE_3}
+    assert {paper.CWA_ROUND, paper.LWA_ROUND, paper.GEAR_MODEL} <= set(COLUMNS.values())
+    assert list(FIELDS) == [row.obstacle for row in paper.TABLE_2]
 
 
 def test_wheels_by_hand_and_touching_wheels_have_others_on_the_arms() -> None:

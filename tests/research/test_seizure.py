@@ -15,17 +15,15 @@ import crawler2d as c2d
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.sweeps.rates import rates_of
-from research import plot, report, stops_report, tables
-from research import study as command
+from research import seizure, stops
+from research import seizure_tables as tables
 from research.__main__ import main
-from research.models import gear_pairs, study_models
-from research.public_model import posts, public_wheel_model
-from research.replays import write_replays
-from research.stops import FIGURES, gear_against_round, stops
-from research.sweeps import QUICK, Design, Study, robots_of_the_study
+from research.models import gear_pairs, study_models, study_robots
+from research.seizure import QUICK, Design, Sweeps
+from research.stops import FIGURES
 from tests.shared import ROBOT
 
-MODELS = study_models(ROBOT.outline.axle_distance)
+MODELS = study_models()
 FEW = {name: MODELS[name] for name in ("belt", "line of 3", "line of 3 gears")}
 TINY = Design(
     heights={"step": (0.06,), "barrier": (0.04,), "knife edge": (0.02,)},
@@ -37,8 +35,8 @@ TINY = Design(
 )
 
 
-def study(design: Design = TINY) -> Study:
-    return Study(design=design, models=FEW, progress=False)
+def sweeps(design: Design = TINY) -> Sweeps:
+    return Sweeps(design=design, models=FEW, progress=False)
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +103,7 @@ def test_the_wheels_of_the_hybrid_stand_on_one_level() -> None:
 
 
 def test_each_robot_of_the_study_differs_from_the_preset_in_one_estimate() -> None:
-    preset, *others = robots_of_the_study().values()
+    preset, *others = study_robots().values()
     assert preset == ROBOT
     for other in others:
         changed = [
@@ -115,7 +113,7 @@ def test_each_robot_of_the_study_differs_from_the_preset_in_one_estimate() -> No
 
 
 def test_every_model_gets_the_same_draws() -> None:
-    found = study(replace(TINY, repeats=2)).on_obstacle("step")
+    found = sweeps(replace(TINY, repeats=2)).on_obstacle("step")
     for name in ("drawn_approach", "drawn_track_phase", "drawn_speed", "drawn_friction"):
         assert np.ptp(found[name].to_numpy(), axis=0).max() == 0.0
         assert np.ptp(found[name].to_numpy(), axis=2).min() > 0.0
@@ -123,7 +121,7 @@ def test_every_model_gets_the_same_draws() -> None:
 
 def test_the_obstacles_are_those_of_the_design() -> None:
     for obstacle, thickness in (("barrier", 0.1), ("knife edge", 0.01)):
-        text = study().on_obstacle(obstacle)["scenario"].to_numpy().flat[0]
+        text = sweeps().on_obstacle(obstacle)["scenario"].to_numpy().flat[0]
         terrain = Scenario.from_json(text).terrain
         assert isinstance(terrain, c2d.terrains.barrier)
         assert (terrain.thickness, terrain.height) == (thickness, TINY.heights[obstacle][0])
@@ -136,7 +134,7 @@ def test_cells_count_successes_failures_and_runs_without_a_result(table: xr.Data
     assert cells[1].others == "6 seized"
     assert cells[4].others == "9 stalled, 1 diverged"
     assert (cells[1].rate, cells[1].low, cells[1].high) == c2d.wilson(4, 10)
-    assert "7 stalled, 1 seized" in report.rates_text(cells)
+    assert "7 stalled, 1 seized" in tables.rates_text(cells)
 
 
 def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Dataset) -> None:
@@ -147,13 +145,13 @@ def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Datas
     assert (first.simulated_time, first.computing_time) == pytest.approx((400.0, 4.0))
     assert second.max_penetration == 3e-4
     models = {"first": MODELS["belt"], "second": MODELS["line of 3"]}
-    lines = report.climbs_text(models, [first, second]).splitlines()
+    lines = tables.climbs_text(models, [first, second]).splitlines()
     assert lines[-2].split() == ["first", "ours", "60", "(not", "40)", "100", "0.10"]
     assert lines[-1].split() == ["second", "Fig.", "3", "none", "100", "0.30"]
 
 
 def test_stops_tell_outcomes_mechanisms_and_what_frees_the_robot(table: xr.Dataset) -> None:
-    first, second = stops(table, "step", belt="first")
+    first, second = stops.stops(table, "step", belt="first")
     assert (first.count, first.cleared, first.seized, first.stopped) == (40, 24, 6, 6)
     assert (first.mechanism, first.of_mechanism) == ("undercut", 5)
     assert (first.jammed, first.unnatural_stops, first.unnatural_passes) == (6, 4, 0)
@@ -165,7 +163,7 @@ def test_stops_tell_outcomes_mechanisms_and_what_frees_the_robot(table: xr.Datas
     assert (second.mechanism, second.of_mechanism) == ("", 33)
     assert (second.jammed, second.freed_by_torque, second.unnatural_passes) == (1, 36, 2)
     assert (second.hung_up, second.slipping, second.cycling) == (0, 0, 0)
-    *_, one, other = stops_report.stops_text([first, second]).splitlines()
+    *_, one, other = stops.stops_text([first, second]).splitlines()
     assert one.split()[:6] == ["first", "step", "40", "24", "6", "-"]
     assert "undercut, 5" in one
     assert one.split()[-8:] == ["100", "67", "0", "50", "0", "-", "2.5", "1.2"]
@@ -174,15 +172,15 @@ def test_stops_tell_outcomes_mechanisms_and_what_frees_the_robot(table: xr.Datas
 
 
 def test_a_model_that_never_stops_has_no_shares_of_stops(table: xr.Dataset) -> None:
-    (row,) = stops(table.sel(track=["first"], height=[0.02]), "step", belt="first")
+    (row,) = stops.stops(table.sel(track=["first"], height=[0.02]), "step", belt="first")
     assert (row.stopped, row.mechanism, row.of_mechanism) == (0, "", 0)
     assert math.isnan(row.depth)
-    line = stops_report.stops_text([row]).splitlines()[-1]
+    line = stops.stops_text([row]).splitlines()[-1]
     assert line.split() == ["first", "step", "10", "10", *["-"] * 14]
 
 
 def test_gear_wheels_are_set_against_round_ones_with_intervals(table: xr.Dataset) -> None:
-    rows = gear_against_round(table, "step", {"second": "first"}, belt="first")
+    rows = stops.compare_wheels(table, "step", {"second": "first"}, belt="first")
     assert len(rows) == 4 * len(FIGURES)
     assert [row.wheel for row in rows[:: len(FIGURES)]] == ["round", "gear"] * 2
     by_place = {(row.model, row.wheel, row.figure): row for row in rows}
@@ -196,7 +194,7 @@ def test_gear_wheels_are_set_against_round_ones_with_intervals(table: xr.Dataset
             bounds = (cell["low"].item(), cell["high"].item())
             assert (row.low, row.high) == pytest.approx(bounds)
     assert by_place["second", "gear", "stopped"].found == 37
-    text = stops_report.against_text(rows)
+    text = stops.wheels_text(rows)
     assert "15 (6 to 32)" in text
     assert text.count("all of these") == 2
 
@@ -214,12 +212,12 @@ def test_the_pairs_differ_in_their_wheels_alone() -> None:
 def test_every_way_to_stop_has_a_replay_and_so_has_a_belt(tmp_path: Path) -> None:
     models = {name: MODELS[name] for name in ("belt", "line of 4, touching", "24 gears all round")}
     design = replace(TINY, heights={"step": (0.06, 0.08), "knife edge": (0.04,)})
-    own = Study(design=design, models=models, progress=False)
+    own = Sweeps(design=design, models=models, progress=False)
     tables_of = {name: own.on_obstacle(name) for name in design.heights}
     folder = tmp_path / "replays"
     folder.mkdir()
     (folder / "old.html").write_text("of a former study")
-    found = write_replays(tables_of, folder)
+    found = stops.write_replays(tables_of, folder)
     assert sorted(path.name for path in folder.iterdir()) == sorted(replay.file for replay in found)
     ways = {
         (outcome, mechanism)
@@ -237,11 +235,11 @@ def test_every_way_to_stop_has_a_replay_and_so_has_a_belt(tmp_path: Path) -> Non
         assert replay.sentence.startswith(replay.outcome.replace("_", " "))
         text = (folder / replay.file).read_text(encoding="utf-8")
         assert html.escape(replay.sentence) in text
-        assert f"{folder}/{replay.file}" in stops_report.replays_text(found, str(folder))
+        assert f"{folder}/{replay.file}" in stops.replays_text(found, str(folder))
 
 
 def test_odometry_of_round_wheels_is_exact_and_that_of_gears_reads_too_much() -> None:
-    rides = {ride.model: ride for ride in tables.rides(study().on_the_flat())}
+    rides = {ride.model: ride for ride in tables.rides(sweeps().on_the_flat())}
     assert rides["line of 3"].over_reading == pytest.approx(0.0, abs=1e-4)
     assert rides["line of 3"].vertical_acceleration < 0.01
     assert rides["line of 3 gears"].over_reading > 0.005
@@ -249,7 +247,7 @@ def test_odometry_of_round_wheels_is_exact_and_that_of_gears_reads_too_much() ->
 
 
 def test_wheels_that_turn_together_shake_up_and_down_but_do_not_rock() -> None:
-    phases = tables.phases(study().over_phases())
+    phases = tables.phases(sweeps().over_phases())
     by_place = {(phase.count, phase.phase_fraction): phase for phase in phases}
     for count in (3, 4, 5):
         together, turned = by_place[count, 0.0], by_place[count, 1.0 / 3.0]
@@ -258,7 +256,7 @@ def test_wheels_that_turn_together_shake_up_and_down_but_do_not_rock() -> None:
 
 
 def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
-    runs = public_wheel_model()
+    runs = tables.public_wheel_model()
     assert {place: str(run.outcome) for place, run in runs.items()} == {
         (0.03, True): "cleared",
         (0.05, True): "seized",
@@ -267,7 +265,7 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
         (0.05, False): "seized",
         (0.08, False): "seized",
     }
-    found = posts(runs)
+    found = tables.posts(runs)
     for (height, belly), run in runs.items():
         own = [post for post in found if (post.height, post.belly) == (height, belly)]
         # Of two slots that it enters as deep, the last.
@@ -286,7 +284,7 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
 def test_the_quick_study_writes_its_tables_and_its_pictures(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(command, "QUICK", TINY)
+    monkeypatch.setattr(seizure, "QUICK", TINY)
     out = tmp_path / "out"
     assert main(["seizure", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
@@ -297,7 +295,7 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
         assert name in text
     with (out / "rates.csv").open(newline="") as file:
         rates = list(csv.DictReader(file))
-    assert len(rates) == len(MODELS) * (3 + len(robots_of_the_study()))
+    assert len(rates) == len(MODELS) * (3 + len(study_robots()))
     with (out / "runs_step.csv").open(newline="") as file:
         runs = list(csv.DictReader(file))
     assert {run["outcome"] for run in runs} <= {str(outcome) for outcome in c2d.Outcome}
@@ -319,10 +317,10 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
 def test_ctrl_c_ends_the_study_with_its_own_exit_code(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def interrupted(_study: Study, _obstacle: str) -> xr.Dataset:
+    def interrupted(_sweeps: Sweeps, _obstacle: str) -> xr.Dataset:
         raise c2d.BatchInterrupted([])
 
-    monkeypatch.setattr(Study, "on_obstacle", interrupted)
+    monkeypatch.setattr(Sweeps, "on_obstacle", interrupted)
     assert main(["seizure", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
 
@@ -330,7 +328,7 @@ def test_ctrl_c_ends_the_study_with_its_own_exit_code(
 def test_our_models_stand_below_their_row_of_the_paper(table: xr.Dataset) -> None:
     models = {"first": MODELS["line of 3"], "second": MODELS["24 gears all round"]}
     climbs = [climb for obstacle in QUICK.heights for climb in tables.climbs(table, obstacle)]
-    lines = report.beside_the_paper(models, climbs).splitlines()
+    lines = tables.paper_text(models, climbs).splitlines()
     below = {line.split("  ")[0]: following for line, following in itertools.pairwise(lines)}
     assert "ours: first" in below["LWA, large standard fixed wheels"]
     assert "ours: second" in below["CWA, small gear wheels"]
@@ -338,7 +336,7 @@ def test_our_models_stand_below_their_row_of_the_paper(table: xr.Dataset) -> Non
 
 def test_the_pictures_have_a_panel_a_model_and_a_line_a_count(table: xr.Dataset) -> None:
     cells = [*tables.cells(table, "step"), *tables.cells(table, "barrier")]
-    first, second = plot.plot_rates(cells).axes
+    first, second = tables.plot_rates(cells).axes
     assert (first.get_title(), second.get_title()) == ("first", "second")
     assert len(first.lines) == 2
     phases = [
@@ -346,5 +344,5 @@ def test_the_pictures_have_a_panel_a_model_and_a_line_a_count(table: xr.Dataset)
         for count in (3, 4, 5)
         for f in (0.0, 0.5, 1.0)
     ]
-    for ax in plot.plot_phases(phases).axes:
+    for ax in tables.plot_phases(phases).axes:
         assert len(ax.lines) == 3 + 1  # the last marks eq. (1)

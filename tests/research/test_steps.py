@@ -9,13 +9,19 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
-from research import study as command
+from research import steps
 from research.__main__ import main
-from research.chain_steps import ChainStep, chain_steps, chain_steps_text
-from research.chains import CHAINS, CHAINS_QUICK, chain_models
-from research.chains_plot import plot_chains
-from research.sweeps import Study
-from research.tables import Cell
+from research.seizure import Sweeps
+from research.seizure_tables import Cell
+from research.steps import (
+    CHAINS_FULL,
+    CHAINS_QUICK,
+    ChainStep,
+    chain_models,
+    chain_steps,
+    chain_steps_text,
+    plot_chains,
+)
 from tests.shared import ROBOT
 
 MODELS = chain_models()
@@ -26,15 +32,15 @@ def test_every_model_has_the_grousers_of_the_robot() -> None:
         Scenario(ROBOT.with_track(model.track), c2d.terrains.step(0.05)).validate()
         wheel = getattr(model.track, "wheel", None)
         assert wheel in (None, c2d.GearWheel()), name
-    assert CHAINS.heights["step"][0] == pytest.approx(0.03)
-    assert CHAINS.heights["step"][-1] == pytest.approx(0.16)
-    assert CHAINS.repeats >= 40
+    assert CHAINS_FULL.heights["step"][0] == pytest.approx(0.03)
+    assert CHAINS_FULL.heights["step"][-1] == pytest.approx(0.16)
+    assert CHAINS_FULL.repeats >= 40
 
 
 def test_every_model_is_simulated_with_the_default_accuracy() -> None:
     models = {name: MODELS[name] for name in ("belt with grousers", "24 gears all round")}
     design = replace(CHAINS_QUICK, heights={"step": (0.03,)}, repeats=1)
-    table = Study(design=design, models=models, progress=False).on_obstacle("step")
+    table = Sweeps(design=design, models=models, progress=False).on_obstacle("step")
     assert table["track"].to_numpy().tolist() == list(models)
     for name in models:
         text = table["scenario"].sel(track=name).item()
@@ -70,7 +76,7 @@ def test_it_writes_its_table_and_its_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     design = replace(CHAINS_QUICK, heights={"step": (0.03,)}, repeats=1)
-    monkeypatch.setattr(command, "CHAINS_QUICK", design)
+    monkeypatch.setattr(steps, "CHAINS_QUICK", design)
     assert main(["chains", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     with (tmp_path / "chains.csv").open(newline="") as file:

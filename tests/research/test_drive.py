@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from research import study as command
+from research import drive
 from research.__main__ import main
 from research.drive import (
     FIRM,
@@ -18,8 +18,8 @@ from research.drive import (
     highest_edges_text,
     other_cases,
     paired_text,
+    plot_drive,
 )
-from research.drive_plot import plot_drive
 
 FEW = Plan(repeats=2, progress=False)
 KNIFE = cases(("line of 5",), ("knife edge",), (0.4,), (0.0, 0.1))
@@ -92,7 +92,7 @@ def test_the_picture_has_a_panel_an_obstacle_and_speed(found: list[HighestEdge])
 def test_it_writes_its_tables_and_its_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(command, "other_cases", lambda: KNIFE)
+    monkeypatch.setattr(drive, "other_cases", lambda: KNIFE)
     assert main(["drive", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     with (tmp_path / "drive.csv").open(newline="") as file:
