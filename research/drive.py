@@ -19,7 +19,7 @@ from crawler2d.runs.progress import reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
 from research.models import study_models
 from research.study import Job, Study, add_legend, make_panels, style
-from research.tables import aligned_table, grouped, mm
+from research.tables import aligned_table, group_by, mm
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -57,7 +57,7 @@ _FIRST = 32
 _REACH = 8
 # Models with a colour of their own in the figure; others are dashed.
 _COLORS = 7
-# [m] What is left of the way to the edge at full speed, before draws of +- 46 mm.
+# [m] Distance to the edge left at full speed, before draws of +- 46 mm.
 _STEADY = 0.1
 # [s], [m] A run may last this long and as long as this takes at full speed; it goes some 1.4 m.
 _STANDING, _TRAVEL = 10.0, 2.0
@@ -98,7 +98,7 @@ class HighestEdge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
-    """How the search is made.
+    """How to search.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
             Collector((), store=plan.store, threads=thread_count(plan.threads)) as collector,
             reporter(plan.progress, cells, unit="cell") as report,
         ):
-            for own in grouped(asked, "model", "obstacle").values():
+            for own in group_by(asked, "model", "obstacle").values():
                 units, reach = [_FIRST] * plan.repeats, _REACH
                 for case in own:
                     first: list[int] = []
@@ -299,9 +299,9 @@ def _scenario(case: Case, drivetrain: c2d.Drivetrain) -> c2d.Scenario:
 
 def highest_edges_text(rows: Sequence[HighestEdge]) -> str:
     """Write one row per case and one column per drive."""
-    drives = list(grouped(rows, "drive"))
+    drives = list(group_by(rows, "drive"))
     lines = []
-    for (model, obstacle, speed), case in grouped(rows, "model", "obstacle", "speed").items():
+    for (model, obstacle, speed), case in group_by(rows, "model", "obstacle", "speed").items():
         heights = {row.drive: f"{mm(row.height)} ({mm(row.low)} to {mm(row.high)})" for row in case}
         lines.append((model, obstacle, f"{speed:g}", *(heights.get(each, "-") for each in drives)))
     return aligned_table(("highest edge [mm]", "obstacle", "[m/s]", *drives), lines, left=[1])
@@ -309,7 +309,7 @@ def highest_edges_text(rows: Sequence[HighestEdge]) -> str:
 
 def paired_text(rows: Sequence[HighestEdge]) -> str:
     """Write how often a draw clears more, or less, with each drive than with the first."""
-    (first, _), *others = grouped(rows, "drive").items()
+    (first, _), *others = group_by(rows, "drive").items()
     lines = []
     for drive, own in others:
         count = sum(len(row.heights) for row in own)
@@ -328,9 +328,9 @@ def plot_drive(rows: Sequence[HighestEdge]) -> Figure:
         The drives of each case in one order, which is that of the x axis.
     """
     obstacles, speeds, models, drives = (
-        list(grouped(rows, name)) for name in ("obstacle", "speed", "model", "drive")
+        list(group_by(rows, name)) for name in ("obstacle", "speed", "model", "drive")
     )
-    cases = grouped(rows, "model", "obstacle", "speed")
+    cases = group_by(rows, "model", "obstacle", "speed")
     size = (3.2 * len(speeds) + 2.0, 3.0 * len(obstacles) + 0.6)
     figure, axes = make_panels(len(obstacles), len(speeds), size, sharex=True, sharey="row")
     for (line, column), ax in np.ndenumerate(axes):

@@ -64,7 +64,7 @@ FULL = Design(
 )
 QUICK = Design(
     heights={"step": (0.060, 0.100), "barrier": (0.060,), "knife edge": (0.040,)},
-    repeats=4,
+    repeats=3,
     robot_heights=(0.090,),
     robot_repeats=1,
     ride_repeats=1,
@@ -167,7 +167,7 @@ class Sweeps:
             threads=self.threads,
             progress=self.progress,
             on_error="record",
-            trials=stops.TRIED,
+            trials=stops.TRIALS,
             wall_time=True,
         )
 

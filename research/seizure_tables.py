@@ -1,4 +1,4 @@
-"""The rows of the seizure study, made from its sweeps, as text and as figures."""
+"""The rows of the seizure study, computed from its sweeps, as text and as figures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from crawler2d.sweeps.rates import rates_of
 from research.models import study_robot
 from research.paper import RPM, TABLE_2, TABLE_3
 from research.study import add_legend, draw_rates, make_panels, style
-from research.tables import aligned_table, counts, gaps, grouped, in_mm, mm, percent
+from research.tables import aligned_table, counts, gaps, group_by, in_mm, mm, percent
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -297,12 +297,12 @@ def rates_text(cells: Iterable[Cell]) -> str:
 def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
     """Write the greatest height that each model clears, one row per model."""
     rows = []
-    by_model = grouped(climbs, "model")
+    by_model = group_by(climbs, "model")
     for name, model in models.items():
         own = by_model[name]
         penetration = f"{1e3 * max(climb.max_penetration for climb in own):.2f}"
         rows.append((name, model.source, *map(_highest, own), _real_time_factor(own), penetration))
-    obstacles = grouped(climbs, "obstacle")
+    obstacles = group_by(climbs, "obstacle")
     head = ("model", "paper", *obstacles, "RTF", "penetration")
     return (
         "Greatest height [mm] cleared in at least half of the runs (in brackets: smaller heights\n"
@@ -313,14 +313,14 @@ def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> st
 
 def robots_text(cells: Sequence[Cell]) -> str:
     """Write how other estimates of the robot change the table."""
-    robots, by_place = grouped(cells, "robot"), grouped(cells, "model", "robot")
-    heights = in_mm(grouped(cells, "height"))
+    robots, by_place = group_by(cells, "robot"), group_by(cells, "model", "robot")
+    heights = in_mm(group_by(cells, "height"))
     rows = [
         (
             model,
             *(" ".join(str(cell.cleared) for cell in by_place[model, robot]) for robot in robots),
         )
-        for model in grouped(cells, "model")
+        for model in group_by(cells, "model")
     ]
     note = f"Other robots: how many of {cells[0].count} runs cleared a step of {heights} mm"
     return f"{note}\n\n{aligned_table(('model', *robots), rows)}"
@@ -346,14 +346,14 @@ def rides_text(rides: Iterable[Ride]) -> str:
 
 def phases_text(phases: Sequence[Phase]) -> str:
     """Write the vibration of lines of gear wheels over their phases."""
-    runs = grouped(phases, "count")
+    runs = group_by(phases, "count")
     rows = [
         (
             f"{fraction:.3f}",
             *(f"{phase.vertical_acceleration:.2f}" for phase in own),
             *(f"{phase.angular_velocity:.3f}" for phase in own),
         )
-        for fraction, own in grouped(phases, "phase_fraction").items()
+        for fraction, own in group_by(phases, "phase_fraction").items()
     ]
     head = ("phase", *(f"{n} [m/s^2]" for n in runs), *(f"{n} [rad/s]" for n in runs))
     return (
@@ -391,7 +391,7 @@ def paper_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str
     ]
     head = ("model", *places, "RTF", "speed", "braking", "acceleration", "turning")
     rows: list[tuple[str, ...]] = []
-    by_model = grouped(climbs, "model")
+    by_model = group_by(climbs, "model")
     for theirs in TABLE_3:
         rows.append(
             (
@@ -443,8 +443,8 @@ def plot_rates(cells: Sequence[Cell]) -> Figure:
     cells : sequence of Cell
         Heights ascending within a model and an obstacle; up to three obstacles.
     """
-    models, obstacles = list(grouped(cells, "model")), list(grouped(cells, "obstacle"))
-    own = grouped(cells, "model", "obstacle")
+    models, obstacles = list(group_by(cells, "model")), list(group_by(cells, "obstacle"))
+    own = group_by(cells, "model", "obstacle")
     columns = min(_COLUMNS, len(models))
     rows = -(-len(models) // columns)
     size = (2.2 * columns, 1.9 * rows + 0.9)
@@ -487,7 +487,7 @@ def plot_phases(phases: Sequence[Phase]) -> Figure:
         "angular_velocity": "rate of the chassis angle, rms [rad/s]",
     }
     for ax, (name, label) in zip(axes.flat, names.items(), strict=True):
-        for index, (count, own) in enumerate(grouped(phases, "count").items()):
+        for index, (count, own) in enumerate(group_by(phases, "count").items()):
             ax.plot(
                 [phase.phase_fraction for phase in own],
                 [getattr(phase, name) for phase in own],

@@ -18,7 +18,7 @@ from research.models import FRICTION, StudyModel, study_models, study_robot
 from research.paper import TABLE_3
 from research.seizure_tables import Cell, cells, rates_text, rates_title, write_runs
 from research.study import Job, Study, draw_rates, make_panels, style
-from research.tables import aligned_table, grouped, mm
+from research.tables import aligned_table, group_by, mm
 
 if TYPE_CHECKING:
     import xarray
@@ -106,7 +106,7 @@ def plot_chains(cells: Sequence[Cell]) -> Figure:
         Heights ascending within a model; four tracks, then up to two models of wheels.
     """
     figure, ((left, right),) = make_panels(1, 2, (9.0, 3.8), sharex=True, sharey=True)
-    by_model = grouped(cells, "model")
+    by_model = group_by(cells, "model")
     models = list(by_model)
     for ax, shown in ((left, models[:_TRACKS]), (right, [models[0], *models[_TRACKS:]])):
         for model in shown:
@@ -275,11 +275,11 @@ def _limit(above: xarray.Dataset) -> str:
 def highest_steps_text(rows: Sequence[HighestStep]) -> str:
     """Write one row per model and one column per robot, with what limits each."""
     lines = []
-    for model, own in grouped(rows, "model").items():
+    for model, own in group_by(rows, "model").items():
         paper = "-" if own[0].paper is None else f"{100 * own[0].paper:.0f}"
         heights = (f"{100 * row.height:.0f}{'*' * bool(row.gaps)} {row.limit}" for row in own)
         lines.append((model, paper, *heights))
-    head = ("highest step [cm], then what limits it", "paper", *grouped(rows, "robot"))
+    head = ("highest step [cm], then what limits it", "paper", *group_by(rows, "robot"))
     note = "* fewer than half of the runs clear some lower step; the paper's real robot: 20 cm"
     return f"{aligned_table(head, lines)}\n{note}"
 

@@ -15,7 +15,7 @@ import numpy as np
 import crawler2d as c2d
 from crawler2d.sweeps.axes import short_name
 from crawler2d.sweeps.statistics import clustered
-from research.tables import aligned_table, grouped, mm, percent
+from research.tables import aligned_table, group_by, mm, percent
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 STOPS = tuple(str(outcome) for outcome in c2d.Outcome if outcome.is_stop)
 """Outcomes that are stops, by name."""
 
-TRIED = (
+TRIALS = (
     *("closed track", "closed track, clear of the ground"),
     *("torque x 2", "friction x 2", "no belly"),
 )
@@ -134,7 +134,7 @@ def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stop
     Parameters
     ----------
     table : xarray.Dataset
-        With the dimensions track, height and repeat, and the trials of `TRIED`.
+        With the dimensions track, height and repeat, and the trials of `TRIALS`.
     obstacle : str
         What they ran over.
     belt : str
@@ -216,7 +216,7 @@ def write_replays(
     Parameters
     ----------
     tables : mapping of str to xarray.Dataset
-        Sweeps over track and height by obstacle, with the trials of `TRIED`.
+        Sweeps over track and height by obstacle, with the trials of `TRIALS`.
     folder : Path
         Folder for the pages; created if missing. Pages of earlier studies are removed.
     belt : str
@@ -288,10 +288,10 @@ def stops_text(stops: Iterable[Stops]) -> str:
 def wheels_text(rates: Sequence[WheelRate]) -> str:
     """Compare gear wheels with round ones, two rows per pair, with their intervals."""
     rows = []
-    for (robot, model, wheel), own in grouped(rates, "robot", "model", "wheel").items():
+    for (robot, model, wheel), own in group_by(rates, "robot", "model", "wheel").items():
         texts = (f"{percent(row.rate)} ({percent(row.low)} to {percent(row.high)})" for row in own)
         rows.append((model, robot, wheel, str(own[0].count), *texts))
-    figures = (name.replace("_", " ") for name in grouped(rates, "figure"))
+    figures = (name.replace("_", " ") for name in group_by(rates, "figure"))
     head = ("model", "robot", "wheels", "runs", *figures)
     obstacle = rates[0].obstacle
     return (
@@ -336,7 +336,7 @@ def _clearest(tables: Mapping[str, xarray.Dataset]) -> list[_Place]:
         for index in np.argwhere(np.isin(outcomes, STOPS)):
             run = table.isel(dict(zip(table["outcome"].dims, map(int, index), strict=True)))
             ending = (run["outcome"].item(), run["mechanism"].item())
-            freed = any(run[f"freed_by_{short_name(trial)}"].item() for trial in TRIED[:2])
+            freed = any(run[f"freed_by_{short_name(trial)}"].item() for trial in TRIALS[:2])
             clarity = (freed, run["intrusion_depth"].item())
             # Of equal runs the last: models with wheels come after the mere forces.
             if ending not in best or clarity >= best[ending][0]:
@@ -369,7 +369,7 @@ def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops
         of_mechanism=most,
         passing=_count(own["passing"].to_numpy()),
         jammed=_count(own["jammed"].to_numpy() & stopped),
-        unnatural_stops=_count(np.logical_or(*(freed(name) for name in TRIED[:2]))),
+        unnatural_stops=_count(np.logical_or(*(freed(name) for name in TRIALS[:2]))),
         freed_by_torque=_count(freed("torque x 2")),
         freed_by_friction=_count(freed("friction x 2")),
         freed_by_no_belly=_count(freed("no belly")),

@@ -45,7 +45,7 @@ def counts(names: Iterable[str]) -> str:
     return ", ".join(f"{n} {name}" for name, n in Counter(names).most_common())
 
 
-def grouped(rows: Iterable[_Row], *names: str) -> dict[Any, list[_Row]]:
+def group_by(rows: Iterable[_Row], *names: str) -> dict[Any, list[_Row]]:
     """Group rows by one or more of their fields, in the order of their appearance.
 
     Returns
@@ -91,7 +91,7 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(lines)
 
 
-def spliced(page: str, parts: Mapping[str, str]) -> str:
+def splice(page: str, parts: Mapping[str, str]) -> str:
     r"""Put parts between their marks in a page, ``<!-- name -->`` and ``<!-- end of name -->``.
 
     Parameters
@@ -99,17 +99,17 @@ def spliced(page: str, parts: Mapping[str, str]) -> str:
     page : str
         What is written by hand, with the marks.
     parts : mapping of str to str
-        What is made, by name; those that the page has no marks for are left out.
+        Texts by name; those without marks in the page are left out.
 
     Returns
     -------
     str
-        The page with these parts in the place of what was there.
+        The page with these parts in place of the old ones.
 
     Examples
     --------
     >>> page = "Found:\n\n<!-- rates -->\nold\n<!-- end of rates -->\n"
-    >>> print(spliced(page, {"rates": "new"}))
+    >>> print(splice(page, {"rates": "new"}))
     Found:
     <BLANKLINE>
     <!-- rates -->

@@ -126,7 +126,7 @@ def agreement(successes: int, count: int, share: float, runs: int = PAPER_RUNS) 
     """Compare a rate of ours with a percentage of the paper.
 
     The verdict is about the two rates as they are. With 20 runs on one side no interval is ever
-    within `WITHIN`: 0 of 20 beside 0 of 100 gives -0.16 to 0.04.
+    within `WITHIN`: 0 of 20 against 0 of 100 gives -0.16 to 0.04.
 
     Parameters
     ----------

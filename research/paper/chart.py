@@ -27,7 +27,7 @@ from research.paper.command import STORE, Pages, add_page_option
 from research.paper.design import PRESET, PUBLIC, Setting, Work
 from research.paper.table_2 import COLUMNS, FIELDS, cells, cross
 from research.study import Job, Study
-from research.tables import grouped, markdown_table, percent
+from research.tables import group_by, markdown_table, percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -179,7 +179,7 @@ def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
         been tried more often.
     """
     tried: dict[Setting, list[DriveCell]] = {}
-    for settings in grouped(drives.settings(), "friction").values():
+    for settings in group_by(drives.settings(), "friction").values():
         for setting in settings:
             tried[setting] = _cross(work, setting, drives.runs)
         yield [cell for each in tried.values() for cell in each]
@@ -261,7 +261,7 @@ def cell_verdict(row: DriveCell, hits: int) -> str:
 def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
     """Say how many runs there are, how many drives are left, and which come nearest."""
     runs = []
-    for model, cells_of in grouped(rows, "model").items():
+    for model, cells_of in group_by(rows, "model").items():
         least, most = min(row.count for row in cells_of), max(row.count for row in cells_of)
         runs.append(f"{least if least == most else f'{least} to {most}'} of {model}")
     drives = {(row.torque, row.inertia) for row in rows}
@@ -271,7 +271,7 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
         f" {frictions}; runs a cell: {'; '.join(runs)}."
     )
     table = []
-    for (friction, reading), own in grouped(verdicts, "friction", "reading").items():
+    for (friction, reading), own in group_by(verdicts, "friction", "reading").items():
         left = [_drive(each) for each in own if each.is_left]
         # With few runs p is larger, as they exclude less; cells that differ come first therefore.
         best = min(own, key=lambda each: (each.differing, -each.probability, each.deviance))
@@ -341,7 +341,7 @@ def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> Figur
         Of the same drives.
     """
     torques, inertias, frictions = (
-        tuple(sorted(grouped(rows, name))) for name in ("torque", "inertia", "friction")
+        tuple(sorted(group_by(rows, name))) for name in ("torque", "inertia", "friction")
     )
     grid = _Grid(torques, inertias)
     width = 5.6 * len(frictions) + 1.2
@@ -357,7 +357,7 @@ def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> Figur
         bottom=0.05,
     )
     above = whole[0].subgridspec(lines, columns, wspace=0.06, hspace=0.24).subplots(squeeze=False)
-    own = grouped(rows, "model", "friction", "obstacle")
+    own = group_by(rows, "model", "friction", "obstacle")
     for ax, place in zip(above.flat, product(COLUMNS, frictions, FIELDS), strict=True):
         model, friction, field = place
         hits = _HITS[field, model]
@@ -370,7 +370,7 @@ def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> Figur
         if spot.is_first_col():
             _name_inertias(ax, grid, model)
     below = whole[1].subgridspec(1, len(TABLES) * len(frictions), wspace=0.12)
-    panels, tested = below.subplots(squeeze=False), grouped(verdicts, "friction", "reading")
+    panels, tested = below.subplots(squeeze=False), group_by(verdicts, "friction", "reading")
     for ax, test in zip(panels.flat, product(frictions, TABLES), strict=True):
         _draw_verdicts(ax, tested.get(test, ()), grid)
         title = f"friction {test[0]:g}: all nine cells at once, {test[1]}"
@@ -505,11 +505,11 @@ def _run_chart(job: Job) -> None:
 
 
 def _write_chart(rows: Sequence[DriveCell], pages: Pages) -> str:
-    """Write tables and picture of what has been made so far, and the part of the page."""
+    """Write tables and picture of all runs so far, and the part of the page."""
     verdicts = [
         compare_drive(own, table, reading)
         for reading, table in TABLES.items()
-        for own in grouped(rows, "friction", "torque", "inertia").values()
+        for own in group_by(rows, "friction", "torque", "inertia").values()
     ]
     verdicts.sort(key=lambda each: each.friction)
     pages.write_rows(drives=rows, drives_joint=verdicts)

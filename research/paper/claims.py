@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 
 _OFTEN, _SELDOM = 0.9, 0.1
-"""[-] A model whose rate is at least the one clears an obstacle; one up to the other does not."""
+"""[-] A model clears an obstacle from the first rate on, and does not up to the second."""
 _ALIKE = 0.9
-"""[-] A real-time factor that is at least this share of another is none the worse for it."""
+"""[-] A real-time factor counts as no lower than another from this ratio on."""
 _STEP = 1e-3
 """[s] The time step that the paper's simulator takes by default."""
 _FIELD = "random step field"
@@ -41,7 +41,7 @@ _COSTS = (
         "3",
         "gears solve the problem without sacrificing computational performance",
         "as fast as",
-        [(gears, plain) for plain, gears in _PAIRS.items()],
+        [(gears, wheels) for wheels, gears in _PAIRS.items()],
     ),
     ("2.2", "more wheels in a line cost performance", _SLOWER, [("line of 9", "line of 3")]),
     (
@@ -80,10 +80,10 @@ class Check:
     """One thing that must be so if the claim holds."""
 
     what: str
-    found: str
+    result: str
     """The figures, with counts."""
     holds: bool | None
-    """None if so few runs do not tell."""
+    """None if there are too few runs to say."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +103,7 @@ class Claim:
 
         Examples
         --------
-        >>> yes, no, open = (Check(what="", found="", holds=each) for each in (True, False, None))
+        >>> yes, no, open = (Check(what="", result="", holds=each) for each in (True, False, None))
         >>> for checks in ((yes, yes), (no,), (yes, no), (open, no), ()):
         ...     print(Claim(section="", text="", experiment="", checks=checks).verdict)
         holds
@@ -138,18 +138,18 @@ def check_clears(
 
     Examples
     --------
-    >>> check_clears("gears clear", [("3 gears", 18, 20), ("5 gears", 0, 20)]).found
+    >>> check_clears("gears clear", [("3 gears", 18, 20), ("5 gears", 0, 20)]).result
     '3 gears 18 of 20, 5 gears 0 of 20'
     """
     models = [_Count(*each) for each in counts]
     holds = all(each.rate <= _SELDOM if never else each.rate >= _OFTEN for each in models)
-    return Check(what=what, found=", ".join(map(str, models)), holds=holds)
+    return Check(what=what, result=", ".join(map(str, models)), holds=holds)
 
 
 def check_fewer(what: str, less: tuple[str, int, int], more: tuple[str, int, int]) -> Check:
     """Check that one model clears less often than another, by Newcombe's 95 % interval.
 
-    It does not if its rate is no lower, and so few runs do not tell if the interval holds 0.
+    It does not if its rate is no lower; there are too few runs to say if the interval contains 0.
 
     Parameters
     ----------
@@ -161,14 +161,14 @@ def check_fewer(what: str, less: tuple[str, int, int], more: tuple[str, int, int
     Examples
     --------
     >>> check = check_fewer("heavier sticks more", ("heavy", 2, 20), ("light", 15, 20))
-    >>> check.holds, check.found
+    >>> check.holds, check.result
     (True, 'heavy 2 of 20, light 15 of 20: difference -0.65 (-0.81 to -0.35)')
     """
     difference, low, high = c2d.newcombe(*less[1:], *more[1:])
     counts = f"{_Count(*less)}, {_Count(*more)}"
     return Check(
         what=what,
-        found=f"{counts}: difference {difference:+.2f} ({low:+.2f} to {high:+.2f})",
+        result=f"{counts}: difference {difference:+.2f} ({low:+.2f} to {high:+.2f})",
         holds=True if high < 0.0 else None if difference < 0.0 else False,
     )
 
@@ -235,10 +235,10 @@ def gears_end_seizure(work: Work) -> Claim:
     runs = _cross(work, STRONG, edges, [*pairs, *pairs.values(), belt])
     checks = []
     for edge in edges:
-        for plain, gears in pairs.items():
+        for wheels, gears in pairs.items():
             check = check_clears(f"{gears} clear an edge {edge} thick", [_count(runs, gears, edge)])
-            both = f"{check.found}; round wheels: {_count(runs, plain, edge)}"
-            checks.append(replace(check, found=both))
+            both = f"{check.result}; round wheels: {_count(runs, wheels, edge)}"
+            checks.append(replace(check, result=both))
     belts = ", ".join(str(_count(runs, belt, edge, edge)) for edge in edges)
     return Claim(
         section="3, 4.1.1",
@@ -268,7 +268,7 @@ def _chains_stick(work: Work) -> Claim:
         checks.append(
             Check(
                 what=f"some runs of the chain end in a jam ({setting.max_torque:g} N m)",
-                found=f"{stuck} of {ends.size} jammed, {pinched} pinched between shoes; cleared:"
+                result=f"{stuck} of {ends.size} jammed, {pinched} pinched between shoes; cleared:"
                 f" {counts}",
                 holds=stuck > 0,
             )
@@ -354,7 +354,7 @@ def force_is_flat(work: Work) -> Claim:
         checks.append(
             Check(
                 what=f"{ground}: {'as' if alike else 'unlike'} the belt",
-                found=", ".join(map(str, (belt, *forces))),
+                result=", ".join(map(str, (belt, *forces))),
                 holds=off <= 0.1 if alike else off > 0.5,
             )
         )
@@ -376,7 +376,7 @@ def geometry() -> Claim:
         (deep, mean), (other_deep, other_mean) = uneven[all_round], uneven[line]
         return Check(
             what=f"the wheels {all_round} are nearer to the track than the {line}",
-            found=f"{mm(mean, 1)} mm off on average, {mm(deep)} mm at most; {line}"
+            result=f"{mm(mean, 1)} mm off on average, {mm(deep)} mm at most; {line}"
             f" {mm(other_mean, 1)} mm, {mm(other_deep)} mm",
             holds=mean < other_mean,
         )
@@ -452,7 +452,7 @@ def _costs(work: Work) -> list[Claim]:
         ours, theirs = (factors[solver].sel(model=name).item() for name in (one, other))
         return Check(
             what=f"{one} is {relation} {other} ({solver})",
-            found=f"{ours:.0f} and {theirs:.0f}",
+            result=f"{ours:.0f} and {theirs:.0f}",
             holds=(ours < _ALIKE * theirs) == (relation == _SLOWER),
         )
 
@@ -479,12 +479,12 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
         third += [
             Check(
                 what=f"{count} gears: a third at least halves the swing in height",
-                found=swings,
+                result=swings,
                 holds=turned.swing <= 0.5 * step.swing,
             ),
             Check(
                 what=f"{count} gears: a third swings less than a half",
-                found=f"{mm(turned.swing, 2)} mm at a third, {mm(half.swing, 2)} mm at a half",
+                result=f"{mm(turned.swing, 2)} mm at a third, {mm(half.swing, 2)} mm at a half",
                 holds=turned.swing < half.swing,
             ),
         ]
@@ -494,11 +494,11 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
     rough = tuple(
         Check(
             what=f"{gears} shake the robot on level ground",
-            found=f"{shakes[gears]:.2f} m/s^2, round wheels {shakes[plain]:.2f}, a belt with"
+            result=f"{shakes[gears]:.2f} m/s^2, round wheels {shakes[wheels]:.2f}, a belt with"
             f" grousers {shakes['belt with grousers']:.2f}",
-            holds=shakes[gears] > 10.0 * shakes[plain],
+            holds=shakes[gears] > 10.0 * shakes[wheels],
         )
-        for plain, gears in _PAIRS.items()
+        for wheels, gears in _PAIRS.items()
     )
     return (
         Claim(
@@ -532,10 +532,10 @@ def _odometry_of_gears(work: Work) -> Claim:
         checks=tuple(
             Check(
                 what=f"the odometry of {gears} is off",
-                found=f"{1e2 * errors[gears]:+.2f} %, round wheels {1e2 * errors[plain]:+.2f} %",
-                holds=abs(errors[gears]) >= 1e-3 > abs(errors[plain]),
+                result=f"{1e2 * errors[gears]:+.2f} %, round wheels {1e2 * errors[wheels]:+.2f} %",
+                holds=abs(errors[gears]) >= 1e-3 > abs(errors[wheels]),
             )
-            for plain, gears in _PAIRS.items()
+            for wheels, gears in _PAIRS.items()
         ),
     )
 
@@ -555,7 +555,7 @@ def checks_text(claims: Sequence[Claim]) -> str:
     for number, claim in enumerate(claims, 1):
         rows.append((str(number), f"section {claim.section}: {claim.experiment}", "", ""))
         rows += [
-            (str(number), check.what, verdicts[check.holds], check.found) for check in claim.checks
+            (str(number), check.what, verdicts[check.holds], check.result) for check in claim.checks
         ]
     head = ("claim", "experiment, then what it must show", "shown", "found")
     return f"Counts are runs that cleared of all.\n\n{markdown_table(head, rows)}"

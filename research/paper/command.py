@@ -19,7 +19,7 @@ from research.paper import GEAR_MODEL_OTHERWISE, figures, performance, table_2
 from research.paper.claims import checks_text, claims, claims_text
 from research.paper.design import FULL, QUICK, Setting, Work, layouts
 from research.study import Job, Study
-from research.tables import spliced
+from research.tables import splice
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -55,9 +55,9 @@ class Pages:
     job : Job
         What was asked for.
     work : Work
-        What is made.
+        How runs are made, and how many.
     sections : dict of str to str
-        Those that have been made, by name.
+        By name, as far as they are done.
     fields : list of pair of Setting and Found
         The runs of Table 2, so far.
     blocks : dict of str to Found
@@ -96,14 +96,14 @@ class Pages:
         """Put parts between their marks in the other page."""
         if self.into is not None:
             page = self.into.read_text(encoding="utf-8")
-            self.into.write_text(spliced(page, parts), encoding="utf-8")
+            self.into.write_text(splice(page, parts), encoding="utf-8")
 
     def write_rows(self, **tables: Sequence[Any]) -> None:
         """Write rows of dataclasses as paper_NAME.csv."""
         self.job.write_rows({f"paper_{name}": rows for name, rows in tables.items()})
 
     def draw(self, **drawings: Callable[[], Figure]) -> None:
-        """Draw figures as paper_NAME.png, beside the other page, too, if that shows them."""
+        """Draw figures as paper_NAME.png, also next to the other page if that shows them."""
         for name, drawing in drawings.items():
             shown = self.into is not None and f"paper_{name}.png" in self.into.read_text("utf-8")
             also = [self.into.parent] if self.into is not None and shown else []

@@ -107,7 +107,7 @@ class Work:
         return RateSampling(**self.sampling, until=until)
 
     def count(self, found: Found) -> Found:
-        """Count what a study has tried, and return it; what two studies share counts twice."""
+        """Count what a study has tried, and return it; what two studies try counts twice."""
         self.tried.update({name: found.attrs[name] for name in ("settings", "runs")})
         return found
 
@@ -232,7 +232,7 @@ READINGS = (
         "our choice: it has the outline and the grousers of the robot",
     ),
 )
-"""From the text; all other layouts stand beside them as ours."""
+"""From the text; all other layouts are ours."""
 
 
 def layouts() -> dict[str, Layout]:

@@ -62,7 +62,7 @@ _STUCK = {4: LWA_ROUND, 5: CWA_ROUND}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Phase:
-    """The starting angles of the gears of one robot, beside eq. (1)."""
+    """The starting angles of the gears of one robot, compared with eq. (1)."""
 
     model: str
     count: int
@@ -103,7 +103,7 @@ class Stuck:
         return f"figure_{self.figure}.html"
 
 
-class Drawn(NamedTuple):
+class Drawing(NamedTuple):
     """A figure of the paper that is drawn from a model."""
 
     number: int
@@ -113,28 +113,28 @@ class Drawn(NamedTuple):
     """"robot", "wheel" for its rearmost wheel alone, or "angle" for that with theta."""
 
 
-def _drawn() -> tuple[Drawn, ...]:
+def _drawings() -> tuple[Drawing, ...]:
     track = {name: layout.track for name, layout in layouts().items()}
     gears = track["line of 3 gears"]
     return (
-        Drawn(1, "line of wheels that overlap", track["line of 5"]),
-        Drawn(2, "line of wheels that touch", track["line of 4, touching"]),
-        Drawn(3, "line of wheels with broad spaces", track["line of 3"]),
-        Drawn(6, "small wheels, tightly packed", track["24 all round"]),
-        Drawn(7, "small wheels with spaces", track["16 all round, spaced"]),
-        Drawn(8, "wheels of varying sizes (b)", track["hybrid"]),
-        Drawn(9, "chain of shoes on a guide", track["chain of 22 shoes"]),
-        Drawn(10, "chain of shoes round a sprocket", c2d.SegmentalTrack(mechanism="sprocket")),
-        Drawn(11, "single gear wheel", gears, "wheel"),
-        Drawn(12, "small gears all round", track["16 gears all round, spaced"]),
-        Drawn(13, "line of large gears", gears),
-        Drawn(14, "the angle theta of eq. (1)", gears, "angle"),
+        Drawing(1, "line of wheels that overlap", track["line of 5"]),
+        Drawing(2, "line of wheels that touch", track["line of 4, touching"]),
+        Drawing(3, "line of wheels with broad spaces", track["line of 3"]),
+        Drawing(6, "small wheels, tightly packed", track["24 all round"]),
+        Drawing(7, "small wheels with spaces", track["16 all round, spaced"]),
+        Drawing(8, "wheels of varying sizes (b)", track["hybrid"]),
+        Drawing(9, "chain of shoes on a guide", track["chain of 22 shoes"]),
+        Drawing(10, "chain of shoes round a sprocket", c2d.SegmentalTrack(mechanism="sprocket")),
+        Drawing(11, "single gear wheel", gears, "wheel"),
+        Drawing(12, "small gears all round", track["16 gears all round, spaced"]),
+        Drawing(13, "line of large gears", gears),
+        Drawing(14, "the angle theta of eq. (1)", gears, "angle"),
     )
 
 
-DRAWN = _drawn()
+DRAWINGS = _drawings()
 
-_NOT_DRAWN = {
+_OTHER_FIGURES = {
     "4": "a run of the simulator; here a replay of a line of large wheels that seizes",
     "5": "a run of the simulator; here a replay of small wheels that seize",
     "8 (a)": "a photograph of another robot, the Talon; its model is that of (b)",
@@ -273,9 +273,9 @@ def write_stuck(stuck: Sequence[Stuck], folder: Path) -> None:
 
 def plot_layouts() -> Figure:
     """Draw the layouts of the figures, one panel each, without flippers."""
-    rows = -(-len(DRAWN) // _COLUMNS)
+    rows = -(-len(DRAWINGS) // _COLUMNS)
     figure, axes = make_panels(rows, _COLUMNS, (4.6 * _COLUMNS, 2.7 * rows))
-    for ax, drawn in zip(axes.flat, DRAWN, strict=True):
+    for ax, drawn in zip(axes.flat, DRAWINGS, strict=True):
         robot = study_robot(track=drawn.track)
         if drawn.view == "robot":
             robot.plot(ax).legend().remove()
@@ -302,9 +302,9 @@ def plot_stuck(stuck: Sequence[Stuck]) -> Figure:
 
 def figures_text(stuck: Sequence[Stuck], folder: str) -> str:
     """List the figures: what is drawn, what is replayed from a folder, what can be neither."""
-    rows = [(str(each.number), each.caption, "drawn") for each in DRAWN]
+    rows = [(str(each.number), each.caption, "drawn") for each in DRAWINGS]
     replayed = {str(each.figure): f"replayed in `{folder}/{each.file}`" for each in stuck}
-    rows += [(number, what, replayed.get(number, "")) for number, what in _NOT_DRAWN.items()]
+    rows += [(number, what, replayed.get(number, "")) for number, what in _OTHER_FIGURES.items()]
     diagnoses = [
         f"Fig. {each.figure}, {each.model}, {each.where}: {each.run.diagnosis}" for each in stuck
     ]

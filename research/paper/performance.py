@@ -11,7 +11,7 @@ import crawler2d as c2d
 from research.models import study_robot
 from research.paper import REAL_ROBOT, RPM, TABLE_1, TABLE_3
 from research.paper.design import PRESET, READINGS, SETTINGS, climb, models_of
-from research.tables import gaps, grouped, markdown_table, mm, percent
+from research.tables import gaps, group_by, markdown_table, mm, percent
 
 if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
@@ -237,31 +237,15 @@ def measure_factors(work: Work, base: c2d.Scenario, models: Any) -> Found:
 def table_1_text(slopes: Sequence[Slope], rows: Sequence[Driving]) -> str:
     """Compare the paper's Table 1 with ours."""
     robot, stand_in = TABLE_1, next(row for row in rows if row.row == REAL_ROBOT)
+    speed = f"{stand_in.full_speed:.2f}, limited by {stand_in.full_speed_limit}"
+    turning = "a side view has no turning"
+    slope = "see below: at most the arc tangent of the friction"
+    braking = f"{stand_in.braking:.3f} from 0.4 m/s, limited by {stand_in.braking_limit}"
     figures = [
-        (
-            "max. speed [m/s]",
-            f"{robot.max_speed:g}",
-            f"{robot.declared_max_speed:g}",
-            f"{stand_in.full_speed:.2f}, limited by {stand_in.full_speed_limit}",
-        ),
-        (
-            "max. turn rate [rpm]",
-            f"{robot.max_turn_rate / RPM:.1f}",
-            "-",
-            "a side view has no turning",
-        ),
-        (
-            "max. slope [deg]",
-            _deg(robot.max_slope),
-            _deg(robot.declared_max_slope),
-            "see below: at most the arc tangent of the friction",
-        ),
-        (
-            "stopping distance [m]",
-            f"{robot.stopping_distance:g}",
-            "-",
-            f"{stand_in.braking:.3f} from 0.4 m/s, limited by {stand_in.braking_limit}",
-        ),
+        ("max. speed [m/s]", f"{robot.max_speed:g}", f"{robot.declared_max_speed:g}", speed),
+        ("max. turn rate [rpm]", f"{robot.max_turn_rate / RPM:.1f}", "-", turning),
+        ("max. slope [deg]", _deg(robot.max_slope), _deg(robot.declared_max_slope), slope),
+        ("stopping distance [m]", f"{robot.stopping_distance:g}", "-", braking),
     ]
     table = [
         (
@@ -324,9 +308,9 @@ def heights_text(heights: Sequence[Height]) -> str:
     """Compare the highest obstacles of the paper's Table 3 with ours."""
     climbed = [
         (own[0].model, mm(own[0].paper), *map(_height, own))
-        for own in grouped(heights, "row").values()
+        for own in group_by(heights, "row").values()
     ]
-    head = ("layout", "paper", *grouped(heights, "setting"))
+    head = ("layout", "paper", *group_by(heights, "setting"))
     return (
         "Highest parallelepiped [mm] on level ground, 100 mm thick, with flippers and the gait"
         f" `Climb`: the greatest height that half of {heights[0].repeats} runs cleared, in"

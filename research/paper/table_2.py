@@ -16,7 +16,7 @@ from crawler2d.sweeps.store import Store
 from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
 from research.paper.design import READINGS, SETTINGS, Setting, climb, layouts, models_of
 from research.study import add_legend, make_panels, style
-from research.tables import counts, grouped, markdown_table, percent
+from research.tables import counts, group_by, markdown_table, percent
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -273,8 +273,8 @@ def chosen_text() -> str:
 
 def table_2_text(rows: Sequence[Comparison]) -> str:
     """Compare the paper's Table 2 with ours: counts, difference with its interval, verdict."""
-    settings, table = list(grouped(rows, "setting")), []
-    for (obstacle, model), pairs in grouped(rows, "obstacle", "model").items():
+    settings, table = list(group_by(rows, "setting")), []
+    for (obstacle, model), pairs in group_by(rows, "obstacle", "model").items():
         own = {row.setting: _comparison(row) for row in pairs}
         texts = (own.get(setting, "") for setting in settings)
         table.append((obstacle, model, percent(pairs[0].paper), *texts))
@@ -290,10 +290,10 @@ def table_2_text(rows: Sequence[Comparison]) -> str:
 
 def layouts_text(rows: Sequence[FieldCell]) -> str:
     """List the rates of all layouts, fields side by side."""
-    settings, models, table = grouped(rows, "setting"), grouped(rows, "model"), []
+    settings, models, table = group_by(rows, "setting"), group_by(rows, "model"), []
     for model, layout in layouts().items():
         if model in models:
-            own = grouped(models[model], "setting")
+            own = group_by(models[model], "setting")
             rates = (
                 " / ".join(percent(row.rate) for row in own.get(setting, ()))
                 for setting in settings
@@ -302,7 +302,7 @@ def layouts_text(rows: Sequence[FieldCell]) -> str:
     runs = " or ".join(map(str, sorted({row.count for row in rows})))
     widest = max((max(row.rate - row.low, row.high - row.rate) for row in rows), default=0.0)
     note = (
-        f"Runs that cleared [%], of {runs} a cell: {', '.join(grouped(rows, 'obstacle'))}."
+        f"Runs that cleared [%], of {runs} a cell: {', '.join(group_by(rows, 'obstacle'))}."
         f" Wilson's 95 % intervals, in `paper_table_2.csv`, reach at most {percent(widest)} points"
         " either way."
     )
@@ -312,7 +312,7 @@ def layouts_text(rows: Sequence[FieldCell]) -> str:
 def failures_text(failed: Sequence[Failure], models: Collection[str]) -> str:
     """Say where and why runs failed: a sum for every setting, and rows for some layouts."""
     sums, table = [], []
-    for setting, runs in grouped(failed, "setting").items():
+    for setting, runs in group_by(failed, "setting").items():
         with_barrier = [run for run in runs if run.place]
         sums.append(
             f"- {setting}: {len(runs)} runs of all layouts failed; of the {len(with_barrier)} with"
@@ -329,7 +329,7 @@ def failures_text(failed: Sequence[Failure], models: Collection[str]) -> str:
                 _endings(run.mechanism for run in own if run.mechanism) or "-",
                 str(sum(run.carrier.endswith("flipper") for run in own) or "-"),
             )
-            for (obstacle, model), own in grouped(runs, "obstacle", "model").items()
+            for (obstacle, model), own in group_by(runs, "obstacle", "model").items()
             if model in models
         ]
     head = (
@@ -351,8 +351,8 @@ def plot_table_2(rows: Sequence[Comparison]) -> Figure:
     rows : sequence of Comparison
         Up to three settings.
     """
-    fields, models = list(grouped(rows, "obstacle")), list(grouped(rows, "model"))
-    settings, pairs = list(grouped(rows, "setting")), grouped(rows, "obstacle", "model")
+    fields, models = list(group_by(rows, "obstacle")), list(group_by(rows, "model"))
+    settings, pairs = list(group_by(rows, "setting")), group_by(rows, "obstacle", "model")
     figure, axes = make_panels(1, len(fields), (4.4 * len(fields), 4.4), sharey=True)
     for ax, field in zip(axes.flat, fields, strict=True):
         for place, model in enumerate(models):

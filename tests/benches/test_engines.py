@@ -50,7 +50,7 @@ from crawler2d.parameters.terrain import (
     Step,
     Terrain,
 )
-from research.tables import spliced
+from research.tables import splice
 
 CELL = Cell(
     group="plane",

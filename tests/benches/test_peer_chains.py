@@ -13,7 +13,7 @@ from benches.adapters.planar import Setting
 from benches.peers import chains, report
 from benches.peers.chains import TEETH, ChainRobot
 from crawler2d.runs.simulation import Simulation
-from research.tables import spliced
+from research.tables import splice
 
 STEP = np.array([(-5.0, 0.0), (0.8, 0.0), (0.8, 0.15), (15.0, 0.15)])
 every_chain = pytest.mark.parametrize("count", TEETH)

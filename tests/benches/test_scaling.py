@@ -13,7 +13,7 @@ from benches.scaling.report import curves
 from benches.scaling.scenes import Point
 from benches.shared.measuring import write_parts
 from crawler2d.parameters.terrain import Points, Terrain
-from research.tables import spliced
+from research.tables import splice
 
 POINTS = list(scenes.points())
 # A belt on more pieces takes seconds to get anywhere.

@@ -15,7 +15,7 @@ from research.paper import (
 )
 from research.paper.claims import Check, Claim, check_clears, check_fewer
 from research.paper.table_2 import COLUMNS, FieldCell, compare, table_2_text
-from research.tables import markdown_table, spliced
+from research.tables import markdown_table, splice
 
 
 @pytest.mark.parametrize(
@@ -103,6 +103,6 @@ def test_few_runs_do_not_show_that_heavy_robots_stick_more() -> None:
 def test_tables_go_between_their_marks_and_nowhere_else() -> None:
     page = "a\n\n<!-- one -->\n<!-- end of one -->\n\nb\n"
     table = markdown_table(("x", "y"), [("1", r"\1")])  # what looks like a group is left alone
-    once = spliced(page, {"one": table, "two": "nowhere"})
+    once = splice(page, {"one": table, "two": "nowhere"})
     assert once == f"a\n\n<!-- one -->\n\n{table}\n\n<!-- end of one -->\n\nb\n"
-    assert spliced(once, {"one": table}) == once
+    assert splice(once, {"one": table}) == once

@@ -13,7 +13,7 @@ from research import paper
 from research.__main__ import main
 from research.paper import command, performance, table_2
 from research.paper.design import FULL, QUICK
-from research.paper.figures import DRAWN
+from research.paper.figures import DRAWINGS
 
 TINY = replace(
     QUICK,
@@ -83,10 +83,10 @@ def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixt
     for number in (4, 5):
         assert (tmp_path / "replays_paper" / f"figure_{number}.html").stat().st_size > 10_000
         assert f"Fig. {number}, " in text
-    assert all(f"| {drawn.number} | {drawn.caption} | drawn |" in text for drawn in DRAWN)
-    spliced = page.read_text()
-    assert spliced.startswith("![](paper_table_2.png)\n\n<!-- table 2 -->\n\nCells: ")
-    assert spliced.endswith("\n\n<!-- end of table 2 -->\n")
+    assert all(f"| {drawn.number} | {drawn.caption} | drawn |" in text for drawn in DRAWINGS)
+    page_text = page.read_text()
+    assert page_text.startswith("![](paper_table_2.png)\n\n<!-- table 2 -->\n\nCells: ")
+    assert page_text.endswith("\n\n<!-- end of table 2 -->\n")
 
     # The store has every run: what is asked again is not simulated again.
     assert main([*arguments[:-6], "--table", "2"]) == 0
