@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from crawler2d.parameters.terrain import Terrain
 
-
 INERTIAS = (0.0, 0.005, 0.02, 0.04, 0.1, 0.2, 0.5)
 """[kg m^2] Rotor inertia of a track."""
 _SPEEDS = (0.1, 0.2, 0.4)
@@ -200,103 +199,6 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
     return rows
 
 
-def _row(case: Case, drive: str, units: Sequence[int], first: Sequence[int]) -> HighestEdge:
-    heights = [_UNIT * each for each in units]
-    ordered = sorted(heights)
-    rank = _rank(len(heights))
-    return HighestEdge(
-        model=case.model,
-        obstacle=case.obstacle,
-        speed=case.speed,
-        drive=drive,
-        height=float(np.median(heights)),
-        low=ordered[rank],
-        high=ordered[-1 - rank],
-        higher=sum(each > before for each, before in zip(units, first, strict=True)),
-        lower=sum(each < before for each, before in zip(units, first, strict=True)),
-        heights=tuple(round(each, 6) for each in heights),
-    )
-
-
-def _rank(count: int) -> int:
-    """Return which of so many values, from 0, bounds their median from below at 97.5 %."""
-    tail, rank = 0.5**count, 0
-    while tail + math.comb(count, rank + 1) * 0.5**count <= 0.025:
-        rank += 1
-        tail += math.comb(count, rank) * 0.5**count
-    return rank
-
-
-def _draws(plan: Plan) -> NDArray[np.float64]:
-    """[m] Draw what is added to the approach, and the phase: shape (repeats, 2)."""
-    outline = c2d.robots.engineer().outline
-    quarter = 0.125 * outline.axle_distance
-    numbers = np.random.default_rng(plan.seed).uniform(size=(plan.repeats, 2))
-    return np.column_stack(
-        [quarter * (2.0 * numbers[:, 0] - 1.0), outline.grouser_pitch * numbers[:, 1]]
-    )
-
-
-def _highest(
-    collector: Collector,
-    scenario: c2d.Scenario,
-    searches: Sequence[Generator[int, bool, int]],
-    draws: NDArray[np.float64],
-) -> list[int]:
-    """Return the highest edge that each draw clears, in units."""
-    whole = _core.Passed(scenario.to_json(), None)
-    acceleration = scenario.robot.drivetrain.max_acceleration
-    run_up = scenario.drive.speed**2 / (2.0 * acceleration) + _STEADY
-    asked = {draw: next(search) for draw, search in enumerate(searches)}
-    highest = [0] * len(searches)
-    while asked:
-        drawn = draws[list(asked)] + (run_up, 0.0)
-        values = np.column_stack([_UNIT * np.array(list(asked.values())), drawn])
-        checked = whole.varied([(json_pointer(path), False) for path in _FIELDS], values)
-        raise_first(checked)
-        rows = collector.rows(collector.batch(checked), lambda _more: None)
-        raise_first([row.error for row in rows])
-        tried, asked = list(asked), {}
-        for draw, row in zip(tried, rows, strict=True):
-            try:
-                asked[draw] = searches[draw].send(row.outcome == c2d.Outcome.CLEARED)
-            except StopIteration as end:
-                highest[draw] = end.value
-    return highest
-
-
-def _search(guess: int, reach: int) -> Generator[int, bool, int]:
-    """Ask whether heights are cleared, from a guess on; returns the highest that is."""
-    low, high = 0, _COUNT + 1
-    at = min(max(guess, 1), _COUNT)
-    while True:
-        if (yield at):
-            low = at
-        else:
-            high = at
-        if high - low == 1:
-            return low
-        if high > _COUNT:
-            at = min(low + reach, _COUNT)
-        elif low == 0:
-            at = max(high - reach, 1)
-        else:
-            at = (low + high) // 2
-        reach = min(2 * reach, _REACH)
-
-
-def _scenario(case: Case, drivetrain: c2d.Drivetrain) -> c2d.Scenario:
-    ground: Terrain = c2d.terrains.step(0.05, friction=_FRICTION)
-    if case.obstacle != "step":
-        ground = c2d.terrains.knife_edge(0.05, thickness=_THICKNESS, friction=_FRICTION)
-    return c2d.Scenario(
-        replace(c2d.robots.engineer(flippers=None, track=case.track), drivetrain=drivetrain),
-        ground,
-        drive=c2d.Drive(speed=case.speed),
-        duration=_STANDING + _TRAVEL / case.speed,
-    )
-
-
 def highest_edges_text(rows: Sequence[HighestEdge]) -> str:
     """Write one row per case and one column per drive."""
     drives = list(group_by(rows, "drive"))
@@ -367,6 +269,103 @@ def plot_drive(rows: Sequence[HighestEdge]) -> Figure:
         f"Engineer without flippers, friction 0.5: median and interval of {count} draws"
     )
     return figure
+
+
+def _draws(plan: Plan) -> NDArray[np.float64]:
+    """[m] Draw what is added to the approach, and the phase: shape (repeats, 2)."""
+    outline = c2d.robots.engineer().outline
+    quarter = 0.125 * outline.axle_distance
+    numbers = np.random.default_rng(plan.seed).uniform(size=(plan.repeats, 2))
+    return np.column_stack(
+        [quarter * (2.0 * numbers[:, 0] - 1.0), outline.grouser_pitch * numbers[:, 1]]
+    )
+
+
+def _scenario(case: Case, drivetrain: c2d.Drivetrain) -> c2d.Scenario:
+    ground: Terrain = c2d.terrains.step(0.05, friction=_FRICTION)
+    if case.obstacle != "step":
+        ground = c2d.terrains.knife_edge(0.05, thickness=_THICKNESS, friction=_FRICTION)
+    return c2d.Scenario(
+        replace(c2d.robots.engineer(flippers=None, track=case.track), drivetrain=drivetrain),
+        ground,
+        drive=c2d.Drive(speed=case.speed),
+        duration=_STANDING + _TRAVEL / case.speed,
+    )
+
+
+def _search(guess: int, reach: int) -> Generator[int, bool, int]:
+    """Ask whether heights are cleared, from a guess on; returns the highest that is."""
+    low, high = 0, _COUNT + 1
+    at = min(max(guess, 1), _COUNT)
+    while True:
+        if (yield at):
+            low = at
+        else:
+            high = at
+        if high - low == 1:
+            return low
+        if high > _COUNT:
+            at = min(low + reach, _COUNT)
+        elif low == 0:
+            at = max(high - reach, 1)
+        else:
+            at = (low + high) // 2
+        reach = min(2 * reach, _REACH)
+
+
+def _highest(
+    collector: Collector,
+    scenario: c2d.Scenario,
+    searches: Sequence[Generator[int, bool, int]],
+    draws: NDArray[np.float64],
+) -> list[int]:
+    """Return the highest edge that each draw clears, in units."""
+    whole = _core.Passed(scenario.to_json(), None)
+    acceleration = scenario.robot.drivetrain.max_acceleration
+    run_up = scenario.drive.speed**2 / (2.0 * acceleration) + _STEADY
+    asked = {draw: next(search) for draw, search in enumerate(searches)}
+    highest = [0] * len(searches)
+    while asked:
+        drawn = draws[list(asked)] + (run_up, 0.0)
+        values = np.column_stack([_UNIT * np.array(list(asked.values())), drawn])
+        checked = whole.varied([(json_pointer(path), False) for path in _FIELDS], values)
+        raise_first(checked)
+        rows = collector.rows(collector.batch(checked), lambda _more: None)
+        raise_first([row.error for row in rows])
+        tried, asked = list(asked), {}
+        for draw, row in zip(tried, rows, strict=True):
+            try:
+                asked[draw] = searches[draw].send(row.outcome == c2d.Outcome.CLEARED)
+            except StopIteration as end:
+                highest[draw] = end.value
+    return highest
+
+
+def _row(case: Case, drive: str, units: Sequence[int], first: Sequence[int]) -> HighestEdge:
+    heights = [_UNIT * each for each in units]
+    ordered = sorted(heights)
+    rank = _rank(len(heights))
+    return HighestEdge(
+        model=case.model,
+        obstacle=case.obstacle,
+        speed=case.speed,
+        drive=drive,
+        height=float(np.median(heights)),
+        low=ordered[rank],
+        high=ordered[-1 - rank],
+        higher=sum(each > before for each, before in zip(units, first, strict=True)),
+        lower=sum(each < before for each, before in zip(units, first, strict=True)),
+        heights=tuple(round(each, 6) for each in heights),
+    )
+
+
+def _rank(count: int) -> int:
+    """Return which of so many values, from 0, bounds their median from below at 97.5 %."""
+    tail, rank = 0.5**count, 0
+    while tail + math.comb(count, rank + 1) * 0.5**count <= 0.025:
+        rank += 1
+        tail += math.comb(count, rank) * 0.5**count
+    return rank
 
 
 def _run_drive(job: Job) -> None:

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from crawler2d.parameters.terrain import Terrain
 
-
 _STRONG = "torque doubled"
 """The other robot whose gear wheels are compared with round ones, too."""
 
@@ -193,41 +192,6 @@ def header(sweeps: Sweeps) -> str:
     )
 
 
-def _cross_obstacles(sweeps: Sweeps) -> tuple[dict[str, xarray.Dataset], str]:
-    """Run every model over every obstacle; returns the runs, and the header, which is printed."""
-    head = header(sweeps)
-    print(head, flush=True)
-    return {name: sweeps.on_obstacle(name) for name in sweeps.design.heights}, head
-
-
-def _report_stops(
-    job: Job, sweeps: Sweeps, runs: Mapping[str, xarray.Dataset], strong: xarray.Dataset
-) -> str:
-    """Write why runs stopped, with replays, as tables; returns the text."""
-    endings = [row for name, table in runs.items() for row in stops.stops(table, name)]
-    pairs = gear_pairs(sweeps.models)
-    wheels = [
-        *stops.compare_wheels(runs["step"], "step", pairs),
-        *stops.compare_wheels(strong, "step", pairs, _STRONG),
-    ]
-    replays = stops.write_replays(runs, job.out / "replays", threads=sweeps.threads)
-    job.write_rows({"stops": endings, "gear_against_round": wheels, "replays": replays})
-    return "\n\n\n".join(
-        (
-            stops.stops_text(endings),
-            stops.wheels_text(wheels),
-            stops.replays_text(replays, f"{job.out}/replays"),
-        )
-    )
-
-
-def _run_stops(job: Job) -> None:
-    sweeps = Sweeps(design=FULL if job.full else QUICK, **job.sampling)
-    runs, head = _cross_obstacles(sweeps)
-    strong = sweeps.on_other_robots([_STRONG]).sel(robot=_STRONG)
-    job.report("stops", _report_stops(job, sweeps, runs, strong), head)
-
-
 def _run_seizure(job: Job) -> None:
     begin = time.perf_counter()
     sweeps = Sweeps(design=FULL if job.full else QUICK, **job.sampling)
@@ -280,6 +244,41 @@ def _run_seizure(job: Job) -> None:
     print(f"{count + len(public)} runs in {took:.0f} s; tables and pictures are in {job.out}")
     if not job.full:
         print("This was a look at few heights; the whole study: make study ARGS=--full (minutes)")
+
+
+def _cross_obstacles(sweeps: Sweeps) -> tuple[dict[str, xarray.Dataset], str]:
+    """Run every model over every obstacle; returns the runs, and the header, which is printed."""
+    head = header(sweeps)
+    print(head, flush=True)
+    return {name: sweeps.on_obstacle(name) for name in sweeps.design.heights}, head
+
+
+def _report_stops(
+    job: Job, sweeps: Sweeps, runs: Mapping[str, xarray.Dataset], strong: xarray.Dataset
+) -> str:
+    """Write why runs stopped, with replays, as tables; returns the text."""
+    endings = [row for name, table in runs.items() for row in stops.stops(table, name)]
+    pairs = gear_pairs(sweeps.models)
+    wheels = [
+        *stops.compare_wheels(runs["step"], "step", pairs),
+        *stops.compare_wheels(strong, "step", pairs, _STRONG),
+    ]
+    replays = stops.write_replays(runs, job.out / "replays", threads=sweeps.threads)
+    job.write_rows({"stops": endings, "gear_against_round": wheels, "replays": replays})
+    return "\n\n\n".join(
+        (
+            stops.stops_text(endings),
+            stops.wheels_text(wheels),
+            stops.replays_text(replays, f"{job.out}/replays"),
+        )
+    )
+
+
+def _run_stops(job: Job) -> None:
+    sweeps = Sweeps(design=FULL if job.full else QUICK, **job.sampling)
+    runs, head = _cross_obstacles(sweeps)
+    strong = sweeps.on_other_robots([_STRONG]).sel(robot=_STRONG)
+    job.report("stops", _report_stops(job, sweeps, runs, strong), head)
 
 
 SEIZURE = Study(

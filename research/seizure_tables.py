@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from research.models import StudyModel
 
-
 _POST_THICKNESS = 0.020
 _POST_HEIGHTS = (0.03, 0.05, 0.08)
 
@@ -204,11 +203,6 @@ def phases(table: xarray.Dataset) -> list[Phase]:
         for count in table["robot_track_count"].to_numpy().tolist()
         for fraction in table["phase_fraction"].to_numpy().tolist()
     ]
-
-
-def _vibration(runs: xarray.Dataset) -> dict[str, float]:
-    names = ("vertical_acceleration", "angular_velocity")
-    return {name: runs[name].mean().item() for name in names}
 
 
 def write_runs(table: xarray.Dataset, path: Path) -> None:
@@ -423,18 +417,6 @@ def paper_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str
     )
 
 
-def _highest(climb: Climb) -> str:
-    if math.isnan(climb.highest):
-        return "none"
-    more = "+" if climb.highest == climb.tested else ""
-    return f"{mm(climb.highest)}{more}{gaps(climb.gaps)}"
-
-
-def _real_time_factor(climbs: Collection[Climb]) -> str:
-    simulated = sum(climb.simulated_time for climb in climbs)
-    return f"{simulated / sum(climb.computing_time for climb in climbs):.0f}"
-
-
 def plot_rates(cells: Sequence[Cell]) -> Figure:
     """Draw the rates of one robot with their intervals, one panel per model.
 
@@ -521,3 +503,20 @@ def plot_posts(runs: Mapping[tuple[float, bool], c2d.Run]) -> Figure:
         ax.label_outer()
         ax.get_legend().remove()
     return figure
+
+
+def _vibration(runs: xarray.Dataset) -> dict[str, float]:
+    names = ("vertical_acceleration", "angular_velocity")
+    return {name: runs[name].mean().item() for name in names}
+
+
+def _real_time_factor(climbs: Collection[Climb]) -> str:
+    simulated = sum(climb.simulated_time for climb in climbs)
+    return f"{simulated / sum(climb.computing_time for climb in climbs):.0f}"
+
+
+def _highest(climb: Climb) -> str:
+    if math.isnan(climb.highest):
+        return "none"
+    more = "+" if climb.highest == climb.tested else ""
+    return f"{mm(climb.highest)}{more}{gaps(climb.gaps)}"

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-
 CHAINS_FULL = replace(
     seizure.FULL, heights={"step": tuple(0.01 * tens for tens in range(3, 17))}, repeats=40
 )
@@ -257,6 +256,18 @@ def highest_steps(
     return rows
 
 
+def highest_steps_text(rows: Sequence[HighestStep]) -> str:
+    """Write one row per model and one column per robot, with what limits each."""
+    lines = []
+    for model, own in group_by(rows, "model").items():
+        paper = "-" if own[0].paper is None else f"{100 * own[0].paper:.0f}"
+        heights = (f"{100 * row.height:.0f}{'*' * bool(row.gaps)} {row.limit}" for row in own)
+        lines.append((model, paper, *heights))
+    head = ("highest step [cm], then what limits it", "paper", *group_by(rows, "robot"))
+    note = "* fewer than half of the runs clear some lower step; the paper's real robot: 20 cm"
+    return f"{aligned_table(head, lines)}\n{note}"
+
+
 def _limit(above: xarray.Dataset) -> str:
     """Say how most runs end that do not clear the first of some heights."""
     if not above.sizes["height"]:
@@ -270,18 +281,6 @@ def _limit(above: xarray.Dataset) -> str:
         if outcome != "cleared"
     )
     return endings.most_common(1)[0][0].replace("_", " ")
-
-
-def highest_steps_text(rows: Sequence[HighestStep]) -> str:
-    """Write one row per model and one column per robot, with what limits each."""
-    lines = []
-    for model, own in group_by(rows, "model").items():
-        paper = "-" if own[0].paper is None else f"{100 * own[0].paper:.0f}"
-        heights = (f"{100 * row.height:.0f}{'*' * bool(row.gaps)} {row.limit}" for row in own)
-        lines.append((model, paper, *heights))
-    head = ("highest step [cm], then what limits it", "paper", *group_by(rows, "robot"))
-    note = "* fewer than half of the runs clear some lower step; the paper's real robot: 20 cm"
-    return f"{aligned_table(head, lines)}\n{note}"
 
 
 def _run_chains(job: Job) -> None:

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-
 STOPS = tuple(str(outcome) for outcome in c2d.Outcome if outcome.is_stop)
 """Outcomes that are stops, by name."""
 
@@ -38,7 +37,6 @@ FIGURES = (
     *("freed_by_torque", "freed_by_friction", "unnatural_stops", "unnatural_passes"),
 )
 """Counts of `Stops` by which gear and round wheels are compared."""
-
 
 _PERCENTS = (
     *("jammed", "unnatural_stops", "freed_by_torque"),
@@ -126,6 +124,20 @@ class Replay:
     """Mechanism of the stop; "" if there is none."""
     sentence: str
     """The sentence of the diagnosis; "" if the run did not stop."""
+
+
+class _Place(NamedTuple):
+    """The place of a run in the sweeps."""
+
+    obstacle: str
+    model: str
+    height: float
+    repeat: int
+
+    def of(self, tables: Mapping[str, xarray.Dataset]) -> xarray.Dataset:
+        """Return the run that is there."""
+        where = {"track": self.model, "height": self.height, "repeat": self.repeat}
+        return tables[self.obstacle].sel(where)
 
 
 def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stops]:
@@ -314,38 +326,6 @@ def replays_text(replays: Iterable[Replay], folder: str) -> str:
     return "Runs to look at: one per kind of stop, and a belt:\n\n" + "\n".join(lines)
 
 
-class _Place(NamedTuple):
-    """The place of a run in the sweeps."""
-
-    obstacle: str
-    model: str
-    height: float
-    repeat: int
-
-    def of(self, tables: Mapping[str, xarray.Dataset]) -> xarray.Dataset:
-        """Return the run that is there."""
-        where = {"track": self.model, "height": self.height, "repeat": self.repeat}
-        return tables[self.obstacle].sel(where)
-
-
-def _clearest(tables: Mapping[str, xarray.Dataset]) -> list[_Place]:
-    """Choose one run for each outcome and mechanism of a stop."""
-    best: dict[tuple[str, str], tuple[tuple[bool, float], _Place]] = {}
-    for obstacle, table in tables.items():
-        outcomes = table["outcome"].to_numpy()
-        for index in np.argwhere(np.isin(outcomes, STOPS)):
-            run = table.isel(dict(zip(table["outcome"].dims, map(int, index), strict=True)))
-            ending = (run["outcome"].item(), run["mechanism"].item())
-            freed = any(run[f"freed_by_{short_name(trial)}"].item() for trial in TRIALS[:2])
-            clarity = (freed, run["intrusion_depth"].item())
-            # Of equal runs the last: models with wheels come after the mere forces.
-            if ending not in best or clarity >= best[ending][0]:
-                where = (run[name].item() for name in ("track", "height", "repeat"))
-                best[ending] = (clarity, _Place(obstacle, *where))
-    endings = sorted(best, key=lambda ending: (STOPS.index(ending[0]), ending[1]))
-    return [best[ending][1] for ending in endings]
-
-
 def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops:
     own = table.sel(track=model)
     outcomes = own["outcome"].to_numpy()
@@ -385,3 +365,21 @@ def _count(chosen: NDArray[np.bool_]) -> int:
 
 def _median(values: NDArray[np.float64]) -> float:
     return float(np.median(values)) if values.size else math.nan
+
+
+def _clearest(tables: Mapping[str, xarray.Dataset]) -> list[_Place]:
+    """Choose one run for each outcome and mechanism of a stop."""
+    best: dict[tuple[str, str], tuple[tuple[bool, float], _Place]] = {}
+    for obstacle, table in tables.items():
+        outcomes = table["outcome"].to_numpy()
+        for index in np.argwhere(np.isin(outcomes, STOPS)):
+            run = table.isel(dict(zip(table["outcome"].dims, map(int, index), strict=True)))
+            ending = (run["outcome"].item(), run["mechanism"].item())
+            freed = any(run[f"freed_by_{short_name(trial)}"].item() for trial in TRIALS[:2])
+            clarity = (freed, run["intrusion_depth"].item())
+            # Of equal runs the last: models with wheels come after the mere forces.
+            if ending not in best or clarity >= best[ending][0]:
+                where = (run[name].item() for name in ("track", "height", "repeat"))
+                best[ending] = (clarity, _Place(obstacle, *where))
+    endings = sorted(best, key=lambda ending: (STOPS.index(ending[0]), ending[1]))
+    return [best[ending][1] for ending in endings]

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-
 LEVEL = 0.05
 """[-] One less the confidence of the region."""
 
@@ -62,7 +61,6 @@ _DRAWS = 20_000
 
 _DIAGONAL = "diagonal barrier"
 
-
 _REAL_TORQUES = (6.0, 12.0)
 """[N m] Of a plausible drive: the preset's torque, and twice as much."""
 
@@ -74,7 +72,6 @@ _ABOVE = 0.25
 
 _WIDE = 16.0
 """[in] From which the legend fits in one line."""
-
 
 _POINT: dict[str, Any] = {
     "markersize": 8,
@@ -167,6 +164,62 @@ class Verdict:
     def is_left(self) -> bool:
         """Whether the table leaves this drive."""
         return self.probability >= LEVEL
+
+
+@dataclass(frozen=True, slots=True)
+class _Grid:
+    """Torques and inertias as tiles of equal size, for 0 has no logarithm."""
+
+    torques: tuple[float, ...]
+    inertias: tuple[float, ...]
+
+    def tile(self, torque: float, inertia: float) -> tuple[float, float]:
+        """Return where a drive lies."""
+        return _place(torque, self.torques), _place(inertia, self.inertias)
+
+    def prepare(self, ax: Axes, *, named: bool) -> None:
+        """Set limits and ticks; without names where a neighbour has them."""
+        across, up = len(self.torques), len(self.inertias)
+        ax.set(xlim=(-0.5, across - 0.5), ylim=(-0.5, up - 0.5))
+        ax.set_xticks(range(across), [f"{each:g}" for each in self.torques] if named else [])
+        ax.set_yticks(range(up), [])
+        ax.tick_params(length=0, labelsize=7)
+
+
+def _place(value: float, grid: tuple[float, ...]) -> float:
+    """Return where a value lies among tiles: in the logarithm, and 0 on its own tile."""
+    positive = [each for each in grid if each > 0.0]
+    first = len(grid) - len(positive)
+    if value <= 0.0 or not positive:
+        return 0.0
+    logs = [math.log(each) for each in positive]
+    if value < positive[0]:
+        decade = math.log(10.0) if len(logs) == 1 else logs[1] - logs[0]
+        return first - min((logs[0] - math.log(value)) / decade, 0.5)
+    return first + float(np.interp(math.log(value), logs, range(len(logs))))
+
+
+def _log_choices(hits: int) -> float:
+    return -math.log(PAPER_RUNS + 1) - _log_beta(hits + 1, PAPER_RUNS - hits + 1)
+
+
+def _log_beta(a: float, b: float) -> float:
+    return math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b)
+
+
+def _log_power(rate: float, hits: int) -> float:
+    return hits * math.log(rate) if hits else 0.0
+
+
+_EXACT = np.array(
+    [
+        _log_choices(hits)
+        + _log_power(hits / PAPER_RUNS, hits)
+        + _log_power(1.0 - hits / PAPER_RUNS, PAPER_RUNS - hits)
+        for hits in range(PAPER_RUNS + 1)
+    ]
+)
+"""[-] The logarithm of the chance of 0 to 20 runs under the rate that they give."""
 
 
 def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
@@ -294,10 +347,6 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
     return f"{head}\n\n{markdown_table(columns, table)}"
 
 
-def _drive(each: Verdict) -> str:
-    return f"{each.torque:g} N m, {each.inertia:g} kg m^2"
-
-
 def real_inertias() -> tuple[float, float]:
     """[kg m^2] Return the least and the greatest rotor inertia of a plausible drive.
 
@@ -308,26 +357,6 @@ def real_inertias() -> tuple[float, float]:
     radius = outline.rear_radius - outline.grouser_height
     fast, slow = TABLE_1.declared_max_speed / radius, TABLE_1.max_speed / radius
     return RUN_UP[0] * _REAL_TORQUES[0] / fast, RUN_UP[1] * _REAL_TORQUES[1] / slow
-
-
-@dataclass(frozen=True, slots=True)
-class _Grid:
-    """Torques and inertias as tiles of equal size, for 0 has no logarithm."""
-
-    torques: tuple[float, ...]
-    inertias: tuple[float, ...]
-
-    def tile(self, torque: float, inertia: float) -> tuple[float, float]:
-        """Return where a drive lies."""
-        return _place(torque, self.torques), _place(inertia, self.inertias)
-
-    def prepare(self, ax: Axes, *, named: bool) -> None:
-        """Set limits and ticks; without names where a neighbour has them."""
-        across, up = len(self.torques), len(self.inertias)
-        ax.set(xlim=(-0.5, across - 0.5), ylim=(-0.5, up - 0.5))
-        ax.set_xticks(range(across), [f"{each:g}" for each in self.torques] if named else [])
-        ax.set_yticks(range(up), [])
-        ax.tick_params(length=0, labelsize=7)
 
 
 def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> Figure:
@@ -381,144 +410,6 @@ def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> Figur
     return figure
 
 
-def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> None:
-    grid.prepare(ax, named=False)
-    ax.set_facecolor("white")
-    for row in rows:
-        if row.count:
-            rate = row.cleared / row.count
-            side = "below" if rate < hits / PAPER_RUNS else "above"
-            color = _COLORS.get(cell_verdict(row, hits), _COLORS[side])
-            _tile(ax, grid.tile(row.torque, row.inertia), color, f"{row.cleared}/{row.count}")
-
-
-def _draw_verdicts(ax: Axes, verdicts: Sequence[Verdict], grid: _Grid) -> None:
-    grid.prepare(ax, named=True)
-    for each in verdicts:
-        straight = _COLORS["open"] if each.straight >= LEVEL else _EXCLUDED
-        color = GREEN if each.is_left else straight
-        chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
-        text = f"{each.differing} differ\np {chance}"
-        _tile(ax, grid.tile(each.torque, each.inertia), color, text, above=_ABOVE)
-    corners = zip(_REAL_TORQUES, real_inertias(), strict=True)
-    (left, low), (right, high) = (grid.tile(*corner) for corner in corners)
-    xs, ys = (left, right, right, left, left), (low, low, high, high, low)
-    ax.plot(xs, ys, color=VIOLET, linewidth=2.0)
-    ax.plot(*grid.tile(PRESET.max_torque, 0.0), "o", **_POINT)
-    # The motors of the three wheels that the model has on a side.
-    public = PUBLIC.on(study_robot(track="public")).drivetrain
-    ax.plot(*grid.tile(public.max_torque, 0.0), "^", **_POINT)
-
-
-def _tile(ax: Axes, place: tuple[float, float], color: str, text: str, above: float = 0.0) -> None:
-    x, y = place
-    ax.fill(
-        (x - 0.5, x + 0.5, x + 0.5, x - 0.5),
-        (y - 0.5, y - 0.5, y + 0.5, y + 0.5),
-        facecolor=color,
-        edgecolor="white",
-        linewidth=0.8,
-    )
-    ax.text(x, y + above, text, fontsize=7.5, ha="center", va="center", color=BLACK)
-
-
-def _explain(figure: Figure, verdicts: Sequence[Verdict]) -> None:
-    drives = len({(each.torque, each.inertia, each.friction) for each in verdicts})
-    left = sum(each.is_left for each in verdicts)
-    figure.suptitle(
-        f"Which drive gives the paper's Table 2? {drives} were tried, with the gears read in two"
-        f" ways: {left or 'none'} left",
-        x=0.01,
-        y=0.985,
-        ha="left",
-        fontsize=13,
-    )
-    patches, lines = extra("matplotlib.patches", "plot"), extra("matplotlib.lines", "plot")
-    words = ("cleared / runs: agrees with the paper", "open", "below the paper", "above it")
-    handles = [
-        patches.Patch(color=color, label=text)
-        for color, text in zip(_COLORS.values(), words, strict=True)
-    ]
-    handles += [
-        lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
-        lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),
-        patches.Patch(fill=False, edgecolor=VIOLET, linewidth=2.0, label="plausible real drive"),
-        patches.Patch(color=GREEN, label="bottom row: left by all nine cells (p at least 0.05)"),
-        patches.Patch(color=_COLORS["open"], label="left without the diagonal barrier"),
-        patches.Patch(color=_EXCLUDED, label="excluded"),
-    ]
-    figure.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(0.005, 0.972),
-        ncols=len(handles) if figure.get_figwidth() > _WIDE else 5,
-        fontsize=8,
-        frameon=False,
-    )
-
-
-def _name_inertias(ax: Axes, grid: _Grid, title: str) -> None:
-    ax.set_yticks(range(len(grid.inertias)), [f"{each:g}" for each in grid.inertias])
-    ax.set_ylabel(f"{title}\nrotor [kg m$^2$]", fontsize=7)
-
-
-def _place(value: float, grid: tuple[float, ...]) -> float:
-    """Return where a value lies among tiles: in the logarithm, and 0 on its own tile."""
-    positive = [each for each in grid if each > 0.0]
-    first = len(grid) - len(positive)
-    if value <= 0.0 or not positive:
-        return 0.0
-    logs = [math.log(each) for each in positive]
-    if value < positive[0]:
-        decade = math.log(10.0) if len(logs) == 1 else logs[1] - logs[0]
-        return first - min((logs[0] - math.log(value)) / decade, 0.5)
-    return first + float(np.interp(math.log(value), logs, range(len(logs))))
-
-
-def _add_options(parser: argparse.ArgumentParser) -> None:
-    for name, what, kind, count in (
-        ("torques", "[N m] of a sprocket", float, "+"),
-        ("inertias", "[kg m^2] of the rotor of a track", float, "+"),
-        ("frictions", "between track and ground", float, "+"),
-        ("runs", f"runs a cell of {', '.join(COLUMNS)}", int, len(COLUMNS)),
-        ("most", "runs a cell of drives that these leave", int, None),
-    ):
-        default = getattr(_DEFAULT, name)
-        values = " ".join(f"{each:g}" for each in np.atleast_1d(default))
-        text = f"{what} (default: {values})"
-        parser.add_argument(f"--{name}", type=kind, nargs=count, default=default, help=text)
-    add_page_option(parser, "a page in Markdown whose part to replace")
-
-
-def _run_chart(job: Job) -> None:
-    options = job.options
-    drives = Drives(
-        torques=tuple(sorted(options.torques)),
-        inertias=tuple(sorted(options.inertias)),
-        frictions=tuple(options.frictions),
-        runs=tuple(options.runs),
-        most=options.most,
-    )
-    pages = Pages(job, Work(store=job.out / STORE, **job.sampling))
-    for rows in drive_cells(pages.work, drives):
-        print(_write_chart(rows, pages), flush=True)
-
-
-def _write_chart(rows: Sequence[DriveCell], pages: Pages) -> str:
-    """Write tables and picture of all runs so far, and the part of the page."""
-    verdicts = [
-        compare_drive(own, table, reading)
-        for reading, table in TABLES.items()
-        for own in group_by(rows, "friction", "torque", "inertia").values()
-    ]
-    verdicts.sort(key=lambda each: each.friction)
-    pages.write_rows(drives=rows, drives_joint=verdicts)
-    pages.draw(drives=partial(plot_drives, rows, verdicts))
-    text = drives_text(rows, verdicts)
-    pages.splice({"drives": text})
-    return text
-
-
 def _cross(work: Work, setting: Setting, runs: Sequence[int]) -> list[DriveCell]:
     print(f"Table 2, {setting.name}", flush=True)
     return [
@@ -564,27 +455,133 @@ def _chances(cleared: int, count: int) -> NDArray[np.float64]:
     return chances
 
 
-def _log_choices(hits: int) -> float:
-    return -math.log(PAPER_RUNS + 1) - _log_beta(hits + 1, PAPER_RUNS - hits + 1)
+def _drive(each: Verdict) -> str:
+    return f"{each.torque:g} N m, {each.inertia:g} kg m^2"
 
 
-def _log_beta(a: float, b: float) -> float:
-    return math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b)
+def _name_inertias(ax: Axes, grid: _Grid, title: str) -> None:
+    ax.set_yticks(range(len(grid.inertias)), [f"{each:g}" for each in grid.inertias])
+    ax.set_ylabel(f"{title}\nrotor [kg m$^2$]", fontsize=7)
 
 
-def _log_power(rate: float, hits: int) -> float:
-    return hits * math.log(rate) if hits else 0.0
-
-
-_EXACT = np.array(
-    [
-        _log_choices(hits)
-        + _log_power(hits / PAPER_RUNS, hits)
-        + _log_power(1.0 - hits / PAPER_RUNS, PAPER_RUNS - hits)
-        for hits in range(PAPER_RUNS + 1)
+def _explain(figure: Figure, verdicts: Sequence[Verdict]) -> None:
+    drives = len({(each.torque, each.inertia, each.friction) for each in verdicts})
+    left = sum(each.is_left for each in verdicts)
+    figure.suptitle(
+        f"Which drive gives the paper's Table 2? {drives} were tried, with the gears read in two"
+        f" ways: {left or 'none'} left",
+        x=0.01,
+        y=0.985,
+        ha="left",
+        fontsize=13,
+    )
+    patches, lines = extra("matplotlib.patches", "plot"), extra("matplotlib.lines", "plot")
+    words = ("cleared / runs: agrees with the paper", "open", "below the paper", "above it")
+    handles = [
+        patches.Patch(color=color, label=text)
+        for color, text in zip(_COLORS.values(), words, strict=True)
     ]
-)
-"""[-] The logarithm of the chance of 0 to 20 runs under the rate that they give."""
+    handles += [
+        lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
+        lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),
+        patches.Patch(fill=False, edgecolor=VIOLET, linewidth=2.0, label="plausible real drive"),
+        patches.Patch(color=GREEN, label="bottom row: left by all nine cells (p at least 0.05)"),
+        patches.Patch(color=_COLORS["open"], label="left without the diagonal barrier"),
+        patches.Patch(color=_EXCLUDED, label="excluded"),
+    ]
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.005, 0.972),
+        ncols=len(handles) if figure.get_figwidth() > _WIDE else 5,
+        fontsize=8,
+        frameon=False,
+    )
+
+
+def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> None:
+    grid.prepare(ax, named=False)
+    ax.set_facecolor("white")
+    for row in rows:
+        if row.count:
+            rate = row.cleared / row.count
+            side = "below" if rate < hits / PAPER_RUNS else "above"
+            color = _COLORS.get(cell_verdict(row, hits), _COLORS[side])
+            _tile(ax, grid.tile(row.torque, row.inertia), color, f"{row.cleared}/{row.count}")
+
+
+def _tile(ax: Axes, place: tuple[float, float], color: str, text: str, above: float = 0.0) -> None:
+    x, y = place
+    ax.fill(
+        (x - 0.5, x + 0.5, x + 0.5, x - 0.5),
+        (y - 0.5, y - 0.5, y + 0.5, y + 0.5),
+        facecolor=color,
+        edgecolor="white",
+        linewidth=0.8,
+    )
+    ax.text(x, y + above, text, fontsize=7.5, ha="center", va="center", color=BLACK)
+
+
+def _draw_verdicts(ax: Axes, verdicts: Sequence[Verdict], grid: _Grid) -> None:
+    grid.prepare(ax, named=True)
+    for each in verdicts:
+        straight = _COLORS["open"] if each.straight >= LEVEL else _EXCLUDED
+        color = GREEN if each.is_left else straight
+        chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
+        text = f"{each.differing} differ\np {chance}"
+        _tile(ax, grid.tile(each.torque, each.inertia), color, text, above=_ABOVE)
+    corners = zip(_REAL_TORQUES, real_inertias(), strict=True)
+    (left, low), (right, high) = (grid.tile(*corner) for corner in corners)
+    xs, ys = (left, right, right, left, left), (low, low, high, high, low)
+    ax.plot(xs, ys, color=VIOLET, linewidth=2.0)
+    ax.plot(*grid.tile(PRESET.max_torque, 0.0), "o", **_POINT)
+    # The motors of the three wheels that the model has on a side.
+    public = PUBLIC.on(study_robot(track="public")).drivetrain
+    ax.plot(*grid.tile(public.max_torque, 0.0), "^", **_POINT)
+
+
+def _run_chart(job: Job) -> None:
+    options = job.options
+    drives = Drives(
+        torques=tuple(sorted(options.torques)),
+        inertias=tuple(sorted(options.inertias)),
+        frictions=tuple(options.frictions),
+        runs=tuple(options.runs),
+        most=options.most,
+    )
+    pages = Pages(job, Work(store=job.out / STORE, **job.sampling))
+    for rows in drive_cells(pages.work, drives):
+        print(_write_chart(rows, pages), flush=True)
+
+
+def _write_chart(rows: Sequence[DriveCell], pages: Pages) -> str:
+    """Write tables and picture of all runs so far, and the part of the page."""
+    verdicts = [
+        compare_drive(own, table, reading)
+        for reading, table in TABLES.items()
+        for own in group_by(rows, "friction", "torque", "inertia").values()
+    ]
+    verdicts.sort(key=lambda each: each.friction)
+    pages.write_rows(drives=rows, drives_joint=verdicts)
+    pages.draw(drives=partial(plot_drives, rows, verdicts))
+    text = drives_text(rows, verdicts)
+    pages.splice({"drives": text})
+    return text
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    for name, what, kind, count in (
+        ("torques", "[N m] of a sprocket", float, "+"),
+        ("inertias", "[kg m^2] of the rotor of a track", float, "+"),
+        ("frictions", "between track and ground", float, "+"),
+        ("runs", f"runs a cell of {', '.join(COLUMNS)}", int, len(COLUMNS)),
+        ("most", "runs a cell of drives that these leave", int, None),
+    ):
+        default = getattr(_DEFAULT, name)
+        values = " ".join(f"{each:g}" for each in np.atleast_1d(default))
+        text = f"{what} (default: {values})"
+        parser.add_argument(f"--{name}", type=kind, nargs=count, default=default, help=text)
+    add_page_option(parser, "a page in Markdown whose part to replace")
 
 
 CHART = Study(text=__doc__ or "", run=_run_chart, full=None, add_options=_add_options)

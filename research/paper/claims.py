@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from research.paper.design import Setting, Work
     from research.paper.figures import Shaking
 
-
 _OFTEN, _SELDOM = 0.9, 0.1
 """[-] A model clears an obstacle from the first rate on, and does not up to the second."""
 _ALIKE = 0.9
@@ -122,6 +121,27 @@ class Claim:
         return "not shown" if None in held else "does not hold"
 
 
+_NOT_HERE = (
+    Claim(
+        section="4, Table 3",
+        text="the models turn at 2 to 4 revolutions a minute, the robot at 8.5",
+        experiment="a side view has no turning",
+    ),
+    Claim(
+        section="4.1.1",
+        text="models with gears correspond to the real robot's dynamics and geometry better",
+        experiment="no run of the real robot is given to compare with, but four figures; Table 3"
+        " has them",
+    ),
+    Claim(
+        section="2.3",
+        text="segmental tracks are of low stability",
+        experiment="stability of a simulator is one of its engine and its steps: chains of this"
+        " project's own engine say nothing of others",
+    ),
+)
+
+
 def check_clears(
     what: str, counts: Iterable[tuple[str, int, int]], *, never: bool = False
 ) -> Check:
@@ -171,27 +191,6 @@ def check_fewer(what: str, less: tuple[str, int, int], more: tuple[str, int, int
         result=f"{counts}: difference {difference:+.2f} ({low:+.2f} to {high:+.2f})",
         holds=True if high < 0.0 else None if difference < 0.0 else False,
     )
-
-
-_NOT_HERE = (
-    Claim(
-        section="4, Table 3",
-        text="the models turn at 2 to 4 revolutions a minute, the robot at 8.5",
-        experiment="a side view has no turning",
-    ),
-    Claim(
-        section="4.1.1",
-        text="models with gears correspond to the real robot's dynamics and geometry better",
-        experiment="no run of the real robot is given to compare with, but four figures; Table 3"
-        " has them",
-    ),
-    Claim(
-        section="2.3",
-        text="segmental tracks are of low stability",
-        experiment="stability of a simulator is one of its engine and its steps: chains of this"
-        " project's own engine say nothing of others",
-    ),
-)
 
 
 def claims(work: Work, shaken: Sequence[Shaking]) -> list[Claim]:
@@ -246,93 +245,6 @@ def gears_end_seizure(work: Work) -> Claim:
         experiment=f"edges {mm(_HEIGHT)} mm high, no flippers, {STRONG.max_torque:g} N m a"
         f" sprocket; a belt with grousers clears {belts}",
         checks=tuple(checks),
-    )
-
-
-def _chains_stick(work: Work) -> Claim:
-    """Drive a chain over small sharp edges, which fit between its shoes."""
-    heights = (0.005, 0.010, 0.020, 0.040)
-    edges = {
-        f"{1e3 * height:.0f} mm": c2d.terrains.knife_edge(height, thickness=0.002)
-        for height in heights
-    }
-    chain, *others = ("chain of 22 shoes", "belt with grousers")
-    checks = []
-    for setting in (PRESET, STRONG):
-        runs = _cross(work, setting, edges, [chain, *others])
-        own = runs.sel(model=chain)
-        ends = own["outcome"].to_numpy()
-        pinched = int((own["mechanism"].to_numpy() == "pinched").sum())
-        stuck = int((own["jammed"].to_numpy() & (ends != "cleared")).sum())
-        counts = ", ".join(str(_count(runs, chain, edge, edge)) for edge in edges)
-        checks.append(
-            Check(
-                what=f"some runs of the chain end in a jam ({setting.max_torque:g} N m)",
-                result=f"{stuck} of {ends.size} jammed, {pinched} pinched between shoes; cleared:"
-                f" {counts}",
-                holds=stuck > 0,
-            )
-        )
-    return Claim(
-        section="2.3",
-        text="a chain sticks when a sharp or small obstacle gets between its segments",
-        experiment="edges 2 mm thick and 5 to 40 mm high, no flippers, chain of 22 shoes",
-        checks=tuple(checks),
-    )
-
-
-def _mass_sticks(work: Work) -> Claim:
-    """Drive lines of round wheels over step fields with twice the mass, and motors to match."""
-    names = ("line of 3", "line of 5")
-    motors = replace(PRESET, max_torque=2.0 * PRESET.max_torque)
-    models = models_of(names, motors)
-    for name in names:
-        light = models[name]["robot"]
-        models[f"{name}, twice the mass"] = {"robot": _heavier(light, 1.0)}
-        models[f"{name}, twice mass and torque"] = {"robot": _heavier(light, 2.0)}
-    runs = _over_fields(work, models, motors.friction)
-    return Claim(
-        section="2.2",
-        text="a heavy robot sticks more on a line of wheels",
-        experiment=f"random step fields, flippers, {motors.max_torque:g} N m a sprocket",
-        checks=tuple(
-            check_fewer(
-                f"{name}: {what} clears less",
-                _count(runs, f"{name}, {what}", _FIELD),
-                _count(runs, name, _FIELD),
-            )
-            for what in ("twice the mass", "twice mass and torque")
-            for name in names
-        ),
-    )
-
-
-def _lines_are_flat(work: Work) -> tuple[Claim, Claim]:
-    """Drive lines of 3, 5 and 9 round wheels over step fields, with two kinds of motors."""
-    names = ("line of 3", "line of 5", "line of 9")
-    more, flat = [], []
-    for setting in (PRESET, STRONG):
-        runs = _over_fields(work, models_of(names, setting), setting.friction)
-        counts = [_count(runs, name, _FIELD) for name in names]
-        motors = f"{setting.max_torque:g} N m"
-        more.append(check_fewer(f"3 wheels clear less than 9 ({motors})", counts[0], counts[-1]))
-        flat += [
-            check_clears(f"{count.label} does not clear ({motors})", [count], never=True)
-            for count in counts
-        ]
-    return (
-        Claim(
-            section="2.2",
-            text="more wheels in a line solve the sticking in part",
-            experiment="random step fields, flippers, round wheels; what they cost is below",
-            checks=tuple(more),
-        ),
-        Claim(
-            section="2.2",
-            text="lines of wheels are suitable only for flat ground",
-            experiment="the same runs",
-            checks=tuple(flat),
-        ),
     )
 
 
@@ -432,43 +344,6 @@ def unevenness(robot: c2d.Robot) -> tuple[float, float]:
     return float(gaps.max()), float(gaps.mean())
 
 
-def _costs(work: Work) -> list[Claim]:
-    """Compare real-time factors: gears and round wheels, all round and in a line, and a chain."""
-    names = {name for *_, pairs in _COSTS for pair in pairs for name in pair}
-    models, base = (
-        models_of(sorted(names), flippers=False),
-        climb(c2d.terrains.flat(), flippers=False),
-    )
-    solvers = {
-        "default accuracy": base,
-        "steps of 1 ms": base.replace({"solver.time_step": _STEP}),
-    }
-    factors = {
-        name: measure_factors(work, scenario, models)["factor"].sel(motion="driving")
-        for name, scenario in solvers.items()
-    }
-
-    def compare(one: str, other: str, solver: str, relation: str) -> Check:
-        ours, theirs = (factors[solver].sel(model=name).item() for name in (one, other))
-        return Check(
-            what=f"{one} is {relation} {other} ({solver})",
-            result=f"{ours:.0f} and {theirs:.0f}",
-            holds=(ours < _ALIKE * theirs) == (relation == _SLOWER),
-        )
-
-    return [
-        Claim(
-            section=section,
-            text=text,
-            experiment="real-time factors on level ground, no flippers, one thread of this machine",
-            checks=tuple(
-                compare(*pair, solver, relation) for pair, solver in product(pairs, solvers)
-            ),
-        )
-        for section, text, relation, pairs in _COSTS
-    ]
-
-
 def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Claim]:
     """Compare the shaking of gears in the runs of eq. (1), and with that of round wheels."""
     by_place = {(each.count, round(6 * each.fraction)): each for each in shaken}
@@ -517,6 +392,127 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
     )
 
 
+def claims_text(claims: Sequence[Claim]) -> str:
+    """List the claims with their verdicts."""
+    rows = [
+        (str(number), claim.text, f"**{claim.verdict}**") for number, claim in enumerate(claims, 1)
+    ]
+    return markdown_table(("", "claim", "verdict"), rows)
+
+
+def checks_text(claims: Sequence[Claim]) -> str:
+    """List the experiment and the checks behind each verdict."""
+    verdicts = {True: "yes", False: "no", None: "not shown"}
+    rows = []
+    for number, claim in enumerate(claims, 1):
+        rows.append((str(number), f"section {claim.section}: {claim.experiment}", "", ""))
+        rows += [
+            (str(number), check.what, verdicts[check.holds], check.result) for check in claim.checks
+        ]
+    head = ("claim", "experiment, then what it must show", "shown", "found")
+    return f"Counts are runs that cleared of all.\n\n{markdown_table(head, rows)}"
+
+
+def _chains_stick(work: Work) -> Claim:
+    """Drive a chain over small sharp edges, which fit between its shoes."""
+    heights = (0.005, 0.010, 0.020, 0.040)
+    edges = {
+        f"{1e3 * height:.0f} mm": c2d.terrains.knife_edge(height, thickness=0.002)
+        for height in heights
+    }
+    chain, *others = ("chain of 22 shoes", "belt with grousers")
+    checks = []
+    for setting in (PRESET, STRONG):
+        runs = _cross(work, setting, edges, [chain, *others])
+        own = runs.sel(model=chain)
+        ends = own["outcome"].to_numpy()
+        pinched = int((own["mechanism"].to_numpy() == "pinched").sum())
+        stuck = int((own["jammed"].to_numpy() & (ends != "cleared")).sum())
+        counts = ", ".join(str(_count(runs, chain, edge, edge)) for edge in edges)
+        checks.append(
+            Check(
+                what=f"some runs of the chain end in a jam ({setting.max_torque:g} N m)",
+                result=f"{stuck} of {ends.size} jammed, {pinched} pinched between shoes; cleared:"
+                f" {counts}",
+                holds=stuck > 0,
+            )
+        )
+    return Claim(
+        section="2.3",
+        text="a chain sticks when a sharp or small obstacle gets between its segments",
+        experiment="edges 2 mm thick and 5 to 40 mm high, no flippers, chain of 22 shoes",
+        checks=tuple(checks),
+    )
+
+
+def _cross(work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]) -> Found:
+    """Drive layouts without flippers over some grounds."""
+    models = models_of(names, setting, flippers=False)
+    return _success(work, grounds, models, work.design.claim_repeats)
+
+
+def _success(
+    work: Work, grounds: Mapping[str, Any], models: Mapping[str, Any], repeats: int
+) -> Found:
+    base = climb(next(iter(grounds.values())))
+    return work.count(
+        c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
+    )
+
+
+def _count(runs: Found, model: str, ground: str, label: str = "") -> _Count:
+    own = runs.sel(model=model, terrain=ground)
+    cleared = int((own["outcome"].to_numpy() == "cleared").sum())
+    return _Count(label or model, cleared, own["count"].item())
+
+
+def _mass_sticks(work: Work) -> Claim:
+    """Drive lines of round wheels over step fields with twice the mass, and motors to match."""
+    names = ("line of 3", "line of 5")
+    motors = replace(PRESET, max_torque=2.0 * PRESET.max_torque)
+    models = models_of(names, motors)
+    for name in names:
+        light = models[name]["robot"]
+        models[f"{name}, twice the mass"] = {"robot": _heavier(light, 1.0)}
+        models[f"{name}, twice mass and torque"] = {"robot": _heavier(light, 2.0)}
+    runs = _over_fields(work, models, motors.friction)
+    return Claim(
+        section="2.2",
+        text="a heavy robot sticks more on a line of wheels",
+        experiment=f"random step fields, flippers, {motors.max_torque:g} N m a sprocket",
+        checks=tuple(
+            check_fewer(
+                f"{name}: {what} clears less",
+                _count(runs, f"{name}, {what}", _FIELD),
+                _count(runs, name, _FIELD),
+            )
+            for what in ("twice the mass", "twice mass and torque")
+            for name in names
+        ),
+    )
+
+
+def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> Found:
+    """Drive robots over as many fields as Table 2 has, and the same ones."""
+    field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
+    return _success(work, field, models, work.design.field_repeats)
+
+
+def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:
+    """Double all masses of a robot; multiply the torque of its motors and of its arms' with it."""
+    arms = robot.flippers
+    return replace(
+        robot,
+        mass=2.0 * robot.mass,
+        moment_of_inertia=2.0 * robot.moment_of_inertia,
+        track_mass=2.0 * robot.track_mass,
+        drivetrain=replace(robot.drivetrain, max_torque=motors * robot.drivetrain.max_torque),
+        flippers=None
+        if arms is None
+        else replace(arms, mass=2.0 * arms.mass, torque_limit=motors * arms.torque_limit),
+    )
+
+
 def _odometry_of_gears(work: Work) -> Claim:
     """Measure how far the odometry of gears is off, with the radius that the paper takes."""
     runs = _drive_level(
@@ -540,27 +536,6 @@ def _odometry_of_gears(work: Work) -> Claim:
     )
 
 
-def claims_text(claims: Sequence[Claim]) -> str:
-    """List the claims with their verdicts."""
-    rows = [
-        (str(number), claim.text, f"**{claim.verdict}**") for number, claim in enumerate(claims, 1)
-    ]
-    return markdown_table(("", "claim", "verdict"), rows)
-
-
-def checks_text(claims: Sequence[Claim]) -> str:
-    """List the experiment and the checks behind each verdict."""
-    verdicts = {True: "yes", False: "no", None: "not shown"}
-    rows = []
-    for number, claim in enumerate(claims, 1):
-        rows.append((str(number), f"section {claim.section}: {claim.experiment}", "", ""))
-        rows += [
-            (str(number), check.what, verdicts[check.holds], check.result) for check in claim.checks
-        ]
-    head = ("claim", "experiment, then what it must show", "shown", "found")
-    return f"Counts are runs that cleared of all.\n\n{markdown_table(head, rows)}"
-
-
 def _drive_level(work: Work, study: Any, names: Sequence[str]) -> Found:
     """Drive layouts without flippers over level ground."""
     base = c2d.Scenario(
@@ -571,43 +546,67 @@ def _drive_level(work: Work, study: Any, names: Sequence[str]) -> Found:
     return work.count(runs)
 
 
-def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:
-    """Double all masses of a robot; multiply the torque of its motors and of its arms' with it."""
-    arms = robot.flippers
-    return replace(
-        robot,
-        mass=2.0 * robot.mass,
-        moment_of_inertia=2.0 * robot.moment_of_inertia,
-        track_mass=2.0 * robot.track_mass,
-        drivetrain=replace(robot.drivetrain, max_torque=motors * robot.drivetrain.max_torque),
-        flippers=None
-        if arms is None
-        else replace(arms, mass=2.0 * arms.mass, torque_limit=motors * arms.torque_limit),
+def _lines_are_flat(work: Work) -> tuple[Claim, Claim]:
+    """Drive lines of 3, 5 and 9 round wheels over step fields, with two kinds of motors."""
+    names = ("line of 3", "line of 5", "line of 9")
+    more, flat = [], []
+    for setting in (PRESET, STRONG):
+        runs = _over_fields(work, models_of(names, setting), setting.friction)
+        counts = [_count(runs, name, _FIELD) for name in names]
+        motors = f"{setting.max_torque:g} N m"
+        more.append(check_fewer(f"3 wheels clear less than 9 ({motors})", counts[0], counts[-1]))
+        flat += [
+            check_clears(f"{count.label} does not clear ({motors})", [count], never=True)
+            for count in counts
+        ]
+    return (
+        Claim(
+            section="2.2",
+            text="more wheels in a line solve the sticking in part",
+            experiment="random step fields, flippers, round wheels; what they cost is below",
+            checks=tuple(more),
+        ),
+        Claim(
+            section="2.2",
+            text="lines of wheels are suitable only for flat ground",
+            experiment="the same runs",
+            checks=tuple(flat),
+        ),
     )
 
 
-def _cross(work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]) -> Found:
-    """Drive layouts without flippers over some grounds."""
-    models = models_of(names, setting, flippers=False)
-    return _success(work, grounds, models, work.design.claim_repeats)
-
-
-def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> Found:
-    """Drive robots over as many fields as Table 2 has, and the same ones."""
-    field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
-    return _success(work, field, models, work.design.field_repeats)
-
-
-def _success(
-    work: Work, grounds: Mapping[str, Any], models: Mapping[str, Any], repeats: int
-) -> Found:
-    base = climb(next(iter(grounds.values())))
-    return work.count(
-        c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
+def _costs(work: Work) -> list[Claim]:
+    """Compare real-time factors: gears and round wheels, all round and in a line, and a chain."""
+    names = {name for *_, pairs in _COSTS for pair in pairs for name in pair}
+    models, base = (
+        models_of(sorted(names), flippers=False),
+        climb(c2d.terrains.flat(), flippers=False),
     )
+    solvers = {
+        "default accuracy": base,
+        "steps of 1 ms": base.replace({"solver.time_step": _STEP}),
+    }
+    factors = {
+        name: measure_factors(work, scenario, models)["factor"].sel(motion="driving")
+        for name, scenario in solvers.items()
+    }
 
+    def compare(one: str, other: str, solver: str, relation: str) -> Check:
+        ours, theirs = (factors[solver].sel(model=name).item() for name in (one, other))
+        return Check(
+            what=f"{one} is {relation} {other} ({solver})",
+            result=f"{ours:.0f} and {theirs:.0f}",
+            holds=(ours < _ALIKE * theirs) == (relation == _SLOWER),
+        )
 
-def _count(runs: Found, model: str, ground: str, label: str = "") -> _Count:
-    own = runs.sel(model=model, terrain=ground)
-    cleared = int((own["outcome"].to_numpy() == "cleared").sum())
-    return _Count(label or model, cleared, own["count"].item())
+    return [
+        Claim(
+            section=section,
+            text=text,
+            experiment="real-time factors on level ground, no flippers, one thread of this machine",
+            checks=tuple(
+                compare(*pair, solver, relation) for pair, solver in product(pairs, solvers)
+            ),
+        )
+        for section, text, relation, pairs in _COSTS
+    ]

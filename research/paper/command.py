@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.found import Found
 
-
 STORE = "paper.sqlite"
 """The file that keeps every run."""
 
@@ -205,16 +204,6 @@ def add_page_option(parser: argparse.ArgumentParser, text: str) -> None:
     parser.add_argument("--into", type=Path, default=None, help=text)
 
 
-def _add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--table",
-        choices=sorted({part.option for part in _PARTS}),
-        action="append",
-        help="only this part; may be given more than once",
-    )
-    add_page_option(parser, "a page in Markdown whose tables to replace")
-
-
 def _run_paper(job: Job) -> None:
     wanted = job.options.table
     work = Work(store=job.out / STORE, design=FULL if job.full else QUICK, **job.sampling)
@@ -230,6 +219,16 @@ def _run_paper(job: Job) -> None:
     processor = (time.process_time() - processor) / 60.0
     cost = f"{elapsed:.1f} min, {processor:.1f} min of processor time"
     print(f"\n{pages.text}\n\n{cost}; tables, pictures and replays are in {job.out}")
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--table",
+        choices=sorted({part.option for part in _PARTS}),
+        action="append",
+        help="only this part; may be given more than once",
+    )
+    add_page_option(parser, "a page in Markdown whose tables to replace")
 
 
 PAPER = Study(

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
     from research.paper.design import Work
 
-
 _PHASED: dict[str, Track] = {
     **{
         f"line of {count}": c2d.LineOfWheels(count, wheel=c2d.GearWheel())
@@ -53,7 +52,6 @@ _SHAKEN = tuple((count, fraction) for count in (3, 5) for fraction in (0.0, 1.0 
 _STEADY, _LOOK = 3.0, 2.0
 # [m] Corners that are as far from the axle lie this close to one circle.
 _SAME = 1e-9
-
 
 _COLUMNS = 3
 _STUCK = {4: LWA_ROUND, 5: CWA_ROUND}
@@ -315,6 +313,13 @@ def figures_text(stuck: Sequence[Stuck], folder: str) -> str:
     return "\n\n".join((table, *diagnoses))
 
 
+def _runs(robots: list[c2d.Robot], work: Work) -> list[c2d.Run]:
+    drive, ground = c2d.Drive(speed=TABLE_1.max_speed), c2d.terrains.flat()
+    duration = _STEADY + _LOOK  # too short to reach the goal, where a run would end
+    scenarios = [c2d.Scenario(robot, ground, drive=drive, duration=duration) for robot in robots]
+    return c2d.simulate_many(scenarios, threads=work.threads, progress=False)
+
+
 def _grouser_angle(outline: ArrayLike) -> tuple[float, float]:
     """Read the angle of a grouser off the outline of a gear, and theta of eq. (1).
 
@@ -336,13 +341,6 @@ def _grouser_angle(outline: ArrayLike) -> tuple[float, float]:
     angles = np.arctan2(tips[:, 1], tips[:, 0])
     middle = float(np.angle(np.mean(np.exp(1j * grousers * angles)))) / grousers
     return middle, 2.0 * math.pi / grousers
-
-
-def _runs(robots: list[c2d.Robot], work: Work) -> list[c2d.Run]:
-    drive, ground = c2d.Drive(speed=TABLE_1.max_speed), c2d.terrains.flat()
-    duration = _STEADY + _LOOK  # too short to reach the goal, where a run would end
-    scenarios = [c2d.Scenario(robot, ground, drive=drive, duration=duration) for robot in robots]
-    return c2d.simulate_many(scenarios, threads=work.threads, progress=False)
 
 
 def _draw_wheel(ax: Axes, robot: c2d.Robot, *, with_angle: bool) -> None:

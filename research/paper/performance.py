@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
     from research.paper.design import Work
 
-
 _PAPER = {row.model: row for row in TABLE_3}
 ROWS = {reading.row: reading.layout for reading in READINGS if reading.row in _PAPER}
 """By row of Table 3, the layout that stands for it."""
@@ -342,11 +341,11 @@ def computing_text(factors: Sequence[Computing]) -> str:
     )
 
 
+def _deg(angle: float) -> str:
+    return f"{math.degrees(angle):.0f}"
+
+
 def _height(row: Height) -> str:
     if math.isnan(row.highest):
         return f"none; {row.limit.replace('_', ' ')}"
     return f"{mm(row.highest)}{gaps(row.gaps)}; {row.limit.replace('_', ' ')}"
-
-
-def _deg(angle: float) -> str:
-    return f"{math.degrees(angle):.0f}"

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
     from research.paper.design import Work
 
-
 FIELDS: Mapping[str, RandomStepfield] = {
     "random RSE": c2d.terrains.random_stepfield(),
     "horizontal barrier": c2d.terrains.stepfield_with_barrier(),
@@ -403,16 +402,16 @@ def _failure(row: Row, setting: Setting, model: str, obstacle: str, repeat: int)
     )
 
 
-def _before(runs: Iterable[Failure]) -> int:
-    return sum(run.place == "before" for run in runs)
+def _comparison(row: Comparison) -> str:
+    points = [f"{100 * each:+.0f}" for each in (row.difference, row.low, row.high)]
+    return (
+        f"{row.cleared} of {row.count}; {points[0]} ({points[1]} to {points[2]}): **{row.verdict}**"
+    )
 
 
 def _endings(names: Iterable[str]) -> str:
     return counts(name.replace("_", " ") for name in names)
 
 
-def _comparison(row: Comparison) -> str:
-    points = [f"{100 * each:+.0f}" for each in (row.difference, row.low, row.high)]
-    return (
-        f"{row.cleared} of {row.count}; {points[0]} ({points[1]} to {points[2]}): **{row.verdict}**"
-    )
+def _before(runs: Iterable[Failure]) -> int:
+    return sum(run.place == "before" for run in runs)
