@@ -312,6 +312,13 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
     assert "Gear wheels beside round ones on steps" in text
     for picture in ("rates.png", "phases.png", "posts.png"):
         assert (out / picture).stat().st_size > 10_000
+    # The answer comes first.
+    assert text.index("Greatest height [mm]") < text.index("other outcomes")
+
+    assert main(["stops", "--out", str(tmp_path / "stops")]) == 0
+    for name in ("stops.csv", "gear_against_round.csv", "replays.csv"):
+        assert (tmp_path / "stops" / name).read_bytes() == (out / name).read_bytes()
+    assert "Runs to look at" in (tmp_path / "stops" / "stops.txt").read_text(encoding="utf-8")
 
 
 def test_ctrl_c_ends_the_study_with_its_own_exit_code(

@@ -11,6 +11,7 @@ import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from research import steps
 from research.__main__ import main
+from research.models import study_models
 from research.seizure import Sweeps
 from research.seizure_tables import Cell
 from research.steps import (
@@ -20,6 +21,8 @@ from research.steps import (
     chain_models,
     chain_steps,
     chain_steps_text,
+    highest_steps,
+    highest_steps_text,
     plot_chains,
 )
 from tests.shared import ROBOT
@@ -116,3 +119,17 @@ def test_the_table_of_steps_has_its_units() -> None:
     assert "64.00 to 64.48" in line
     assert "0.50 (0.40 to 0.60)" in line
     assert line.split()[-1] == "54"
+
+
+def test_flippers_at_both_ends_carry_a_belt_over_a_higher_step() -> None:
+    belt = {"belt": study_models()["belt"]}
+    rows = highest_steps((0.04, 0.24, 0.6), models=belt, repeats=1)
+    bare, _, _, both = rows
+    assert [row.robot for row in rows] == ["no flippers", "in front", "behind", "both ends"]
+    assert (bare.height, both.height) == (0.04, 0.24)
+    assert all(row.gaps == 0 and row.paper is None for row in rows)
+    assert both.limit not in ("", "cleared", "none up to here")
+    head, _, line, note = highest_steps_text(rows).splitlines()
+    assert head.split()[-5:] == ["in", "front", "behind", "both", "ends"]
+    assert line.startswith("belt")
+    assert note.startswith("* fewer than half")
