@@ -1,4 +1,4 @@
-"""The project's own studies: the seizure study, four others, and the paper reproduced."""
+"""The project's own studies, and the paper that introduced gear wheels, reproduced."""
 
 from __future__ import annotations
 
