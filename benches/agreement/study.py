@@ -20,18 +20,17 @@ from benches.shared.measuring import quantiles, table
 from benches.shared.results import Results, progress, read, write
 from crawler2d import Scenario, Solver, Start, newcombe_paired
 from crawler2d.parameters.track import Track
-from research.markdown import markdown_table
-from research.models import study_models
-from research.sweeps import FULL
+from research.models import FRICTION, study_models, study_robot
+from research.seizure import FULL
+from research.tables import markdown_table
 
 _ENGINES = ["own", "rapier"]
-_FRICTION = 0.9  # of the study
 _THICKNESS = {"barrier": 0.1, "knife edge": 0.01}  # [m] of the study
 
 
 def study(repeats: int, path: Path) -> None:
     """Run the cells of every obstacle in both engines."""
-    robot = c2d.robots.engineer(flippers=None).without_rotors()
+    robot = study_robot()
     results = Results(path, [])
     for obstacle, heights in list(FULL.heights.items())[len(results.data) :]:
         base = _on(robot, obstacle, heights[0])
@@ -51,8 +50,8 @@ def read_cells(path: Path) -> list[dict[str, Any]]:
 
 def at_height(model: str, obstacle: str, height: float) -> Scenario:
     """Return the scenario of a cell, before its draws."""
-    robot = c2d.robots.engineer(flippers=None).without_rotors()
-    track = _tracks(robot.outline.axle_distance)[model]
+    robot = study_robot()
+    track = _tracks()[model]
     return _on(robot.with_track(track), obstacle, height)
 
 
@@ -345,7 +344,7 @@ def pinched(starts: int, path: Path) -> None:
 
 
 def _on_knife_edge(height: float, speed: float, approach: float) -> Scenario:
-    robot = c2d.robots.engineer(flippers=None).without_rotors()
+    robot = study_robot()
     edge = c2d.terrains.knife_edge(height, thickness=0.01, friction=0.9)
     start = c2d.Start(approach=approach)
     small_wheels = robot.with_track(c2d.CircumferentialWheels(24))

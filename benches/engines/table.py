@@ -27,7 +27,7 @@ from benches.engines.runs import (
 from benches.shared.measuring import quantiles, rate
 from benches.shared.results import read, table_of
 from crawler2d import newcombe
-from research.markdown import markdown_table
+from research.tables import markdown_table
 
 
 def apart(one: Sequence[Run], other: Sequence[Run]) -> bool:

@@ -20,7 +20,7 @@ from benches.shared.results import Results, progress
 from crawler2d import Diagnosis, Scenario, simulate_many
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
-from research.markdown import markdown_table
+from research.tables import markdown_table
 
 Jam = Mapping[str, Any]
 """A jam with its runs by yaw."""

@@ -19,7 +19,7 @@ from benches.shared.results import Results, processes, read
 from crawler2d import Robot, Scenario, audit, simulate_many
 from crawler2d.parameters.terrain import Flat
 from crawler2d.variation.variability import of_start
-from research.markdown import markdown_table
+from research.tables import markdown_table
 
 _FOLDER = Path(__file__).parent
 RESULTS, PREDICTIONS = _FOLDER / "results", _FOLDER / "predictions.json.xz"

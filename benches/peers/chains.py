@@ -43,6 +43,7 @@ from benches.shared.results import progress
 from crawler2d import Scenario, Solver
 from crawler2d.parameters.terrain import Points, Terrain
 from crawler2d.parameters.track import Track
+from research.models import study_robot
 
 if TYPE_CHECKING:
     from benches.adapters.chipmunk import Chain

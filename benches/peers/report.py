@@ -6,7 +6,7 @@ from typing import Any
 
 from benches.adapters.planar import ENGINES
 from benches.shared.measuring import millimetres, sentence, table
-from research.markdown import markdown_table
+from research.tables import markdown_table
 
 Rows = list[dict[str, Any]]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from benches.scaling.scenes import BLOCKS, CUT, FLAT, LEVEL, STEP
 from benches.shared.measuring import sentence, table
-from research.markdown import markdown_table
+from research.tables import markdown_table
 
 
 class Curve(NamedTuple):

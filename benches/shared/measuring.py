@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from crawler2d import wilson
-from research.markdown import markdown_table, spliced
+from research.tables import markdown_table, splice
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -126,7 +126,7 @@ def write_parts(
     if report is not None:
         report.write_text(text, encoding="utf-8", newline="\n")
     if page is not None:
-        written = spliced(page.read_text(encoding="utf-8"), parts)
+        written = splice(page.read_text(encoding="utf-8"), parts)
         page.write_text(written, encoding="utf-8", newline="\n")
 
 

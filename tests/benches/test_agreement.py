@@ -9,8 +9,8 @@ import crawler2d as c2d
 from benches.agreement import pairs, study
 from benches.agreement.pairs import MODELS, parts, random_scenario
 from benches.shared.results import read
-from research.markdown import spliced
-from research.sweeps import FULL
+from research.seizure import FULL
+from research.tables import splice
 
 
 def test_every_model_is_drawn_and_rapier_holds_it() -> None:
@@ -74,7 +74,7 @@ def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "study.json.xz"
-    monkeypatch.setattr(study, "_tracks", lambda _: {"line of 3": c2d.LineOfWheels(3)})
+    monkeypatch.setattr(study, "_tracks", lambda: {"line of 3": c2d.LineOfWheels(3)})
     few = dataclasses.replace(FULL, heights={"step": (0.04, 0.15), "knife edge": (0.02,)})
     monkeypatch.setattr(study, "FULL", few)
     study.study(1, path)
@@ -93,7 +93,7 @@ def test_the_page_has_the_table_of_the_results() -> None:
     page = (Path(__file__).parents[2] / "docs" / "studies" / "agreement.md").read_text("utf-8")
     assert "<!-- end of study -->" in page
     table = study.study_table(read(pairs.RESULTS / "study.json.xz"))
-    assert spliced(page, {"study": table}) == page
+    assert splice(page, {"study": table}) == page
 
 
 def test_rapier_holds_rows_gears_and_wheels_all_round_of_the_study() -> None:

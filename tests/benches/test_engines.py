@@ -296,7 +296,7 @@ def test_the_page_has_the_tables_of_the_results() -> None:
     files = [file_runs.RESULTS / f"{name}.json.xz" for name in file_runs.ENGINES]
     parts = {**table.parts(read_cells(), running.RESULTS), **file_runs.parts(files)}
     assert set(re.findall("<!-- end of (.+) -->", page)) <= set(parts)
-    assert spliced(page, parts) == page
+    assert splice(page, parts) == page
 
 
 def test_a_run_that_is_there_is_not_made_again(

@@ -103,7 +103,7 @@ def test_the_page_has_a_place_for_each_part_of_the_report() -> None:
     assert report.speeds(rows) == {"lwa5-round-step": {"pymunk": 500.0}}
     parts = report.render({"machine": MACHINE, "wall": 60.0, "accuracy": rows})
     assert "| lwa5-round-step | 500x |  | none |  |  |" in parts["speeds"]
-    assert all(parts[name] in spliced(page, parts) for name in ("measured", "speeds"))
+    assert all(parts[name] in splice(page, parts) for name in ("measured", "speeds"))
 
 
 def test_the_report_says_what_is_met_and_what_is_not() -> None:

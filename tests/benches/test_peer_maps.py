@@ -11,7 +11,7 @@ from benches.adapters.planar import Scene, load_scene
 from benches.peers import maps
 from benches.peers.maps import scene_of
 from crawler2d.parameters.scenario import Scenario
-from research.markdown import spliced
+from research.tables import splice
 
 NOMINAL, BASE = load_scene("lwa5-round-step"), nominal("lwa5-round-step")
 
@@ -93,7 +93,7 @@ def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> 
     }
     parts = maps.render(found)
     page = (Path(__file__).parents[2] / "docs" / "studies" / "maps.md").read_text("utf-8")
-    assert all(text in spliced(page, parts) for text in parts.values())
+    assert all(text in splice(page, parts) for text in parts.values())
     text = " ".join(" ".join(parts.values()).split())
     assert "100 runs a second" in text
     assert "3.0 % of the time" in text

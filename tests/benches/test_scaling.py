@@ -112,7 +112,7 @@ def test_the_page_has_a_place_for_each_part() -> None:
     page = (Path(__file__).parents[2] / "docs" / "studies" / "scaling.md").read_text("utf-8")
     parts = report.render(result())
     shown = [parts["measured"], parts["wheels"]]
-    assert all(text in spliced(page, parts) for text in shown)
+    assert all(text in splice(page, parts) for text in shown)
 
 
 def prose(text: str) -> Sequence[str]:
