@@ -135,9 +135,8 @@ __all__ = [
 
 __version__ = str(build_info()["version"])
 
-# Rooms that not every user enters are imported when they are first named: they take as long as the
-# rest.
-_WHEN_NAMED = {
+# Imported when first named: they take as long as the rest, and not every user needs them.
+_LAZY = {
     "Audit": "crawler2d.audits.audit",
     "audit": "crawler2d.audits.audit",
     "Reading": "crawler2d.reading.reading",
@@ -157,16 +156,16 @@ _WHEN_NAMED = {
 }
 
 
-if not TYPE_CHECKING:  # which would let any name pass
+if not TYPE_CHECKING:  # mypy would accept any name
 
     def __getattr__(name: str) -> object:
-        """Import what has not been named before."""
-        if name not in _WHEN_NAMED:
+        """Import a name on first use."""
+        if name not in _LAZY:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{beyond(name)}")
-        module = import_module(_WHEN_NAMED[name])
-        found = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
-        globals()[name] = found
-        return found
+        module = import_module(_LAZY[name])
+        value = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

@@ -1,12 +1,12 @@
-"""What can go wrong, as exceptions.
+"""Exceptions and warnings of the package; all of them keep their attributes when pickled.
 
-Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`: an interrupt must
-not be swallowed by ``except Exception``. It is defined with the runs, which it holds. A
-`ScenarioWarning` stops nothing. All of them keep their attributes when pickled.
+Every exception is a `Crawler2dError`, except `BatchInterrupted`, which is defined with the runs
+that it holds: ``except Exception`` must not swallow an interrupt.
 """
 
 from __future__ import annotations
 
+import re
 import reprlib
 import sys
 import warnings
@@ -53,8 +53,18 @@ def _short(value: object) -> object:
     return _Short().repr(value)
 
 
+# Up to a colon, a semicolon or a hint; brackets may hold any of these.
+_WRONG = re.compile(
+    r"(?:\{.*?\}|\[.*?\]|\((?!did you mean).*?\)|(?![:;] | \(did you mean).)*", re.DOTALL
+)
+
+
 class Crawler2dError(Exception):
     """Base of every error that crawler2d raises."""
+
+    def __str__(self) -> str:
+        """Return the message, without further arguments."""
+        return str(self.args[0]) if self.args else ""
 
 
 class ScenarioError(Crawler2dError, ValueError):
@@ -65,15 +75,18 @@ class ScenarioError(Crawler2dError, ValueError):
     path : str
         Dotted path of the field, such as ``robot.track.count``.
     value : object
-        The value found there. Anything but a number, a string or None is kept as its text; long
+        Its value. Anything but a number, a string or None is kept as its text; long
         texts are shortened, and so are whole numbers too large for a float.
     rule : str
-        The rule it breaks: "must be ...".
+        The rule it breaks, "must be ...", and after a colon or semicolon what to write instead;
+        the message has the value between the two.
 
     Examples
     --------
     >>> print(ScenarioError("robot.mass", -1.0, "must be > 0 kg"))
     robot.mass must be > 0 kg, got -1.0
+    >>> print(ScenarioError("robot.drivetrain", "fast", "must be a Drivetrain: write Drivetrain()"))
+    robot.drivetrain must be a Drivetrain, got fast: write Drivetrain()
     """
 
     path: str
@@ -88,14 +101,16 @@ class ScenarioError(Crawler2dError, ValueError):
         self.rule = rule
 
     def __str__(self) -> str:
-        """Return path, rule and value in one line."""
-        return f"{self.path} {self.rule}, got {self.value}"
+        """Say in one line what is wrong, the value, and what to write instead."""
+        match = _WRONG.match(self.rule)
+        end = match.end() if match else len(self.rule)
+        return f"{self.path} {self.rule[:end]}, got {self.value}{self.rule[end:]}"
 
 
 class ArgumentError(ScenarioError, TypeError):
     """A function or class was called with a keyword that it does not take.
 
-    The rule lists those that it takes, and has the nearest.
+    The rule lists those that it takes, and suggests the nearest.
 
     Examples
     --------
@@ -109,16 +124,16 @@ class ArgumentError(ScenarioError, TypeError):
 
 
 class ScenarioWarning(UserWarning):
-    """A scenario is legal but unlikely to be what was meant; it is simulated as it is.
+    """A scenario is legal but probably not what was meant; it is simulated as it is.
 
-    Also if a run sank deeper into the ground than the softness of its contacts explains.
+    Also issued if a run sank deeper into the ground than the softness of its contacts explains.
 
     Parameters
     ----------
     path : str
         Dotted path of the field, such as ``terrain.height``, or the metric ``max_penetration``.
     value : object
-        The value found there.
+        Its value.
     reason : str
         Why it is doubtful: "is usually ...".
 
@@ -164,10 +179,6 @@ class SimulationDiverged(Crawler2dError, RuntimeError):
         self.step = step
         self.body = body
 
-    def __str__(self) -> str:
-        """Return the message."""
-        return str(self.args[0])
-
 
 class RunUnfinished(Crawler2dError, RuntimeError):
     """The batch was interrupted before this run was finished; it has no result."""
@@ -179,7 +190,7 @@ class LimitError(Crawler2dError, ValueError):
     Parameters
     ----------
     message : str
-        What is too large, the limit, and how to set it.
+        What is too large, and the limit and how to set it.
     needed : int, optional
         [bytes] Memory that the request needs, approximately.
     left : int, optional
@@ -194,10 +205,6 @@ class LimitError(Crawler2dError, ValueError):
         self.needed = needed
         self.left = left
 
-    def __str__(self) -> str:
-        """Return the message."""
-        return str(self.args[0])
-
 
 class StoreError(Crawler2dError, OSError):
     """A store of runs cannot be read or written; the runs that it holds are kept.
@@ -210,26 +217,22 @@ class StoreError(Crawler2dError, OSError):
     Attributes
     ----------
     runs : list of Run
-        What a sweep or a study had simulated when its store failed: one a scenario of the last
-        batch, in order. An unfinished run has a `RunUnfinished` as its `error`. `table` arranges
-        them. Empty if nothing was simulated.
+        What a sweep or a study had simulated when its store failed: one per scenario of the last
+        batch, in order; `table` arranges them. An unfinished run has a `RunUnfinished` as its
+        `error`. Empty if nothing was simulated.
     """
 
     def __init__(self, message: str) -> None:
         super().__init__(message)
         self.runs: list[Any] = []
 
-    def __str__(self) -> str:
-        """Return the message."""
-        return str(self.args[0])
-
 
 class InternalError(Crawler2dError, RuntimeError):
-    """A fault of crawler2d itself or of the process it runs in, not of the scenario."""
+    """A fault of crawler2d itself, or of its process, not of the scenario."""
 
 
 def own_error(error: BaseException) -> Crawler2dError:
-    """Return an error of the package, made of any other, such as a MemoryError, if it is none."""
+    """Return an error of the package; wrap any other, such as a MemoryError."""
     if isinstance(error, Crawler2dError):
         return error
     return InternalError(f"{type(error).__name__}: {error}")

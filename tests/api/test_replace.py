@@ -140,20 +140,20 @@ def test_the_original_does_not_change(scenario: Scenario) -> None:
     [
         (
             "robot.track.cuont",
-            "a known field: LineOfWheels has count, wheel_radius, wheel, as_track "
+            "a known field, got 1.0: LineOfWheels has count, wheel_radius, wheel, as_track "
             "(did you mean count?)",
         ),
         ("Duration", "(did you mean duration?)"),
-        ("terrain.height", "a known field: Flat has length, friction"),
-        ("robot.track.kind", "a known field: LineOfWheels has"),
-        ("robot.track.wheel.radius", "a known field: RoundWheel has no fields"),
+        ("terrain.height", "a known field, got 1.0: Flat has length, friction"),
+        ("robot.track.kind", "a known field, got 1.0: LineOfWheels has"),
+        ("robot.track.wheel.radius", "a known field, got 1.0: RoundWheel has no fields"),
         ("goal.x", "goal = 1.0 has no fields"),
         ("robot.flippers.length", "robot.flippers = None has no fields"),
-        ("", "a known field: Scenario has"),
-        ("robot..mass", "a known field: Robot has"),
+        ("", "a known field, got 1.0: Scenario has"),
+        ("robot..mass", "a known field, got 1.0: Robot has"),
         ("robot.center_of_mass[2]", "robot.center_of_mass has 2 elements, counted from 0"),
         ("robot.center_of_mass[-1]", "robot.center_of_mass has 2 elements, counted from 0"),
-        ("robot.center_of_mass[00]", "a known field: Robot has"),
+        ("robot.center_of_mass[00]", "a known field, got 1.0: Robot has"),
         ("robot.center_of_mass[x]", "(did you mean center_of_mass?)"),
         ("robot.center_of_mass[0", "(did you mean center_of_mass?)"),
         ("robot.center_of_mass.x", "robot.center_of_mass = (0.0, 0.02) has no fields"),
@@ -164,7 +164,7 @@ def test_the_original_does_not_change(scenario: Scenario) -> None:
         ("robot.name[0]", "robot.name = 'engineer' has no elements"),
         ("drive.schedule[0]", "drive.schedule = None has no elements"),
         ("robot[0]", "robot = Robot("),
-        ("[0]", "a known field: Scenario has"),
+        ("[0]", "a known field, got 1.0: Scenario has"),
         (3, "path must be a string"),
     ],
 )

@@ -165,7 +165,7 @@ def test_what_is_not_allowed_is_named_with_its_expression_file_and_line(
         read(tmp_path, text, "cart.xacro")
     assert str(caught.value) == (
         "part.xacro:3: p.__class__ must have only plain data, operators and known functions, or be"
-        " trusted: trusted=True allows it, got .__class__"
+        " trusted, got .__class__: trusted=True allows it"
     )
     assert standing.asked
 

@@ -214,8 +214,8 @@ def test_what_needs_an_include_that_was_left_out_says_so(tmp_path: Path) -> None
         read(tmp_path, text, "cart.xacro")
     assert re.fullmatch(
         r"cart\.xacro:1 must be xacro that expands, for which it may need what was left out,"
-        r" \$\(find parts\)/sizes\.xacro \(cart\.xacro:1\): put the file there, or say by"
-        r" packages=\{name: folder\} where its package is, got name 'hull_mass' is not defined .*",
+        r" \$\(find parts\)/sizes\.xacro \(cart\.xacro:1\), got name 'hull_mass' is not defined .*:"
+        r" put the file there, or say by packages=\{name: folder\} where its package is",
         str(caught.value),
     )
 
@@ -422,7 +422,7 @@ def test_settings_that_differ_are_not_taken(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("hull: 3")
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "a.yaml").write_text("\nhull: 4")
-    rule = r"files of settings differ: hull is 3 in a\.yaml:1, 4 in b/a\.yaml:2, got hull$"
+    rule = r"got hull; files of settings differ: hull is 3 in a\.yaml:1, 4 in b/a\.yaml:2$"
     with pytest.raises(c2d.ScenarioError, match=rule):
         with_arguments(tmp_path, "hull")
     assert with_arguments(tmp_path, "hull", arguments={"hull": 8}).robot.mass == 12.0

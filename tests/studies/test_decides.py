@@ -228,7 +228,7 @@ def test_where_nothing_varies_the_unknowns_decide_everything() -> None:
 
 def test_all_elements_of_a_path_move_together_along_its_range() -> None:
     path = "robot.belly[*][1]"
-    unknowns = Variation.of(SLOPE, {path: c2d.shifted(-0.01, 0.02)}, [])
+    unknowns = Variation.read(SLOPE, {path: c2d.shifted(-0.01, 0.02)}, [])
     over = range_of(unknowns, path, SLOPE)
     assert ROBOT.belly is not None
     assert over.first == pytest.approx((ROBOT.belly[0][1] - 0.01, ROBOT.belly[0][1] + 0.02))
@@ -250,7 +250,7 @@ def test_the_range_of_an_unbounded_distribution_is_1_to_99_percent() -> None:
         "solver.iterations": c2d.uniform_int(1, 6),
     }
     behind = SLOPE.replace({"robot.center_of_mass[0]": -0.01})
-    unknowns = Variation.of(behind, given, [])
+    unknowns = Variation.read(behind, given, [])
     mass, centre, count = (range_of(unknowns, path, behind) for path in given)
     assert mass.first == pytest.approx((18.674, 23.326), abs=0.001)
     assert centre.first == (-0.02, -0.005)  # from low to high

@@ -97,8 +97,8 @@ def test_ties_go_by_the_order_of_the_labels() -> None:
 
 
 def test_every_run_has_its_own_draw_of_what_varies_and_of_what_is_not_known() -> None:
-    unknowns = Variation.of(BASE, UNKNOWN, ["terrain"], "unknown")
-    variation = Variation.of(BASE, {"drive.speed": c2d.scaled(0.9, 1.1)}, ["terrain"])
+    unknowns = Variation.read(BASE, UNKNOWN, ["terrain"], "unknown")
+    variation = Variation.read(BASE, {"drive.speed": c2d.scaled(0.9, 1.1)}, ["terrain"])
     world = Planner(variation, Variation({}), 3).worlds(BASE, ("a",))[0]
     planner = FreshDraws(variation, unknowns, 3)
     whole = [each.text for each in planner.runs(world, 0, 6).checked]  # type: ignore[union-attr]

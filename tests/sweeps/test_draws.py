@@ -34,7 +34,7 @@ def planned(cell: Scenario, variation: Variation, repeats: int) -> Plan:
 
 def drawn(cell: Scenario, *, base: Scenario | None = None, swept: tuple[str, ...] = ()) -> Any:
     """The default draws of 200 repeats, shape (200,) by path."""
-    plan = planned(cell, Variation.of(base or cell, None, swept), 200)
+    plan = planned(cell, Variation.read(base or cell, None, swept), 200)
     assert all(isinstance(each, Passed) for each in plan.checked)
     return plan.drawn
 
@@ -46,7 +46,7 @@ def value(distribution: Any, number: float, own: Any = None) -> float:
 
 def draw(cell: Scenario, vary: Any, number: float = 0.5) -> dict[str, float]:
     """What one draw gives, by path of a field."""
-    variation = Variation.of(cell, vary, [])
+    variation = Variation.read(cell, vary, [])
     found = variation.draw(cell, {path: np.array([number]) for path in vary})
     return {path: float(values[0]) for path, values in found.values.items()}
 
@@ -68,7 +68,7 @@ def test_a_shifted_value_lies_about_the_scenarios_own() -> None:
     above = shifted(-0.04, 0.04, least=0.0)
     assert [value(above, n, own=0.01) for n in (0.0, 1.0)] == pytest.approx([0.0, 0.08])
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    share = shifted(-0.5, 0.5, of="robot.outline.axle_distance").on(base)
+    share = shifted(-0.5, 0.5, of="robot.outline.axle_distance").resolve(base)
     assert value(share, 1.0, own=0.0) == pytest.approx(0.5 * ROBOT.outline.axle_distance)
 
 
@@ -77,7 +77,7 @@ def test_a_frozen_distribution_of_scipy_gives_its_quantiles() -> None:
     vary = {"terrain.friction": stats.norm(0.8, 0.05), "terrain.seed": stats.randint(3, 5)}
     assert draw(base, vary) == {"terrain.friction": pytest.approx(0.8), "terrain.seed": 3.0}
     assert draw(base, vary, 0.9)["terrain.seed"] == 4.0
-    text = Variation.of(base, vary, []).text
+    text = Variation.read(base, vary, []).text
     assert text == "terrain.friction: norm(0.8, 0.05); terrain.seed: randint(3, 5)"
     with pytest.raises(c2d.ScenarioError, match="uniform_int"):
         draw(base, {"terrain.seed": stats.norm(0.8, 0.05)})
@@ -186,14 +186,14 @@ def test_levels_are_taken_in_turn_and_what_is_slow_takes_long() -> None:
         "drive.speed": Levels((0.1, 0.5, 1.0), spread=0.02),
         "duration": Levels((10.0, 2.0, 1.0), along="drive.speed"),
     }
-    variation = Variation.of(base, vary, [])
+    variation = Variation.read(base, vary, [])
     plan = planned(base, variation, 12)
     speeds, durations = plan.drawn["drive.speed"] / base.drive.speed, plan.drawn["duration"]
     assert speeds == pytest.approx(np.tile([0.1, 0.5, 1.0], 4), rel=0.02)
     assert len(set(speeds.tolist())) == 12  # each with a scatter of its own
     assert durations.tolist() == [30.0, 6.0, 3.0] * 4
     # Whatever was planned before, the next runs go on in turn; samples begin one further each.
-    planner = Planner(variation, Variation.of(base, {"gravity": uniform(9.0, 10.0)}, []), 0, 3)
+    planner = Planner(variation, Variation.read(base, {"gravity": uniform(9.0, 10.0)}, []), 0, 3)
     for k, world in enumerate(planner.worlds(base, [])):
         whole = planner.runs(world, 0, 5).drawn["duration"]
         assert whole.tolist() == ([30.0, 6.0, 3.0] * 3)[k : k + 5]
@@ -202,7 +202,7 @@ def test_levels_are_taken_in_turn_and_what_is_slow_takes_long() -> None:
 
 def test_what_a_study_doubles_is_doubled_at_every_level() -> None:
     fast = Scenario(ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(speed=0.8))
-    variation = Variation.of(fast, {"drive.speed": Levels((0.1, 1.0))}, [])
+    variation = Variation.read(fast, {"drive.speed": Levels((0.1, 1.0))}, [])
     planner = scaled_draws(Planner(variation, Variation({}), 0), {"drive.speed": 2.0})
     (world,) = planner.worlds(fast, [])
     assert planner.runs(world, 0, 2).drawn["drive.speed"].tolist() == pytest.approx([0.08, 0.8])
@@ -250,7 +250,7 @@ def test_the_default_varies_approach_phase_speed_and_friction_in_their_ranges() 
 
 def test_the_default_distributions_are_those_of_the_documentation() -> None:
     near = Scenario(ROBOT, c2d.terrains.step(0.05), start=c2d.Start(approach=0.5))
-    found: Any = Variation.of(near, None, []).distributions
+    found: Any = Variation.read(near, None, []).distributions
     quarter = ROBOT.outline.axle_distance / 4.0
     approach, phase, *scales = (found[path] for path in DEFAULT_PATHS)
     assert (approach.low, approach.high) == pytest.approx((-quarter / 2, quarter / 2))
@@ -337,8 +337,8 @@ def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
         *(
             (
                 {"terrain.height": distribution},
-                "vary['terrain.height'] must not replace the values of `over`;"
-                f" scaled(low, high) and shifted(low, high) vary about them, got {distribution}",
+                "vary['terrain.height'] must not replace the values of `over`, got"
+                f" {distribution}; scaled(low, high) and shifted(low, high) vary about them",
             )
             for distribution in (uniform(0, 1), uniform_int(0, 1))
         ),
@@ -347,21 +347,21 @@ def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
 def test_what_is_no_variation_is_refused_by_name(vary: Any, message: str) -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
     with pytest.raises(c2d.ScenarioError) as caught:
-        Variation.of(base, vary, ["terrain.height"])
+        Variation.read(base, vary, ["terrain.height"])
     assert str(caught.value).startswith(message)
 
 
 def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
     vary = {"terrain.friction": uniform(0.0, 400.0), "terrain.height": scaled(0.5, 1.5)}
-    variation = Variation.of(base, vary, ["terrain.height"])
+    variation = Variation.read(base, vary, ["terrain.height"])
     assert dict(variation.distributions) == dict[str, Any](vary)
     plan = planned(base, variation, 10)
     refused = [isinstance(each, c2d.ScenarioError) for each in plan.checked]
     assert refused == (plan.drawn["terrain.friction"] > 100.0).tolist()
     assert 0 < sum(refused) < 10
     lanes = VARIANTS["belt-lanes"]
-    with pytest.raises(c2d.ScenarioError, match="must be a known field: Lanes has"):
+    with pytest.raises(c2d.ScenarioError, match=r"must be a known field, got .*: Lanes has"):
         draw(lanes, vary)
 
 
@@ -376,8 +376,8 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
         with pytest.raises(c2d.ScenarioError) as caught:
             draw(cell, {path: distribution})
         assert str(caught.value) == (
-            f"{path} must be drawn with uniform_int(low, high), because it is a whole number,"
-            f" got {distribution}"
+            f"{path} must be drawn as a whole number, got {distribution}; use"
+            " uniform_int(low, high)"
         )
     cell = VARIANTS["line-flat"]
     drawn = draw(cell, {"gravity": uniform_int(8, 8)})
@@ -389,7 +389,9 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
 )
 def test_only_a_number_is_scaled(path: str, held: Any) -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    with pytest.raises(c2d.ScenarioError, match=r"must be a number, because .*, got ") as caught:
+    with pytest.raises(
+        c2d.ScenarioError, match=r"must be a number for a distribution to vary about, got "
+    ) as caught:
         draw(base, {path: scaled(0.9, 1.1)})
     assert caught.value.path == path
     assert held is None or caught.value.value == held

@@ -144,7 +144,7 @@ def test_poses_are_told_apart_in_steps_of_1_mm_and_a_tenth_of_a_degree(
 @pytest.mark.parametrize("name", ["rate", "low", "high", "count"])
 def test_a_dimension_called_as_a_result_is_refused_by_name(name: str) -> None:
     table = TABLE.rename(height=name)
-    rule = f"table must have no other dimension or coordinate of that name: rename it, got {name}"
+    rule = f"table must have no other dimension or coordinate of that name, got {name}: rename it"
     with pytest.raises(c2d.ScenarioError, match=f"^{rule}$"):
         rate(table)
     assert rate(table, dim=name)["count"].dims == ("repeat",)

@@ -176,6 +176,13 @@ def test_rotors_that_a_robot_does_not_state_follow_from_its_torque_and_speed() -
 
 
 @pytest.mark.parametrize("name", PRESETS)
+def test_a_preset_without_rotors_has_none_to_draw(name: str) -> None:
+    ranges = c2d.unknowns.of_robot(PRESETS[name]().without_rotors())
+    assert not [path for path in ranges if "rotor" in path]
+    assert "robot.drivetrain.max_torque" in ranges
+
+
+@pytest.mark.parametrize("name", PRESETS)
 def test_a_presets_rotors_are_in_the_middle_of_their_ranges(name: str) -> None:
     """Geometrically, to two digits: half of the last one is at most 5 %."""
     robot = PRESETS[name]()
@@ -196,7 +203,7 @@ def test_joined_ranges_keep_their_sources() -> None:
     assert isinstance(both, Ranges)
     assert list(both) == ["start.approach", "start.track_phase"]
     assert list(both.sources) == ["start.track_phase"]
-    assert both.gives_way == {"start.track_phase"}
+    assert both.optional == {"start.track_phase"}
     other = {"gravity": c2d.uniform(9.0, 10.0)} | c2d.variability.of_contact()
     assert list(other) == ["gravity", "drive.speed", "terrain.friction"]
     assert "estimate" in repr(other)

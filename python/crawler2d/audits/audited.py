@@ -146,7 +146,7 @@ def as_options(error: str) -> str:
 
         error = re.sub(rf'(?<![\w.-]){name}=(\{{[^}}]*\}}|"[^"]*"|[\w.+-]*\w)?', advised, error)
         error = re.sub(rf"^{name}(\[[^]]*\])?(?= )", option, error)
-    return error.removesuffix(", got None")
+    return re.sub(r", got None(?=$|[:;] )", "", error)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -164,13 +164,8 @@ def assumptions(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges
     (['rotor', 'restitution'], ['restitution'])
     """
     own = of_robot(robot)
-    rotors = [path for path in own if path.endswith(_ROTOR) and path not in unknown]
-    found = {
-        "rotor": Ranges(
-            {path: own[path] for path in rotors}, {path: own.sources[path] for path in rotors}
-        ),
-        "restitution": of_blows(robot),
-    }
+    others = [path for path in own if not path.endswith(_ROTOR) or path in unknown]
+    found = {"rotor": own.without(others), "restitution": of_blows(robot)}
     return {name: ranges for name, ranges in found.items() if ranges}
 
 

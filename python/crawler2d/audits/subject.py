@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple, TypedDict
+from typing import Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import robot_findings
 from crawler2d.errors import ScenarioError, ScenarioWarning
@@ -249,16 +249,12 @@ def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> R
             f" by the rule of {reading.engine} with {reading.sources['friction']}"
         )
         ranges[_FRICTION] = uniform(low, high), source
-    return Ranges(
-        {path: distribution for path, (distribution, _) in ranges.items()},
-        {path: source for path, (_, source) in ranges.items()},
-    )
+    return Ranges.with_sources(ranges)
 
 
 def without_friction(ranges: Ranges) -> Ranges:
     """Leave the friction of the floor out: terrains of a user's own keep theirs."""
-    kept: dict[str, Any] = {path: each for path, each in ranges.items() if path != _FRICTION}
-    return Ranges(kept, {path: ranges.sources[path] for path in kept if path in ranges.sources})
+    return ranges.without([_FRICTION])
 
 
 def _spread(floors: Mapping[float, float]) -> float:

@@ -171,7 +171,7 @@ def of_robot(robot: Robot) -> Ranges:
         on what its docstring says of its figures; those of another robot are general. The inertia
         of a rotor is then 0.016 to 0.1 s, in which the rated torque of eight in ten catalogue
         motors runs them up, times the largest torque over the largest speed; one that the robot
-        states is taken as known.
+        states is taken as known. A preset after `Robot.without_rotors` has none.
 
     Raises
     ------
@@ -187,16 +187,16 @@ def of_robot(robot: Robot) -> Ranges:
     if not isinstance(robot, Robot):
         raise ScenarioError("robot", robot, "must be a Robot")
     known = RANGES.get(robot.name)
-    ranges = {**GENERAL, **_rotors(robot)} if known is None else dict(known)
-    if robot.belly is None:
-        ranges.pop(BELLY, None)
+    missing = [] if robot.belly is not None else [BELLY]
     if robot.flippers is None:
-        for path in OF_ARMS:
-            ranges.pop(path, None)
-    return Ranges(
-        {path: distribution for path, (distribution, _) in ranges.items()},
-        {path: source for path, (_, source) in ranges.items()},
-    )
+        missing += OF_ARMS
+    if known is None:
+        return Ranges.with_sources({**GENERAL, **_rotors(robot)}).without(missing)
+    if robot.drivetrain.rotor_inertia == 0.0:
+        missing.append(ROTOR)
+    if robot.flippers is not None and robot.flippers.rotor_inertia == 0.0:
+        missing.append(ROTOR_OF_ARM)
+    return Ranges.with_sources(known).without(missing)
 
 
 def of_ground() -> Ranges:

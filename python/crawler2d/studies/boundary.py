@@ -328,7 +328,7 @@ def range_of(unknowns: Variation, path: str, cell: Scenario) -> Range:
     --------
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
-    >>> unknowns = Variation.of(base, {"robot.mass": c2d.scaled(0.5, 2.0)}, [])
+    >>> unknowns = Variation.read(base, {"robot.mass": c2d.scaled(0.5, 2.0)}, [])
     >>> range_of(unknowns, "robot.mass", base).first
     (10.6, 42.4)
     """

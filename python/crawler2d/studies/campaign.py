@@ -79,7 +79,7 @@ def _of(variation: Variation, factors: Mapping[str, float]) -> Variation:
 
 
 @dataclass(frozen=True, slots=True)
-class _ScaledDraws:
+class _ScaledDraws(Distribution):
     """A distribution times a factor, which the field's own value holds already."""
 
     of: Distribution
@@ -87,21 +87,21 @@ class _ScaledDraws:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it gives whole numbers."""
+        """Whether all values are whole numbers."""
         return self.of.is_whole
 
     @property
     def is_relative(self) -> bool:
-        """Whether it varies about the field's own value; else it replaces that."""
+        """Whether values vary about the field's own value."""
         return self.of.is_relative
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
         """Map numbers from 0 to 1 to values."""
         return self.factor * self.of.values(numbers, own / self.factor)
 
-    def on(self, scenario: Scenario) -> Distribution:
-        """Return this distribution with every length that it takes from a scenario."""
-        return replace(self, of=self.of.on(scenario))
+    def resolve(self, scenario: Scenario) -> Distribution:
+        """Replace what is given as a multiple of a length of the scenario."""
+        return replace(self, of=self.of.resolve(scenario))
 
 
 class Sampling(TypedDict, total=False):
@@ -394,8 +394,8 @@ def campaign(
         count = whole_number(repeats, "repeats", 1, 10**6)
         rule = Until(least=count, most=count)
     given: RateSampling = {"until": rule, **how}
-    unknowns = Variation.of(base, how.get("unknown") or {}, swept, "unknown")
-    variation = Variation.of(base, how.get("vary"), [*swept, *unknowns.distributions])
+    unknowns = Variation.read(base, how.get("unknown") or {}, swept, "unknown")
+    variation = Variation.read(base, how.get("vary"), [*swept, *unknowns.distributions])
     if not isinstance(given["until"], Until):
         raise ScenarioError("until", given["until"], "must be an Until")
     seed = whole_number(how.get("seed", 0), "seed", 0, 2**64 - 1)

@@ -357,4 +357,4 @@ def _unknowns(scenario: Scenario, given: object, swept: list[str]) -> Variation:
     if not given or not isinstance(given, Mapping):
         rule = "must be a mapping from paths to distributions, such as unknowns.of_ground()"
         raise ScenarioError("unknown", given, rule)
-    return Variation.of(scenario, given, swept, "unknown")
+    return Variation.read(scenario, given, swept, "unknown")

@@ -238,9 +238,7 @@ def _sampling(how: Sampling) -> Sampling:
     drawn = how.get("vary")
     vary = of_start() | of_contact() if drawn is None else drawn
     if isinstance(vary, Ranges):
-        gone = [path for path in _COMMANDED if path in vary.gives_way]
-        kept = {path: each for path, each in vary.items() if path not in gone}
-        vary = Ranges(kept, vary.sources, vary.gives_way.difference(gone))
+        vary = vary.without(vary.optional.intersection(_COMMANDED))
     for name, given in (("vary", vary), ("unknown", how.get("unknown"))):
         drawn_too = given if isinstance(given, Mapping) else {}
         for path in _COMMANDED:

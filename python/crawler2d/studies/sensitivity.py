@@ -300,4 +300,4 @@ class _Given(Variation):
 
 def _given(variation: Variation, columns: NDArray[np.float64]) -> _Given:
     numbers = dict(zip(variation.distributions, columns, strict=True))
-    return _Given(variation.distributions, variation.gives_way, variation.text, numbers)
+    return _Given(variation.distributions, variation.optional, variation.text, numbers)

@@ -14,7 +14,7 @@ from crawler2d import _core
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import excluded, read_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.variation.draws import Drawn, Variation
+from crawler2d.variation.draws import Draws, Variation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -151,7 +151,7 @@ class Planner:
             some = {path: each[begin:] for path, each in numbers.items()}
             drawn = self.variation.draw(world.cell, some, world.own)
             runs = _varied(world.cell, whole, drawn, count)
-            kept = _dropped(world, whole, drawn, runs, self.variation.gives_way)
+            kept = _dropped(world, whole, drawn, runs, self.variation.optional)
         plan = Plan(world, begin, runs, kept)
         for index, run in enumerate(runs):
             if isinstance(run, ScenarioError):
@@ -187,7 +187,7 @@ def plan_runs(
     return plans
 
 
-def _varied(cell: Scenario, whole: Checked, drawn: Drawn, count: int) -> list[Checked]:
+def _varied(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> list[Checked]:
     """Set what was drawn in a checked scenario; one that breaks a rule is an error."""
     if not drawn.values or isinstance(whole, ScenarioError):
         return [whole] * count
@@ -203,16 +203,16 @@ def _varied(cell: Scenario, whole: Checked, drawn: Drawn, count: int) -> list[Ch
 def _dropped(
     world: World,
     whole: _core.Passed,
-    drawn: Drawn,
+    drawn: Draws,
     runs: list[Checked],
-    gives_way: Collection[str],
+    optional: Collection[str],
 ) -> dict[str, NDArray[np.float64]]:
     """Drop the draws that break a rule and may be dropped: those runs keep their own values.
 
     Returns what was drawn, by path, with these own values; `runs` is changed.
     """
     shown = {path: values.copy() for path, values in drawn.shown.items()}
-    may = [path in gives_way for path in drawn.values]
+    may = [path in optional for path in drawn.values]
     if not any(may):
         return shown
     fields, rows = drawn.fields, drawn.rows

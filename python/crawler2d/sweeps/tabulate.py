@@ -189,8 +189,8 @@ class Tabulation:
         base = Passed(scenario.to_json())
         swept = [path for axis in axes for path in axis.paths]
         self._scenario, self._axes = scenario, axes
-        self._unknowns = Variation.of(scenario, unknown or {}, swept, "unknown")
-        self._variation = Variation.of(scenario, vary, [*swept, *self._unknowns.distributions])
+        self._unknowns = Variation.read(scenario, unknown or {}, swept, "unknown")
+        self._variation = Variation.read(scenario, vary, [*swept, *self._unknowns.distributions])
         self._samples = samples if self._unknowns.distributions else 1
         planner = Planner(self._variation, self._unknowns, self._seed, self._samples)
         self._plans = plan_runs(scenario, axes, planner, repeats=self._repeats, like=base)

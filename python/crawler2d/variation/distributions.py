@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Distribution",
-    "Frozen",
     "Levels",
     "LogUniform",
     "Ranges",
     "Scaled",
+    "SciPyDistribution",
     "Shifted",
     "Uniform",
     "UniformInt",
@@ -40,26 +41,32 @@ __all__ = [
 _MOST = 2**53
 
 
-class Distribution(Protocol):
-    """Any distribution."""
+class Distribution(ABC):
+    """The values of a field, as a function of a number from 0 to 1."""
+
+    __slots__ = ()
 
     @property
     def is_whole(self) -> bool:
-        """Whether it gives whole numbers."""
+        """Whether all values are whole numbers."""
+        return False
 
     @property
     def is_relative(self) -> bool:
-        """Whether it varies about the field's own value; else it replaces that."""
+        """Whether values vary about the field's own value, instead of replacing it."""
+        return False
 
+    @abstractmethod
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
         """Map numbers from 0 to 1 to values of a field, whose own value is `own`."""
 
-    def on(self, scenario: Scenario) -> Distribution:
-        """Return this distribution with every length that it takes from a scenario."""
+    def resolve(self, scenario: Scenario) -> Distribution:  # noqa: ARG002 - others use it
+        """Replace what is given as a multiple of a length of the scenario."""
+        return self
 
 
 @dataclass(frozen=True, slots=True)
-class _Bounded(TakesKeywords):
+class _Bounded(TakesKeywords, Distribution):
     """Bounds in order, both of them finite."""
 
     low: float
@@ -72,21 +79,7 @@ class _Bounded(TakesKeywords):
             if not math.isfinite(number):
                 raise ScenarioError(name, number, "must be finite")
             object.__setattr__(self, name, number)
-        _in_order(self)
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether it gives whole numbers."""
-        return False
-
-    @property
-    def is_relative(self) -> bool:
-        """Whether it varies about the field's own value."""
-        return True
-
-    def on(self, scenario: Scenario) -> Distribution:  # noqa: ARG002 - others do
-        """Take nothing from the scenario."""
-        return self  # type: ignore[return-value] # what derives from this has values
+        _check_order(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,11 +101,6 @@ class Uniform(_Bounded):
     >>> Uniform(0.05, 0.15).values(np.array([0.0, 0.5]), own=None).tolist()
     [0.05, 0.1]
     """
-
-    @property
-    def is_relative(self) -> bool:
-        """Whether it varies about the field's own value."""
-        return False
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
@@ -145,11 +133,6 @@ class LogUniform(_Bounded):
         if self.low <= 0.0:
             raise ScenarioError("low", self.low, "must be > 0")
 
-    @property
-    def is_relative(self) -> bool:
-        """Whether it varies about the field's own value."""
-        return False
-
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
         logarithms = _between(math.log(self.low), math.log(self.high), numbers)
@@ -157,7 +140,7 @@ class LogUniform(_Bounded):
 
 
 @dataclass(frozen=True, slots=True)
-class UniformInt(TakesKeywords):
+class UniformInt(TakesKeywords, Distribution):
     """Any whole number from `low` to `high`, both included, all equally likely.
 
     Parameters
@@ -186,27 +169,18 @@ class UniformInt(TakesKeywords):
             if type(number) is not int:
                 raise ScenarioError(name, number, "must be a whole number")
             object.__setattr__(self, name, number)
-        _in_order(self)
+        _check_order(self)
         if self.high - self.low >= _MOST:
             raise ScenarioError("high", self.high, f"must be < low + 2^53 = {self.low + _MOST}")
 
     @property
     def is_whole(self) -> bool:
-        """Whether it gives whole numbers."""
+        """Whether all values are whole numbers."""
         return True
-
-    @property
-    def is_relative(self) -> bool:
-        """Whether it varies about the field's own value."""
-        return False
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
         return self.low + np.floor((self.high - self.low + 1) * numbers)
-
-    def on(self, scenario: Scenario) -> UniformInt:  # noqa: ARG002 - others do
-        """Take nothing from the scenario."""
-        return self
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,6 +202,11 @@ class Scaled(_Bounded):
     >>> Scaled(0.98, 1.02).values(np.array([0.5, 1.0]), own=0.5).tolist()
     [0.5, 0.51]
     """
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether values vary about the field's own value."""
+        return True
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
         """Map numbers from 0 to 1 to values."""
@@ -263,12 +242,17 @@ class Shifted(_Bounded):
     of: str | None = None
     least: float | None = None
 
+    @property
+    def is_relative(self) -> bool:
+        """Whether values vary about the field's own value."""
+        return True
+
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
         """Map numbers from 0 to 1 to values."""
         low = own + self.low if self.least is None else max(own + self.low, self.least)
         return _between(low, low + (self.high - self.low), numbers)
 
-    def on(self, scenario: Scenario) -> Shifted:
+    def resolve(self, scenario: Scenario) -> Shifted:
         """Take the length `of` from the scenario."""
         if self.of is None:
             return self
@@ -276,26 +260,26 @@ class Shifted(_Bounded):
         return replace(self, low=self.low * length, high=self.high * length, of=None)
 
     def __repr__(self) -> str:
-        """Write the call that makes it, without what is not given."""
-        given = {"low": self.low, "high": self.high, "of": self.of, "least": self.least}
-        figures = [f"{name}={value!r}" for name, value in given.items() if value is not None]
-        return f"{type(self).__name__}({', '.join(figures)})"
+        """Write the call that makes it, without arguments that are None."""
+        fields = {"low": self.low, "high": self.high, "of": self.of, "least": self.least}
+        arguments = [f"{name}={value!r}" for name, value in fields.items() if value is not None]
+        return f"{type(self).__name__}({', '.join(arguments)})"
 
 
 @dataclass(frozen=True, slots=True)
-class Levels:
-    """The scenario's own value times each of some factors in turn: run by run the next one.
+class Levels(Distribution):
+    """The scenario's own value times one of some factors, which runs take in turn.
 
-    So every factor has the same number of runs, give or take one.
+    Every factor has the same number of runs, give or take one.
 
     Parameters
     ----------
     factors : tuple of float
         [-] One or more.
     spread : float
-        [-] Each value varies by this share either way, all equally likely.
+        [-] Each value varies by this fraction either way, uniformly.
     along : str, optional
-        Path of another field of levels, whose draws these are, too: what is slow takes long.
+        Path of another field of levels, whose draws are used here, too: slow runs last longer.
 
     Examples
     --------
@@ -308,17 +292,12 @@ class Levels:
     along: str | None = None
 
     @property
-    def is_whole(self) -> bool:
-        """Whether it gives whole numbers."""
-        return False
-
-    @property
     def is_relative(self) -> bool:
-        """Whether it varies about the field's own value."""
+        """Whether values vary about the field's own value."""
         return True
 
-    def in_turn(self, numbers: NDArray[np.float64], first: int) -> NDArray[np.float64]:
-        """Move numbers from 0 to 1 so that they take the factors in turn, from the first run on."""
+    def cycle(self, numbers: NDArray[np.float64], first: int) -> NDArray[np.float64]:
+        """Shift numbers from 0 to 1 so that run by run they select the next factor."""
         count = len(self.factors)
         return ((first + np.arange(numbers.size)) % count + numbers) / count
 
@@ -331,39 +310,26 @@ class Levels:
         values: NDArray[np.float64] = float(own) * np.array(self.factors)[level] * scatter
         return values
 
-    def on(self, scenario: Scenario) -> Levels:  # noqa: ARG002 - others do
-        """Take nothing from the scenario."""
-        return self
-
 
 @dataclass(frozen=True, slots=True)
-class Frozen:
+class SciPyDistribution(Distribution):
     """A frozen distribution of SciPy: ``scipy.stats.norm(0.9, 0.05)``."""
 
     scipy: Any
 
     @property
     def is_whole(self) -> bool:
-        """Whether it gives whole numbers."""
+        """Whether all values are whole numbers."""
         return hasattr(self.scipy, "pmf")
-
-    @property
-    def is_relative(self) -> bool:
-        """Whether it varies about the field's own value."""
-        return False
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values: the quantiles."""
         return np.asarray(self.scipy.ppf(numbers), dtype=np.float64)
 
-    def on(self, scenario: Scenario) -> Frozen:  # noqa: ARG002 - others do
-        """Take nothing from the scenario."""
-        return self
-
     def __repr__(self) -> str:
-        """Write the call that makes it, with the names of its figures."""
-        figures = [*map(repr, self.scipy.args), *(f"{k}={v!r}" for k, v in self.scipy.kwds.items())]
-        return f"{self.scipy.dist.name}({', '.join(figures)})"
+        """Write the call that makes it."""
+        keywords = [f"{name}={value!r}" for name, value in self.scipy.kwds.items()]
+        return f"{self.scipy.dist.name}({', '.join([*map(repr, self.scipy.args), *keywords])})"
 
 
 uniform = Uniform
@@ -372,26 +338,26 @@ scaled = Scaled
 shifted = Shifted
 
 
-def read_distribution(given: object, place: str) -> Distribution:
+def read_distribution(given: object, path: str) -> Distribution:
     """Take a distribution of this module, or a frozen one of SciPy.
 
     Raises
     ------
     ScenarioError
-        If it is neither; `place` names the argument.
+        If it is neither; `path` names the argument.
     """
-    if isinstance(given, (Uniform, LogUniform, UniformInt, Scaled, Shifted, Levels, Frozen)):
+    if isinstance(given, Distribution):
         return given
     if all(hasattr(given, name) for name in ("ppf", "dist", "args", "kwds")):
-        return Frozen(given)
+        return SciPyDistribution(given)
     rule = (
         "must be uniform(low, high), uniform_int(low, high), scaled(low, high),"
         " shifted(low, high) or a frozen distribution of SciPy"
     )
-    raise ScenarioError(place, given, rule)
+    raise ScenarioError(path, given, rule)
 
 
-def _in_order(bounds: _Bounded | UniformInt) -> None:
+def _check_order(bounds: _Bounded | UniformInt) -> None:
     if bounds.high < bounds.low:
         raise ScenarioError("high", bounds.high, f"must be >= low = {bounds.low}")
 
@@ -404,8 +370,8 @@ def _between(low: float, high: float, numbers: NDArray[np.float64]) -> NDArray[n
 class Ranges(Mapping[str, Distribution]):
     """What varies, or is not known: a distribution for each path, and its source.
 
-    It takes the place of a plain mapping in `vary` and `unknown`. Two are joined with ``|``, also
-    with a plain mapping; of equal paths the right one counts.
+    It can be passed as `vary` and `unknown`, like a plain mapping. ``|`` joins two, or one and a
+    plain mapping; where both have a path, the right one counts.
 
     Parameters
     ----------
@@ -413,15 +379,15 @@ class Ranges(Mapping[str, Distribution]):
         By path.
     sources : mapping of str to str, optional
         Where each range comes from, by path.
-    gives_way : collection of str
+    optional : collection of str
         Paths that are left out where they are swept, and where the scenario has none; a draw that
         breaks a rule is dropped, and the run keeps its own value.
 
     Examples
     --------
     >>> from crawler2d.variation.distributions import shifted, uniform
-    >>> found = Ranges({"terrain.friction": uniform(0.5, 1.0)}, {"terrain.friction": "a guess"})
-    >>> list(found | {"robot.mass": shifted(-1.0, 1.0)})
+    >>> ranges = Ranges({"terrain.friction": uniform(0.5, 1.0)}, {"terrain.friction": "a guess"})
+    >>> list(ranges | {"robot.mass": shifted(-1.0, 1.0)})
     ['terrain.friction', 'robot.mass']
     """
 
@@ -429,20 +395,34 @@ class Ranges(Mapping[str, Distribution]):
         self,
         distributions: Mapping[str, Any],
         sources: Mapping[str, str] | None = None,
-        gives_way: Collection[str] = (),
+        optional: Collection[str] = (),
     ) -> None:
         self._distributions = {
             path: read_distribution(given, f"[{path!r}]") for path, given in distributions.items()
         }
         self.sources = dict(sources or {})
-        self.gives_way = frozenset(gives_way)
+        self.optional = frozenset(optional)
+
+    @classmethod
+    def with_sources(cls, ranges: Mapping[str, tuple[Distribution, str]]) -> Ranges:
+        """Make ranges of pairs of a distribution and its source."""
+        sources = {path: source for path, (_, source) in ranges.items()}
+        return cls({path: distribution for path, (distribution, _) in ranges.items()}, sources)
+
+    def without(self, paths: Collection[str]) -> Ranges:
+        """Leave out some paths, of which it need not have all."""
+        return Ranges(
+            {path: distribution for path, distribution in self.items() if path not in paths},
+            {path: source for path, source in self.sources.items() if path not in paths},
+            self.optional.difference(paths),
+        )
 
     def __getitem__(self, path: str) -> Distribution:
         """Return the distribution of a path."""
         return self._distributions[path]
 
     def __iter__(self) -> Iterator[str]:
-        """Go through the paths in order."""
+        """Iterate over the paths in order."""
         return iter(self._distributions)
 
     def __len__(self) -> int:
@@ -450,35 +430,24 @@ class Ranges(Mapping[str, Distribution]):
         return len(self._distributions)
 
     def __or__(self, other: object) -> Ranges:
-        """Join with more, which count where both have a path."""
+        """Join with another, which counts where both have a path."""
         if not isinstance(other, Mapping):
             return NotImplemented
-        return _joined(self, other)
+        right = other if isinstance(other, Ranges) else Ranges(other)
+        left = self.without(right)
+        return Ranges(
+            {**self, **right}, left.sources | right.sources, left.optional | right.optional
+        )
 
     def __ror__(self, other: object) -> Ranges:
-        """Join with what stands before, whose paths these replace."""
-        if not isinstance(other, Mapping):
-            return NotImplemented
-        return _joined(other, self)
+        """Join with a plain mapping on the left."""
+        return Ranges(other) | self if isinstance(other, Mapping) else NotImplemented
 
     def __repr__(self) -> str:
         """Show a line for each path: its distribution, and where that comes from."""
-        lines = [
-            f"  {path}: {distribution}" + _indented(self.sources.get(path))
-            for path, distribution in self.items()
-        ]
-        return "\n".join(["Ranges", *lines])
-
-
-def _indented(source: str | None) -> str:
-    return "" if source is None else f"\n      {source}"
-
-
-def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> Ranges:
-    sources = {**getattr(first, "sources", {})}
-    for path in second:
-        sources.pop(path, None)
-    sources.update(getattr(second, "sources", {}))
-    kept: frozenset[str] = getattr(first, "gives_way", frozenset())
-    added: frozenset[str] = getattr(second, "gives_way", frozenset())
-    return Ranges({**first, **second}, sources, (kept - set(second)) | added)
+        lines = ["Ranges"]
+        for path, distribution in self.items():
+            lines.append(f"  {path}: {distribution}")
+            if path in self.sources:
+                lines.append(f"      {self.sources[path]}")
+        return "\n".join(lines)

@@ -1,11 +1,11 @@
-"""Draws of a cell: from distributions by path to values of fields, from numbers all cells share."""
+"""Draws of the fields of a cell from their distributions, with random numbers all cells share."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from crawler2d.variation.variability import of_contact, of_start
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Drawn", "Variation", "uniform_numbers"]
+__all__ = ["Draws", "Variation", "uniform_numbers"]
 
 _FRICTION = "terrain.friction"
 
@@ -36,15 +36,15 @@ def uniform_numbers(path: str, seed: int, count: int, *, kind: str = "") -> NDAr
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
-    """What was drawn for one cell.
+class Draws:
+    """Values drawn for one cell.
 
     Attributes
     ----------
     values : mapping of str to ndarray, shape (n,)
-        By path of a field, one value a draw.
+        By path of a field, one value per draw.
     shown : mapping of str to ndarray, shape (n,)
-        By path as it was given; of one that stands for several fields, the value of the first.
+        By path as it was given; where it stands for several fields, the value of the first.
     whole : mapping of str to bool
         Whether a field takes whole numbers.
     """
@@ -60,7 +60,7 @@ class Drawn:
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """One row a draw, one column a field."""
+        """One row per draw, one column per field."""
         return np.column_stack(list(self.values.values()))
 
 
@@ -69,14 +69,14 @@ class Variation:
     """Distributions by path, ready to be drawn from."""
 
     distributions: Mapping[str, Distribution]
-    gives_way: Collection[str] = ()
+    optional: Collection[str] = ()
     """Paths that are left out where a cell lacks them, and whose draws are dropped if they break a
     rule."""
     text: str = ""
-    """What was given, for the attributes of a table."""
+    """The distributions as text, for the attributes of a table."""
 
     @classmethod
-    def of(
+    def read(
         cls, scenario: Scenario, given: object, swept: Collection[str], name: str = "vary"
     ) -> Variation:
         """Read the argument `vary` or `unknown`.
@@ -84,13 +84,13 @@ class Variation:
         Parameters
         ----------
         scenario : Scenario
-            Whose lengths count.
+            Its lengths are used.
         given : mapping of str to distribution
             None takes the variability of start and contact.
         swept : collection of str
-            Paths that have values already.
+            Paths that are swept, or drawn otherwise.
         name : str
-            Of the argument.
+            Name of the argument.
 
         Raises
         ------
@@ -101,91 +101,91 @@ class Variation:
             given = of_start() | of_contact()
         if not isinstance(given, Mapping):
             raise ScenarioError(name, given, "must be a mapping from paths to distributions")
-        gives_way = given.gives_way if isinstance(given, Ranges) else frozenset()
-        found: dict[str, Distribution] = {}
+        optional = given.optional if isinstance(given, Ranges) else frozenset()
+        distributions: dict[str, Distribution] = {}
         texts = []
         for path, each in given.items():
             if not isinstance(path, str):
                 raise ScenarioError(name, path, "must have dotted paths as keys")
-            place = f"{name}[{path!r}]"
-            distribution = read_distribution(each, place)
+            distribution = read_distribution(each, f"{name}[{path!r}]")
             replaces = path in swept and not distribution.is_relative
-            if path in gives_way and (replaces or _is_set(path, swept)):
+            is_start_swept = path.startswith("start.") and not {path, "start"}.isdisjoint(swept)
+            if path in optional and (replaces or is_start_swept):
                 continue
             if replaces:
                 rule = (
                     "must not replace the values of `over`; scaled(low, high) and"
                     " shifted(low, high) vary about them"
                 )
-                raise ScenarioError(place, distribution, rule)
-            found[path] = distribution.on(scenario)
+                raise ScenarioError(f"{name}[{path!r}]", distribution, rule)
+            distributions[path] = distribution.resolve(scenario)
             texts.append(f"{path}: {distribution}")
-        return cls(found, gives_way, "; ".join(texts))
+        return cls(distributions, optional, "; ".join(texts))
 
     def numbers(
         self, seed: int, count: int, *, kind: str = "", first: int = 0
     ) -> dict[str, NDArray[np.float64]]:
         """Draw the numbers from 0 to 1 of every path, which all cells share.
 
-        Another `kind` draws others: it tells samples from repeats, and the repeats of one sample
-        from those of the next. Levels are taken in turn, beginning with the number `first`.
+        Each `kind` has numbers of its own: one for the samples, and one for the repeats of each
+        sample. Levels are taken in turn, beginning with the number `first`.
         """
-        found = {}
+        numbers = {}
         for path, each in self.distributions.items():
-            if isinstance(each, Levels):
-                numbers = uniform_numbers(each.along or path, seed, count, kind=kind)
-                found[path] = each.in_turn(numbers, first)
-            else:
-                found[path] = uniform_numbers(path, seed, count, kind=kind)
-        return found
+            key = each.along or path if isinstance(each, Levels) else path
+            own = uniform_numbers(key, seed, count, kind=kind)
+            numbers[path] = each.cycle(own, first) if isinstance(each, Levels) else own
+        return numbers
 
     def draw(
         self,
         cell: Scenario,
         numbers: Mapping[str, NDArray[np.float64]],
         own: Mapping[str, float] | None = None,
-    ) -> Drawn:
+    ) -> Draws:
         """Map the numbers to the values of a cell.
 
         Parameters
         ----------
         cell : Scenario
-            Whose own values count.
+            Its own values are used.
         numbers : mapping of str to ndarray, shape (n,)
             From 0 to 1, by path.
         own : mapping of str to float, optional
-            Values that take the place of the cell's own.
+            Values to use instead of the cell's own.
 
         Raises
         ------
         ScenarioError
-            If the cell lacks a path, or has no number there to vary about, or a whole number there
-            and the distribution gives others.
+            If the cell lacks a path, or has no number there to vary about, or takes whole numbers
+            there and the distribution gives others.
         """
         values: dict[str, NDArray[np.float64]] = {}
         shown: dict[str, NDArray[np.float64]] = {}
         whole: dict[str, bool] = {}
         for path, distribution in self.distributions.items():
-            if path in self.gives_way and not _has(cell, path):
+            if path in self.optional and not _has_path(cell, path):
                 continue
             for field in _fields(cell, path):
-                held = read_path(cell, field)
-                nominal = held if own is None else own.get(field, held)
-                whole[field] = _checked(cell, field, distribution, nominal)
-                # A whole number may be too long for the arithmetic of arrays.
-                start = float(nominal) if distribution.is_relative else nominal
-                values[field] = distribution.values(numbers[path], start)
+                nominal = read_path(cell, field)
+                if own is not None:
+                    nominal = own.get(field, nominal)
+                whole[field] = is_whole(cell, field)
+                if whole[field] and not distribution.is_whole:
+                    rule = "must be drawn as a whole number; use uniform_int(low, high)"
+                    raise ScenarioError(field, distribution, rule)
+                if distribution.is_relative:
+                    if type(nominal) not in (int, float):
+                        rule = "must be a number for a distribution to vary about"
+                        raise ScenarioError(field, nominal, rule)
+                    nominal = float(nominal)  # a whole number may be too long for NumPy
+                values[field] = distribution.values(numbers[path], nominal)
                 shown.setdefault(path, values[field])
-        return Drawn(values, shown, whole)
+        return Draws(values, shown, whole)
 
 
-def _is_set(path: str, swept: Collection[str]) -> bool:
-    """Whether a path of the start is swept, or the start as a whole."""
-    return path.startswith("start.") and (path in swept or "start" in swept)
-
-
-@functools.lru_cache(maxsize=256)  # every sample asks; to find the name that was meant takes long
-def _has(cell: Scenario, path: str) -> bool:
+@functools.lru_cache(maxsize=256)  # asked for every sample; a path that is missing is slow to check
+def _has_path(cell: Scenario, path: str) -> bool:
     try:
         for field in _fields(cell, path):
             read_path(cell, field)
@@ -195,19 +195,8 @@ def _has(cell: Scenario, path: str) -> bool:
 
 
 def _fields(cell: Scenario, path: str) -> list[str]:
-    """List the fields that a path stands for; the friction of lanes is that of every lane."""
+    """List the fields that a path stands for: of lanes, the friction is that of every lane."""
     if path == _FRICTION and isinstance(cell.terrain, Lanes):
         sides = ("left", "right") if cell.terrain.middle is None else ("left", "right", "middle")
         return [f"terrain.{side}.friction" for side in sides]
     return expand_path(cell, path)
-
-
-def _checked(cell: Scenario, field: str, distribution: Distribution, own: Any) -> bool:
-    """Check that a field can be drawn so, and tell whether it takes whole numbers."""
-    whole = is_whole(cell, field)
-    if whole and not distribution.is_whole:
-        rule = "must be drawn with uniform_int(low, high), because it is a whole number"
-        raise ScenarioError(field, distribution, rule)
-    if distribution.is_relative and type(own) not in (int, float):
-        raise ScenarioError(field, own, "must be a number, because it is to be varied about")
-    return whole
