@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from crawler2d._core import build_info
 from crawler2d.common.bodies import BodyKind, Lane
-from crawler2d.common.keywords import beyond
+from crawler2d.common.keywords import limits_hint
 from crawler2d.errors import (
     Crawler2dError,
     InternalError,
@@ -28,7 +28,8 @@ from crawler2d.errors import (
 )
 from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.flippers import Flippers
-from crawler2d.parameters.robot import Robot, TrackOutline
+from crawler2d.parameters.outline import TrackOutline
+from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Climb, Drive, Hold, SeizureCriteria, Solver, Start
 from crawler2d.parameters.track import (
@@ -161,7 +162,9 @@ if not TYPE_CHECKING:  # mypy would accept any name
     def __getattr__(name: str) -> object:
         """Import a name on first use."""
         if name not in _LAZY:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{beyond(name)}")
+            raise AttributeError(
+                f"module {__name__!r} has no attribute {name!r}{limits_hint(name)}"
+            )
         module = import_module(_LAZY[name])
         value = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
         globals()[name] = value

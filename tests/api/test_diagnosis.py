@@ -231,8 +231,8 @@ def test_a_simulation_under_way_says_why_it_has_stopped(stops: dict[str, c2d.Run
     sim.advance(5.0)
     found = sim.diagnosis()
     assert found is not None
-    needed = {name: value for name, value in found.to_plain().items() if name != "trials"}
-    np.testing.assert_equal(needed, {name: why(run).to_plain()[name] for name in needed})
+    needed = {name: value for name, value in found.to_dict().items() if name != "trials"}
+    np.testing.assert_equal(needed, {name: why(run).to_dict()[name] for name in needed})
     # Of one under way only what its outcome needs is tried.
     assert set(found.freed_by) <= set(why(run).freed_by)
 

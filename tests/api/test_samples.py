@@ -9,8 +9,8 @@ import pytest
 import crawler2d as c2d
 from crawler2d.audits.subject import standard_obstacles
 from crawler2d.audits.text import linted
-from crawler2d.parameters.fields import to_plain
-from crawler2d.patching.patch import patch_file
+from crawler2d.parameters.fields import to_dict
+from crawler2d.patching.patch import patched
 from tests.shared import refused
 
 NAMES = c2d.samples.names()
@@ -47,7 +47,7 @@ def test_each_format_has_the_same_robot(name: str) -> None:
     # MuJoCo's servos correct a speed by a gain where those of other simulators hold it.
     held = replace(other.robot.drivetrain, controller=None)
     robots = (first.robot, replace(other.robot, drivetrain=held))
-    expected, found = (leaves(to_plain(each)) for each in robots)
+    expected, found = (leaves(to_dict(each)) for each in robots)
     assert set(found) == set(expected)
     for path, value in expected.items():
         if isinstance(value, float):
@@ -96,7 +96,7 @@ def test_the_wheels_of_a_sample_can_be_changed_in_its_file(
 ) -> None:
     reading = read(name)
     changed = tmp_path / name
-    changed.write_text(patch_file(reading, reading.robot.with_track(track)).text, encoding="utf-8")
+    changed.write_text(patched(reading, reading.robot.with_track(track)).text, encoding="utf-8")
     again = c2d.read_robot(changed).robot
     assert isinstance(again.track, c2d.LineOfWheels)
     assert again.track.count == track.count

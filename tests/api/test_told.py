@@ -27,7 +27,7 @@ def kinds_of(module: Any) -> list[type[Parameters]]:
 
 
 KINDS = [cls for module in (track, terrain, settings) for cls in kinds_of(module)]
-MODELS = [cls for cls in kinds_of(track) if cls.place == "robot.track"]
+MODELS = [cls for cls in kinds_of(track) if cls.default_path == "robot.track"]
 
 
 def kinds_in(node: Any) -> Iterator[str]:
@@ -55,7 +55,7 @@ def test_every_kind_of_track_terrain_and_gait_has_a_scenario_in_the_tests() -> N
 
 @pytest.mark.parametrize("cls", [*MODELS, *kinds_of(terrain)])
 def test_every_track_model_and_terrain_has_a_row_in_the_conventions(cls: type[Parameters]) -> None:
-    about = section("Terrains" if cls.place == "terrain" else "Track models")
+    about = section("Terrains" if cls.default_path == "terrain" else "Track models")
     assert f"| `{cls.__name__}` | `{cls.kind}` |" in about
 
 

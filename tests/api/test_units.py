@@ -64,6 +64,6 @@ def test_units_are_those_of_the_docstrings() -> None:
             if inspect.isclass(kind) and issubclass(kind, Parameters):
                 text = inspect.getdoc(kind) or ""
                 for names, unit in re.findall(r"^([\w, ]+) : .*\n +\[([^\]]+)\]", text, re.M):
-                    paths = [f"{kind.place}.{name}" for name in names.split(", ")]
+                    paths = [f"{kind.default_path}.{name}" for name in names.split(", ")]
                     documented |= dict.fromkeys(paths, unit.replace("-", "1"))
     assert {path: unit_of(path) for path in documented} == documented

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 import crawler2d as c2d
-from crawler2d.common.bodies import Disc, ends_of
+from crawler2d.common.bodies import Disc, end_discs
 from crawler2d.parameters.track import OpenTrack, Track
 
 TINY = 1e-20
@@ -86,7 +86,7 @@ def drawn_discs(draw: Draw, axles: float, rear: float, front: float) -> list[Dis
         radius = draw.size(1e-3, 100.0, (0.1 * axles, 0.3 * axles))
         discs.append((x, max(-100.0, side * height(0.3) if side < 0 else height(0.9)), radius))
     draw.shuffle(discs)
-    rear_end, front_end = ends_of(discs)
+    rear_end, front_end = end_discs(discs)
     # One disc may reach farthest both ways.
     return discs if front_end[0] > rear_end[0] else None
 

@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.units import unit_of
-from crawler2d.parameters.fields import to_plain
+from crawler2d.parameters.fields import to_dict
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import Track
 
@@ -76,7 +76,7 @@ def scaled(scenario: Scenario, length: float, mass: float, time: float) -> Scena
         factor = length**of_length * mass**of_mass * time**of_time
         return value if factor == 1.0 else value * factor
 
-    return Scenario.from_json(json.dumps(of(to_plain(scenario), "")))
+    return Scenario.from_json(json.dumps(of(to_dict(scenario), "")))
 
 
 @pytest.mark.parametrize("size", [10.0, 1.0 / 16.0])

@@ -87,7 +87,7 @@ def test_wheels_start_in_a_simulation_as_they_stand_in_the_file(tmp_path: Path) 
     turns = [(0.4 * number - 0.5) * ANGLE for number in (1, 2)]
     parts = [gear("rear", -0.2, turn=turns[0]), gear("front", 0.2, turn=turns[1])]
     robot = read(tmp_path, urdf(*parts)).robot
-    outlines = _core.geometry(robot._alone())["bodies"]["outline"]
+    outlines = _core.geometry(robot._at_rest())["bodies"]["outline"]
     for turn, outline in zip(turns, outlines, strict=False):
         up = 0.5 * math.pi + turn  # the direction of its first bar in side view
         away = np.array(outline) - TIP * np.array([math.cos(up), math.sin(up)])

@@ -148,7 +148,7 @@ def test_the_engineers_xacro_has_three_wheels_of_80_mm_a_side() -> None:
 
 def leaves(parameters: Parameters, path: str) -> Iterator[str]:
     fields = [field.name for field in dataclasses.fields(parameters)]  # type: ignore[arg-type]
-    for name in (each for field in fields for each in parameters.in_place_of.get(field, (field,))):
+    for name in (each for field in fields for each in parameters.written_as.get(field, (field,))):
         value = getattr(parameters, name)
         inner = f"{path}.{name}"
         if isinstance(value, Parameters) and not value.kind:

@@ -251,7 +251,7 @@ def test_the_diagnosis_of_a_seizure_comes_back_as_it_was(tmp_path: Path) -> None
     assert len(set(again.trials)) == len(again.trials)  # they have hashes
     assert str(again) == str(run.diagnosis)
     # What a former build said of ground that only the belly rests on.
-    text = diagnosis_json(again.to_plain()).replace(
+    text = diagnosis_json(again.to_dict()).replace(
         '"mechanism":"straddled"', '"mechanism":"bellied"'
     )
     assert read_diagnosis(text)["mechanism"] is None

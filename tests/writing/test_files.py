@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.parameters.fields import to_plain
+from crawler2d.parameters.fields import to_dict
 from tests.fuzz.drawn_robots import Draw, drawn_robot
 from tests.shared import refused, with_flippers
 
@@ -35,7 +35,7 @@ def robot_in(text: str) -> Any:
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_robot_itself_is_in_a_comment(name: str) -> None:
     text = write(WHEELS, name)
-    assert robot_in(text) == to_plain(WHEELS)
+    assert robot_in(text) == to_dict(WHEELS)
     assert f"Written by crawler2d {c2d.__version__}." in text
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.common.bodies import ends_of
+from crawler2d.common.bodies import end_discs
 from tests.reading.carts import quietly
 from tests.writing.drawn import drawn, drawn_on_discs
 
@@ -37,7 +37,7 @@ def frame_of(reading: c2d.Reading) -> tuple[np.ndarray, np.ndarray]:
     own = (reading.wheels["carrier"] == "chassis") & (reading.wheels["side"] == "left")
     rows = sorted(zip(*(reading.wheels[n][own] for n in ("x", "y", "radius")), strict=True))
     if len(reading.robot.outline.discs) > 2:
-        rear, front = (np.array(end[:2]) for end in ends_of(rows))
+        rear, front = (np.array(end[:2]) for end in end_discs(rows))
         return 0.5 * (rear + front), np.eye(2)
     rear, front = np.array(rows[0][:2]), np.array(rows[-1][:2])
     ahead = (front - rear) / np.hypot(*(front - rear))

@@ -124,7 +124,7 @@ def _degrees(words: list[str], rule: str) -> float:
 
 def starts(robot: c2d.Robot) -> dict[str, np.ndarray]:
     """[rad] Directions of a grouser of each wheel over the chassis at the start, by end."""
-    text = robot._alone()
+    text = robot._at_rest()
     found = {}
     for carrier in carriers_of(json.loads(text)["robot"], text):
         corners = [grousers_of(wheel.outline)[1][0] for wheel in carrier.wheels]  # type: ignore[arg-type]

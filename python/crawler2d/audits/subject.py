@@ -11,7 +11,8 @@ from typing import Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import robot_findings
 from crawler2d.errors import ScenarioError, ScenarioWarning
-from crawler2d.parameters.robot import Robot, TrackOutline
+from crawler2d.parameters.outline import TrackOutline
+from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import (
     Barrier,

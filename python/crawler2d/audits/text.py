@@ -16,7 +16,7 @@ from crawler2d.audits.lint import Finding, lint
 from crawler2d.audits.subject import HowToRead, subject_of
 from crawler2d.audits.verdicts import Verdict
 from crawler2d.audits.words import made
-from crawler2d.parameters.fields import to_plain
+from crawler2d.parameters.fields import to_dict
 from crawler2d.parameters.robot import Robot
 from crawler2d.reading.reading import Reading
 from crawler2d.variation.distributions import Ranges
@@ -178,7 +178,7 @@ def plain_of(audit: Audited) -> dict[str, Any]:
     read = audit.reading
     plain: dict[str, Any] = _finite(
         {
-            "robot": to_plain(audit.robot),
+            "robot": to_dict(audit.robot),
             "file": None if read is None else read.tree.file,
             "engine": None if read is None else read.engine,
             "friction": None if read is None else read.friction,
@@ -189,7 +189,7 @@ def plain_of(audit: Audited) -> dict[str, Any]:
             "belt": audit.belt.reason,
             "lint": [dataclasses.asdict(each) for each in audit.lint],
             "pockets": [dataclasses.asdict(each) for each in audit.pockets],
-            "obstacles": {name: to_plain(each) for name, each in audit.obstacles.items()},
+            "obstacles": {name: to_dict(each) for name, each in audit.obstacles.items()},
             "verdicts": [dataclasses.asdict(each) for each in audit.verdicts],
             "assumed": [
                 {
@@ -202,7 +202,7 @@ def plain_of(audit: Audited) -> dict[str, Any]:
             "repairs": [
                 {
                     **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},
-                    "robot": to_plain(each.robot),
+                    "robot": to_dict(each.robot),
                     "cleared": {k: dataclasses.asdict(v) for k, v in each.cleared.items()},
                     "seized": {k: dataclasses.asdict(v) for k, v in each.seized.items()},
                     "seized_at": {

@@ -1,4 +1,4 @@
-"""Numbers, arrays, figures and tables as they are kept: checked, and frozen."""
+"""Checked numbers, and read-only arrays, metrics and tables."""
 
 from __future__ import annotations
 
@@ -14,26 +14,35 @@ if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
 
-__all__ = ["Figures", "Table", "read_only"]
+__all__ = [
+    "Metrics",
+    "Table",
+    "freeze_array",
+    "read_bool",
+    "read_rows",
+    "read_scalar",
+    "real_number",
+    "whole_number",
+]
 
 
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
+def freeze_array(array: NDArray[Any]) -> NDArray[Any]:
     """Return a view of an array that is read-only and cannot be made writeable again.
 
     NumPy lets a view be made writeable again if its base array, or the owner of the memory, is
     writeable. The owner of the core's memory never is; memory of any other owner is copied.
     """
-    under = [array]
-    while isinstance(under[-1].base, np.ndarray):
-        under.append(under[-1].base)
-    if not _is_the_cores(under[-1].base):
-        under = [array.copy()]
-    for each in under:
+    bases = [array]
+    while isinstance(bases[-1].base, np.ndarray):
+        bases.append(bases[-1].base)
+    if not _owned_by_core(bases[-1].base):
+        bases = [array.copy()]
+    for each in bases:
         each.flags.writeable = False
-    return under[0].view()
+    return bases[0].view()
 
 
-def _is_the_cores(owner: object) -> bool:
+def _owned_by_core(owner: object) -> bool:
     """Whether the memory belongs to the core, where no Python code can reach it."""
     if owner is None:
         return False
@@ -44,40 +53,39 @@ def _is_the_cores(owner: object) -> bool:
     return False
 
 
-class Figures(dict[str, float]):
-    """Figures by name; they can be read, compared, copied and pickled as any dict.
+class Metrics(dict[str, float]):
+    """A read-only dict of figures by name.
 
     Examples
     --------
-    >>> figures = Figures({"time": 2.5})
-    >>> figures["time"] = 3.0
+    >>> metrics = Metrics({"time": 2.5})
+    >>> metrics["time"] = 3.0
     Traceback (most recent call last):
         ...
-    TypeError: these figures are read-only; dict(figures) is a copy that can be changed
+    TypeError: metrics are read-only; change a copy, dict(metrics)
     """
 
     __slots__ = ()
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
         """Raise, and say why."""
-        raise TypeError("these figures are read-only; dict(figures) is a copy that can be changed")
+        raise TypeError("metrics are read-only; change a copy, dict(metrics)")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse
 
-    def __reduce__(self) -> tuple[type[Figures], tuple[dict[str, float]]]:
-        """Pickle and copy all figures at once, because single ones cannot be set."""
-        return Figures, (dict(self),)
+    def __reduce__(self) -> tuple[type[Metrics], tuple[dict[str, float]]]:
+        """Pickle and copy all of them at once, because single ones cannot be set."""
+        return Metrics, (dict(self),)
 
 
-# What a row of two or three numbers means.
 _ROWS = {2: "a point (x, y)", 3: "a circle (x, y, radius)"}
 
 # float64 holds every whole number up to here exactly.
 _EXACT = 2**53
 
 
-def frozen_scalar(value: Any, *, whole: bool) -> Any:
+def read_scalar(value: Any, *, whole: bool) -> Any:
     """Convert a NumPy scalar or a 0-d array to the Python number it holds.
 
     Parameters
@@ -114,7 +122,7 @@ def real_number(value: Any, path: str) -> float:
     ScenarioError
         If it is not a number; a bool or a string is not.
     """
-    number = frozen_scalar(value, whole=False)
+    number = read_scalar(value, whole=False)
     if type(number) is not float:
         raise ScenarioError(path, value, "must be a number")
     return number
@@ -126,15 +134,28 @@ def whole_number(value: Any, path: str, least: int, most: int) -> int:
     Raises
     ------
     ScenarioError
-        If it is no whole number, or out of bounds; a bool is none.
+        If it is not a whole number, such as a bool, or out of bounds.
     """
-    number = frozen_scalar(value, whole=True)
+    number = read_scalar(value, whole=True)
     if type(number) is not int or not least <= number <= most:
         raise ScenarioError(path, value, f"must be a whole number from {least} to {most}")
     return number
 
 
-def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
+def read_bool(value: object, path: str) -> bool:
+    """Accept True or False only, nothing that is merely truthy.
+
+    Raises
+    ------
+    ScenarioError
+        If it is anything else.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise ScenarioError(path, value, "must be True or False")
+    return bool(value)
+
+
+def read_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
     """Copy an array-like of real numbers to tuples of floats, exactly.
 
     Parameters
@@ -166,32 +187,32 @@ def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
         array = np.asarray(value)
     except Exception as error:  # an object's own code may raise anything
         if rows:
-            raise _bad_row(value, path, columns) from error
+            raise _row_error(value, path, columns) from error
         raise ScenarioError(path, value, f"must be {_ROWS[columns]}") from error
     if array.size == 0 and array.ndim == 1 and rows:
         return ()
     if array.dtype.kind not in "iuf":
         rule = f"must hold real numbers, not {array.dtype}"
-        raise ScenarioError(path, _described(value, array), rule)
+        raise ScenarioError(path, _summary(value, array), rule)
     if (array.shape[1:] if rows else array.shape) != (columns,):
         rule = f"must have shape {f'(n, {columns})' if rows else f'({columns},)'}"
         raise ScenarioError(path, f"shape {array.shape}", rule)
     with np.errstate(over="ignore"):
         exact = array.astype(np.float64)
-    if not _same_numbers(array, exact):
-        raise ScenarioError(path, _described(value, array), "must hold numbers that fit in float64")
+    if not _equals(array, exact):
+        raise ScenarioError(path, _summary(value, array), "must hold numbers that fit in float64")
     numbers = (exact + 0.0).tolist()  # -0.0 becomes 0.0
     return tuple(map(tuple, numbers)) if rows else tuple(numbers)
 
 
-def _same_numbers(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> bool:
+def _equals(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> bool:
     if array.dtype.kind in "iu":
         return bool(np.all((array <= _EXACT) & (array >= -_EXACT)))
     return bool(np.array_equal(exact.astype(array.dtype), array, equal_nan=True))
 
 
-def _bad_row(value: Any, path: str, columns: int) -> ScenarioError:
-    """Find the first row of a ragged list that has the wrong number of numbers."""
+def _row_error(value: Any, path: str, columns: int) -> ScenarioError:
+    """Name the first row of a ragged list that has the wrong number of numbers."""
     for index, row in enumerate(value if isinstance(value, (list, tuple)) else ()):
         try:
             shape = np.shape(row)
@@ -202,14 +223,14 @@ def _bad_row(value: Any, path: str, columns: int) -> ScenarioError:
     return ScenarioError(path, value, f"must be a list, each {_ROWS[columns]}")
 
 
-def _described(value: Any, array: np.ndarray[Any, Any]) -> object:
-    """Describe an array by type and shape, to keep messages short; return the rest as it is."""
+def _summary(value: Any, array: np.ndarray[Any, Any]) -> object:
+    """Describe an array by type and shape, to keep messages short; keep anything else."""
     if isinstance(value, np.ndarray):
         return f"{array.dtype} array of shape {array.shape}"
     return value
 
 
-# How many rows of a table a notebook shows.
+# Rows of a table that a notebook shows.
 _SHOWN = 10
 
 
@@ -220,7 +241,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
     ----------
     columns : mapping of str to array_like, or callable
         The columns in order; a list becomes an array of strings, or of objects if it holds tuples.
-        A callable makes them when they are first used.
+        A callable returns them when they are first used.
 
     Examples
     --------
@@ -229,21 +250,21 @@ class Table(Mapping[str, "NDArray[Any]"]):
     (2, ['x', 'kind'], [0.0, 0.5])
     """
 
-    __slots__ = ("_given", "_made")
+    __slots__ = ("_frozen", "_source")
 
     # As with arrays, comparing columns has no single answer: a table equals only itself.
     __eq__ = object.__eq__
     __hash__ = object.__hash__
 
     def __init__(self, columns: Mapping[str, Any] | Callable[[], Mapping[str, Any]]) -> None:
-        self._given = columns
-        self._made = None if callable(columns) else _frozen(columns)
+        self._source = columns if callable(columns) else lambda: columns
+        self._frozen = None if callable(columns) else _freeze_columns(columns)
 
     @property
     def _columns(self) -> dict[str, NDArray[Any]]:
-        if self._made is None:
-            self._made = _frozen(self._given() if callable(self._given) else self._given)
-        return self._made
+        if self._frozen is None:
+            self._frozen = _freeze_columns(self._source())
+        return self._frozen
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Return one column, shape (n,)."""
@@ -258,7 +279,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
         return len(next(iter(self._columns.values()), ()))
 
     def __bool__(self) -> bool:
-        """Tell whether there is any row."""
+        """Whether there is any row."""
         return len(self) > 0
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
@@ -296,8 +317,8 @@ class Table(Mapping[str, "NDArray[Any]"]):
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
 
-def _frozen(columns: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    return {name: read_only(_column(values)) for name, values in columns.items()}
+def _freeze_columns(columns: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
+    return {name: freeze_array(_column(values)) for name, values in columns.items()}
 
 
 def _column(values: Any) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""The bodies of a robot: kinds, looks and poses; the end axles of a track."""
+"""The bodies of a robot: kinds, outlines and poses; the discs of its tracks."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import Table, read_only
+from crawler2d.common.arrays import Table, freeze_array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "TRACED",
+    "POSE_COLUMNS",
     "BodyKind",
     "Disc",
     "Lane",
     "bodies_of",
     "body_poses",
     "discs_in",
-    "ends_of",
-    "is_short",
+    "end_discs",
+    "is_centered_pair",
     "two_discs",
 ]
 
@@ -31,15 +31,15 @@ Disc = tuple[float, float, float]
 """[m] Centre (x, y) in the chassis frame, and radius."""
 
 
-def ends_of(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
+def end_discs(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
     """Find the rearmost and the foremost disc; of two that reach equally far the higher one.
 
     Examples
     --------
-    >>> ends_of([(0.3, 0.1, 0.04), (-0.2, 0.0, 0.06), (0.2, 0.0, 0.06)])
+    >>> end_discs([(0.3, 0.1, 0.04), (-0.2, 0.0, 0.06), (0.2, 0.0, 0.06)])
     ((-0.2, 0.0, 0.06), (0.3, 0.1, 0.04))
     """
-    if is_short(discs):
+    if is_centered_pair(discs):
         return discs[0], discs[1]  # also where one would enclose the other, which is refused
     rear = max(discs, key=lambda disc: (disc[2] - disc[0], disc[1]))
     front = max(discs, key=lambda disc: (disc[2] + disc[0], disc[1]))
@@ -47,7 +47,7 @@ def ends_of(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
 
 
 def two_discs(axle_distance: float, rear: float, front: float) -> tuple[Disc, Disc]:
-    """Make two discs of their distance and radii [m], the chassis frame midway between them."""
+    """Place two discs of these radii [m] with the chassis frame midway between them."""
     half = 0.5 * axle_distance
     return (-half, 0.0, rear), (half, 0.0, front)
 
@@ -62,19 +62,16 @@ def discs_in(outline: Mapping[str, Any]) -> Sequence[Disc]:
     return two_discs(distance, rear, front)
 
 
-def is_short(discs: Sequence[Disc]) -> bool:
-    """Whether these are two discs, the rear one first, with the chassis frame midway between them.
-
-    Their distance and radii say it all then.
-    """
+def is_centered_pair(discs: Sequence[Disc]) -> bool:
+    """Whether these are two discs as `two_discs` places them, given by distance and radii alone."""
     if len(discs) != 2:
         return False
     (rear, rear_y, _), (front, front_y, _) = discs
     return rear < 0.0 and front == -rear and rear_y == 0.0 and front_y == 0.0
 
 
-TRACED = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
-"""Columns of a run that the poses of all bodies follow from."""
+POSE_COLUMNS = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
+"""Columns of a run from which the poses of all bodies are computed."""
 
 
 class BodyKind(IntEnum):
@@ -95,7 +92,7 @@ class BodyKind(IntEnum):
     SHOE = 5
     """The plate of a shoe, or all of a tapering shoe."""
     GUIDE = 6
-    """What a chain of shoes slides on."""
+    """The rail that a chain of shoes slides on."""
     SPROCKET = 7
     IDLER = 8
     ROAD_WHEEL = 9
@@ -124,7 +121,7 @@ def bodies_of(text: str) -> Table:
     columns = _core.geometry(text)["bodies"]
     outlines = np.empty(len(columns["outline"]), dtype=object)
     for row, outline in enumerate(columns["outline"]):
-        outlines[row] = read_only(outline)
+        outlines[row] = freeze_array(outline)
     return Table({**columns, "outline": outlines})
 
 
@@ -136,7 +133,7 @@ def body_poses(text: str, trace: Mapping[str, Any]) -> dict[str, NDArray[np.floa
     text : str
         The scenario in JSON.
     trace : mapping of str to ndarray
-        Columns of the run, at least those that `TRACED` names.
+        Columns of the run, at least those that `POSE_COLUMNS` names.
 
     Returns
     -------

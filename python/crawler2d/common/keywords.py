@@ -1,4 +1,4 @@
-"""Keywords that a function or a class does not take, with the nearest that it does."""
+"""Refusal of unknown keywords, with a suggestion of the nearest known one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, ParamSpec, Self, TypeVar, cast
 
 from crawler2d.errors import ArgumentError
 
-__all__ = ["TakesKeywords", "beyond", "refuse_unknown", "suggestion", "takes_keywords"]
+__all__ = ["TakesKeywords", "limits_hint", "refuse_unknown", "suggestion", "takes_keywords"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -20,33 +20,33 @@ _BEYOND_A_SIDE_VIEW = (
     *("soil", "sand", "mud", "sinkage", "cohesion", "suspension"),
     *("stl", "mesh", "heightmap", "pid", "kp", "ki", "kd", "controller"),
 )
-"""What users ask for that a side view does not have; README, "Limits", says so."""
+"""What users look for and a side view does not have; see README, "Limits"."""
 
 _LIMITS = (
-    " (crawler2d is a side view, in the sagittal plane; what it leaves out, such as roll, yaw,"
-    " turning, soil, suspension, meshes of the ground and controllers, is in README, Limits)"
+    " (crawler2d is a side view; README, Limits, lists what it leaves out, such as roll, yaw,"
+    " turning, soil, suspension, meshes of the ground and controllers)"
 )
 _MISSPELT, _ALIKE = 0.8, 0.6
-"""Likeness by `difflib`: of a name with a letter missing, and of one that has half of another."""
+"""Similarity by `difflib`: of a name with a letter missing, and of one that shares half."""
 _MOST = 3
-"""Names that one hint has."""
+"""Names in one hint."""
 
 
-def beyond(name: str) -> str:
-    """Say where the limits stand, if a name asks for what a side view does not have; else empty."""
+def limits_hint(name: str) -> str:
+    """Point to the limits, if a name asks for what a side view does not have; else empty."""
     parts = name.lower().split("_")
     return _LIMITS if any(part in _BEYOND_A_SIDE_VIEW for part in parts) else ""
 
 
 def suggestion(name: str, names: Iterable[str], paths: Iterable[str] = ()) -> str:
-    """Say which known name was probably meant; empty if none is near.
+    """Suggest the known name that was probably meant; empty if none is similar.
 
     Parameters
     ----------
     name : str
-        What is not known.
+        The unknown name.
     names, paths : iterable of str
-        What is: in the same place, and elsewhere, by path.
+        Known names: in the same object, and elsewhere, by path.
 
     Examples
     --------
@@ -63,15 +63,15 @@ def suggestion(name: str, names: Iterable[str], paths: Iterable[str] = ()) -> st
         for known in (here, there):
             nearest = difflib.get_close_matches(name, known.values(), n=1, cutoff=least)
             meant = meant or [each for each, last in known.items() if last in nearest]
-        if not meant and beyond(name):
-            return beyond(name)
+        if not meant and limits_hint(name):
+            return limits_hint(name)
     return f" (did you mean {' or '.join(meant[:_MOST])}?)" if meant else ""
 
 
 def refuse_unknown(
-    called: str, given: Mapping[str, object], taken: Sequence[str], paths: Iterable[str] = ()
+    called: str, given: Mapping[str, object], known: Sequence[str], paths: Iterable[str] = ()
 ) -> None:
-    """Refuse keywords that are not among those taken.
+    """Refuse unknown keywords.
 
     Parameters
     ----------
@@ -79,36 +79,37 @@ def refuse_unknown(
         The function or class.
     given : mapping of str to object
         The keywords with their values.
-    taken : sequence of str
+    known : sequence of str
         The keywords that it takes.
     paths : iterable of str
-        What else may be meant.
+        Other names that may be meant.
 
     Raises
     ------
     ArgumentError
-        About the first.
+        For the first of them.
     """
     for name, value in given.items():
-        if name not in taken:
-            rule = f"must be a keyword that {called} takes: {', '.join(taken) or 'it takes none'}"
-            raise ArgumentError(name, value, f"{rule}{suggestion(name, taken, paths)}")
+        if name not in known:
+            listed = f"{called} takes {', '.join(known) or 'none'}"
+            hint = suggestion(name, known, paths)
+            raise ArgumentError(name, value, f"must be a known keyword: {listed}{hint}")
 
 
 def takes_keywords(function: Callable[P, R]) -> Callable[P, R]:
     """Let a function refuse unknown keywords with the nearest known name."""
-    taken = _taken(cast("FunctionType", function))
-    if taken is None:
+    known = _keyword_names(cast("FunctionType", function))
+    if known is None:
         return function
     name, refuse = function.__qualname__, refuse_unknown
 
     def call(*args: P.args, **keywords: P.kwargs) -> R:
-        refuse(name, keywords, taken)
+        refuse(name, keywords, known)
         return function(*args, **keywords)
 
-    # With the globals of the function: by them doctest tells whose examples these are.
-    made = FunctionType(call.__code__, function.__globals__, name, None, call.__closure__)
-    return functools.update_wrapper(made, function)
+    # With the globals of the function: by them doctest finds the module of the examples.
+    wrapper = FunctionType(call.__code__, function.__globals__, name, None, call.__closure__)
+    return functools.update_wrapper(wrapper, function)
 
 
 class TakesKeywords:
@@ -119,12 +120,13 @@ class TakesKeywords:
     def __new__(cls, *_: Any, **keywords: Any) -> Self:
         """Check the keywords; `__init__` takes them."""
         if keywords:
-            refuse_unknown(cls.__name__, keywords, _taken(cast("FunctionType", cls.__init__)) or ())
+            known = _keyword_names(cast("FunctionType", cls.__init__)) or ()
+            refuse_unknown(cls.__name__, keywords, known)
         return object.__new__(cls)
 
 
-def _taken(function: FunctionType) -> tuple[str, ...] | None:
-    """Names of the parameters that can be given by keyword; None if it takes any."""
+def _keyword_names(function: FunctionType) -> tuple[str, ...] | None:
+    """List the parameters that can be given by keyword; None if it takes any."""
     code = function.__code__
     named = code.co_argcount + code.co_kwonlyargcount
     names = code.co_varnames[code.co_posonlyargcount : named]

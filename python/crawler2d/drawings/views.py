@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.bodies import discs_in, ends_of
+from crawler2d.common.bodies import discs_in, end_discs
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import Canvas, height, radius, span
 from crawler2d.drawings.scene import (
@@ -175,7 +175,7 @@ class _Arm:
 
 def _arms(scene: Scene, robot: dict[str, Any]) -> list[_Arm]:
     """Find the flippers at each end, the front first."""
-    (rear, front), found = ends_of(discs_in(robot["outline"])), []
+    (rear, front), found = end_discs(discs_in(robot["outline"])), []
     for carrier in scene.carriers[1:]:
         pivot = np.array((front if carrier.name.startswith("front") else rear)[:2])
         tip = 2.0 * carrier.poses[0, :2] - pivot
@@ -191,7 +191,7 @@ def _arms(scene: Scene, robot: dict[str, Any]) -> list[_Arm]:
 def _rows(outline: dict[str, Any]) -> int:
     """Count the rows of dimensions: radii of discs between the ends, those of the ends, lengths."""
     discs = discs_in(outline)
-    of_ends = {radius for _, _, radius in ends_of(discs)}
+    of_ends = {radius for _, _, radius in end_discs(discs)}
     return 2 + any(radius not in of_ends for _, _, radius in discs)
 
 
@@ -203,7 +203,7 @@ def _draw_dimensions(
     `below` [m] are the level of the first row of labels and the height of a row.
     """
     discs = discs_in(robot["outline"])
-    rear, front = ends_of(discs)
+    rear, front = end_discs(discs)
     of_arms = [point for arm in arms for point in (arm.pivot, arm.tip)]
     axles = np.array([*(disc[:2] for disc in discs), *of_arms])
     ax.plot(*axles.T, "o", color=BLACK, markersize=2.5, zorder=2.5)

@@ -11,7 +11,7 @@ __all__ = ["PI", "Drivetrain"]
 
 
 @dataclass(frozen=True, slots=True)
-class PI(Parameters):
+class PI(Parameters, kind="pi", path="robot.drivetrain.controller"):
     """A controller of the speed of each sprocket: proportional and integral.
 
     The torque is the gain times the error of the rate, plus the integral gain times the sum of that
@@ -47,15 +47,12 @@ class PI(Parameters):
     0.4
     """
 
-    kind: ClassVar[str] = "pi"
-    place: ClassVar[str] = "robot.drivetrain.controller"
-
     gain: float
     integral: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drivetrain(Parameters):
+class Drivetrain(Parameters, path="robot.drivetrain"):
     """What drives the tracks, and within which limits.
 
     Parameters
@@ -123,9 +120,8 @@ class Drivetrain(Parameters):
     0.0
     """
 
-    place: ClassVar[str] = "robot.drivetrain"
-    either: ClassVar[tuple[str, ...]] = ("no_load_speed", "torque_curve")
-    unsaid: ClassVar[tuple[str, ...]] = (
+    exclusive: ClassVar[tuple[str, ...]] = ("no_load_speed", "torque_curve")
+    omitted_defaults: ClassVar[tuple[str, ...]] = (
         "rotor_inertia",
         "no_load_speed",
         "torque_curve",

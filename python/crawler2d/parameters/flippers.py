@@ -12,7 +12,7 @@ __all__ = ["Flippers"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flippers(Parameters):
+class Flippers(Parameters, path="robot.flippers"):
     """Identical arms at one end of a robot or at both, one on each side.
 
     An arm pivots on the end axle, and a track runs round it from there to an axle at its tip. It is
@@ -93,8 +93,7 @@ class Flippers(Parameters):
     -0.4
     """
 
-    place: ClassVar[str] = "robot.flippers"
-    unsaid: ClassVar[tuple[str, ...]] = ("rotor_inertia", "self_locking")
+    omitted_defaults: ClassVar[tuple[str, ...]] = ("rotor_inertia", "self_locking")
 
     length: float
     root_radius: float

@@ -1,28 +1,28 @@
-"""The robot as built, with masses, outline, belly and drivetrain, and the model of its track."""
+"""A robot as built, and the model of its track."""
 
 from __future__ import annotations
 
 import math
 import os
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 from crawler2d import _core
-from crawler2d.common.arrays import Table, frozen_rows, real_number
-from crawler2d.common.bodies import Disc, ends_of, is_short, two_discs
+from crawler2d.common.arrays import Table, real_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.fields import Parameters
 from crawler2d.parameters.flippers import Flippers
-from crawler2d.parameters.settings import Drive, Form, Solver
+from crawler2d.parameters.outline import TrackOutline
+from crawler2d.parameters.settings import Drive, ScenarioBase, Solver
 from crawler2d.parameters.terrain import Points, Terrain
 from crawler2d.parameters.track import BeltTrack, Track
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Robot", "TrackOutline"]
+__all__ = ["Robot"]
 
 # Proportions of the Servosila Engineer's grousers, whose radius is 64 mm.
 _GROUSER_HEIGHT = 0.012 / 0.064
@@ -33,129 +33,12 @@ _GROUSER_THICKNESS = 0.006 / 0.048
 _HOLDING_SLOPE = math.radians(45.0)
 _HOLDING_MARGIN = 1.6
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
-class TrackOutline(Parameters):
-    """Side view of the track: a taut belt round discs, measured to the grouser tips.
-
-    Two discs are given by their `axle_distance`, `front_radius` and `rear_radius`, with the chassis
-    frame midway between their axles; any number of them by `discs`. Then the chassis frame is that
-    of `discs`, with its origin between the end axles, x forward along the chassis and y up.
-
-    Parameters
-    ----------
-    discs : array_like, shape (n, 3)
-        [m] Centre x and y in the chassis frame and radius of each disc, in any order. The track
-        must bend round each: a disc inside the hull of the others is refused, and so are more than
-        64 discs.
-    axle_distance : float
-        [m] Distance of the end axles along the chassis. The end axles are those of the discs that
-        reach farthest back and forwards, of two that reach equally far the higher one; the rear one
-        is the sprocket's.
-    front_radius, rear_radius : float
-        [m] Radius of the disc on each end axle.
-    grouser_height : float
-        [m] Height of the grousers above the belt; 0 for a smooth belt.
-    grouser_pitch : float
-        [m] Spacing of the grousers along the belt.
-    grouser_thickness : float
-        [m] Thickness of a grouser along the belt, less than the pitch.
-
-    Raises
-    ------
-    ScenarioError
-        If `discs` does not hold real numbers, is masked or has another shape, or is given beside a
-        distance or a radius that follows from it; if one of the three is missing or not a number.
-
-    Notes
-    -----
-    `axle_distance`, `front_radius` and `rear_radius` can be read of any outline, and replaced, by
-    `dataclasses.replace` or by path, in one that could have been given by them.
-
-    Examples
-    --------
-    >>> grousers = {"grouser_height": 0.01, "grouser_pitch": 0.05, "grouser_thickness": 0.006}
-    >>> two = TrackOutline(axle_distance=0.4, front_radius=0.06, rear_radius=0.05, **grousers)
-    >>> two == TrackOutline(discs=[(-0.2, 0, 0.05), (0.2, 0, 0.06)], **grousers)
-    True
-
-    With a raised idler in front:
-
-    >>> raised = TrackOutline(discs=[*two.discs, (0.3, 0.08, 0.04)], **grousers)
-    >>> raised.axle_distance, raised.front_radius
-    (0.5, 0.04)
-    """
-
-    place: ClassVar[str] = "robot.outline"
-    besides: ClassVar[tuple[str, ...]] = ("axle_distance", "front_radius", "rear_radius")
-
-    discs: tuple[Disc, ...]
-    if TYPE_CHECKING:
-        # For `dataclasses.replace`; they are properties.
-        axle_distance: float
-        front_radius: float
-        rear_radius: float
-    grouser_height: float
-    grouser_pitch: float
-    grouser_thickness: float
-
-    def __init__(
-        self,
-        *,
-        discs: Any = None,
-        axle_distance: float | None = None,
-        front_radius: float | None = None,
-        rear_radius: float | None = None,
-        grouser_height: float,
-        grouser_pitch: float,
-        grouser_thickness: float,
-    ) -> None:
-        ends = dict(zip(self.besides, (axle_distance, front_radius, rear_radius), strict=True))
-        is_plain = discs is not None and all(number is None for number in ends.values())
-        fields = {
-            "discs": discs if is_plain else _two(discs, ends),
-            "grouser_height": grouser_height,
-            "grouser_pitch": grouser_pitch,
-            "grouser_thickness": grouser_thickness,
-        }
-        for name, value in fields.items():
-            object.__setattr__(self, name, value)
-        self.__post_init__()
-
-    if not TYPE_CHECKING:
-
-        @property
-        def axle_distance(self) -> float:
-            """[m] Distance of the end axles along the chassis."""
-            rear, front = self.ends
-            return front[0] - rear[0]
-
-        @property
-        def front_radius(self) -> float:
-            """[m] Radius of the disc on the front end axle."""
-            return self.ends[1][2]
-
-        @property
-        def rear_radius(self) -> float:
-            """[m] Radius of the disc on the rear end axle."""
-            return self.ends[0][2]
-
-    @property
-    def ends(self) -> tuple[Disc, Disc]:
-        """[m] Centre (x, y) and radius of the disc on the rear and on the front end axle."""
-        if not self.discs:
-            raise ScenarioError("robot.outline.discs", self.discs, "must have at least 2 discs")
-        return ends_of(self.discs)
-
-    @property
-    def in_place_of(self) -> dict[str, tuple[str, ...]]:
-        """What texts have in place of discs, if three numbers say it all."""
-        return {"discs": self.besides} if is_short(self.discs) else {}
+_LEVEL = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Robot(Parameters):
-    """A tracked robot; `track` says how its track is modelled, everything else how it is built.
+class Robot(Parameters, path="robot"):
+    """A tracked robot: `track` is the model of its track, everything else is how it is built.
 
     Total mass, centre of mass and moment of inertia are the same for every track model.
 
@@ -186,8 +69,6 @@ class Robot(Parameters):
         The model of the track.
     """
 
-    place: ClassVar[str] = "robot"
-
     name: str
     _: KW_ONLY
     mass: float
@@ -213,8 +94,8 @@ class Robot(Parameters):
         Returns
         -------
         Robot
-            A copy; nothing else changes, but that a `BeltTrack`, which has one drive a side, has a
-            motor a track, ``torque_sharing="track"``.
+            A copy. Nothing else changes, except that a `BeltTrack`, which has one drive per side,
+            sets ``torque_sharing="track"``.
 
         Examples
         --------
@@ -233,7 +114,7 @@ class Robot(Parameters):
 
     @takes_keywords
     def with_flippers(self, flippers: Flippers) -> Robot:
-        """Mount arms, and add them to mass, centre of mass and moment of inertia.
+        """Mount flippers, and add them to mass, centre of mass and moment of inertia.
 
         Parameters
         ----------
@@ -248,7 +129,7 @@ class Robot(Parameters):
         Raises
         ------
         ScenarioError
-            If mass, length or place of the arms is invalid.
+            If mass, length or `ends` of the arms is invalid.
 
         Examples
         --------
@@ -260,7 +141,7 @@ class Robot(Parameters):
         >>> bare.mass, bare.with_flippers(arms).mass
         (21.2, 22.75)
         """
-        return replace(_plus_arms(self.without_flippers(), flippers, 1.0), flippers=flippers)
+        return replace(_add_arms(self.without_flippers(), flippers, 1.0), flippers=flippers)
 
     def without_flippers(self) -> Robot:
         """Take the arms and their mass off: the robot as it would be built without them.
@@ -287,13 +168,13 @@ class Robot(Parameters):
         """
         if self.flippers is None:
             return self
-        return replace(_plus_arms(self, self.flippers, -1.0), flippers=None)
+        return replace(_add_arms(self, self.flippers, -1.0), flippers=None)
 
     def without_rotors(self) -> Robot:
-        """Leave off the rotors of all motors: the drives of a simulator that has none.
+        """Remove the rotors of all motors: the drives of a simulator that has none.
 
-        The engine rapier takes only such robots, and what was published of simulated robots was
-        mostly found with such drives. With its rotors a robot gets over more edges.
+        The engine rapier takes only such robots, and most published simulations have such drives.
+        With its rotors a robot gets over more edges.
 
         Returns
         -------
@@ -344,7 +225,7 @@ class Robot(Parameters):
         >>> wheels["x"][:3].tolist(), wheels["mass"][:3].tolist()
         ([-0.1825, 0.0, 0.1825], [0.8, 0.8, 0.8])
         """
-        return Table(_core.wheels(self._alone()))
+        return Table(_core.wheels(self._at_rest()))
 
     @takes_keywords
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -379,7 +260,7 @@ class Robot(Parameters):
         """
         from crawler2d.drawings.views import draw_robot  # noqa: PLC0415 - optional
 
-        return draw_robot(self._alone(), self.in_words, ax)
+        return draw_robot(self._at_rest(), self.in_words, ax)
 
     @takes_keywords
     def to_sdf(
@@ -394,8 +275,8 @@ class Robot(Parameters):
 
         In three dimensions, with both sides: wheels on joints that turn, gear wheels as cylinders
         with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
-        joints, the belly. `read_robot` finds this robot in all that the file states; the robot
-        itself is in a comment. ``docs/conventions.md``, "Writing a model file", says what each
+        joints, the belly. `read_robot` reads this robot back from the file; the robot itself is in
+        a comment. ``docs/conventions.md``, "Writing a model file", says what each
         format holds and which figures are estimates. SDF has no place for rotor inertias,
         controllers and curves of torque: they are left out, and the comment says so.
 
@@ -409,12 +290,12 @@ class Robot(Parameters):
         track_width : float, optional
             [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
         chassis_width : float, optional
-            [m] Of the belly across. None takes what is free between the tracks.
+            [m] Of the belly across. None takes the free width between the tracks.
 
         Returns
         -------
         str
-            The text of the file; a console shows only how long it is.
+            The text of the file; a console shows only its length.
 
         Raises
         ------
@@ -429,8 +310,7 @@ class Robot(Parameters):
         >>> text.count("gz::sim::systems::TrackController")
         4
         """
-        widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return self._written("sdf", path, friction=friction, **widths)
+        return self._export("sdf", path, friction, track_width, chassis_width)
 
     @takes_keywords
     def to_urdf(
@@ -443,26 +323,9 @@ class Robot(Parameters):
     ) -> str:
         """Write the robot as URDF, as ROS and most simulators read it.
 
-        As `to_sdf`, but URDF holds neither belts nor motors: wheels have the limits of theirs.
-        What SDF leaves out of them is left out here, too.
-
-        Parameters
-        ----------
-        path, track_width, chassis_width
-            As those of `to_sdf`.
-        friction : float
-            [-] Coefficient of all of its surfaces: each simulator combines two in its own way.
-
-        Returns
-        -------
-        str
-            As that of `to_sdf`.
-
-        Raises
-        ------
-        ScenarioError
-            If the format cannot hold the robot (belts, too), or its masses leave none for the
-            chassis.
+        As `to_sdf`, with the same parameters, result and errors; but URDF holds neither belts nor
+        motors: wheels have the limits of theirs. How the `friction` of two surfaces is combined
+        depends on the simulator.
 
         Examples
         --------
@@ -475,8 +338,7 @@ class Robot(Parameters):
         ...
         crawler2d.errors.ScenarioError: robot.track.kind must be wheels: URDF has no surface ...
         """
-        widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return self._written("urdf", path, friction=friction, **widths)
+        return self._export("urdf", path, friction, track_width, chassis_width)
 
     @takes_keywords
     def to_mjcf(
@@ -489,28 +351,12 @@ class Robot(Parameters):
     ) -> str:
         """Write the robot as MJCF, as MuJoCo reads it.
 
-        As `to_sdf`. Wheels have servos of their speed, flippers of their rate, both with the rotor
-        inertia as ``armature``, which the wheels of a track share as they do the gain of its
-        controller; without one, servos are firm. Curves of torque are left out. The surfaces of
-        belts move at the largest speed; at run time ``MjModel.geom_surfacevel`` sets another one.
-        Gear wheels and belly may have any shape. The file has no ground.
-
-        Parameters
-        ----------
-        path, track_width, chassis_width
-            As those of `to_sdf`.
-        friction : float
-            [-] Coefficient of all of its surfaces: it holds whatever the ground has.
-
-        Returns
-        -------
-        str
-            As that of `to_sdf`.
-
-        Raises
-        ------
-        ScenarioError
-            If the format cannot hold the robot, or its masses leave none for the chassis.
+        As `to_sdf`, with the same parameters, result and errors. Wheels have servos of their speed,
+        flippers of their rate, both with the rotor inertia as ``armature``; the wheels of a track
+        divide it, and the gain of its controller. Without a controller, servos are firm. Curves of
+        torque are left out. The surfaces of belts move at the largest speed; at run time
+        ``MjModel.geom_surfacevel`` sets another one. Gear wheels and belly may have any shape. The
+        `friction` applies whatever the ground has. The file has no ground.
 
         Examples
         --------
@@ -520,8 +366,7 @@ class Robot(Parameters):
         >>> text.count("<velocity "), text.count('friction="0.7"')
         (8, 9)
         """
-        widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return self._written("mjcf", path, friction=friction, **widths)
+        return self._export("mjcf", path, friction, track_width, chassis_width)
 
     @takes_keywords
     def to_world(
@@ -534,14 +379,14 @@ class Robot(Parameters):
     ) -> str:
         """Write the robot before an obstacle, as a world for Gazebo or a scene for MuJoCo.
 
-        It stands where a `Scenario` starts it. The ground is the profile of the terrain, drawn out
+        It stands where a `Scenario` starts it. The ground is the profile of the terrain, extruded
         across twice the width of the robot, under each track its own if the two differ: boxes and,
         where it slopes, convex prisms on a plane at the lowest height. The robot is that of
-        `to_sdf` or `to_mjcf`, with the friction of the terrain between the two, whichever engine
+        `to_sdf` or `to_mjcf`, with the friction of the terrain between the two, however the engine
         combines it. Gravity is 9.81 m/s^2.
 
-        ``gz sim -r world.sdf`` runs the one: its wheels and belts obey the topic
-        ``/model/NAME/cmd_vel``; ``python -m mujoco.viewer --mjcf=scene.xml`` the other.
+        ``gz sim -r world.sdf`` runs the world: its wheels and belts obey the topic
+        ``/model/NAME/cmd_vel``; ``python -m mujoco.viewer --mjcf=scene.xml`` runs the scene.
 
         Parameters
         ----------
@@ -560,8 +405,8 @@ class Robot(Parameters):
         Raises
         ------
         ScenarioError
-            If the suffix is another one, the terrain is none or breaks a rule, or the format cannot
-            hold the robot.
+            If the suffix is another one, the terrain breaks a rule, or the format cannot hold the
+            robot.
 
         Examples
         --------
@@ -573,44 +418,50 @@ class Robot(Parameters):
         >>> c2d.read_robot(path).robot.mass == robot.mass
         True
         """
-        from crawler2d.writing.export import export_world  # noqa: PLC0415 - as above
+        from crawler2d.writing.export import written_world  # noqa: PLC0415 - as above
 
         if not isinstance(terrain, Terrain):
             raise ScenarioError("terrain", terrain, "must be a terrain")
-        text = Form(self, terrain, drive=Drive(speed=0.0), solver=Solver(time_step=1e-5)).to_json()
         widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return export_world(text, self._alone(), path, **widths)
+        return written_world(self._at_rest(terrain), self._at_rest(), path, **widths)
 
     @property
     def in_words(self) -> str:
-        """Its name and what its tracks are, for titles."""
+        """Its name and track models, for titles."""
         arms = None if self.flippers is None else self.flippers.track
         of_arms = "" if arms is None else f"; flippers: {arms.in_words}"
         return f"{self.name}: {self.track.in_words}{of_arms}"
 
-    def _alone(self) -> str:
-        """Write a scenario in which only the robot itself can break a rule."""
-        ground = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
-        # At rest and with the shortest steps.
+    def _at_rest(self, terrain: Terrain = _LEVEL) -> str:
+        """Write a scenario in which only the robot or the terrain can break a rule."""
         drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
-        return Form(self, ground, drive=drive, solver=solver).to_json()
+        return ScenarioBase(self, terrain, drive=drive, solver=solver).to_json()
 
-    def _written(
+    def _export(
         self,
         format_: Literal["sdf", "urdf", "mjcf"],
         path: str | os.PathLike[str] | None,
-        **how: Any,
+        friction: float,
+        track_width: float | None,
+        chassis_width: float | None,
     ) -> str:
-        from crawler2d.writing.export import export_robot  # noqa: PLC0415 - costs nothing until used
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
 
-        return export_robot(self._alone(), format_, path, **how)
+        return written(
+            self._at_rest(),
+            format_,
+            path,
+            friction=friction,
+            track_width=track_width,
+            chassis_width=chassis_width,
+        )
 
     def _repr_html_(self) -> str | None:
         """Show side view and main figures in a notebook; a broken robot is shown as text."""
         from crawler2d.drawings.svg import robot_card  # noqa: PLC0415 - costs nothing until used
 
         try:
-            return robot_card(self._alone(), self.in_words)
+            return robot_card(self._at_rest(), self.in_words)
         except Exception:  # the display of a robot must never fail
             return None
 
@@ -625,7 +476,7 @@ class Robot(Parameters):
         max_speed: float = 1.0,
         track: Track | None = None,
     ) -> Robot:
-        """Make a robot from three figures; the rules below set the others.
+        """Make a robot from three figures; rules set the others, see the notes.
 
         Parameters
         ----------
@@ -645,7 +496,7 @@ class Robot(Parameters):
         Returns
         -------
         Robot
-            `dataclasses.replace` changes single figures.
+            Use `dataclasses.replace` to change single figures.
 
         Raises
         ------
@@ -669,9 +520,9 @@ class Robot(Parameters):
         >>> round(robot.moment_of_inertia, 4)
         0.4747
         """
-        mass = _size(mass, "mass")
-        axle_distance = _size(axle_distance, "axle_distance")
-        radius = _size(radius, "radius")
+        mass = _read_size(mass, "mass")
+        axle_distance = _read_size(axle_distance, "axle_distance")
+        radius = _read_size(radius, "radius")
         belt_radius = radius * (1.0 - _GROUSER_HEIGHT)
         perimeter = 2.0 * axle_distance + 2.0 * math.pi * belt_radius
         pitch = perimeter / max(3, round(perimeter / (_GROUSER_PITCH * radius)))
@@ -702,62 +553,36 @@ class Robot(Parameters):
         return robot if track is None else robot.with_track(track)
 
 
-def _two(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
-    """Make two discs of their distance and radii, those of other discs where one is not given."""
-    given = {name: value for name, value in given.items() if value is not None}
-    values = given
-    if discs is not None:
-        # So does `dataclasses.replace` change one of the three.
-        held = frozen_rows(discs, "robot.outline.discs", rows=True, columns=3)
-        if not is_short(held):
-            name, value = next(iter(given.items()))
-            rule = "must not be given together with discs, which determine it"
-            raise ScenarioError(f"robot.outline.{name}", value, rule)
-        (_, _, rear), (half, _, front) = held
-        own = {"axle_distance": 2.0 * half, "front_radius": front, "rear_radius": rear}
-        values = {**own, **given}
-    numbers = {}
-    for name in TrackOutline.besides:
-        path = f"robot.outline.{name}"
-        if name not in values:
-            raise ScenarioError(path, None, "must be given, or discs in its place")
-        numbers[name] = real_number(values[name], path)
-    if not numbers["axle_distance"] > 0.0:  # two discs do not show it
-        path = "robot.outline.axle_distance"
-        raise ScenarioError(path, numbers["axle_distance"], "must be > 0 m")
-    return two_discs(numbers["axle_distance"], numbers["rear_radius"], numbers["front_radius"])
-
-
-def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
-    """Add (+1) or subtract (-1) the mass of arms, as uniform rods at angle 0."""
+def _add_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
+    """Add (+1) or subtract (-1) the mass of flippers, as uniform rods at angle 0."""
     if not isinstance(flippers, Flippers):
         raise ScenarioError("robot.flippers", flippers, "must be a Flippers")
     length, pair = flippers.length, sign * 2.0 * flippers.mass
     rear_axle, front_axle = robot.outline.ends
     front = (front_axle[0] + 0.5 * length, front_axle[1])
     rear = (rear_axle[0] - 0.5 * length, rear_axle[1])
-    places = {"front": (front,), "rear": (rear,), "both": (front, rear)}
-    if flippers.ends not in places:
-        rule = f"must be one of {', '.join(places)}"
+    centers = {"front": (front,), "rear": (rear,), "both": (front, rear)}
+    if flippers.ends not in centers:
+        rule = f"must be one of {', '.join(centers)}"
         raise ScenarioError("robot.flippers.ends", flippers.ends, rule)
-    ends = places[flippers.ends]
-    mass = robot.mass + pair * len(ends)
+    arms = centers[flippers.ends]
+    mass = robot.mass + pair * len(arms)
     if not mass > 0.0:
         raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave mass for the chassis")
     x, y = robot.center_of_mass
     center = (
-        (robot.mass * x + pair * sum(end[0] for end in ends)) / mass,
-        (robot.mass * y + pair * sum(end[1] for end in ends)) / mass,
+        (robot.mass * x + pair * sum(arm[0] for arm in arms)) / mass,
+        (robot.mass * y + pair * sum(arm[1] for arm in arms)) / mass,
     )
     inertia = robot.moment_of_inertia
     inertia += robot.mass * ((x - center[0]) ** 2 + (y - center[1]) ** 2)
-    for end in ends:
+    for arm in arms:
         inertia += pair * length**2 / 12.0
-        inertia += pair * ((end[0] - center[0]) ** 2 + (end[1] - center[1]) ** 2)
+        inertia += pair * ((arm[0] - center[0]) ** 2 + (arm[1] - center[1]) ** 2)
     return replace(robot, mass=mass, center_of_mass=center, moment_of_inertia=inertia)
 
 
-def _size(value: float, name: str) -> float:
+def _read_size(value: float, name: str) -> float:
     """Reject sizes with which `Robot.simple` cannot compute; validation is stricter."""
     number = real_number(value, name)
     if not 1e-30 <= number <= 1e30:

@@ -1,4 +1,4 @@
-"""What is simulated: one robot, one terrain and one command, complete and frozen."""
+"""A scenario: one robot, one terrain and one command, complete and frozen."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 from crawler2d import _core
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, warn
-from crawler2d.parameters.fields import from_plain, replace_path
+from crawler2d.parameters.fields import from_dict, replace_path
 from crawler2d.parameters.robot import Robot
-from crawler2d.parameters.settings import Form
+from crawler2d.parameters.settings import ScenarioBase
 from crawler2d.parameters.terrain import Terrain
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _LONGEST = 120
 
 
 @dataclass(frozen=True, slots=True)
-class Scenario(Form):
+class Scenario(ScenarioBase):
     """Everything that defines a run: the same scenario and build give the same bits.
 
     Parameters
@@ -72,7 +72,7 @@ class Scenario(Form):
         fields : mapping of str to object
             New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Elements
             have an index: ``{"terrain.points[3][1]": 0.06}``. Of two fields that exclude each
-            other, the one that is given takes the other off.
+            other, setting one clears the other.
 
         Returns
         -------
@@ -128,10 +128,10 @@ class Scenario(Form):
             text.encode()
         except UnicodeEncodeError:
             raise ScenarioError("scenario", ascii(text[:80]), "must be valid Unicode") from None
-        return from_plain(cls, json.loads(_core.canonical(text)))
+        return from_dict(cls, json.loads(_core.canonical(text)))
 
     def validate(self) -> None:
-        """Check every rule, and warn of values that are unlikely to be meant.
+        """Check every rule, and warn of values that are probably mistakes.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What a scenario has besides robot and ground: command, gait, start, solver, criteria."""
+"""Settings of a scenario besides robot and ground: command, gait, start, solver, criteria."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar, Literal
 
 from crawler2d.common.keywords import takes_keywords
-from crawler2d.parameters.fields import Parameters, to_plain
+from crawler2d.parameters.fields import Parameters, to_dict
 
-__all__ = ["Climb", "Drive", "Form", "Gait", "Hold", "SeizureCriteria", "Solver", "Start"]
+__all__ = ["Climb", "Drive", "Gait", "Hold", "ScenarioBase", "SeizureCriteria", "Solver", "Start"]
 
 
 @dataclass(frozen=True, slots=True)
-class Hold(Parameters):
+class Hold(Parameters, kind="hold", path="drive.gait"):
     """Hold the flippers at an angle, which a schedule can change.
 
     Parameters
@@ -31,22 +31,19 @@ class Hold(Parameters):
     ((3.0, 0.0),)
     """
 
-    kind: ClassVar[str] = "hold"
-    place: ClassVar[str] = "drive.gait"
-
     angle: float = 0.0
     schedule: tuple[tuple[float, float], ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Climb(Parameters):
+class Climb(Parameters, kind="climb", path="drive.gait"):
     """Reach up with the flippers to meet an obstacle, sweep down to lift the chassis over it.
 
     The driver knows what an operator could see from a distance: the angle of the chassis, and
-    whether the flippers bear on something beyond their roots. The front ones are held at
+    whether the flippers touch something beyond their roots. The front ones are held at
     `reach_angle` until they do; then they sweep down to `sweep_angle`. As soon as the chassis is
     raised by more than `level_angle`, the rear ones push down to `push_angle` and lift it from
-    behind. When the chassis is level again and nothing bears on the rear ones, all go back: the
+    behind. When the chassis is level again and nothing touches the rear ones, all return: the
     front ones to `reach_angle`, the rear ones to their starting angle. The speed of the tracks is
     that of the `Drive`; the gait never reverses.
 
@@ -60,9 +57,6 @@ class Climb(Parameters):
         [rad] Chassis angle above which the chassis counts as raised.
     """
 
-    kind: ClassVar[str] = "climb"
-    place: ClassVar[str] = "drive.gait"
-
     reach_angle: float = 0.8
     sweep_angle: float = 0.0
     push_angle: float = -0.8
@@ -74,7 +68,7 @@ Gait = Hold | Climb
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drive(Parameters):
+class Drive(Parameters, path="drive"):
     """What a driver commands: the speed of the tracks, and how the flippers move.
 
     Parameters
@@ -95,15 +89,13 @@ class Drive(Parameters):
     ((5.0, -0.4),)
     """
 
-    place: ClassVar[str] = "drive"
-
     speed: float = 0.4
     schedule: tuple[tuple[float, float], ...] | None = None
     gait: Gait | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Start(Parameters):
+class Start(Parameters, path="start"):
     """How the robot stands at time 0: at rest, touching the ground.
 
     Parameters
@@ -116,8 +108,6 @@ class Start(Parameters):
         [rad] Chassis angle, nose up > 0.
     """
 
-    place: ClassVar[str] = "start"
-
     approach: float = 0.10
     track_phase: float = 0.0
     angle: float = 0.0
@@ -128,7 +118,7 @@ _STEP_IN_RAPIER = 1.25e-4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Solver(Parameters):
+class Solver(Parameters, path="solver"):
     """How the equations of motion are solved; the defaults are from a convergence study.
 
     The length of a step follows from an accuracy, or it is given; one excludes the other. A path
@@ -181,9 +171,8 @@ class Solver(Parameters):
     True
     """
 
-    place: ClassVar[str] = "solver"
-    either: ClassVar[tuple[str, ...]] = ("accuracy", "time_step")
-    unsaid: ClassVar[tuple[str, ...]] = ("engine", "restitution")
+    exclusive: ClassVar[tuple[str, ...]] = ("accuracy", "time_step")
+    omitted_defaults: ClassVar[tuple[str, ...]] = ("engine", "restitution")
 
     engine: Literal["own", "rapier"] = "own"
     contact: Literal["own", "reference"] = "own"
@@ -206,7 +195,7 @@ class Solver(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeizureCriteria(Parameters):
+class SeizureCriteria(Parameters, path="criteria"):
     """When a run ends, and what counts as a stop.
 
     Parameters
@@ -256,8 +245,6 @@ class SeizureCriteria(Parameters):
         [s] Time that a closed belt has to escape from a stop.
     """
 
-    place: ClassVar[str] = "criteria"
-
     stop_window: float = 1.0
     stop_pitches: float = 3.0
     stop_progress: float = 0.05
@@ -281,7 +268,7 @@ class SeizureCriteria(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class Form(Parameters):
+class ScenarioBase(Parameters):
     """The base of `Scenario`, for modules that `Scenario` imports, such as `robot`.
 
     Parameters
@@ -317,4 +304,4 @@ class Form(Parameters):
             The text. It is not validated: see `validate`.
         """
         separators = (",", ":") if indent is None else (",", ": ")
-        return json.dumps(to_plain(self), allow_nan=False, indent=indent, separators=separators)
+        return json.dumps(to_dict(self), allow_nan=False, indent=indent, separators=separators)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 from crawler2d.parameters.fields import Parameters
 
@@ -26,7 +26,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flat(Parameters):
+class Flat(Parameters, kind="flat", path="terrain"):
     """Level ground.
 
     Parameters
@@ -37,15 +37,12 @@ class Flat(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "flat"
-    place: ClassVar[str] = "terrain"
-
     length: float = 2.0
     friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Step(Parameters):
+class Step(Parameters, kind="step", path="terrain"):
     """One step up with a vertical face at x = 0 and a level top.
 
     Parameters
@@ -58,9 +55,6 @@ class Step(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "step"
-    place: ClassVar[str] = "terrain"
-
     height: float
     _: KW_ONLY
     edge_radius: float = 0.0
@@ -68,7 +62,7 @@ class Step(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class Ramp(Parameters):
+class Ramp(Parameters, kind="ramp", path="terrain"):
     """A slope that begins at x = 0 and ends in a level top.
 
     Parameters
@@ -83,9 +77,6 @@ class Ramp(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "ramp"
-    place: ClassVar[str] = "terrain"
-
     angle: float
     _: KW_ONLY
     length: float = 1.0
@@ -94,7 +85,7 @@ class Ramp(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class Barrier(Parameters):
+class Barrier(Parameters, kind="barrier", path="terrain"):
     """A parallelepiped on level ground, its front face at x = 0.
 
     Parameters
@@ -109,9 +100,6 @@ class Barrier(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "barrier"
-    place: ClassVar[str] = "terrain"
-
     height: float
     thickness: float
     _: KW_ONLY
@@ -120,7 +108,7 @@ class Barrier(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class Ridge(Parameters):
+class Ridge(Parameters, kind="ridge", path="terrain"):
     """A triangular prism on level ground that begins at x = 0, its edge on top.
 
     Parameters
@@ -135,9 +123,6 @@ class Ridge(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "ridge"
-    place: ClassVar[str] = "terrain"
-
     height: float
     edge_angle: float
     _: KW_ONLY
@@ -146,7 +131,7 @@ class Ridge(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class Gap(Parameters):
+class Gap(Parameters, kind="gap", path="terrain"):
     """A trench with vertical walls that begins at x = 0.
 
     Parameters
@@ -161,9 +146,6 @@ class Gap(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "gap"
-    place: ClassVar[str] = "terrain"
-
     width: float
     _: KW_ONLY
     depth: float = 0.5
@@ -172,7 +154,7 @@ class Gap(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stairs(Parameters):
+class Stairs(Parameters, kind="stairs", path="terrain"):
     """Steps up, the first face at x = 0, then a level top.
 
     The default rise and run are those of a public arena's stairs.
@@ -189,9 +171,6 @@ class Stairs(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "stairs"
-    place: ClassVar[str] = "terrain"
-
     count: int = 4
     rise: float = 0.20
     run: float = 0.233
@@ -200,7 +179,7 @@ class Stairs(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class HalfRound(Parameters):
+class HalfRound(Parameters, kind="half_round", path="terrain"):
     """Half a pipe lying on level ground, starting at x = 0.
 
     Parameters
@@ -211,16 +190,13 @@ class HalfRound(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "half_round"
-    place: ClassVar[str] = "terrain"
-
     radius: float
     _: KW_ONLY
     friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class DiagonalBarrier(Parameters):
+class DiagonalBarrier(Parameters, kind="diagonal_barrier", path="terrain"):
     """A parallelepiped on level ground whose front face is turned about the vertical.
 
     The tracks meet it `gauge` tan(`yaw`) apart, and each crosses `thickness` / cos(`yaw`) of it,
@@ -242,9 +218,6 @@ class DiagonalBarrier(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "diagonal_barrier"
-    place: ClassVar[str] = "terrain"
-
     yaw: float
     _: KW_ONLY
     height: float = 0.05
@@ -254,7 +227,7 @@ class DiagonalBarrier(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class RandomStepfield(Parameters):
+class RandomStepfield(Parameters, kind="random_stepfield", path="terrain"):
     """Square posts of random heights from x = 0, a row under each track (Jacoff et al., 2008).
 
     Parameters
@@ -286,9 +259,6 @@ class RandomStepfield(Parameters):
         [-] Coulomb friction between robot and ground.
     """
 
-    kind: ClassVar[str] = "random_stepfield"
-    place: ClassVar[str] = "terrain"
-
     seed: int = 0
     _: KW_ONLY
     pattern: Literal["flat", "hill", "diagonal"] = "flat"
@@ -304,7 +274,7 @@ class RandomStepfield(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class Points(Parameters):
+class Points(Parameters, kind="points", path="terrain"):
     """A user-defined profile.
 
     Parameters
@@ -325,9 +295,6 @@ class Points(Parameters):
         If `points` does not hold real numbers, is masked or has another shape.
     """
 
-    kind: ClassVar[str] = "points"
-    place: ClassVar[str] = "terrain"
-
     points: tuple[tuple[float, float], ...]
     _: KW_ONLY
     goal: float
@@ -340,7 +307,7 @@ Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points
 
 
 @dataclass(frozen=True, slots=True)
-class Lanes(Parameters):
+class Lanes(Parameters, kind="lanes", path="terrain"):
     """A profile under each track and one under the belly.
 
     Each track has half of the moving track mass and half of the motor force; roll and yaw are held.
@@ -353,9 +320,6 @@ class Lanes(Parameters):
     middle : Lane, optional
         The profile under the belly; None takes the higher of the two, with the larger friction.
     """
-
-    kind: ClassVar[str] = "lanes"
-    place: ClassVar[str] = "terrain"
 
     left: Lane
     right: Lane

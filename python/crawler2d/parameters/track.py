@@ -7,7 +7,7 @@ Mobile Robot Servosila Engineer".
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 from crawler2d.parameters.fields import Parameters
 
@@ -28,15 +28,12 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class RoundWheel(Parameters):
+class RoundWheel(Parameters, kind="round", path="robot.track.wheel"):
     """A wheel that is a disc, without grousers."""
-
-    kind: ClassVar[str] = "round"
-    place: ClassVar[str] = "robot.track.wheel"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GearWheel(Parameters):
+class GearWheel(Parameters, kind="gear", path="robot.track.wheel"):
     """A wheel with grousers: a root circle, and trapezoids whose corners reach the wheel's radius.
 
     Fields that are None follow from the robot's outline. The paper gives grousers for large wheels
@@ -66,9 +63,6 @@ class GearWheel(Parameters):
     12
     """
 
-    kind: ClassVar[str] = "gear"
-    place: ClassVar[str] = "robot.track.wheel"
-
     grouser_count: int | None = None
     grouser_height: float | None = None
     tip_thickness: float | None = None
@@ -81,7 +75,7 @@ Wheel = RoundWheel | GearWheel
 
 
 @dataclass(frozen=True, slots=True)
-class LineOfWheels(Parameters):
+class LineOfWheels(Parameters, kind="line", path="robot.track"):
     """Driven wheels on the straight line between the end axles, evenly spaced (LWA, Figs. 1 to 3).
 
     An outline of more than two discs is refused.
@@ -105,9 +99,6 @@ class LineOfWheels(Parameters):
     4
     """
 
-    kind: ClassVar[str] = "line"
-    place: ClassVar[str] = "robot.track"
-
     count: int
     _: KW_ONLY
     wheel_radius: float | None = None
@@ -121,7 +112,7 @@ class LineOfWheels(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class CircumferentialWheels(Parameters):
+class CircumferentialWheels(Parameters, kind="circumferential", path="robot.track"):
     """Small driven wheels all round the outline, each touching it from inside (CWA, Figs. 6, 7).
 
     The first wheel sits at the rear end of the lower run; the others follow in the direction of
@@ -146,9 +137,6 @@ class CircumferentialWheels(Parameters):
     24
     """
 
-    kind: ClassVar[str] = "circumferential"
-    place: ClassVar[str] = "robot.track"
-
     count: int
     _: KW_ONLY
     wheel_radius: float | None = None
@@ -161,7 +149,7 @@ class CircumferentialWheels(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class HybridWheels(Parameters):
+class HybridWheels(Parameters, kind="hybrid", path="robot.track"):
     """Driven wheels of various sizes, placed by hand (Fig. 8), all with one surface speed.
 
     Parameters
@@ -182,9 +170,6 @@ class HybridWheels(Parameters):
     (0.0, -0.03, 0.034)
     """
 
-    kind: ClassVar[str] = "hybrid"
-    place: ClassVar[str] = "robot.track"
-
     placements: tuple[tuple[float, float, float], ...]
     _: KW_ONLY
     wheel: Wheel = RoundWheel()
@@ -197,14 +182,11 @@ class HybridWheels(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
-class BeltTrack(Parameters):
+class BeltTrack(Parameters, kind="belt", path="robot.track"):
     """A taut smooth belt: its surface moves along the outline at track speed.
 
     The contact surface is closed: no edge can get between wheels.
     """
-
-    kind: ClassVar[str] = "belt"
-    place: ClassVar[str] = "robot.track"
 
     @property
     def in_words(self) -> str:
@@ -213,7 +195,7 @@ class BeltTrack(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GrouserBeltTrack(Parameters):
+class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
     """A taut belt with grousers that travel along it, after Okada et al. (2020).
 
     The grousers run rearwards with the belt along the ground, turn with it round the sprockets and
@@ -229,9 +211,6 @@ class GrouserBeltTrack(Parameters):
         outline's `grouser_pitch`: 22 for the Engineer.
     """
 
-    kind: ClassVar[str] = "grouser_belt"
-    place: ClassVar[str] = "robot.track"
-
     grouser_count: int | None = None
 
     @property
@@ -241,7 +220,7 @@ class GrouserBeltTrack(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SegmentalTrack(Parameters):
+class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
     """A chain of rigid shoes linked by pins, on a guide or on wheels (section 2.3, Figs. 9, 10).
 
     Every shoe is a body. The outer faces of the plates run along the roots of the outline and the
@@ -304,9 +283,6 @@ class SegmentalTrack(Parameters):
     'rectangle'
     """
 
-    kind: ClassVar[str] = "segmental"
-    place: ClassVar[str] = "robot.track"
-
     shoe_count: int | None = None
     mechanism: Literal["guide", "sprocket"] = "guide"
     shoe_shape: Literal["rectangle", "trapezoid"] = "rectangle"
@@ -324,7 +300,7 @@ class SegmentalTrack(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ForceTrack(Parameters):
+class ForceTrack(Parameters, kind="force", path="robot.track"):
     """No moving surface: the drive pushes the chassis along its axis, x of the chassis frame.
 
     The force follows the speed command and is limited like the traction of a track. It acts in the
@@ -340,9 +316,6 @@ class ForceTrack(Parameters):
     wheel_count : int
         Free wheels per side, including the two at the end axles; at least 2.
     """
-
-    kind: ClassVar[str] = "force"
-    place: ClassVar[str] = "robot.track"
 
     support: Literal["skids", "wheels"] = "skids"
     skid_friction: float = 0.0
@@ -368,7 +341,7 @@ OpenTrack = (
 
 
 @dataclass(frozen=True, slots=True)
-class ClosedTrack(Parameters):
+class ClosedTrack(Parameters, kind="closed", path="robot.track"):
     """A belt closed round the bodies of another model: what that model would be without pockets.
 
     It is taut round the circumscribed circles of the bodies, on the chassis and on every arm, and
@@ -395,9 +368,6 @@ class ClosedTrack(Parameters):
     >>> str(c2d.simulate(closed, c2d.terrains.step(0.08)).outcome)
     'cleared'
     """
-
-    kind: ClassVar[str] = "closed"
-    place: ClassVar[str] = "robot.track"
 
     of: OpenTrack
     _: KW_ONLY

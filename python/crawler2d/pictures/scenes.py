@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.bodies import TRACED, body_poses
+from crawler2d.common.bodies import POSE_COLUMNS, body_poses
 from crawler2d.common.extras import extra
 from crawler2d.drawings.scene import (
     BLUE,
@@ -55,7 +55,7 @@ def scene_of(run: Record, times: NDArray[np.float64] | None = None) -> Scene:
     times : ndarray, shape (k,), optional
         [s] Instants between which samples are interpolated; None takes the samples of the run.
     """
-    columns = {name: getattr(run, name) for name in TRACED}
+    columns = {name: getattr(run, name) for name in POSE_COLUMNS}
     if times is not None:
         columns = {name: _between(run.time, column, times) for name, column in columns.items()}
     return Scene(run.scenario.to_json(), columns)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from crawler2d.common.arrays import real_number
-from crawler2d.common.keywords import beyond
+from crawler2d.common.keywords import limits_hint
 from crawler2d.parameters.terrain import (
     Barrier,
     DiagonalBarrier,
@@ -59,7 +59,7 @@ if not TYPE_CHECKING:  # which would let any name pass
 
     def __getattr__(name: str) -> object:
         """Say what a side view does not have."""
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{beyond(name)}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{limits_hint(name)}")
 
 
 def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Barrier:

@@ -384,7 +384,7 @@ class Diagnosis(Findings):
         values["contacts"] = Table(values["contacts"])
         return cls(**values)
 
-    def to_plain(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Write the dictionary that `from_core` reads."""
         plain = {field.name: getattr(self, field.name) for field in fields(self)}
         plain["contacts"] = dict(self.contacts)

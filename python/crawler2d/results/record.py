@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.arrays import Figures, Table, read_only
+from crawler2d.common.arrays import Metrics, Table, freeze_array
 from crawler2d.common.bodies import bodies_of, body_poses
 from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, own_error
 from crawler2d.results.diagnosis import Diagnosis
@@ -54,11 +54,11 @@ class Record:
         self.outcome = Outcome(result["outcome"]) if error is None else None
         why = result.get("diagnosis")
         self.diagnosis = None if why is None else Diagnosis.from_core(why)
-        self.metrics = Figures(result.get("metrics", {}))
+        self.metrics = Metrics(result.get("metrics", {}))
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
         self.wall_time: float = result.get("wall_time", 0.0)
-        self._trace = {name: read_only(array) for name, array in result.get("trace", {}).items()}
+        self._trace = {name: freeze_array(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
 
     @cached_property
@@ -249,7 +249,7 @@ class Record:
         True
         """
         self._recorded("time")
-        return read_only(body_poses(self.scenario.to_json(), self._trace)["bodies"])
+        return freeze_array(body_poses(self.scenario.to_json(), self._trace)["bodies"])
 
     @property
     def contacts(self) -> Table:
@@ -269,7 +269,7 @@ class Record:
         """Pickle the data; arrays are read-only again in the copy."""
         result = {
             "outcome": self.outcome,
-            "diagnosis": None if self.diagnosis is None else self.diagnosis.to_plain(),
+            "diagnosis": None if self.diagnosis is None else self.diagnosis.to_dict(),
             "metrics": self.metrics,
             "edges": dict(self.edges),
             "events": dict(self.events),
@@ -381,7 +381,7 @@ class Row:
             text = identity = ""
         if run.error is not None:
             return cls.of_error(run.error, identity, text)
-        why = None if run.diagnosis is None else run.diagnosis.to_plain()
+        why = None if run.diagnosis is None else run.diagnosis.to_dict()
         return cls(identity, text, str(run.outcome), run.metrics, why, run.wall_time)
 
     def why(self) -> Diagnosis | None:

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, Self, TypeVar
 
-import numpy as np
-
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.errors import ScenarioError
@@ -41,7 +39,6 @@ __all__ = [
     "trial_names",
     "trials_at",
     "variant_tried_at",
-    "yes_or_no",
 ]
 
 Recording = Literal["full", "summary"]
@@ -52,13 +49,6 @@ def recording(sample_interval: object, record: object) -> tuple[float, str]:
     if record not in ("full", "summary"):
         raise ScenarioError("record", record, "must be one of full, summary")
     return real_number(sample_interval, "sample_interval"), str(record)
-
-
-def yes_or_no(value: object, path: str) -> bool:
-    """Accept True or False only, nothing that is merely truthy."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise ScenarioError(path, value, "must be True or False")
-    return bool(value)
 
 
 Trials = Literal["auto", "all"] | Sequence[str] | None

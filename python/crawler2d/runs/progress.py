@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
-from crawler2d.common.arrays import frozen_scalar
+from crawler2d.common.arrays import read_scalar
 from crawler2d.common.extras import extra
 from crawler2d.errors import LimitError, ScenarioError
 
@@ -38,7 +38,7 @@ def thread_count(threads: int | None) -> int:
     limit = _limit()
     if threads is None:
         return min(_cores(), limit)
-    asked = frozen_scalar(threads, whole=True)
+    asked = read_scalar(threads, whole=True)
     if type(asked) is not int or not 1 <= asked <= _MOST:
         raise LimitError(
             f"threads must be a whole number from 1 to {_MOST}, got {repr(threads)[:40]}"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
-from crawler2d.common.arrays import Table, read_only, real_number
+from crawler2d.common.arrays import Table, freeze_array, real_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
@@ -235,7 +235,7 @@ class Simulation(TakesKeywords):
         """
         state = self._core.state()
         for name in ("position", "velocity", "flipper_angles"):
-            state[name] = read_only(state[name])
+            state[name] = freeze_array(state[name])
         state["contacts"] = Table(state["contacts"].columns)
         state["outcome"] = None if state["outcome"] is None else Outcome(state["outcome"])
         return State(**state)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.arrays import frozen_scalar
+from crawler2d.common.arrays import read_scalar
 from crawler2d.common.units import METRICS, unit_of
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import Parameters
@@ -93,14 +93,14 @@ def _given(values: object, place: str) -> list[tuple[str, Label, Any]]:
 
 
 def _key(key: object, place: str) -> Label:
-    label = frozen_scalar(key, whole=True)
+    label = read_scalar(key, whole=True)
     if type(label) not in (str, int, float):
         raise ScenarioError(place, key, "must have strings or numbers as labels")
     return label  # type: ignore[no-any-return]
 
 
 def _label(value: object, where: str) -> Label:
-    value = frozen_scalar(value, whole=True)
+    value = read_scalar(value, whole=True)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return value
     label = _text(value)
@@ -112,7 +112,7 @@ def _label(value: object, where: str) -> Label:
 
 def _text(value: Any) -> str:
     """Write a value as the call that makes it, without defaults."""
-    value = frozen_scalar(value, whole=True)
+    value = read_scalar(value, whole=True)
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, (tuple, list)):
@@ -335,7 +335,7 @@ def _refuse_undoing(paths: Sequence[str]) -> None:
 
 
 def _numbers(column: Sequence[Any]) -> list[int | float] | None:
-    numbers = [frozen_scalar(value, whole=True) for value in column]
+    numbers = [read_scalar(value, whole=True) for value in column]
     return numbers if all(type(number) in (int, float) for number in numbers) else None
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from math import exp, lgamma, log, log1p
 
-from crawler2d.common.arrays import frozen_scalar, real_number
+from crawler2d.common.arrays import read_scalar, real_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.sweeps.statistics import Interval, checked_counts, checked_level
@@ -200,7 +200,7 @@ class Until(TakesKeywords):
 
     def _keep_whole(self, name: str, least: int) -> None:
         given = getattr(self, name)
-        number = frozen_scalar(given, whole=True)
+        number = read_scalar(given, whole=True)
         if type(number) is not int or not least <= number <= _MOST:
             rule = f"must be a whole number from {least} to {_MOST}"
             raise ScenarioError(f"until.{name}", given, rule)

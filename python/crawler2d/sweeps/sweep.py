@@ -345,8 +345,8 @@ def _fields(model: object, label: Label) -> Mapping[str, Any]:
     """Return what a model replaces, by path."""
     if isinstance(model, Mapping):
         return model
-    if isinstance(model, Parameters) and model.place:
-        return {model.place: model}
+    if isinstance(model, Parameters) and model.default_path:
+        return {model.default_path: model}
     rule = (
         "must be a track, a robot or another part of a scenario, or a mapping from paths to values"
     )

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from crawler2d._core import Passed
-from crawler2d.common.arrays import whole_number
+from crawler2d.common.arrays import read_bool, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
 from crawler2d.runs.batch import BatchInterrupted
-from crawler2d.runs.branch import Trials, trial_names, yes_or_no
+from crawler2d.runs.branch import Trials, trial_names
 from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
@@ -180,7 +180,7 @@ class Tabulation:
             raise ScenarioError("scenario", scenario, "must be a Scenario")
         if executor is not None and not isinstance(executor, Executor):
             raise ScenarioError("executor", executor, "must be a concurrent.futures.Executor")
-        self._with_times = yes_or_no(wall_time, "wall_time")
+        self._with_times = read_bool(wall_time, "wall_time")
         self._tried = trial_names(trials)
         self._store, self._executor, self._threads = store, executor, thread_count(threads)
         self._repeats = whole_number(repeats, "repeats", 1, 10**6)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.arrays import frozen_scalar, real_number
+from crawler2d.common.arrays import read_scalar, real_number
 from crawler2d.common.keywords import TakesKeywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_path
@@ -165,7 +165,7 @@ class UniformInt(TakesKeywords, Distribution):
     def __post_init__(self) -> None:
         """Check the bounds."""
         for name in ("low", "high"):
-            number = frozen_scalar(getattr(self, name), whole=True)
+            number = read_scalar(getattr(self, name), whole=True)
             if type(number) is not int:
                 raise ScenarioError(name, number, "must be a whole number")
             object.__setattr__(self, name, number)

@@ -6,7 +6,6 @@ README says where each is from. Tests compare them with the presets.
 """
 
 from crawler2d.presets.robots.engineer import engineer
-from crawler2d.presets.robots.gazebo import gz_tracked_vehicle
-from crawler2d.presets.robots.subt import absolem, marv
+from crawler2d.presets.robots.gazebo import absolem, gz_tracked_vehicle, marv
 
 __all__ = ["absolem", "engineer", "gz_tracked_vehicle", "marv"]

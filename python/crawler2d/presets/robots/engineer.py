@@ -8,7 +8,8 @@ from crawler2d.common.arrays import real_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.flippers import Flippers
-from crawler2d.parameters.robot import Robot, TrackOutline
+from crawler2d.parameters.outline import TrackOutline
+from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import HybridWheels, LineOfWheels, Track
 from crawler2d.presets.robots.choices import with_choices
 
