@@ -49,7 +49,7 @@ CALLED = [
     (name, function)
     for name, function in public()
     # What distributions do with numbers is not for users.
-    if keywords(function) and name not in OTHERS and not name.endswith((".on", ".values"))
+    if keywords(function) and name not in OTHERS and not name.endswith((".resolve", ".values"))
 ]
 
 

@@ -1,4 +1,4 @@
-"""Why a robot stopped: what is seen, what was tried, and the sentence that says so."""
+"""The diagnosis of a stop, and the sentence that states it."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ _NAMES = {
 }
 """Names of the bodies that are not wheels."""
 _LEAST_SHARE = 0.02
-"""Smaller shares are not worth telling."""
+"""[-] Smaller shares are left out."""
 _LEAST_DEPTH = 5e-4
 """[m] Smaller depths round to 0 mm."""
 _LEAST_SLIP = 5e-3
-"""[m/s] Slower slip is not worth telling."""
-_CHANGED = {
+"""[m/s] Slower slip is left out."""
+_CHANGES = {
     "closed track": "closed track",
     "closed track, clear of the ground": "closed track, set down clear of the ground",
     "closed smooth track": "smooth closed track",
@@ -48,7 +48,7 @@ _CHANGED = {
     "no belly": "without its belly",
     "flippers level": "flippers level",
 }
-"""What a trial changes, in words; the controls change nothing."""
+"""The change of each trial in words; the controls change nothing."""
 _ENDS = {
     Outcome.CLEARED: "clears",
     Outcome.TIPPED_OVER: "tips over",
@@ -61,32 +61,30 @@ _ENDS = {
     Outcome.STALLED: "is stalled",
     Outcome.SLIPPING: "slips",
 }
-"""How a trial ends; of a stop what is seen of it."""
-_HELD = {
+"""How a trial ends in words; for a stop, its symptom."""
+_GRIPS = {
     "interlocked": ", with the flank of a grouser against it",
     "pinched": ", closing the gap around it",
 }
 """What the mechanism adds to the bodies that bear on the ground inside."""
 
 
-def sentence(found: Findings) -> str:
-    """Say what was found about a stop, then what was tried.
+def sentence(d: Findings) -> str:
+    """Describe a stop, then the trials.
 
     Each clause states one fact; what follows from the outcome or from another clause is left out.
     """
-    d = found
-    tellers = (_inside, _on_it, _belly, _drives, _progress, _balance)
-    said = "; ".join(clause for clause in (tell(d) for tell in tellers) if clause)
-    facts = f"{_head(d)}: {said}" if said else _head(d)
+    clauses = (_intrusion, _bearers, _belly, _drives, _progress, _balance)
+    facts = ": ".join(filter(None, (_head(d), "; ".join(filter(None, (f(d) for f in clauses))))))
     if d.passing:
-        return f"{facts}. {_goes_on(d)}"
+        return f"{facts}. {_continuation(d)}"
     tried = "; ".join(filter(None, (trial_text(d, each) for each in d.trials)))
-    return f"{facts}. Tried: {tried}{_beyond_belts(d)}" if tried else facts
+    return f"{facts}. Tried: {tried}{_belt_limit(d)}" if tried else facts
 
 
 def trial_text(d: Findings, tried: TrialResult) -> str:
-    """Say what was changed in a trial and what came of it; nothing of a control."""
-    return f"{_CHANGED[tried.name]}: {_came(d, tried)}" if tried.name in _CHANGED else ""
+    """Describe the change and the result of a trial; empty for a control."""
+    return f"{_CHANGES[tried.name]}: {_result(d, tried)}" if tried.name in _CHANGES else ""
 
 
 def _head(d: Findings) -> str:
@@ -101,15 +99,15 @@ def _word(outcome: Outcome) -> str:
     return str(outcome).replace("_", " ")
 
 
-def _goes_on(d: Findings) -> str:
-    """Say which control left a passing stop."""
-    left = next(tried for tried in d.trials if tried.freed)
-    by_itself = left.name == "unchanged"
-    how = "It goes on by itself" if by_itself else "With its track built anew it goes on"
-    return f"{how}: {_came(d, left)}"
+def _continuation(d: Findings) -> str:
+    """Say which control got out of a passing stop."""
+    control = next(tried for tried in d.trials if tried.freed)
+    by_itself = control.name == "unchanged"
+    text = "It goes on by itself" if by_itself else "With its track built anew it goes on"
+    return f"{text}: {_result(d, control)}"
 
 
-def _beyond_belts(d: Findings) -> str:
+def _belt_limit(d: Findings) -> str:
     """Say so if no belt that was tried from the start came to the stop, or none got past it."""
     starts = [tried for tried in d.trials if tried.is_from_the_start]
     if not starts or any(map(_is_past, starts)):
@@ -123,32 +121,32 @@ def _is_past(tried: TrialResult) -> bool:
     return tried.freed or (is_lost and tried.distance > 0.0)
 
 
-def _came(d: Findings, tried: TrialResult) -> str:
-    """Say what came of a trial of a stop."""
+def _result(d: Findings, tried: TrialResult) -> str:
+    """Describe the result of a trial."""
     end = _end(d, tried)
     if tried.freed:
-        said = f"{'past here' if tried.is_from_the_start else 'free'} after {tried.time:.1f} s"
+        text = f"{'past here' if tried.is_from_the_start else 'free'} after {tried.time:.1f} s"
         if tried.outcome != Outcome.TIMED_OUT:
-            said += f", then {end}"
+            text += f", then {end}"
     elif tried.is_from_the_start:
-        said = f"{end} {_how_far(tried) or 'here'}"
+        text = f"{end} {_advance(tried) or 'here'}"
     elif tried.outcome == Outcome.TIMED_OUT:
-        said = "still moving, but not free"
+        text = "still moving, but not free"
     else:
         is_placed = tried.distance < 0.0 or _is_jammed_elsewhere(d, tried)
-        further = "" if is_placed else _how_far(tried)
-        said = f"{end} {further}" if further else end
+        further = "" if is_placed else _advance(tried)
+        text = f"{end} {further}" if further else end
     if tried.starts > 1:
-        said += f" ({tried.freeing} of {tried.starts} times free)"
-    return said
+        text += f" ({tried.freeing} of {tried.starts} times free)"
+    return text
 
 
-def _how_far(tried: TrialResult) -> str:
-    """Say how far ahead of the stop a trial came, or how far it fell short of it."""
+def _advance(tried: TrialResult) -> str:
+    """Say how far ahead or short of the stop a trial ended."""
     if abs(tried.distance) < _LEAST_DEPTH:
         return ""
-    which = "further on" if tried.distance > 0.0 else "short of here"
-    return f"{1e3 * abs(tried.distance):.0f} mm {which}"
+    direction = "further on" if tried.distance > 0.0 else "short of here"
+    return f"{1e3 * abs(tried.distance):.0f} mm {direction}"
 
 
 def _end(d: Findings, tried: TrialResult) -> str:
@@ -172,8 +170,8 @@ def _is_jammed_elsewhere(d: Findings, tried: TrialResult) -> bool:
     return not d.jammed or was is None or here != (was.side, was.carrier, was.edge)
 
 
-def _inside(d: Findings) -> str:
-    """Say what ground is inside the track, and where, unless the head says that."""
+def _intrusion(d: Findings) -> str:
+    """Say which ground is inside the track, and where, unless the head says that."""
     piece = d.intrusion
     if piece is None:
         return ""
@@ -218,8 +216,8 @@ def _in_chain(piece: Intrusion) -> list[str]:
     return [names[0], "the next"] if names[0] == names[1] else names
 
 
-def _on_it(d: Findings) -> str:
-    """Say what bears on the ground inside the track, most loaded first."""
+def _bearers(d: Findings) -> str:
+    """Say which bodies bear on the ground inside the track, most loaded first."""
     contacts = d.contacts
     rows = np.flatnonzero(contacts["in_pocket"])
     bodies = contacts["body"][rows]
@@ -240,12 +238,12 @@ def _on_it(d: Findings) -> str:
     newtons = [f"{forces[body]:.0f} N" for body in bearers]
     if not bearers:
         return ""
-    said = f"{names[0]} {does[0]} {newtons[0]}"
+    text = f"{names[0]} {does[0]} {newtons[0]}"
     if len(bearers) == 2 and does[0] != does[1]:
-        said += f" and {names[1]} {does[1]} {newtons[1]}"
+        text += f" and {names[1]} {does[1]} {newtons[1]}"
     elif len(bearers) == 2:
-        said += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
-    return said + _HELD.get(str(d.mechanism), "")
+        text += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
+    return text + _GRIPS.get(str(d.mechanism), "")
 
 
 def in_words(outcome: Outcome) -> str:
@@ -264,18 +262,18 @@ def _belly(d: Findings) -> str:
     if d.belly_share < _LEAST_SHARE:
         return ""
     side = d.belly_side
-    what = f"the {side}" if side in ("tail", "nose") else "the belly"
-    said = f"{what} carries {_percent(d.belly_share)} of the supporting force"
-    on_it = d.contacts["body_kind"] == BodyKind.BELLY
-    if d.outcome != Outcome.HUNG_UP or not on_it.any():
-        return said
-    force = d.contacts["normal_force"][on_it]
-    x, y = (np.average(d.contacts[name][on_it], weights=force) for name in ("x", "y"))
-    return f"{said} at x = {x:z.3f} m, y = {y:z.3f} m"
+    part = f"the {side}" if side in ("tail", "nose") else "the belly"
+    text = f"{part} carries {_percent(d.belly_share)} of the supporting force"
+    on_belly = d.contacts["body_kind"] == BodyKind.BELLY
+    if d.outcome != Outcome.HUNG_UP or not on_belly.any():
+        return text
+    force = d.contacts["normal_force"][on_belly]
+    x, y = (np.average(d.contacts[name][on_belly], weights=force) for name in ("x", "y"))
+    return f"{text} at x = {x:z.3f} m, y = {y:z.3f} m"
 
 
 def _drives(d: Findings) -> str:
-    """Say what motors and surfaces do, unless the ground inside the track implies it."""
+    """Describe motors and surfaces, unless the ground inside the track implies it."""
     if d.stalled_share > 0.0:
         of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
         return f"{of}the motors are at their torque limit"
@@ -296,7 +294,7 @@ def _progress(d: Findings) -> str:
 
 
 def _balance(d: Findings) -> str:
-    """Say so if the forces do not balance."""
+    """Say if the forces do not balance."""
     if d.certified:
         return ""
     if d.imbalance is None:
@@ -372,9 +370,9 @@ class Diagnosis(Findings):
     """
 
     @classmethod
-    def from_core(cls, plain: Mapping[str, Any]) -> Diagnosis:
+    def from_core(cls, result: Mapping[str, Any]) -> Diagnosis:
         """Convert the dictionary that the core returns."""
-        values = dict(plain)
+        values = dict(result)
         mechanism, inside = values["mechanism"], values["intrusion"]
         values["outcome"] = Outcome(values["outcome"])
         values["symptom"] = Outcome(values["symptom"])
@@ -386,11 +384,11 @@ class Diagnosis(Findings):
 
     def to_dict(self) -> dict[str, Any]:
         """Write the dictionary that `from_core` reads."""
-        plain = {field.name: getattr(self, field.name) for field in fields(self)}
-        plain["contacts"] = dict(self.contacts)
-        plain["trials"] = tuple(asdict(tried) for tried in self.trials)
-        plain["intrusion"] = None if self.intrusion is None else asdict(self.intrusion)
-        return plain
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        values["contacts"] = dict(self.contacts)
+        values["trials"] = tuple(asdict(tried) for tried in self.trials)
+        values["intrusion"] = None if self.intrusion is None else asdict(self.intrusion)
+        return values
 
     def __str__(self) -> str:
         """Say it in one sentence."""

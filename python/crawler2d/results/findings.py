@@ -1,4 +1,4 @@
-"""The findings about a stop, as data, and whether forces could balance it."""
+"""The data of a diagnosis: intrusions, trials, and whether forces could balance a stop."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Intrusion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialResult:
-    """What came of one change at a stop; see `Trial`.
+    """The result of one change at a stop; see `Trial`.
 
     Attributes
     ----------
@@ -128,9 +128,9 @@ class TrialResult:
     flipper_angles: tuple[float, ...]
 
     @classmethod
-    def from_core(cls, plain: Mapping[str, Any]) -> TrialResult:
+    def from_core(cls, result: Mapping[str, Any]) -> TrialResult:
         """Convert the dictionary that the core returns."""
-        values = {"intrusion": None, **plain, "outcome": Outcome(plain["outcome"])}
+        values = {"intrusion": None, **result, "outcome": Outcome(result["outcome"])}
         if values["intrusion"] is not None:
             values["intrusion"] = Intrusion(**values["intrusion"])
         return cls(**values)
@@ -143,7 +143,7 @@ class TrialResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Findings:
-    """The fields of a `Diagnosis`, which documents them, and what follows from them."""
+    """The fields of a `Diagnosis`, which documents them, and properties derived from them."""
 
     outcome: Outcome
     symptom: Outcome
@@ -188,11 +188,11 @@ class Findings:
         At the tail or the nose if it pushes along the belly more than away from its underside: so
         it does when a robot stands on the tail of its hull.
         """
-        on_it = self.contacts["body_kind"] == BodyKind.BELLY
-        force = self.contacts["normal_force"][on_it]
+        on_belly = self.contacts["body_kind"] == BodyKind.BELLY
+        force = self.contacts["normal_force"][on_belly]
         if not force.size:
             return ""
-        x, y = (force @ self.contacts[name][on_it] for name in ("normal_x", "normal_y"))
+        x, y = (force @ self.contacts[name][on_belly] for name in ("normal_x", "normal_y"))
         sine, cosine = math.sin(self.chassis_angle), math.cos(self.chassis_angle)
         along, across = cosine * x + sine * y, cosine * y - sine * x
         if abs(along) <= across:
@@ -236,8 +236,8 @@ class Balance:
     imbalance : float
         [-] Smallest residual force that any choice of forces leaves, as a share of the weight.
     tolerance : float
-        [-] Up to which share of the weight it counts as none: `criteria.imbalance`, or
-        `criteria.mean_imbalance` of a robot that does not stand still.
+        [-] Largest imbalance of an equilibrium: `criteria.imbalance`, or `criteria.mean_imbalance`
+        for a robot that does not stand still.
     holds_between : tuple of two floats, or None
         [-] By which factors of the friction the pose is an equilibrium: the interval nearest to 1,
         searched from 0.02 to 5; beyond these 0 and inf. None if it is one at none of them.
@@ -252,18 +252,11 @@ class Balance:
     pulls: tuple[Pull, ...]
 
     @classmethod
-    def from_core(cls, plain: Mapping[str, Any]) -> Balance:
+    def from_core(cls, result: Mapping[str, Any]) -> Balance:
         """Convert the dictionary that the core returns."""
-        pulls = tuple(
-            Pull(body=body, point=(x, y), force=force) for body, (x, y), force in plain["pulls"]
-        )
-        between = plain["holds_between"]
-        return cls(
-            imbalance=plain["imbalance"],
-            tolerance=plain["tolerance"],
-            holds_between=between,
-            pulls=pulls,
-        )
+        pulls = (Pull(body=body, point=(x, y), force=f) for body, (x, y), f in result["pulls"])
+        names = ("imbalance", "tolerance", "holds_between")
+        return cls(pulls=tuple(pulls), **{name: result[name] for name in names})
 
     @property
     def holds(self) -> bool:
@@ -272,23 +265,23 @@ class Balance:
 
     def __str__(self) -> str:
         """Say it in a few words."""
-        return self.said([f"body {pull.body}" for pull in self.pulls])
+        return self.describe([f"body {pull.body}" for pull in self.pulls])
 
-    def said(self, names: Sequence[str]) -> str:
+    def describe(self, names: Sequence[str]) -> str:
         """Say it, with the names of the bodies that would have to pull."""
         if self.holds:
-            return f"an equilibrium{self._where()}"
-        said = (
+            return f"an equilibrium{self._friction_range()}"
+        text = (
             f"no equilibrium: the smallest residual is {100 * self.imbalance:.2g} % of the weight"
         )
         for name, pull in zip(names, self.pulls, strict=True):
-            said += f"; {name} would have to pull with {pull.force:.0f} N"
+            text += f"; {name} would have to pull with {pull.force:.0f} N"
         if self.holds_between is None:
-            return f"{said}; no friction from {_TRIED[0]:g} to {_TRIED[1]:g} times makes it one"
-        return f"{said}; it would be one{self._where()}"
+            return f"{text}; no friction from {_TRIED[0]:g} to {_TRIED[1]:g} times makes it one"
+        return f"{text}; it would be one{self._friction_range()}"
 
-    def _where(self) -> str:
-        """Say at which friction."""
+    def _friction_range(self) -> str:
+        """Say at which friction it holds."""
         if self.holds_between is None:
             return ""
         low, high = self.holds_between

@@ -1,4 +1,4 @@
-"""Results of a run, as data: outcome, figures, history, and the row that tables keep of it."""
+"""The results of a run as data: outcome, metrics, history, and its row in tables and stores."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self, overload
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, 
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
-from crawler2d.results.tip_over import tip_over_of
+from crawler2d.results.tip_over import find_tip_over
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +24,28 @@ if TYPE_CHECKING:
     from crawler2d.parameters.scenario import Scenario
 
 __all__ = ["NO_RESULT", "Record", "Row", "diagnosis_json", "read_diagnosis"]
+
+
+class _History:
+    """An array of the history of a run; raises an AttributeError if there is none."""
+
+    def __init__(self, doc: str) -> None:
+        self.__doc__ = doc
+
+    def __set_name__(self, _owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, run: None, owner: type) -> Self: ...
+
+    @overload
+    def __get__(self, run: Record, owner: type) -> NDArray[np.float64]: ...
+
+    def __get__(self, run: Record | None, owner: type) -> Self | NDArray[np.float64]:
+        return self if run is None else run._history(self._name)
+
+    def __set__(self, run: Record, value: object) -> None:
+        raise AttributeError(f"{self._name} is read-only", name=self._name, obj=run)
 
 
 class Record:
@@ -52,8 +74,7 @@ class Record:
         self.error = error
         self.trunk = trunk
         self.outcome = Outcome(result["outcome"]) if error is None else None
-        why = result.get("diagnosis")
-        self.diagnosis = None if why is None else Diagnosis.from_core(why)
+        self.diagnosis = _diagnosis_of(result.get("diagnosis"))
         self.metrics = Metrics(result.get("metrics", {}))
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
@@ -65,7 +86,7 @@ class Record:
     def reason(self) -> str:
         """Why the robot did not clear, in a sentence; empty if it did.
 
-        Of a stop it is the diagnosis; what is said of a tip-over takes the time of one more run.
+        For a stop it is the diagnosis; for a tip-over the run is simulated once more.
 
         Examples
         --------
@@ -78,21 +99,26 @@ class Record:
             return str(self.error)
         if self.diagnosis is not None:
             return str(self.diagnosis)
-        figures, after = self.metrics, f"after {self.metrics['time']:.2f} s"
-        if self.outcome is Outcome.TIPPED_OVER:
-            found = None if self.trunk else tip_over_of(self.scenario, tried=False)
-            way = "backwards" if figures["final_angle"] > 0.0 else "forwards"
-            return f"tipped over {way} {after}" if found is None else str(found)
-        share = f"{100 * figures['progress']:.0f} % of the commanded speed"
-        pull = f"{figures['max_track_tension']:.0f} N"
-        said = {
-            Outcome.TIMED_OUT: f"timed out {after} on its way, at {share}",
-            Outcome.LEFT_TERRAIN: f"left the terrain {after}, at x = {figures['final_x']:.3f} m: an"
-            " end axle was beyond the described ground, or a metre below it",
-            Outcome.DETRACKED: f"threw its track {after}: a shoe came off what the chain runs on,"
-            f" whose pins held up to {pull}",
-        }
-        return said.get(self.outcome, "") if self.outcome else ""
+        metrics, after, text = self.metrics, f"after {self.metrics['time']:.2f} s", ""
+        match self.outcome:
+            case Outcome.TIPPED_OVER:
+                tip_over = None if self.trunk else find_tip_over(self.scenario, try_changes=False)
+                direction = "backwards" if metrics["final_angle"] > 0.0 else "forwards"
+                text = str(tip_over or f"tipped over {direction} {after}")
+            case Outcome.TIMED_OUT:
+                percent = 100 * metrics["progress"]
+                text = f"timed out {after} on its way, at {percent:.0f} % of the commanded speed"
+            case Outcome.LEFT_TERRAIN:
+                text = (
+                    f"left the terrain {after}, at x = {metrics['final_x']:.3f} m: an end axle was"
+                    " beyond the described ground, or a metre below it"
+                )
+            case Outcome.DETRACKED:
+                text = (
+                    f"threw its track {after}: a shoe came off what the chain runs on, whose pins"
+                    f" held up to {metrics['max_track_tension']:.0f} N"
+                )
+        return text
 
     @property
     def mechanism(self) -> Mechanism | None:
@@ -111,98 +137,49 @@ class Record:
         """Whether it was recorded in full."""
         return bool(self._trace)
 
-    @property
-    def time(self) -> NDArray[np.float64]:
-        """[s] Time at the end of each sample interval, shape (n,)."""
-        return self._recorded("time")
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """[m] x and y of the origin of the chassis frame, shape (n, 2)."""
-        return self._recorded("position")
-
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """[m/s] Velocity of that point, shape (n, 2)."""
-        return self._recorded("velocity")
-
-    @property
-    def chassis_angle(self) -> NDArray[np.float64]:
-        """[rad] Nose up > 0, shape (n,)."""
-        return self._recorded("chassis_angle")
-
-    @property
-    def angular_velocity(self) -> NDArray[np.float64]:
-        """[rad/s] Rate of change of the chassis angle, shape (n,)."""
-        return self._recorded("angular_velocity")
-
-    @property
-    def commanded_speed(self) -> NDArray[np.float64]:
-        """[m/s] Set-point of the drivetrain, within its acceleration limits, shape (n,)."""
-        return self._recorded("commanded_speed")
-
-    @property
-    def track_speed(self) -> NDArray[np.float64]:
-        """[m/s] Surface speed of the track, mean over the drives, shape (n,)."""
-        return self._recorded("track_speed")
-
-    @property
-    def track_position(self) -> NDArray[np.float64]:
-        """[m] How far the track surface has run, mean over the drives, shape (n,)."""
-        return self._recorded("track_position")
-
-    @property
-    def slip_ratio(self) -> NDArray[np.float64]:
-        """[-] 1 - v / track_speed, 0 where the track stands still, shape (n,)."""
-        return self._recorded("slip_ratio")
-
-    @property
-    def tractive_effort(self) -> NDArray[np.float64]:
-        """[N] Force of the ground along the driven surfaces, mean of the interval, shape (n,)."""
-        return self._recorded("tractive_effort")
-
-    @property
-    def drive_force(self) -> NDArray[np.float64]:
-        """[N] Force of all motors at the track surface, mean of the interval, shape (n,)."""
-        return self._recorded("drive_force")
-
-    @property
-    def drive_speeds(self) -> NDArray[np.float64]:
-        """[m/s] Surface speed of each of the k drives, motors before free wheels, shape (n, k)."""
-        return self._recorded("drive_speeds")
-
-    @property
-    def drive_positions(self) -> NDArray[np.float64]:
-        """[m] How far the surface of each of the k drives has run, shape (n, k)."""
-        return self._recorded("drive_positions")
-
-    @property
-    def drive_forces(self) -> NDArray[np.float64]:
-        """[N] Motor force of each drive, 0 for free wheels, mean of the interval, shape (n, k)."""
-        return self._recorded("drive_forces")
-
-    @property
-    def track_tension(self) -> NDArray[np.float64]:
-        """[N] Largest force in any pin of a chain of shoes, 0 for other tracks, shape (n,)."""
-        return self._recorded("track_tension")
-
-    @property
-    def shoe_poses(self) -> NDArray[np.float64]:
+    time = _History("[s] Time at the end of each sample interval, shape (n,).")
+    position = _History("[m] x and y of the origin of the chassis frame, shape (n, 2).")
+    velocity = _History("[m/s] Velocity of that point, shape (n, 2).")
+    chassis_angle = _History("[rad] Nose up > 0, shape (n,).")
+    angular_velocity = _History("[rad/s] Rate of change of the chassis angle, shape (n,).")
+    commanded_speed = _History(
+        "[m/s] Set-point of the drivetrain, within its acceleration limits, shape (n,)."
+    )
+    track_speed = _History("[m/s] Surface speed of the track, mean over the drives, shape (n,).")
+    track_position = _History(
+        "[m] How far the track surface has run, mean over the drives, shape (n,)."
+    )
+    slip_ratio = _History("[-] 1 - v / track_speed, 0 where the track stands still, shape (n,).")
+    tractive_effort = _History(
+        "[N] Force of the ground along the driven surfaces, mean of the interval, shape (n,)."
+    )
+    drive_force = _History(
+        "[N] Force of all motors at the track surface, mean of the interval, shape (n,)."
+    )
+    drive_speeds = _History(
+        "[m/s] Surface speed of each of the k drives, motors before free wheels, shape (n, k)."
+    )
+    drive_positions = _History(
+        "[m] How far the surface of each of the k drives has run, shape (n, k)."
+    )
+    drive_forces = _History(
+        "[N] Motor force of each drive, 0 for free wheels, mean of the interval, shape (n, k)."
+    )
+    track_tension = _History(
+        "[N] Largest force in any pin of a chain of shoes, 0 for other tracks, shape (n,)."
+    )
+    shoe_poses = _History(
         """[m, m, rad] Origin x, y and direction of travel of each of s shoes, shape (n, s, 3).
 
         The origin of a shoe lies halfway between its pins; s is 0 for other tracks.
         """
-        return self._recorded("shoe_poses")
-
-    @property
-    def flipper_angles(self) -> NDArray[np.float64]:
-        """[rad] Angle of the flippers at each of k ends, front first, upwards > 0, shape (n, k)."""
-        return self._recorded("flipper_angles")
-
-    @property
-    def flipper_torques(self) -> NDArray[np.float64]:
-        """[N m] Of the flipper motors, both sides together, upwards > 0, last step; (n, k)."""
-        return self._recorded("flipper_torques")
+    )
+    flipper_angles = _History(
+        "[rad] Angle of the flippers at each of k ends, front first, upwards > 0, shape (n, k)."
+    )
+    flipper_torques = _History(
+        "[N m] Of the flipper motors, both sides together, upwards > 0, last step; (n, k)."
+    )
 
     @property
     def bodies(self) -> Table:
@@ -248,16 +225,16 @@ class Record:
         >>> bool(abs(corners[:, 1].min()) < 1e-4)  # it stands on the ground
         True
         """
-        self._recorded("time")
+        self._history("time")
         return freeze_array(body_poses(self.scenario.to_json(), self._trace)["bodies"])
 
     @property
     def contacts(self) -> Table:
         """Contacts with the ground, one row per contact and sample; forces are interval means."""
-        self._recorded("time")
+        self._history("time")
         return self._contacts
 
-    def _recorded(self, name: str) -> NDArray[Any]:
+    def _history(self, name: str) -> NDArray[Any]:
         if self._trace:
             return self._trace[name]
         if self.error is not None:
@@ -266,7 +243,7 @@ class Record:
         raise AttributeError(message, name=name, obj=self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the data; arrays are read-only again in the copy."""
+        """Pickle the data; arrays are read-only in the copy, too."""
         result = {
             "outcome": self.outcome,
             "diagnosis": None if self.diagnosis is None else self.diagnosis.to_dict(),
@@ -297,16 +274,12 @@ class Record:
     def subject(self) -> str:
         """What ran, in one line."""
         robot, terrain = self.scenario.robot, self.scenario.terrain
-        names = (
-            getattr(robot, "name", robot),
-            _kind(getattr(robot, "track", None)),
-            _kind(terrain),
-        )
-        return ", ".join(str(name) for name in names)
+        kinds = (_kind(getattr(robot, "track", None)), _kind(terrain))
+        return ", ".join(map(str, (getattr(robot, "name", robot), *kinds)))
 
 
 def _kind(part: object) -> str:
-    # An invalid scenario may hold anything here.
+    # An invalid scenario may hold anything.
     return str(getattr(part, "kind", type(part).__name__))
 
 
@@ -381,12 +354,16 @@ class Row:
             text = identity = ""
         if run.error is not None:
             return cls.of_error(run.error, identity, text)
-        why = None if run.diagnosis is None else run.diagnosis.to_dict()
-        return cls(identity, text, str(run.outcome), run.metrics, why, run.wall_time)
+        values = None if run.diagnosis is None else run.diagnosis.to_dict()
+        return cls(identity, text, str(run.outcome), run.metrics, values, run.wall_time)
 
-    def why(self) -> Diagnosis | None:
-        """Return the diagnosis of a stop."""
-        return None if self.diagnosis is None else Diagnosis.from_core(self.diagnosis)
+    def read_diagnosis(self) -> Diagnosis | None:
+        """Convert `diagnosis` to an object."""
+        return _diagnosis_of(self.diagnosis)
+
+
+def _diagnosis_of(values: Mapping[str, Any] | None) -> Diagnosis | None:
+    return None if values is None else Diagnosis.from_core(values)
 
 
 def diagnosis_json(diagnosis: Mapping[str, Any]) -> str:
@@ -396,15 +373,15 @@ def diagnosis_json(diagnosis: Mapping[str, Any]) -> str:
 
 def read_diagnosis(text: str) -> dict[str, Any]:
     """Read what `diagnosis_json` wrote."""
-    plain: dict[str, Any] = json.loads(text)
-    plain["contacts"] = {name: np.array(column) for name, column in plain["contacts"].items()}
-    plain["position"] = tuple(plain["position"])
-    for tried in plain["trials"]:
-        tried.update({name: tuple(tried[name]) for name in ("position", "flipper_angles")})
-    for found in (plain, *plain["trials"]):
-        if inside := found.get("intrusion"):
+    values: dict[str, Any] = json.loads(text)
+    values["contacts"] = {name: np.array(column) for name, column in values["contacts"].items()}
+    values["position"] = tuple(values["position"])
+    for trial in values["trials"]:
+        trial.update({name: tuple(trial[name]) for name in ("position", "flipper_angles")})
+    for each in (values, *values["trials"]):
+        if inside := each.get("intrusion"):
             inside.update({name: tuple(inside[name]) for name in ("edges", "bodies", "body_kinds")})
-    if plain["mechanism"] == "bellied":
-        # Builds that called it so counted ground that only the belly rests on.
-        plain["mechanism"] = None
-    return plain
+    if values["mechanism"] == "bellied":
+        # Earlier builds used it for ground that only the belly rests on.
+        values["mechanism"] = None
+    return values

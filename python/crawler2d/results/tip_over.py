@@ -1,4 +1,4 @@
-"""How a robot tipped over, and what would have held it, tried from the start of its run."""
+"""How a robot tipped over, and which changes would have kept it upright."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.diagnosis import in_words
 from crawler2d.results.outcome import Outcome
 
-__all__ = ["TipOver", "tip_over_of"]
+__all__ = ["TipOver", "find_tip_over"]
 
 _SLOWER = {"half the speed": 0.5, "a tenth of the speed": 0.1}
-"""Shares of the commanded speed that are tried."""
+"""[-] Fractions of the commanded speed."""
 _SHIFTS = (0.02, 0.05, 0.1, 0.2)
-"""By which shares of the axle distance the centre of mass is moved, until the robot stays up."""
+"""[-] Shifts of the centre of mass as fractions of the axle distance."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,43 +58,43 @@ class TipOver:
 
     @property
     def held_by(self) -> tuple[str, ...]:
-        """What of that kept it from tipping over, whether it then cleared or not."""
+        """The changes that kept it from tipping over, whether it then cleared or not."""
         return tuple(change for change, end in self.tried if end is not Outcome.TIPPED_OVER)
 
     def __str__(self) -> str:
         """Say it in some sentences."""
-        way, nose = ("backwards", "up") if self.backwards else ("forwards", "down")
+        direction, nose = ("backwards", "up") if self.backwards else ("forwards", "down")
         beyond, last = ("behind", "rearmost") if self.backwards else ("beyond", "foremost")
         did = f"passed {beyond}" if self.time < self.end else f"did not get {beyond}"
         (_, y), (pivot, ground) = self.center_of_mass, self.pivot
-        said = (
-            f"tipped over {way}: its centre of mass {did} its {last} contact,"
+        text = (
+            f"tipped over {direction}: its centre of mass {did} its {last} contact,"
             f" {1e3 * (y - ground):.0f} mm below it at x = {pivot:z.3f} m, after {self.time:.2f} s,"
             f" {math.degrees(abs(self.chassis_angle)):.0f} degrees nose {nose}"
         )
         tried = "; ".join(f"{change}: {in_words(end)}" for change, end in self.tried)
-        return f"{said}. Tried from the start: {tried}" if tried else said
+        return f"{text}. Tried from the start: {tried}" if tried else text
 
 
-def tip_over_of(scenario: Scenario, *, tried: bool) -> TipOver | None:
+def find_tip_over(scenario: Scenario, *, try_changes: bool) -> TipOver | None:
     """Simulate a scenario and say how it tipped over; None if it did not.
 
     Parameters
     ----------
     scenario : Scenario
         What is simulated.
-    tried : bool
+    try_changes : bool
         Whether to try what would have held it, which takes up to six more runs.
     """
-    found = _core.tip_over(scenario.to_json())
-    if found is None:
+    fields = _core.tip_over(scenario.to_json())
+    if fields is None:
         return None
-    changes = _held(scenario, backwards=found["backwards"]) if tried else ()
-    return TipOver(**found, tried=tuple(changes))
+    tried = _try_changes(scenario, backwards=fields["backwards"]) if try_changes else ()
+    return TipOver(**fields, tried=tuple(tried))
 
 
-def _held(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, Outcome]]:
-    """Yield what is changed, and how the run then ends."""
+def _try_changes(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, Outcome]]:
+    """Yield each change, and how the run then ends."""
     for change, share in _SLOWER.items():
         yield change, _outcome(_slower(scenario, share))
     length = scenario.robot.outline.axle_distance
@@ -102,8 +102,8 @@ def _held(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, Outcome
     for share in _SHIFTS:
         shift = share * length * (1.0 if backwards else -1.0)
         end = _outcome(scenario.replace({"robot.center_of_mass[0]": x + shift}))
-        way = "forward" if backwards else "back"
-        yield f"centre of mass {1e3 * abs(shift):.0f} mm further {way}", end
+        direction = "forward" if backwards else "back"
+        yield f"centre of mass {1e3 * abs(shift):.0f} mm further {direction}", end
         if end is not Outcome.TIPPED_OVER:
             return
 

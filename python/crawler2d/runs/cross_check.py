@@ -368,7 +368,9 @@ def _sentences(check: CrossCheck[R]) -> Iterator[str]:
     else:
         yield f"The paths first part by {1e3 * _PARTED:g} mm at {check.parted_at:.2f} s"
     stops = {
-        _engine(run): balance.said([body_name(run.diagnosis, pull.body) for pull in balance.pulls])
+        _engine(run): balance.describe(
+            [body_name(run.diagnosis, pull.body) for pull in balance.pulls]
+        )
         for run, balance in zip(runs, check.balances, strict=True)
         if balance is not None and run.diagnosis is not None
     }

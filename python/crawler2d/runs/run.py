@@ -11,7 +11,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.units import table_of_metrics
 from crawler2d.errors import ScenarioError
 from crawler2d.results.record import Record
-from crawler2d.results.tip_over import TipOver, tip_over_of
+from crawler2d.results.tip_over import TipOver, find_tip_over
 from crawler2d.runs import branch as branching
 from crawler2d.runs.branch import (
     EscapeForce,
@@ -359,7 +359,7 @@ class Run(Record):
         (True, ('centre of mass 36 mm further forward',))
         """
         branching.refuse_without_result(self)
-        found = tip_over_of(self.scenario, tried=True)
+        found = find_tip_over(self.scenario, try_changes=True)
         if found is None:
             raise ScenarioError("run", self, f"must have tipped over, but ended as {self.outcome}")
         return found

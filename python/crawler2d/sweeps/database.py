@@ -111,7 +111,7 @@ def read_checked(values: Sequence[Any]) -> Kept:
             _number(wall_time),
             None if error is None else _error(*json.loads(error)),
         )
-        row.why()
+        row.read_diagnosis()
         return row, str(build), tuple(map(str, json.loads(trials)))
     except _UNREADABLE as fault:
         kind = ValueError if build == build_info()["build_id"] else OtherBuild

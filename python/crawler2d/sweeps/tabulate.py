@@ -47,7 +47,7 @@ def row_columns(
     """
     columns: dict[str, Column] = {}
     columns["outcome"] = (np.array(["" if row is None else row.outcome for row in rows], str), {})
-    why = [None if row is None else row.why() for row in rows]
+    why = [None if row is None else row.read_diagnosis() for row in rows]
     for name, (kind, unit, values) in stop_columns(why, trials).items():
         columns[name] = (np.array(values, kind), {"units": unit} if unit else {})
     for name in next((row.metrics for row in rows if row is not None and row.metrics), {}):
