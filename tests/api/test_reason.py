@@ -70,7 +70,7 @@ def test_every_run_that_does_not_clear_has_a_reason(tipped: c2d.Run) -> None:
     assert stopped.reason == str(stopped.diagnosis)
     cleared = c2d.simulate(ROBOT, c2d.terrains.step(0.05))
     assert cleared.reason == ""
-    with pytest.raises(c2d.ScenarioError, match="must have tipped over, but ended as cleared"):
+    with pytest.raises(c2d.ScenarioError, match="must have tipped over, not cleared"):
         cleared.tip_over()
     with pytest.raises(c2d.ScenarioError, match="but tipped_over; its `reason` says how"):
         tipped.trials()

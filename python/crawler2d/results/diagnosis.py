@@ -324,8 +324,8 @@ class Diagnosis(Findings):
     passing : bool
         Whether the stop would not have lasted: the unchanged robot got free when it went on, or
         when its track was built anew.
-    trials : tuple of Tried
-        What was tried so far, and what came of it; `Run.trials` and `Run.what_if` add to it.
+    trials : tuple of TrialResult
+        The trials so far and their results; `Run.trials` and `Run.what_if` add to it.
     freed_by : tuple of str
         Names of those that freed the robot.
     reached_by_belt : bool or None

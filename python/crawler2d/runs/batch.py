@@ -1,4 +1,4 @@
-"""Simulate one scenario, or many on several threads; what a batch had finished at Ctrl-C."""
+"""Simulate one scenario, or many on several threads."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from crawler2d.parameters.fields import field_hints, known_paths
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
-from crawler2d.runs.branch import Recording, Trials, recording, trial_names
+from crawler2d.runs.branch import RecordMode, Trials, check_recording, trial_names
 from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
 
-__all__ = ["BatchInterrupted", "simulate", "simulate_many", "simulate_valid"]
+__all__ = ["BatchInterrupted", "simulate", "simulate_many"]
 
 
 class BatchInterrupted(KeyboardInterrupt):
@@ -49,7 +49,7 @@ def simulate(
     scenario: Scenario | Robot,
     terrain: Terrain | None = None,
     *,
-    record: Recording = "full",
+    record: RecordMode = "full",
     sample_interval: float = 0.01,
     trials: Trials = "auto",
     **fields: Any,
@@ -102,8 +102,8 @@ def simulate(
     names = {name: value for name, value in fields.items() if name.isidentifier()}
     refuse_unknown("simulate", names, taken, known_paths(complete))
     complete = complete.replace(fields)
-    recorded = (*recording(sample_interval, record), list(trial_names(trials)))
-    return Run(complete, _core.simulate(complete.to_json(), *recorded))
+    kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
+    return Run(complete, _core.simulate(complete.to_json(), *kept))
 
 
 @takes_keywords
@@ -111,7 +111,7 @@ def simulate_many(
     scenarios: Iterable[Scenario],
     *,
     threads: int | None = None,
-    record: Recording = "full",
+    record: RecordMode = "full",
     sample_interval: float = 0.01,
     trials: Trials = None,
     progress: bool | Progress | None = False,
@@ -166,42 +166,42 @@ def simulate_many(
     """
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
-    recorded = (*recording(sample_interval, record), list(trial_names(trials)))
+    kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
     count = thread_count(threads)
     batch = list(scenarios)
-    checked = _checked(batch)
+    checked = _validate(batch)
     if on_error == "raise":
         raise_first(checked)
-    runs = simulate_valid(batch, checked, recorded, threads=count, progress=progress)
+    runs = _simulate_valid(batch, checked, kept, threads=count, progress=progress)
     if on_error == "raise":
         raise_first([run.error for run in runs])
     return runs
 
 
-def simulate_valid(
+def _simulate_valid(
     scenarios: Sequence[Scenario],
     checked: Sequence[_core.Passed | ScenarioError],
-    recorded: tuple[float, str, list[str]],
+    kept: tuple[float, str, list[str]],
     *,
     threads: int,
     progress: bool | Progress | None,
 ) -> list[Run]:
     """Simulate the valid scenarios; the others become runs with their errors."""
-    passed = [scenario for scenario in checked if isinstance(scenario, _core.Passed)]
-    results: list[dict[str, Any] | None] = [None] * len(passed)
-    _core.warn(passed)
-    with reporter(progress, len(passed)) as report:
+    valid = [each for each in checked if isinstance(each, _core.Passed)]
+    results: list[dict[str, Any] | None] = [None] * len(valid)
+    _core.warn(valid)
+    with reporter(progress, len(valid)) as report:
 
         def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
-            for place, result in finished:
-                results[place] = result
+            for index, result in finished:
+                results[index] = result
             report(len(finished))
 
-        interrupted = _core.simulate_many(passed, threads, *recorded, take)
-    rest = iter(results)
+        interrupted = _core.simulate_many(valid, threads, *kept, take)
+    remaining = iter(results)
     runs = [
-        _run(scenario, next(rest) if isinstance(outcome, _core.Passed) else outcome)
-        for scenario, outcome in zip(scenarios, checked, strict=True)
+        _run(scenario, each if isinstance(each, ScenarioError) else next(remaining))
+        for scenario, each in zip(scenarios, checked, strict=True)
     ]
     if interrupted:
         raise BatchInterrupted(runs)
@@ -218,30 +218,27 @@ def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
     return Scenario(scenario, terrain)
 
 
-def _checked(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
+def _validate(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
     """Validate each scenario; return the error of those that break a rule."""
     results: list[_core.Passed | ScenarioError] = []
     last = None
     for index, scenario in enumerate(batch):
-        place = f"scenarios[{index}]"
+        path = f"scenarios[{index}]"
         if not isinstance(scenario, Scenario):
-            raise ScenarioError(place, scenario, "must be a Scenario")  # a Run could not hold it
+            raise ScenarioError(path, scenario, "must be a Scenario")  # a Run could not hold it
         try:
             last = _core.Passed(scenario.to_json(), last)
             results.append(last)
         except ScenarioError as error:
-            results.append(ScenarioError(f"{place}.{error.path}", error.value, error.rule))
+            results.append(ScenarioError(f"{path}.{error.path}", error.value, error.rule))
     return results
 
 
 def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> Run:
     if result is None:
-        return Run(
-            scenario, {}, RunUnfinished("the batch was interrupted before this run had ended")
-        )
+        error = RunUnfinished("the batch was interrupted before this run had ended")
+        return Run(scenario, {}, error)
     if isinstance(result, ScenarioError):
         return Run(scenario, {}, result)
-    error = result.get("error")
-    if error is None:
-        return Run(scenario, result)
-    return Run(scenario, {}, own_error(error))
+    failure = result.get("error")
+    return Run(scenario, result) if failure is None else Run(scenario, {}, own_error(failure))

@@ -1,4 +1,4 @@
-"""Continue a run from one of its instants with something changed, as the trials of a stop do."""
+"""Branches of a run: it continues from an instant with something changed, as in trials."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EscapeForce",
-    "Recording",
+    "RecordMode",
     "Trial",
     "Trials",
     "branch_scenario",
     "branch_time",
+    "check_recording",
     "escape_force_at",
     "read_push",
-    "recording",
     "refuse_without_result",
     "run_of_trial",
     "simulate_branch",
     "trial_at",
     "trial_names",
     "trials_at",
-    "variant_tried_at",
+    "try_variant",
 ]
 
-Recording = Literal["full", "summary"]
+RecordMode = Literal["full", "summary"]
 
 
-def recording(sample_interval: object, record: object) -> tuple[float, str]:
-    """Check the arguments that say what to keep of a run."""
+def check_recording(sample_interval: object, record: object) -> tuple[float, str]:
+    """Check the arguments that select what to keep of a run."""
     if record not in ("full", "summary"):
         raise ScenarioError("record", record, "must be one of full, summary")
     return real_number(sample_interval, "sample_interval"), str(record)
@@ -55,22 +55,22 @@ Trials = Literal["auto", "all"] | Sequence[str] | None
 R = TypeVar("R", bound=Record)
 
 _ALL = tuple(_core.kinds()["trial"])
-_AUTO = ("torque x 2", "friction x 2")
+_SETS = {"auto": ("torque x 2", "friction x 2"), "all": _ALL}
 
 
 def trial_names(trials: Trials) -> tuple[str, ...]:
-    """List the trials that are asked for, besides those that the outcome needs."""
+    """List the requested trials; those that the outcome needs are made in any case."""
     if trials is None:
         return ()
-    if isinstance(trials, str) and trials in ("auto", "all"):
-        return _AUTO if trials == "auto" else _ALL
+    if isinstance(trials, str) and trials in _SETS:
+        return _SETS[trials]
     if isinstance(trials, str) or not isinstance(trials, Sequence):
         rule = 'must be "auto", "all", None or a sequence of names'
         raise ScenarioError("trials", trials, rule)
-    return tuple(_known(name, "trials") for name in trials)
+    return tuple(_trial_name(name, "trials") for name in trials)
 
 
-def _known(name: object, path: str) -> str:
+def _trial_name(name: object, path: str) -> str:
     if name not in _ALL:
         names = ", ".join(f'"{known}"' for known in _ALL)
         raise ScenarioError(path, name, f"must be one of {names}")
@@ -79,13 +79,12 @@ def _known(name: object, path: str) -> str:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trial(TrialResult, Generic[R]):
-    """What came of one change at a stop, and the run that shows it; see `Run.trials`.
+    """The result of one change at a stop, and the run that shows it; see `Run.trials`.
 
     One thing is changed in the pose of the stop, and the robot drives on for `criteria.escape_time`
     plus the time in which it would drive `criteria.escape_distance` as commanded; or the run begins
-    anew. Torque, friction,
-    belly and a push leave the rest of the state as it is. Another track takes over pose and speeds,
-    and ground inside it is let out without a push.
+    anew. Torque, friction, belly and a push leave the rest of the state as it is. Another track
+    takes over pose and speeds, and ground inside it is let out without a push.
 
     Attributes
     ----------
@@ -94,30 +93,24 @@ class Trial(TrialResult, Generic[R]):
     position, chassis_angle, flipper_angles
         See `TrialResult`.
     run : Run
-        How it went from the instant of the stop; simulated again when it is first asked for.
+        From the instant of the stop on; simulated again when it is first asked for.
     """
 
-    show: Callable[[], R] = field(repr=False)
+    simulate: Callable[[], R] = field(repr=False)
 
     @classmethod
-    def of(cls, tried: TrialResult, show: Callable[[], R]) -> Trial[R]:
-        """Add the way to the run."""
-        return cls(
-            **{each.name: getattr(tried, each.name) for each in fields(TrialResult)}, show=show
-        )
+    def of(cls, result: TrialResult, simulate: Callable[[], R]) -> Trial[R]:
+        """Add a function that simulates the run."""
+        values = {each.name: getattr(result, each.name) for each in fields(TrialResult)}
+        return cls(**values, simulate=simulate)
 
     @cached_property
     def run(self) -> R:
-        """How it went from the instant of the stop."""
-        return self.show()
+        """The run from the instant of the stop on."""
+        return self.simulate()
 
 
-class _Levels(NamedTuple):
-    low: float
-    high: float
-
-
-class EscapeForce(_Levels):
+class EscapeForce(NamedTuple("_Levels", [("low", float), ("high", float)])):
     """The push that moves a robot on, in the commanded direction; see `Run.escape_force`.
 
     Attributes
@@ -135,42 +128,42 @@ class EscapeForce(_Levels):
 
     def __new__(cls, low: float, high: float, tips: bool = False) -> Self:
         """Keep the two levels as a tuple."""
-        found = super().__new__(cls, low, high)
-        found.tips = tips
-        return found
+        levels = super().__new__(cls, low, high)
+        levels.tips = tips
+        return levels
 
 
 def trials_at(run: Record, time: float, names: tuple[str, ...]) -> tuple[TrialResult, ...]:
-    """Make trials at a stop; those that make no sense for the robot are left out."""
-    found = _core.trials(run.scenario.to_json(), time, list(names))
-    return tuple(map(TrialResult.from_core, found))
+    """Make trials at a stop; those with nothing to change on the robot are left out."""
+    results = _core.trials(run.scenario.to_json(), time, list(names))
+    return tuple(map(TrialResult.from_core, results))
 
 
 def trial_at(run: Record, time: float, name: str) -> TrialResult:
     """Make one trial at a stop."""
-    found = trials_at(run, time, (_known(name, "name"),))
-    if not found:
-        raise ScenarioError("name", name, "must make sense for the robot: it has nothing to change")
-    return found[0]
+    results = trials_at(run, time, (_trial_name(name, "name"),))
+    if not results:
+        raise ScenarioError("name", name, "must be a trial that changes something on the robot")
+    return results[0]
 
 
 def run_of_trial(run: Record, time: float, name: str) -> tuple[Scenario, dict[str, Any]]:
-    """Simulate a trial with its history."""
-    found = _core.run_of_trial(run.scenario.to_json(), time, name, 0.01, "full")
-    if found is None:
-        raise ScenarioError("name", name, "must make sense for the robot: it has nothing to change")
-    text, result = found
+    """Simulate a trial that was made, with its history."""
+    simulated = _core.run_of_trial(run.scenario.to_json(), time, name, 0.01, "full")
+    if simulated is None:
+        raise ScenarioError("name", name, "must be a trial that changes something on the robot")
+    text, result = simulated
     return Scenario.from_json(text), result
 
 
-def variant_tried_at(
+def try_variant(
     run: Record, time: float, variant: Scenario, push: tuple[float, float]
 ) -> TrialResult:
     """Try to continue from a stop as another scenario."""
-    found = _core.what_if(run.scenario.to_json(), time, variant.to_json(), push)
-    if found is None:
+    result = _core.what_if(run.scenario.to_json(), time, variant.to_json(), push)
+    if result is None:
         raise ScenarioError("run", run, "must have stopped")
-    return TrialResult.from_core(found)
+    return TrialResult.from_core(result)
 
 
 def escape_force_at(run: Record, time: float) -> EscapeForce:
@@ -179,11 +172,11 @@ def escape_force_at(run: Record, time: float) -> EscapeForce:
 
 
 def refuse_without_result(run: Record) -> None:
-    """Refuse a run that ended with an error, and a branch, whose scenario is not all of it."""
+    """Refuse a run that ended with an error, and a branch, which its scenario does not define."""
     if run.trunk is not None:
         raise ScenarioError("run", run, "must not be a branch itself: take the original run")
     if run.error is not None:
-        raise ScenarioError("run", run, f"must have a result, but ended with: {run.error}")
+        raise ScenarioError("run", run, f"must have a result, not the error {run.error}")
 
 
 def branch_time(run: Record, at: float | str) -> float:
@@ -191,8 +184,9 @@ def branch_time(run: Record, at: float | str) -> float:
     refuse_without_result(run)
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
-            ended = f"the run did not end in a stop, but {run.outcome}"
-            rule = f"must be a time: {ended}; its `reason` says how"
+            rule = (
+                f"must be a time: the run ended as {run.outcome}, not in a stop; see its `reason`"
+            )
             raise ScenarioError("at", at, rule)
         return run.diagnosis.time
     end = run.metrics["time"]
@@ -216,8 +210,11 @@ def branch_scenario(
     duration: float | None,
 ) -> Scenario:
     """Change the given fields of a run's scenario; our own dynamics move every branch."""
+    if track == "closed":
+        own = run.scenario.robot.track
+        track = own if isinstance(own, ClosedTrack) else ClosedTrack(own)
     changes = {
-        "robot.track": _closed(run.scenario.robot.track) if track == "closed" else track,
+        "robot.track": track,
         "terrain.friction": friction,
         "robot.drivetrain.max_torque": max_torque,
         "drive": drive,
@@ -231,27 +228,22 @@ def branch_scenario(
     return run.scenario.replace(given)
 
 
-def _closed(track: Track) -> ClosedTrack:
-    return track if isinstance(track, ClosedTrack) else ClosedTrack(track)
-
-
 def simulate_branch(
     run: Record,
     time: float,
     variant: Scenario,
     *,
     push: tuple[float, float] | None,
-    record: Recording,
+    record: RecordMode,
     sample_interval: float,
 ) -> dict[str, Any]:
     """Repeat the run up to a time, and continue as another scenario."""
-    recorded = recording(sample_interval, record)
-    text, changed = run.scenario.to_json(), variant.to_json()
-    return _core.branch(text, time, changed, read_push(push), *recorded)
+    kept = check_recording(sample_interval, record)
+    return _core.branch(run.scenario.to_json(), time, variant.to_json(), read_push(push), *kept)
 
 
 def read_push(push: tuple[float, float] | None) -> tuple[float, float]:
-    """Read a force and the time in which it rises; none is a force of 0."""
+    """Read a force and its rise time; None is a force of 0."""
     if push is None:
         return 0.0, 0.0
     if not isinstance(push, tuple) or len(push) != 2:

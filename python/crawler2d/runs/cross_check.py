@@ -1,4 +1,4 @@
-"""The same scenario in the other engine, beside a run, and how often both agreed."""
+"""A run compared with the same scenario in the other engine, and how often both agreed."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ STUDY = {
 From docs/studies/agreement.md, "The cells of the seizure study"; a test holds both together.
 """
 
-_ERRS = {
+_DIRECTIONS = {
     "24 all round": (
         "at steps and a barrier Chipmunk gets over as crawler2d does and rapier stops,"
         " on knife edges Chipmunk and rapier get over where crawler2d stops"
@@ -92,13 +92,13 @@ class Agreement:
         if not self.models:
             return "How often both end alike with such a model was not studied"
         kind = " or ".join(self.models)
-        said = (
+        text = (
             f"With {kind} in the seizure study both got over or neither did in"
             f" {self.alike} of {self.runs} runs; {self.own} got over in crawler2d's own dynamics,"
             f" {self.rapier} in rapier"
         )
-        errs = [_ERRS[model] for model in self.models if model in _ERRS]
-        return "; ".join([said, *errs])
+        directions = [_DIRECTIONS[model] for model in self.models if model in _DIRECTIONS]
+        return "; ".join([text, *directions])
 
 
 def agreement_of(robot: Robot) -> Agreement:
@@ -137,10 +137,10 @@ def _models_like(robot: Robot) -> tuple[str, ...]:
 _PARTED = 1e-3
 """[m] Distance from which on two paths count as parted."""
 
-_TRIED = 0.1
-"""[s] Simulated time whose cost is measured beforehand."""
+_SAMPLE = 0.1
+"""[s] Simulated time whose computing time is measured beforehand."""
 _LONG = 2.0
-"""[s] What takes longer is announced."""
+"""[s] Longer computing times are announced."""
 
 _NAMES = {"own": "crawler2d's own dynamics", "rapier": "rapier"}
 
@@ -174,13 +174,12 @@ class CrossCheck(Generic[R]):
     forces : Table
         Forces of the ground on each body that bears in a stop, see below.
     agreement : Agreement
-        How often both engines ended alike with such a model in a study, and which way they differ:
-        what this second opinion is worth.
+        How often both engines ended alike with such a model in a study, and which way they differ.
 
     Notes
     -----
     The forces have one row for each body that bears in either stop; where a run did not end in a
-    stop, its columns are nan.
+    stop, its columns are NaN.
 
     ==============================  ====  =====================================================
     column                          unit  meaning
@@ -235,7 +234,7 @@ class CrossCheck(Generic[R]):
 
 
 def _engine(run: Record) -> str:
-    """Name what moved a run."""
+    """Name the engine of a run."""
     return _NAMES[run.scenario.solver.engine]
 
 
@@ -244,17 +243,16 @@ def compare_engines(
 ) -> CrossCheck[R]:
     """Simulate a run's scenario in the other engine, with its history, and compare.
 
-    `announce` is told how many seconds that will take: see `Run.cross_check`.
+    `announce` is given the expected time [s]: see `Run.cross_check`.
     """
     refuse_without_result(run)
     if not (callable(announce) or isinstance(announce, bool)):
         raise ScenarioError("announce", announce, "must be True, False or a callable")
     scenario = _in_the_other_engine(run.scenario)
     if announce:
-        tell = (
-            announce if callable(announce) else partial(_announce, _NAMES[scenario.solver.engine])
-        )
-        tell(*_expected(run, scenario))
+        engine = _NAMES[scenario.solver.engine]
+        show = announce if callable(announce) else partial(_announce, engine)
+        show(*_expected_time(run, scenario))
     other = simulate(scenario)
     first = run if run.has_history else simulate(run.scenario)
     (x, y, angle), (other_x, other_y, other_angle) = _last_pose(first), _last_pose(other)
@@ -270,20 +268,20 @@ def compare_engines(
     )
 
 
-def _expected(run: Record, scenario: Scenario) -> tuple[float, float]:
+def _expected_time(run: Record, scenario: Scenario) -> tuple[float, float]:
     """[s] How long a scenario will take if it ends when a run did, and if it lasts to the end.
 
     By the time of its first steps, here and now: costs of models differ by a factor of a hundred.
     """
     simulation = Simulation(scenario)
     begin = time.perf_counter()
-    simulation.advance(_TRIED)
-    pace = (time.perf_counter() - begin) / _TRIED
+    simulation.advance(_SAMPLE)
+    pace = (time.perf_counter() - begin) / _SAMPLE
     return pace * run.metrics["time"], pace * max(scenario.duration, run.metrics["time"])
 
 
 def _announce(engine: str, likely: float, most: float) -> None:
-    """Tell on stderr how long it will take, if it is worth the words."""
+    """Print the expected time to stderr, if it may be long."""
     if most >= _LONG:
         sys.stderr.write(
             f"cross_check: {engine} will take about {likely:.2g} s if its run ends when this one"
@@ -299,11 +297,11 @@ def _in_the_other_engine(scenario: Scenario) -> Scenario:
 
 
 def _balance(run: Record) -> Balance | None:
-    """Ask statics whether forces could hold the stop that a run ended in."""
+    """Compute whether forces could balance the stop that a run ended in."""
     if run.diagnosis is None:
         return None
-    found = _core.balance(run.scenario.to_json(), run.diagnosis.time)
-    return None if found is None else Balance.from_core(found)
+    result = _core.balance(run.scenario.to_json(), run.diagnosis.time)
+    return None if result is None else Balance.from_core(result)
 
 
 def _last_pose(run: Record) -> tuple[float, float, float]:
@@ -324,8 +322,8 @@ def _parted_at(run: Record, other: Record) -> float | None:
 
 
 def _forces(run: Record, other: Record) -> Table:
-    """[N] What bears in each stop, body by body."""
-    stops = [_borne(run), _borne(other)]
+    """[N] The load on each body in each stop."""
+    stops = [_loads(run), _loads(other)]
     rows = sorted({row for stop in stops if stop is not None for row in stop})
     columns = {
         name: np.array([row[place] for row in rows], dtype=np.int64)
@@ -333,12 +331,12 @@ def _forces(run: Record, other: Record) -> Table:
     }
     for prefix, stop in zip(("", "other_"), stops, strict=True):
         missing = (np.nan, np.nan) if stop is None else (0.0, 0.0)
-        found = np.array([(stop or {}).get(row, missing) for row in rows]).reshape(-1, 2)
-        columns |= {f"{prefix}force_x": found[:, 0], f"{prefix}force_y": found[:, 1]}
+        forces = np.array([(stop or {}).get(row, missing) for row in rows]).reshape(-1, 2)
+        columns |= {f"{prefix}force_x": forces[:, 0], f"{prefix}force_y": forces[:, 1]}
     return Table(columns)
 
 
-def _borne(run: Record) -> dict[tuple[int, int, int], tuple[float, float]] | None:
+def _loads(run: Record) -> dict[tuple[int, int, int], tuple[float, float]] | None:
     """[N] Forces of the ground in a stop, by lane, body and its kind."""
     if run.diagnosis is None:
         return None
@@ -346,12 +344,12 @@ def _borne(run: Record) -> dict[tuple[int, int, int], tuple[float, float]] | Non
     normal = np.stack([contacts["normal_x"], contacts["normal_y"]])
     tangent = np.stack([normal[1], -normal[0]])
     force = contacts["normal_force"] * normal + contacts["friction_force"] * tangent
-    found: dict[tuple[int, int, int], tuple[float, float]] = {}
+    sums: dict[tuple[int, int, int], tuple[float, float]] = {}
     keys = zip(*(contacts[name].tolist() for name in ("lane", "body", "body_kind")), strict=True)
     for key, (x, y) in zip(keys, force.T.tolist(), strict=True):
-        before = found.get(key, (0.0, 0.0))
-        found[key] = (before[0] + x, before[1] + y)
-    return found
+        before = sums.get(key, (0.0, 0.0))
+        sums[key] = (before[0] + x, before[1] + y)
+    return sums
 
 
 def _sentences(check: CrossCheck[R]) -> Iterator[str]:
@@ -377,13 +375,13 @@ def _sentences(check: CrossCheck[R]) -> Iterator[str]:
     if len(stops) > len(set(stops.values())):
         yield f"By statics each stop is {next(iter(stops.values()))}"
     else:
-        yield from (f"By statics the stop in {name} is {said}" for name, said in stops.items())
+        yield from (f"By statics the stop in {name} is {text}" for name, text in stops.items())
     yield str(check.agreement)
 
 
 def _ended(run: Record) -> str:
-    said = str(run.outcome).replace("_", " ")
+    outcome = str(run.outcome).replace("_", " ")
     if run.diagnosis is None:
-        return f"{said} after {run.metrics['time']:.2f} s"
+        return f"{outcome} after {run.metrics['time']:.2f} s"
     x, y, angle = _last_pose(run)
-    return f"{said} at x = {x:z.3f} m, y = {y:z.3f} m, {np.degrees(angle):z.1f} degrees nose up"
+    return f"{outcome} at x = {x:z.3f} m, y = {y:z.3f} m, {np.degrees(angle):z.1f} degrees nose up"

@@ -1,4 +1,4 @@
-"""Progress of what takes long, and how many threads a batch may use."""
+"""Progress of long computations, and the number of threads of a batch."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from crawler2d.errors import LimitError, ScenarioError
 # More threads than this are surely a mistake; each has a stack of its own.
 _MOST = 1024
 _VARIABLE = "CRAWLER2D_THREADS"
+_RULE = f"must be a whole number from 1 to {_MOST}"
 
 
 def thread_count(threads: int | None) -> int:
@@ -40,9 +41,7 @@ def thread_count(threads: int | None) -> int:
         return min(_cores(), limit)
     asked = read_scalar(threads, whole=True)
     if type(asked) is not int or not 1 <= asked <= _MOST:
-        raise LimitError(
-            f"threads must be a whole number from 1 to {_MOST}, got {repr(threads)[:40]}"
-        )
+        raise LimitError(f"threads {_RULE}, got {repr(threads)[:40]}")
     return min(asked, limit)
 
 
@@ -57,8 +56,7 @@ def _limit() -> int:
     if not text:
         return _MOST
     if not (text.isascii() and text.isdigit() and len(text) <= 4 and 1 <= int(text) <= _MOST):
-        rule = f"must be a whole number from 1 to {_MOST}"
-        raise LimitError(f"environment variable {_VARIABLE} {rule}, got {text[:40]!r}")
+        raise LimitError(f"environment variable {_VARIABLE} {_RULE}, got {text[:40]!r}")
     return int(text)
 
 
@@ -66,7 +64,7 @@ Progress = Callable[[int, int], None]
 """Called with the number of finished runs and of all runs."""
 
 _LINES = 10
-"""At most, if the output is not a terminal: one whenever so many parts more are finished."""
+"""Lines at most, if the output is not a terminal: one for each such part of the runs."""
 
 
 class Reporter:
@@ -92,7 +90,7 @@ class Reporter:
         self._show(self._done, self._total)
 
     def expect(self, more: int) -> None:
-        """Count runs that are to be made besides."""
+        """Raise the total by more runs to come."""
         self._total += more
         self._show(self._done, self._total)
 
@@ -101,7 +99,7 @@ class Reporter:
 def reporter(
     progress: bool | Progress | None, total: int, done: int = 0, *, unit: str = "run"
 ) -> Iterator[Reporter]:
-    """Turn the argument `progress` into what counts the finished runs.
+    """Turn the argument `progress` into a `Reporter`.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""A finished run, and what can be done with it: branch, draw, replay, export."""
+"""A finished run, which can be branched, drawn, replayed and exported."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from textwrap import indent
 from typing import TYPE_CHECKING, Literal, overload
 
@@ -15,15 +16,15 @@ from crawler2d.results.tip_over import TipOver, find_tip_over
 from crawler2d.runs import branch as branching
 from crawler2d.runs.branch import (
     EscapeForce,
-    Recording,
+    RecordMode,
     Trial,
+    check_recording,
     escape_force_at,
-    recording,
     run_of_trial,
     trial_at,
     trial_names,
     trials_at,
-    variant_tried_at,
+    try_variant,
 )
 from crawler2d.runs.cross_check import CrossCheck, compare_engines
 from crawler2d.runs.progress import Progress, Reporter, reporter
@@ -118,13 +119,13 @@ class Run(Record):
         drive: Drive | None = None,
         push: tuple[float, float] | None = None,
         duration: float | None = None,
-        record: Recording = "full",
+        record: RecordMode = "full",
         sample_interval: float = 0.01,
     ) -> Run:
         """Continue from an instant of this run with something changed.
 
         The run is repeated bit by bit up to that instant, and continues from the same pose and
-        speeds; what is not changed goes on as before. Another torque or friction, a push, or a
+        speeds; all that is not changed goes on as before. Another torque or friction, a push, or a
         belly taken off change nothing else. Of another track or belly, only pose and speeds are
         those of the run: ground that is inside it is let out without a push, the track is dented
         there, and the dent heals as the robot moves on. So it is with any branch of a run in
@@ -184,21 +185,18 @@ class Run(Record):
             drive=drive,
             duration=duration,
         )
-        result = branching.simulate_branch(
-            self, time, variant, push=push, record=record, sample_interval=sample_interval
-        )
-        return Run(variant, result, trunk=(self.scenario, time))
+        return self._branch_as(variant, time, push, record, sample_interval)
 
     def trials(self) -> tuple[Trial[Run], ...]:
         """Try everything that might free the robot from the stop that the run ended in.
 
-        The diagnosis, and with it plots and pages of the run, tell of them from then on.
+        The results are added to the diagnosis, and so to plots and pages of the run.
 
         Returns
         -------
         tuple of Trial
-            What was changed, by `Trial.name`, and what came of it, in this order; what makes no
-            sense for the robot is left out:
+            Each change, by `Trial.name`, and its result, in this order, without those that have
+            nothing to change on the robot:
 
             - "unchanged": the run goes on; "rebuilt": its own track is built anew. If either frees
               it, the stop was passing, and no more is claimed of it;
@@ -227,9 +225,9 @@ class Run(Record):
         ['closed track', 'belt', 'friction x 2']
         """
         time = branching.branch_time(self, "stop")
-        made = trials_at(self, time, trial_names("all"))
-        self._remember(*made)
-        return tuple(Trial.of(each, self._shown(time, each)) for each in made)
+        results = trials_at(self, time, trial_names("all"))
+        self._add_to_diagnosis(*results)
+        return tuple(Trial.of(each, partial(self._run_of_trial, time, each)) for each in results)
 
     @takes_keywords
     def what_if(
@@ -255,13 +253,13 @@ class Run(Record):
         Returns
         -------
         Trial
-            What came of it.
+            Its result.
 
         Raises
         ------
         ScenarioError
-            If the run did not end in a stop, or is a branch itself; if the name is unknown or makes
-            no sense for the robot; if a change breaks a rule.
+            If the run did not end in a stop, or is a branch itself; if the name is unknown or has
+            nothing to change on the robot; if a change breaks a rule.
 
         Examples
         --------
@@ -273,9 +271,9 @@ class Run(Record):
         """
         time = branching.branch_time(self, "stop")
         if name is not None:
-            tried = trial_at(self, time, name)
-            self._remember(tried)
-            return Trial.of(tried, self._shown(time, tried))
+            result = trial_at(self, time, name)
+            self._add_to_diagnosis(result)
+            return Trial.of(result, partial(self._run_of_trial, time, result))
         variant = branching.branch_scenario(
             self,
             track=track,
@@ -285,33 +283,35 @@ class Run(Record):
             drive=drive,
             duration=None,
         )
-        tried = variant_tried_at(self, time, variant, branching.read_push(push))
-        shown = variant.replace({"duration": tried.duration})
+        result = try_variant(self, time, variant, branching.read_push(push))
+        variant = variant.replace({"duration": result.duration})
+        return Trial.of(result, partial(self._branch_as, variant, time, push))
 
-        def show() -> Run:
-            result = branching.simulate_branch(
-                self, time, shown, push=push, record="full", sample_interval=0.01
-            )
-            return Run(shown, result, trunk=(self.scenario, time))
+    def _branch_as(
+        self,
+        variant: Scenario,
+        time: float,
+        push: tuple[float, float] | None,
+        record: RecordMode = "full",
+        sample_interval: float = 0.01,
+    ) -> Run:
+        result = branching.simulate_branch(
+            self, time, variant, push=push, record=record, sample_interval=sample_interval
+        )
+        return Run(variant, result, trunk=(self.scenario, time))
 
-        return Trial.of(tried, show)
+    def _run_of_trial(self, time: float, trial: TrialResult) -> Run:
+        variant, result = run_of_trial(self, time, trial.name)
+        return Run(
+            variant, result, trunk=None if trial.is_from_the_start else (self.scenario, time)
+        )
 
-    def _remember(self, *made: TrialResult) -> None:
-        """Let the diagnosis tell of trials that were made of this run's stop."""
+    def _add_to_diagnosis(self, *results: TrialResult) -> None:
+        """Add trials of this run's stop to its diagnosis."""
         if self.diagnosis is not None:
-            known = {tried.name: tried for tried in (*self.diagnosis.trials, *made)}
-            trials = tuple(known[name] for name in trial_names("all") if name in known)
+            by_name = {result.name: result for result in (*self.diagnosis.trials, *results)}
+            trials = tuple(by_name[name] for name in trial_names("all") if name in by_name)
             self.diagnosis = replace(self.diagnosis, trials=trials)
-
-    def _shown(self, time: float, tried: TrialResult) -> Callable[[], Run]:
-        """Give the way to the run of a trial."""
-
-        def show() -> Run:
-            variant, result = run_of_trial(self, time, tried.name)
-            trunk = None if tried.is_from_the_start else (self.scenario, time)
-            return Run(variant, result, trunk=trunk)
-
-        return show
 
     def escape_force(self) -> EscapeForce:
         """Measure the push that moves the robot on from the stop that the run ended in.
@@ -334,7 +334,7 @@ class Run(Record):
         return escape_force_at(self, branching.branch_time(self, "stop"))
 
     def tip_over(self) -> TipOver:
-        """Say how the robot tipped over, and try what would have held it.
+        """Say how the robot tipped over, and try what would have kept it upright.
 
         The run is simulated again, and up to six times with one thing changed: with half of the
         speed, with a tenth, and with the centre of mass moved away from the contact about which the
@@ -343,7 +343,7 @@ class Run(Record):
         Returns
         -------
         TipOver
-            Which way it tipped, where its centre of mass was, and what came of the trials.
+            Which way it tipped, where its centre of mass was, and the results of the trials.
 
         Raises
         ------
@@ -354,15 +354,15 @@ class Run(Record):
         --------
         >>> import crawler2d as c2d
         >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.11))
-        >>> found = run.tip_over()
-        >>> found.backwards, found.held_by
+        >>> fall = run.tip_over()
+        >>> fall.backwards, fall.held_by
         (True, ('centre of mass 36 mm further forward',))
         """
         branching.refuse_without_result(self)
-        found = find_tip_over(self.scenario, try_changes=True)
-        if found is None:
-            raise ScenarioError("run", self, f"must have tipped over, but ended as {self.outcome}")
-        return found
+        tip_over = find_tip_over(self.scenario, try_changes=True)
+        if tip_over is None:
+            raise ScenarioError("run", self, f"must have tipped over, not {self.outcome}")
+        return tip_over
 
     @takes_keywords
     def cross_check(
@@ -379,9 +379,9 @@ class Run(Record):
         Parameters
         ----------
         announce : bool or callable
-            rapier may take a thousand times as long. True says beforehand on stderr how long, if
-            that may be more than 2 s; a callable is given the time [s] if its run ends when this
-            one did, and if it lasts to the end of the scenario.
+            rapier may take a thousand times as long. True prints the expected time to stderr, if it
+            may exceed 2 s; a callable is given two times [s]: if its run ends when this one did,
+            and if it lasts to the end of the scenario.
 
         Returns
         -------
@@ -613,4 +613,4 @@ Run.__doc__ = (Run.__doc__ or "").replace("    {metrics}", indent(table_of_metri
 
 
 def _with_history(scenario: Scenario) -> Run:
-    return Run(scenario, _core.simulate(scenario.to_json(), *recording(0.01, "full"), []))
+    return Run(scenario, _core.simulate(scenario.to_json(), *check_recording(0.01, "full"), []))

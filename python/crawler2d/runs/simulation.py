@@ -222,8 +222,8 @@ class Simulation(TakesKeywords):
         Diagnosis or None
             None if it has not stopped.
         """
-        why = self._core.diagnosis([])
-        return None if why is None else Diagnosis.from_core(why)
+        result = self._core.diagnosis([])
+        return None if result is None else Diagnosis.from_core(result)
 
     def state(self) -> State:
         """Return the current state.
