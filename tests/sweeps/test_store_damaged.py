@@ -141,7 +141,7 @@ def found_in(path: Path) -> dict[str, str]:
     with Store(path, TRIALS) as store:
         build = c2d.build_info()["build_id"]
         names = [name for (name,) in store._connection.execute("SELECT identity FROM run")]
-        return {key: told(row, build, TRIALS) for key, row in store.found(names).items()}
+        return {key: told(row, build, TRIALS) for key, row in store.read(names).items()}
 
 
 def joined(path: Path) -> dict[str, str]:

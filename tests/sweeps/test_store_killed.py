@@ -73,7 +73,7 @@ def filled(path: Path) -> tuple[int, str]:
 def holds(path: Path, rows: list[Row]) -> int:
     """How many rows a store holds, which are the first ones; and that it goes on from there."""
     with Store(path, TRIALS) as store:
-        found = store.found([row.identity for row in rows])
+        found = store.read([row.identity for row in rows])
         first = {row.identity: told(row) for row in rows[: len(found)]}
         assert {identity: told(row) for identity, row in found.items()} == first
         store.add(rows)

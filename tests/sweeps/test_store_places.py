@@ -217,12 +217,12 @@ def test_a_full_disk_gives_back_what_was_simulated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(path: Path) -> Any:
-        connection, lock = database.to_write(path)
+        connection, lock = database.open_to_write(path)
         (pages,) = connection.execute("PRAGMA page_count").fetchone()
         connection.execute(f"PRAGMA max_page_count = {pages + 20}")
         return connection, lock
 
-    monkeypatch.setattr("crawler2d.sweeps.store.to_write", full)
+    monkeypatch.setattr("crawler2d.sweeps.store.open_to_write", full)
     with pytest.raises(c2d.StoreError, match="the disk is full") as caught:
         quiet(BASE, {}, repeats=60, store=tmp_path / "a.sqlite")
     kept = read(tmp_path / "a.sqlite")

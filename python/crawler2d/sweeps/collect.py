@@ -1,4 +1,4 @@
-"""From checked scenarios to rows: read from a store, or simulated, here or by a worker."""
+"""Rows of checked scenarios: read from a store, or simulated, here or by workers."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from crawler2d.errors import (
 )
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
+from crawler2d.runs.batch import BatchInterrupted
 from crawler2d.runs.run import Run
 from crawler2d.sweeps.database import Place
 from crawler2d.sweeps.plan import Checked
@@ -29,7 +30,7 @@ __all__ = ["Batch", "Collector", "RowsInterrupted", "runs_of", "simulate_chunk"]
 def simulate_chunk(
     texts: Sequence[str], trials: Sequence[str], build: str
 ) -> list[dict[str, Any] | None]:
-    """Simulate a few valid scenarios on one thread; None is a run that was interrupted.
+    """Simulate a few valid scenarios on one thread; an interrupted run is None.
 
     Raises
     ------
@@ -39,22 +40,17 @@ def simulate_chunk(
     own = str(_core.build_info()["build_id"])
     if own != build:
         raise InternalError(f"a worker has another build of crawler2d ({own}, not {build})")
-    results: list[dict[str, Any] | None] = [None] * len(texts)
-
-    def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
-        for place, result in finished:
-            results[place] = result
-
-    passed = [_core.Passed(text) for text in texts]
-    _core.simulate_many(passed, 1, 0.01, "row", list(trials), take)
-    return results
+    results: dict[int, dict[str, Any]] = {}
+    checked = [_core.Passed(text) for text in texts]
+    _core.simulate_many(checked, 1, 0.01, "row", list(trials), results.update)
+    return [results.get(index) for index in range(len(texts))]
 
 
-# Runs that a task of an executor has: milliseconds to seconds of work, little to send.
+# Runs per task of an executor: milliseconds to seconds of work, little to send.
 _CHUNK = 25
-# Tasks that are out at once: more than any executor of this size of work has workers.
+# Tasks submitted at once: more than any executor of this size of work has workers.
 _OUT = 256
-# How often a task is given out before the loss of its worker ends the batch.
+# How often a task is submitted before the loss of its worker ends the batch.
 _ATTEMPTS = 5
 
 Take = Callable[[list[tuple[int, dict[str, Any]]]], None]
@@ -67,9 +63,13 @@ class RowsInterrupted(KeyboardInterrupt):
         super().__init__(rows)
         self.rows = rows
 
+    def as_batch(self, store: Place | None) -> BatchInterrupted:
+        """Convert it for the caller of a sweep or a study."""
+        return BatchInterrupted(runs_of(self.rows), "" if store is None else str(store))
+
 
 class Collector:
-    """Where rows come from, and where they are kept: one for a whole sweep or study.
+    """Simulates scenarios, and keeps their rows in a store: one for a whole sweep or study.
 
     Parameters
     ----------
@@ -105,15 +105,14 @@ class Collector:
             self._store.close()
 
     def batch(self, checked: Sequence[Checked]) -> Batch:
-        """Read what is in the store of these scenarios."""
+        """Make a batch of scenarios, with those rows that are in the store."""
         batch = Batch(checked)
         if self._store is not None:
-            known = self._store.found([each.identity for each in batch.missing])
-            batch.take(known.values())
+            batch.take(self._store.read([each.identity for each in batch.missing]).values())
         return batch
 
     def rows(self, batch: Batch, report: Callable[[int], None]) -> list[Row]:
-        """Simulate what is missing of a batch, each scenario once, and return a row for every one.
+        """Simulate what is missing in a batch, each scenario once, and return all rows.
 
         Raises
         ------
@@ -128,13 +127,13 @@ class Collector:
         _core.warn(missing)
 
         def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
-            made = []
-            for place, result in finished:
-                each = missing[place]
-                made.append(Row.of_result(each.identity, each.text, result))
-            new = batch.take(made)
+            rows = [
+                Row.of_result(missing[index].identity, missing[index].text, result)
+                for index, result in finished
+            ]
+            new = batch.take(rows)
             if self._store is not None:
-                self._store.add(row for row in made if _is_lasting(row))
+                self._store.add(row for row in rows if _is_reproducible(row))
             report(new)
 
         try:
@@ -143,7 +142,7 @@ class Collector:
                     missing, self._threads, 0.01, "row", self._trials, take
                 )
             else:
-                interrupted = _by_executor(self._executor, missing, self._trials, take)
+                interrupted = _simulate_by_executor(self._executor, missing, self._trials, take)
         except StoreError as error:
             error.runs = runs_of(batch.rows())
             raise
@@ -181,7 +180,7 @@ class Batch:
         return [cast("_core.Passed", self._checked[place]) for place in lacking]
 
     def take(self, rows: Iterable[Row]) -> int:
-        """Take finished rows; returns how many scenarios have got one."""
+        """Take finished rows; return how many scenarios they complete."""
         before = self.done
         for row in rows:
             places = self._places[row.identity]
@@ -191,7 +190,7 @@ class Batch:
         return self.done - before
 
     def rows(self) -> list[Row]:
-        """Return a row for every scenario; one that was not finished says so."""
+        """Return a row for every scenario; one that is not finished has an error."""
         unfinished = RunUnfinished("the batch was interrupted before this run had ended")
         return [
             Row.of_error(unfinished, each.identity, each.text)
@@ -202,12 +201,11 @@ class Batch:
 
 
 def runs_of(rows: Iterable[Row]) -> list[Run]:
-    """Make runs of rows, with what rows hold; those that break a rule are left out."""
+    """Convert rows to runs without history; those that break a rule are left out."""
     return [_run(row) for row in rows if row.scenario]
 
 
 def _run(row: Row) -> Run:
-    """Make a run of a row, with what rows hold."""
     scenario = Scenario.from_json(row.scenario)
     result = {
         "outcome": row.outcome,
@@ -218,17 +216,17 @@ def _run(row: Row) -> Run:
     return Run(scenario, {} if row.error is not None else result, row.error)
 
 
-def _is_lasting(row: Row) -> bool:
-    """Whether a run would end in the same way again: not so if memory was short."""
+def _is_reproducible(row: Row) -> bool:
+    """Whether a run would end in the same way again, unlike one that was out of memory."""
     return row.error is None or isinstance(row.error, SimulationDiverged)
 
 
-def _by_executor(
+def _simulate_by_executor(
     executor: Executor, missing: Sequence[_core.Passed], trials: Sequence[str], take: Take
 ) -> bool:
-    """Give the runs out in chunks, and take what comes back in any order.
+    """Submit the runs in chunks, and take the results in any order.
 
-    A chunk whose worker is lost is given out again. Returns whether Ctrl-C ended it.
+    A chunk whose worker is lost is submitted again. Returns whether Ctrl-C ended it.
     """
     build = str(_core.build_info()["build_id"])
     due = deque((begin, _ATTEMPTS) for begin in range(0, len(missing), _CHUNK))
@@ -260,8 +258,8 @@ def _by_executor(
         raise
     except Exception as error:
         raise InternalError(
-            f"the executor cannot go on ({type(error).__name__}: {error}); a store keeps what was"
-            " finished: the same call with another executor goes on from there"
+            f"the executor failed ({type(error).__name__}: {error}); a store keeps the finished"
+            " runs: the same call with another executor continues from there"
         ) from error
     finally:
         for future in out:

@@ -1,4 +1,4 @@
-"""The SQLite file of a store: one writer, every row with a checksum, made whole or not at all."""
+"""The SQLite file of a store: one writer, a checksum in every row, atomic changes."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ __all__ = [
     "Lock",
     "OtherBuild",
     "Place",
-    "damage_of",
-    "place_of",
+    "find_damage",
+    "open_to_read",
+    "open_to_write",
     "read_checked",
     "read_row",
+    "read_store_path",
+    "row_values",
     "store_errors",
-    "to_read",
-    "to_write",
-    "values_of",
     "with_checksum",
 ]
 
 COLUMNS = (
     "identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, checksum"
 )
-"""In the order of the values of `values_of`."""
+"""In the order of the values of `row_values`."""
 
 Kept = tuple[Row, str, tuple[str, ...]]
-"""A run, its build and its trials."""
+"""A row, the build that wrote it, and its trials."""
 
 _OUTCOMES = frozenset({*map(str, Outcome), *NO_RESULT})
 # What a run ends with every time, so that it is kept; nothing else is made of a name in a file.
@@ -52,7 +52,7 @@ _ERRORS: dict[str, type[Crawler2dError]] = {"SimulationDiverged": SimulationDive
 _UNREADABLE = (AttributeError, LookupError, RecursionError, TypeError, ValueError)
 
 
-def values_of(row: Row, build: str, trials: str) -> tuple[Any, ...]:
+def row_values(row: Row, build: str, trials: str) -> tuple[Any, ...]:
     """Return the values of a row, in the order of `COLUMNS`."""
     figures = {name: None if math.isnan(value) else value for name, value in row.metrics.items()}
     return with_checksum(
@@ -247,8 +247,8 @@ _TAKEN = (
 Place = str | os.PathLike[str]
 
 
-def place_of(path: Place) -> Path:
-    """Return a path, or refuse what cannot be that of a file."""
+def read_store_path(path: Place) -> Path:
+    """Check that something can be the path of a file."""
     try:
         text = os.fspath(path)
         named = text not in ("", ":memory:") and b"\0" not in os.fsencode(text)
@@ -259,7 +259,7 @@ def place_of(path: Place) -> Path:
     raise ScenarioError("store", path, "must be the path of a file")
 
 
-def to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
+def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
     """Open a store, or make it, for one writer; the lock is to be closed last.
 
     Raises
@@ -275,7 +275,7 @@ def to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
                 f"{path} must be a file without a second name, a hard link: SQLite loses what is"
                 " written under two names. Copy it"
             )
-        connection = stack.enter_context(contextlib.closing(_connected(real, "rw")))
+        connection = stack.enter_context(contextlib.closing(_connect(real, "rw")))
         # One transaction: whenever the process is killed, the file is empty or whole.
         connection.execute("BEGIN IMMEDIATE")
         if _is_blank(connection):
@@ -299,8 +299,8 @@ def to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
     return connection, lock
 
 
-def to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
-    """Open a store as it is now, also while it is written or where nothing can be written.
+def open_to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
+    """Open a store as it is now, even while it is written, or in a read-only folder.
 
     Raises
     ------
@@ -310,9 +310,9 @@ def to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
     with store_errors(path):
         real = Path(os.path.realpath(path))
         if not real.is_file():
-            raise StoreError(f"{path} is not there: a sweep with store= makes a store")
+            raise StoreError(f"{path} does not exist: a sweep with store= makes a store")
         try:
-            return _snapshot(_connected(real, "rw"), path, checked)
+            return _snapshot(_connect(real, "rw"), path, checked)
         except sqlite3.OperationalError as error:
             # SQLite reads a file with a log only where it can write beside it. Without a log the
             # file is whole, and where nobody can write it does not change while it is read.
@@ -324,16 +324,16 @@ def to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
                     f"{path} was not closed, and its last runs are in {log.name}, which cannot be"
                     " read in a folder that cannot be written: copy both into another"
                 ) from error
-        return _snapshot(_connected(real, "ro&immutable=1"), path, checked)
+        return _snapshot(_connect(real, "ro&immutable=1"), path, checked)
 
 
-def damage_of(connection: sqlite3.Connection) -> list[str]:
-    """List what SQLite finds damaged in the structure of the file: pages, index, empty values."""
+def find_damage(connection: sqlite3.Connection) -> list[str]:
+    """List damage that SQLite finds in the structure of the file: pages, index, empty values."""
     try:
-        found = [text for (text,) in connection.execute("PRAGMA integrity_check")]
+        texts = [text for (text,) in connection.execute("PRAGMA integrity_check")]
     except sqlite3.DatabaseError as error:
         return [str(error)]
-    return [] if found == ["ok"] else found
+    return [] if texts == ["ok"] else texts
 
 
 def read_row(path: Path, number: int, values: Sequence[Any]) -> Kept | None:
@@ -397,7 +397,7 @@ def _log(real: Path) -> Path:
     return Path(f"{real}-wal")
 
 
-def _connected(real: Path, mode: str) -> sqlite3.Connection:
+def _connect(real: Path, mode: str) -> sqlite3.Connection:
     uri = f"{real.as_uri()}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, timeout=_PATIENCE, isolation_level=None)
     # Damaged text is for the checksum to find.
@@ -449,7 +449,7 @@ def _version(connection: sqlite3.Connection, path: Path) -> int:
 
 
 def _check(connection: sqlite3.Connection, path: Path) -> None:
-    damage = damage_of(connection)
+    damage = find_damage(connection)
     if damage:
         raise StoreError(f"{path} is damaged ({damage[0]}): check_store lists what is")
 

@@ -1,4 +1,4 @@
-"""The scenario of every run of a sweep: cell by cell, sample by sample, repeat by repeat."""
+"""The scenarios of all runs of a sweep: by cell, sample of the unknowns, and repeat."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Checked = _core.Passed | ScenarioError
 """A scenario that can be run, or the rule that it breaks."""
 
 _UNKNOWN = "unknown "
-"""What makes the numbers of the unknowns others than those of the repeats."""
+"""Kind of the draws of the unknowns, which differ from those of the repeats."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Plan:
     begin : int
         The first repeat.
     checked : list of Checked
-        One a repeat.
+        One per repeat.
     drawn : mapping of str to ndarray, shape (repeats,)
         By path of `vary`; empty if the world breaks a rule.
     """
@@ -79,17 +79,17 @@ class Plan:
     checked: list[Checked]
     drawn: Mapping[str, NDArray[np.float64]]
 
-    def place(self, index: int) -> str:
-        """Name one of its runs, for messages."""
-        return _place([*self.world.labels, f"repeat={self.begin + index}"])
+    def path(self, index: int) -> str:
+        """Return the path of one of its runs, for errors."""
+        return _cell_path([*self.world.labels, f"repeat={self.begin + index}"])
 
 
 @dataclass(frozen=True, slots=True)
 class Planner:
-    """Makes the scenarios of runs: the same number for the same seed, path, sample and repeat.
+    """Makes the scenarios of runs: equal draws for equal seed, path, sample and repeat.
 
-    So all cells meet the same draws, and their runs can be compared in pairs; the repeats of one
-    sample are others than those of the next, so that the runs of two samples share nothing.
+    All cells have the same draws, so that their runs can be compared in pairs; the repeats of two
+    samples have different draws, so that their runs are independent.
 
     Attributes
     ----------
@@ -116,19 +116,19 @@ class Planner:
         ScenarioError
             If the cell lacks a path.
         """
-        place = _place(names)
-        whole = _opened(cell, place, like)
+        place = _cell_path(names)
+        whole = _validate(cell, place, like)
         if not self.unknowns.distributions:
             return [World(tuple(names), cell, whole, {}, {})]
-        with _named(place):
+        with _prefixed(place):
             numbers = self.unknowns.numbers(self.seed, self.samples, kind=_UNKNOWN)
             drawn = self.unknowns.draw(cell, numbers)
-            variants = _varied(cell, whole, drawn, self.samples)
+            variants = _apply_draws(cell, whole, drawn, self.samples)
         worlds = []
         for sample, each in enumerate(variants):
             labels = (*names, f"sample={sample}")
             if isinstance(each, ScenarioError) and each is not whole:
-                variants[sample] = _moved(each, _place(labels))
+                variants[sample] = _prefix(each, _cell_path(labels))
             own = {path: float(values[sample]) for path, values in drawn.values.items()}
             shown = {path: float(values[sample]) for path, values in drawn.shown.items()}
             worlds.append(World(labels, cell, variants[sample], own, shown, sample))
@@ -147,15 +147,15 @@ class Planner:
             return Plan(world, begin, [whole] * count, {})
         kind = "" if world.sample is None else f"sample {world.sample} "
         numbers = self.variation.numbers(self.seed, end, kind=kind, first=world.sample or 0)
-        with _named(_place(world.labels)):
+        with _prefixed(_cell_path(world.labels)):
             some = {path: each[begin:] for path, each in numbers.items()}
             drawn = self.variation.draw(world.cell, some, world.own)
-            runs = _varied(world.cell, whole, drawn, count)
-            kept = _dropped(world, whole, drawn, runs, self.variation.optional)
+            runs = _apply_draws(world.cell, whole, drawn, count)
+            kept = _drop_invalid(world, whole, drawn, runs, self.variation.optional)
         plan = Plan(world, begin, runs, kept)
         for index, run in enumerate(runs):
             if isinstance(run, ScenarioError):
-                runs[index] = _moved(run, plan.place(index))
+                runs[index] = _prefix(run, plan.path(index))
         return plan
 
 
@@ -179,7 +179,7 @@ def plan_runs(
     plans: list[Plan] = []
     for points in itertools.product(*(axis.points() for axis in axes)):
         names = [point for point, _ in points]
-        with _named(_place(names)):
+        with _prefixed(_cell_path(names)):
             cell = base.replace({path: v for _, values in points for path, v in values.items()})
         worlds = planner.worlds(cell, names, like)
         like = next((w.checked for w in worlds if isinstance(w.checked, _core.Passed)), like)
@@ -187,33 +187,33 @@ def plan_runs(
     return plans
 
 
-def _varied(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> list[Checked]:
+def _apply_draws(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> list[Checked]:
     """Set what was drawn in a checked scenario; one that breaks a rule is an error."""
     if not drawn.values or isinstance(whole, ScenarioError):
         return [whole] * count
     if any(excluded(cell, path) for path in drawn.values):
-        # The fields that exclude these are taken off first, whatever value it is that comes.
+        # The fields that exclude these are cleared first, whatever their values.
         taken = cell.replace({path: float(v[0]) for path, v in drawn.values.items()})
-        whole = _opened(taken, "", None)
+        whole = _validate(taken, "", None)
         if isinstance(whole, ScenarioError):
             return [whole] * count
     return whole.varied(drawn.fields, drawn.rows)
 
 
-def _dropped(
+def _drop_invalid(
     world: World,
     whole: _core.Passed,
     drawn: Draws,
     runs: list[Checked],
     optional: Collection[str],
 ) -> dict[str, NDArray[np.float64]]:
-    """Drop the draws that break a rule and may be dropped: those runs keep their own values.
+    """Drop draws of optional paths that break a rule: those runs keep their own values.
 
-    Returns what was drawn, by path, with these own values; `runs` is changed.
+    Returns the values by path; `runs` is changed.
     """
     shown = {path: values.copy() for path, values in drawn.shown.items()}
-    may = [path in optional for path in drawn.values]
-    if not any(may):
+    is_optional = [path in optional for path in drawn.values]
+    if not any(is_optional):
         return shown
     fields, rows = drawn.fields, drawn.rows
     for repeat, run in enumerate(runs):
@@ -225,7 +225,7 @@ def _dropped(
             trial = row.copy()
             trial[column] = rows[repeat, column]
             (checked,) = whole.varied(fields, trial[None, :])
-            if isinstance(checked, _core.Passed) or not may[column]:
+            if isinstance(checked, _core.Passed) or not is_optional[column]:
                 row = trial
             elif path in shown:
                 shown[path][repeat] = row[column]
@@ -233,27 +233,27 @@ def _dropped(
     return shown
 
 
-def _place(names: Sequence[str]) -> str:
+def _cell_path(names: Sequence[str]) -> str:
     return f"cell[{', '.join(names)}]" if names else "cell"
 
 
-def _moved(error: ScenarioError, place: str) -> ScenarioError:
-    """Prefix the path of an error with the place it is about."""
+def _prefix(error: ScenarioError, place: str) -> ScenarioError:
+    """Prefix the path of an error."""
     return ScenarioError(f"{place}.{error.path}", error.value, error.rule)
 
 
 @contextlib.contextmanager
-def _named(place: str) -> Iterator[None]:
-    """Prefix the path of an error with the place it is about."""
+def _prefixed(place: str) -> Iterator[None]:
+    """Prefix the path of an error that is raised inside."""
     try:
         yield
     except ScenarioError as error:
-        raise _moved(error, place) from None
+        raise _prefix(error, place) from None
 
 
-def _opened(scenario: Scenario, place: str, like: _core.Passed | None) -> Checked:
+def _validate(scenario: Scenario, place: str, like: _core.Passed | None) -> Checked:
     """Validate a scenario; warnings are left to the batch, which issues each once."""
     try:
         return _core.Passed(scenario.to_json(), like)
     except ScenarioError as error:
-        return _moved(error, place) if place else error
+        return _prefix(error, place) if place else error

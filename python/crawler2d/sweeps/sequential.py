@@ -1,4 +1,4 @@
-"""Intervals of a rate that hold however often one looks, and when to stop looking."""
+"""Confidence intervals of a rate that hold however often one looks, and a rule for stopping."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from math import exp, lgamma, log, log1p
 
-from crawler2d.common.arrays import read_scalar, real_number
+from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
-from crawler2d.sweeps.statistics import Interval, checked_counts, checked_level
+from crawler2d.sweeps.statistics import Interval, read_counts, read_level
 
 __all__ = ["Until", "sequential"]
 
@@ -46,7 +46,7 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
     Returns
     -------
     Interval
-        Rate, lower and upper bound; without runs the rate is nan and the interval 0 to 1. It
+        Rate, lower and upper bound; without runs the rate is NaN and the interval 0 to 1. It
         depends on these numbers alone, not on when one has looked.
 
     Raises
@@ -86,8 +86,8 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
     >>> round(low, 3), high
     (0.74, 1.0)
     """
-    successes, count = checked_counts(successes, count)
-    confidence = checked_level(confidence)
+    successes, count = read_counts(successes, count)
+    confidence = read_level(confidence)
     if count == 0:
         return Interval(math.nan, 0.0, 1.0)
     failures = count - successes
@@ -99,9 +99,9 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Until(TakesKeywords):
-    """When a cell was simulated often enough: its rate is known well, or on which side it lies.
+    """When to stop simulating a cell: its rate, or the side of a threshold, is known well enough.
 
-    One may ask after every run, or after any number of them: the interval is that of `sequential`.
+    It may be asked after every run, or after any number of them: the interval is `sequential`'s.
 
     Parameters
     ----------
@@ -111,9 +111,9 @@ class Until(TakesKeywords):
     threshold : float, optional
         Enough, too, as soon as the interval lies wholly above or below this rate, between 0 and 1.
     least : int
-        Runs that are made in any case, 0 or more.
+        Fewest runs, 0 or more.
     most : int
-        Runs after which one gives up, at least `least` and 1.
+        Most runs, at least `least` and 1.
     confidence : float
         Confidence level of the interval, between 0 and 1.
 
@@ -139,14 +139,19 @@ class Until(TakesKeywords):
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        if not 0.0 < self._keep_real("width") <= 1.0:
-            raise ScenarioError("until.width", self.width, "must be above 0 and at most 1")
-        for name in ("confidence",) if self.threshold is None else ("threshold", "confidence"):
-            number = self._keep_real(name)
-            if not 0.0 < number < 1.0:
-                raise ScenarioError(f"until.{name}", number, "must be between 0 and 1")
-        self._keep_whole("least", 0)
-        self._keep_whole("most", max(self.least, 1))
+        for name in ("width", "threshold", "confidence"):
+            value = getattr(self, name)
+            if value is None and name == "threshold":
+                continue
+            number = real_number(value, f"until.{name}")
+            object.__setattr__(self, name, number)
+            if not 0.0 < number < 1.0 and not (name == "width" and number == 1.0):
+                rule = "above 0 and at most 1" if name == "width" else "between 0 and 1"
+                raise ScenarioError(f"until.{name}", number, f"must be {rule}")
+        for name in ("least", "most"):
+            lowest = 0 if name == "least" else max(self.least, 1)
+            count = whole_number(getattr(self, name), f"until.{name}", lowest, _MOST)
+            object.__setattr__(self, name, count)
 
     @takes_keywords
     def is_done(self, successes: int, count: int) -> bool:
@@ -165,11 +170,11 @@ class Until(TakesKeywords):
         interval = sequential(successes, count, self.confidence)
         if count < self.least or count >= self.most:
             return count >= self.most
-        return interval.high - interval.low <= self.width or self._side(interval) != 0
+        return interval.high - interval.low <= self.width or interval.side(self.threshold) != 0
 
     @takes_keywords
     def side(self, successes: int, count: int) -> int:
-        """On which side of the threshold the rate certainly lies.
+        """Tell on which side of the threshold the rate certainly lies.
 
         Parameters
         ----------
@@ -186,25 +191,7 @@ class Until(TakesKeywords):
         ScenarioError
             If not ``0 <= successes <= count``.
         """
-        return self._side(sequential(successes, count, self.confidence))
-
-    def _side(self, interval: Interval) -> int:
-        if self.threshold is None:
-            return 0
-        return (interval.low > self.threshold) - (interval.high < self.threshold)
-
-    def _keep_real(self, name: str) -> float:
-        number = real_number(getattr(self, name), f"until.{name}")
-        object.__setattr__(self, name, number)
-        return number
-
-    def _keep_whole(self, name: str, least: int) -> None:
-        given = getattr(self, name)
-        number = read_scalar(given, whole=True)
-        if type(number) is not int or not least <= number <= _MOST:
-            rule = f"must be a whole number from {least} to {_MOST}"
-            raise ScenarioError(f"until.{name}", given, rule)
-        object.__setattr__(self, name, number)
+        return sequential(successes, count, self.confidence).side(self.threshold)
 
 
 def _low(k: int, m: int, limit: float) -> float:

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Interval",
     "bootstrap_mean",
-    "checked_counts",
-    "checked_level",
     "clustered",
     "mcnemar",
     "newcombe",
     "newcombe_paired",
+    "read_counts",
+    "read_level",
     "wilson",
 ]
 
@@ -30,7 +30,7 @@ __all__ = [
 _RESAMPLES = 2000
 _LOG_2 = math.log(2.0)
 _MOST = 10**9
-"""Runs: more than anyone makes."""
+"""Largest number of runs: more than anyone makes."""
 
 
 class Interval(NamedTuple):
@@ -39,6 +39,12 @@ class Interval(NamedTuple):
     rate: float
     low: float
     high: float
+
+    def side(self, threshold: float | None) -> int:
+        """Return -1 or 1 if it lies wholly below or above a threshold, else 0."""
+        if threshold is None:
+            return 0
+        return (self.low > threshold) - (self.high < threshold)
 
 
 @takes_keywords
@@ -57,7 +63,7 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     Returns
     -------
     Interval
-        Rate, lower and upper bound; without runs the rate is nan and the interval 0 to 1.
+        Rate, lower and upper bound; without runs the rate is NaN and the interval 0 to 1.
 
     Raises
     ------
@@ -76,7 +82,7 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     >>> round(low, 3), high
     (0.839, 1.0)
     """
-    successes, count = checked_counts(successes, count)
+    successes, count = read_counts(successes, count)
     z = _normal_quantile(confidence)
     if count == 0:
         return Interval(math.nan, 0.0, 1.0)
@@ -84,12 +90,11 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
 
 
 def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95) -> Interval:
-    r"""Estimate a rate from runs that come in clusters: independent of each other, alike within.
+    r"""Estimate a rate from clusters of correlated runs, such as those of one robot on one floor.
 
-    Such as the runs of one robot on one floor, of which several were drawn. The interval is
-    Wilson's for the number of independent runs that tell as much: the number of runs, divided by
-    Kish's design effect. Clusters of one run each have exactly Wilson's interval; where all runs
-    agree, nothing is known of how alike those of a cluster are, and each cluster counts once.
+    The interval is Wilson's for the effective number of independent runs: the number of runs
+    divided by Kish's design effect. Clusters of one run each have exactly Wilson's interval; where
+    all runs agree, the correlation is unknown, and each cluster counts once.
 
     Parameters
     ----------
@@ -101,7 +106,7 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
     Returns
     -------
     Interval
-        Rate of all runs, lower and upper bound; without runs the rate is nan and the interval 0 to
+        Rate of all runs, lower and upper bound; without runs the rate is NaN and the interval 0 to
         1.
 
     Raises
@@ -156,7 +161,7 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
     total = float(runs.sum())
     if total == 0.0:
         return Interval(math.nan, 0.0, 1.0)
-    effect = 1.0 + (float((runs**2).sum()) / total - 1.0) * _alike(hits, runs)
+    effect = 1.0 + (float((runs**2).sum()) / total - 1.0) * _cluster_correlation(hits, runs)
     return _score(float(hits.sum()) / total, total / effect, z)
 
 
@@ -257,8 +262,8 @@ def newcombe_paired(
     spread = math.sqrt(p.rate * (1.0 - p.rate) * q.rate * (1.0 - q.rate))
     phi = excess / (n**2 * spread) if spread > 0.0 else 0.0
     difference = (first - second) / n
-    below = _side(p.rate - p.low, q.high - q.rate, phi)
-    above = _side(p.high - p.rate, q.rate - q.low, phi)
+    below = _root(p.rate - p.low, q.high - q.rate, phi)
+    above = _root(p.high - p.rate, q.rate - q.low, phi)
     return Interval(difference, difference - below, difference + above)
 
 
@@ -313,7 +318,7 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
     -------
     Interval
         Mean, lower and upper bound. With one value the bounds are infinite, because its spread is
-        unknown; without values the mean is nan, too.
+        unknown; without values the mean is NaN, too.
 
     Raises
     ------
@@ -326,7 +331,7 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
     >>> mean, low > 1.0, high < 4.0
     (2.5, True, True)
     """
-    tail = 0.5 * (1.0 - checked_level(confidence))
+    tail = 0.5 * (1.0 - read_level(confidence))
     sample = np.asarray(values, dtype=np.float64)
     n = sample.size
     if n < 2:
@@ -339,7 +344,7 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
 
 
 def _score(rate: float, count: float, z: float) -> Interval:
-    """Return Wilson's interval of a rate that was found in so many runs."""
+    """Compute Wilson's interval of a rate in `count` runs."""
     center = rate + z**2 / (2.0 * count)
     spread = z * math.sqrt(rate * (1.0 - rate) / count + z**2 / (4.0 * count**2))
     scale = 1.0 + z**2 / count
@@ -349,21 +354,21 @@ def _score(rate: float, count: float, z: float) -> Interval:
     return Interval(rate, low, high)
 
 
-def _alike(hits: NDArray[np.float64], runs: NDArray[np.float64]) -> float:
+def _cluster_correlation(hits: NDArray[np.float64], runs: NDArray[np.float64]) -> float:
     """[-] Estimate the correlation of the runs within a cluster; see `clustered`."""
     k, total = runs.size, float(runs.sum())
-    telling = min(np.count_nonzero(hits > 0.0), np.count_nonzero(hits < runs))
-    if k in (1, total) or telling == 0:
+    rarer = min(np.count_nonzero(hits > 0.0), np.count_nonzero(hits < runs))
+    if k in (1, total) or rarer == 0:
         return 1.0
     rates, rate = hits / runs, float(hits.sum()) / total
     between = float((runs * (rates - rate) ** 2).sum()) / (k - 1)
     within = float((runs * rates * (1.0 - rates)).sum()) / (total - k)
     size = (total - float((runs**2).sum()) / total) / (k - 1)
-    found = max(between - within, 0.0) / (between + (size - 1.0) * within)
-    return float((telling * found + 1.0) / (telling + 1.0))
+    correlation = max(between - within, 0.0) / (between + (size - 1.0) * within)
+    return float((rarer * correlation + 1.0) / (rarer + 1.0))
 
 
-def _side(a: float, b: float, phi: float) -> float:
+def _root(a: float, b: float, phi: float) -> float:
     # sqrt(a^2 - 2 phi a b + b^2), written so that rounding cannot make it the root of a number < 0.
     return math.sqrt((a - b) ** 2 + 2.0 * (1.0 - phi) * a * b)
 
@@ -371,17 +376,17 @@ def _side(a: float, b: float, phi: float) -> float:
 def _normal_quantile(confidence: float) -> float:
     from statistics import NormalDist  # noqa: PLC0415 - slow to import
 
-    return NormalDist().inv_cdf(0.5 + checked_level(confidence) / 2.0)
+    return NormalDist().inv_cdf(0.5 + read_level(confidence) / 2.0)
 
 
-def checked_counts(successes: int, count: int) -> tuple[int, int]:
-    """Refuse what are no numbers of successful runs and of all runs."""
+def read_counts(successes: int, count: int) -> tuple[int, int]:
+    """Check numbers of successful runs and of all runs."""
     count = whole_number(count, "count", 0, _MOST)
     return whole_number(successes, "successes", 0, count), count
 
 
-def checked_level(confidence: float) -> float:
-    """Refuse what is no confidence level."""
+def read_level(confidence: float) -> float:
+    """Check a confidence level."""
     level = real_number(confidence, "confidence")
     if not 0.0 < level < 1.0:
         raise ScenarioError("confidence", confidence, "must be between 0 and 1")

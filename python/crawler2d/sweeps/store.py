@@ -1,4 +1,4 @@
-"""A store: one SQLite file that keeps the runs of any number of sweeps; what is damaged in it."""
+"""Stores: SQLite files that keep the runs of any number of sweeps, and checks for damage."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from crawler2d.sweeps.database import (
     Kept,
     OtherBuild,
     Place,
-    damage_of,
-    place_of,
+    find_damage,
+    open_to_read,
+    open_to_write,
     read_checked,
     read_row,
+    read_store_path,
+    row_values,
     store_errors,
-    to_read,
-    to_write,
-    values_of,
 )
 
 __all__ = ["Damage", "Store", "check_store", "join_stores", "stored_rows"]
@@ -59,10 +59,10 @@ class Store:
     """
 
     def __init__(self, path: Place, trials: Collection[str] = ()) -> None:
-        self.path = place_of(path)
+        self.path = read_store_path(path)
         self._build = str(build_info()["build_id"])
         self._trials = json.dumps(sorted(trials))
-        self._connection, self._lock = to_write(self.path)
+        self._connection, self._lock = open_to_write(self.path)
 
     def __enter__(self) -> Self:
         """Return the store."""
@@ -79,7 +79,7 @@ class Store:
         self._lock.close()
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Add finished runs, all or none; those that are there already are left.
+        """Add finished runs, all or none, unless they are there already.
 
         Raises
         ------
@@ -87,20 +87,20 @@ class Store:
             If the disk is full or the file cannot be written; earlier rows are kept. If the file
             was removed: then none are.
         """
-        with self._changing() as connection:
+        with self._transaction() as connection:
             connection.executemany(
-                INSERT, [values_of(row, self._build, self._trials) for row in rows]
+                INSERT, [row_values(row, self._build, self._trials) for row in rows]
             )
 
-    def found(self, identities: Sequence[str]) -> dict[str, Row]:
-        """Read the rows of these scenarios that are there, by identity.
+    def read(self, identities: Sequence[str]) -> dict[str, Row]:
+        """Read the rows that are there of some scenarios, by identity.
 
         Raises
         ------
         StoreError
             If one of them is damaged.
         """
-        found: dict[str, Row] = {}
+        rows: dict[str, Row] = {}
         for begin in range(0, len(identities), _AT_ONCE):
             some = identities[begin : begin + _AT_ONCE]
             marks = ", ".join("?" * len(some))
@@ -114,11 +114,11 @@ class Store:
                 ):
                     kept = read_row(self.path, number, values)
                     if kept is not None:  # of this build, which can read it
-                        found[kept[0].identity] = kept[0]
-        return found
+                        rows[kept[0].identity] = kept[0]
+        return rows
 
     def copy(self, place: Path) -> int:
-        """Add the runs of another store, all or none; returns how many were new.
+        """Add the runs of another store, all or none; return how many were new.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class Store:
             If the other one is damaged, or the two hold different results of a run.
         """
         added = 0
-        with self._changing() as connection:
+        with self._transaction() as connection:
             for _, values in _stored(place):
                 new = connection.execute(INSERT, values).rowcount
                 added += new
@@ -145,7 +145,7 @@ class Store:
             )
 
     @contextlib.contextmanager
-    def _changing(self) -> Iterator[sqlite3.Connection]:
+    def _transaction(self) -> Iterator[sqlite3.Connection]:
         """Make changes, all or none."""
         connection = self._connection
         try:
@@ -173,7 +173,7 @@ def stored_rows(path: Place) -> Iterator[Kept]:
     StoreError
         If there is no such file, it is no store, or damaged.
     """
-    place = place_of(path)
+    place = read_store_path(path)
     for kept, (identity, build, *_) in _stored(place):
         if kept is None:
             raise StoreError(
@@ -185,7 +185,7 @@ def stored_rows(path: Place) -> Iterator[Kept]:
 
 @takes_keywords
 def join_stores(into: Place, *others: Place) -> int:
-    """Copy the runs of other stores into one; what it holds already is left.
+    """Copy the runs of other stores into one, unless it has them already.
 
     Parameters
     ----------
@@ -220,16 +220,16 @@ def join_stores(into: Place, *others: Place) -> int:
     ...     c2d.join_stores(first, second)
     1
     """
-    places = [place_of(other) for other in others]
+    places = [read_store_path(other) for other in others]
     for place in places:
-        to_read(place).close()
+        open_to_read(place).close()
     with Store(into) as store:
         return sum(map(store.copy, places))
 
 
 def _stored(place: Path) -> Iterator[tuple[Kept | None, list[Any]]]:
     """Read every row of a store, also as its values."""
-    with store_errors(place), contextlib.closing(to_read(place)) as connection:
+    with store_errors(place), contextlib.closing(open_to_read(place)) as connection:
         query = f"SELECT rowid, {COLUMNS} FROM run ORDER BY rowid"
         for number, *values in connection.execute(query):
             yield read_row(place, number, values), values
@@ -237,12 +237,12 @@ def _stored(place: Path) -> Iterator[tuple[Kept | None, list[Any]]]:
 
 @dataclass(frozen=True, slots=True)
 class Damage:
-    """Something in a store that is not as it was written.
+    """Damage in a store.
 
     Attributes
     ----------
     row : int, optional
-        Number of the row, in the order in which they were kept; None of the file as a whole.
+        Number of the row, in the order of writing; None for the file as a whole.
     what : str
         What is wrong.
     """
@@ -254,8 +254,8 @@ class Damage:
 def check_store(path: Place) -> tuple[Damage, ...]:
     """Check a store: its structure, the checksum of every row, and whether it holds a run.
 
-    Sweeps, `table` and `join_stores` refuse a damaged store, or a damaged row of it; this tells
-    all that is wrong. It changes nothing, and may be called while a sweep writes.
+    Sweeps, `table` and `join_stores` refuse a damaged store, or a damaged row of it; this function
+    lists all damage. It changes nothing, and may be called while a sweep writes.
 
     Parameters
     ----------
@@ -286,8 +286,8 @@ def check_store(path: Place) -> tuple[Damage, ...]:
     ...     c2d.check_store(store)
     ()
     """
-    with contextlib.closing(to_read(place_of(path), checked=False)) as connection:
-        found = [Damage(None, what) for what in damage_of(connection)]
+    with contextlib.closing(open_to_read(read_store_path(path), checked=False)) as connection:
+        found = [Damage(None, what) for what in find_damage(connection)]
         number = 0
         try:
             for number, *values in connection.execute(f"SELECT rowid, {COLUMNS} FROM run"):
@@ -298,5 +298,5 @@ def check_store(path: Place) -> tuple[Damage, ...]:
                 except ValueError as fault:
                     found.append(Damage(number, str(fault)))
         except sqlite3.DatabaseError as error:
-            found.append(Damage(None, f"nothing can be read behind row {number}: {error}"))
+            found.append(Damage(None, f"nothing can be read after row {number}: {error}"))
     return tuple(found)

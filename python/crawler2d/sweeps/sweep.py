@@ -1,4 +1,4 @@
-"""Simulate variants of one scenario into one table, and compare them in pairs."""
+"""Sweeps over the fields of a scenario, and paired comparisons of models."""
 
 from __future__ import annotations
 
@@ -113,12 +113,12 @@ def sweep(
 
         - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
           memory, or a fault of the program), and `error` says why;
-        - of a stop, else "", False, nan or -1: `symptom`, `passing`, `mechanism`, `jammed` and
+        - of a stop, else "", False, NaN or -1: `symptom`, `passing`, `mechanism`, `jammed` and
           `belly_side` as in `Diagnosis`; where it is: `stop_x` [m], `stop_angle` [rad]; and where
           ground is inside a track: `stop_edge`, `stop_side`, `stop_carrier`, `stop_bodies`, such as
           "1-2";
         - for each trial of `trials`, and for the closed track of jammed robots: whether it was
-          made, whether it freed the robot and how it ended, as in `Tried`: `tried_torque_x2`,
+          made, whether it freed the robot and how it ended, as in `Trial`: `tried_torque_x2`,
           `freed_by_torque_x2` and `then_torque_x2`, and so on;
         - every metric of `Run.metrics`; with `wall_time`, the computing time [s] on one thread;
         - `scenario`, the JSON text of each run, and its `identity`;
@@ -319,19 +319,15 @@ def compare(
         repeats=repeats,
         seed=seed,
         vary=vary,
-        unknown=None,
-        samples=1,
-        trials=None,
         store=store,
         executor=executor,
-        wall_time=False,
         threads=threads,
         progress=progress,
         on_error="raise",
     )
     base = 0 if reference is None else labels.index(reference)
     rates = rates_of(table).rename(low="rate_low", high="rate_high").drop_vars("count")
-    rows = [_against(table, index, base) for index in range(len(labels))]
+    rows = [_compare_pair(table, index, base) for index in range(len(labels))]
     columns = {name: ("model", [row[name] for row in rows], _attributes(name)) for name in rows[0]}
     return table.merge(rates).assign(columns).assign_attrs(reference=labels[base])
 
@@ -353,14 +349,14 @@ def _fields(model: object, label: Label) -> Mapping[str, Any]:
     raise ScenarioError(f"models[{label!r}]", model, rule)
 
 
-def _against(table: xarray.Dataset, model: int, base: int) -> dict[str, float]:
+def _compare_pair(table: xarray.Dataset, model: int, base: int) -> dict[str, float]:
     """Compare one model with the reference."""
     outcomes = table["outcome"].to_numpy()
-    made = np.isin(outcomes[[model, base]], [str(each) for each in Outcome]).all(axis=0)
+    valid = np.isin(outcomes[[model, base]], [str(each) for each in Outcome]).all(axis=0)
     ours, theirs = outcomes[model] == "cleared", outcomes[base] == "cleared"
-    both, only_ours = _count(made & ours & theirs), _count(made & ours & ~theirs)
-    only_theirs, neither = _count(made & ~ours & theirs), _count(made & ~ours & ~theirs)
-    found: dict[str, float] = {
+    both, only_ours = _count(valid & ours & theirs), _count(valid & ours & ~theirs)
+    only_theirs, neither = _count(valid & ~ours & theirs), _count(valid & ~ours & ~theirs)
+    columns: dict[str, float] = {
         "both": both,
         "only_model": only_ours,
         "only_reference": only_theirs,
@@ -375,8 +371,8 @@ def _against(table: xarray.Dataset, model: int, base: int) -> dict[str, float]:
         )
     for name, interval in intervals.items():
         bounds = (0.0, 0.0, 0.0) if model == base else interval
-        found |= dict(zip((name, f"{name}_low", f"{name}_high"), bounds, strict=True))
-    return found
+        columns |= dict(zip((name, f"{name}_low", f"{name}_high"), bounds, strict=True))
+    return columns
 
 
 def _count(chosen: NDArray[np.bool_]) -> int:

@@ -1,4 +1,4 @@
-"""From runs to an xarray data set: of a sweep by cell, or of a batch or store one by one."""
+"""Tables of runs as xarray data sets: of a sweep by cell, or of a batch or store by run."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
-from crawler2d.runs.batch import BatchInterrupted
 from crawler2d.runs.branch import Trials, trial_names
 from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
 from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names, stop_columns
-from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
+from crawler2d.sweeps.collect import Collector, RowsInterrupted
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
@@ -41,14 +40,14 @@ Column = tuple["NDArray[Any]", dict[str, str]]
 def row_columns(
     rows: Sequence[Row | None], *, trials: Sequence[str], with_times: bool
 ) -> dict[str, Column]:
-    """Write rows as columns by name; a row that is None, a run that was not made, is empty.
+    """Write rows as columns by name; a run that was not made, None, leaves them empty.
 
     Every value depends on its own run only, so that tables can be joined.
     """
     columns: dict[str, Column] = {}
     columns["outcome"] = (np.array(["" if row is None else row.outcome for row in rows], str), {})
-    why = [None if row is None else row.read_diagnosis() for row in rows]
-    for name, (kind, unit, values) in stop_columns(why, trials).items():
+    diagnoses = [None if row is None else row.read_diagnosis() for row in rows]
+    for name, (kind, unit, values) in stop_columns(diagnoses, trials).items():
         columns[name] = (np.array(values, kind), {"units": unit} if unit else {})
     for name in next((row.metrics for row in rows if row is not None and row.metrics), {}):
         figures = [math.nan if row is None else row.metrics.get(name, math.nan) for row in rows]
@@ -100,7 +99,7 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
     Raises
     ------
     ScenarioError
-        If something is no Run.
+        If something is not a Run.
     StoreError
         If the path is that of no store, or it is damaged.
     ImportError
@@ -118,13 +117,13 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
     0.5
     """
     extra("xarray", "analysis")
-    made_by: dict[str, list[str]] = {}
+    origin: dict[str, list[str]] = {}
     if isinstance(runs, (str, PathLike)):
         stored = list(stored_rows(runs))
         rows = [row for row, _, _ in stored]
         tried = [trial for _, _, trials in stored for trial in trials]
-        made_by["build"] = [build for _, build, _ in stored]
-        made_by["trials"] = [", ".join(trials) for _, _, trials in stored]
+        origin["build"] = [build for _, build, _ in stored]
+        origin["trials"] = [", ".join(trials) for _, _, trials in stored]
     else:
         rows, tried = [], []
         for index, run in enumerate(runs):
@@ -134,16 +133,16 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
             if run.diagnosis is not None:
                 tried += [trial.name for trial in run.diagnosis.trials]
     columns = row_columns(rows, trials=tuple(dict.fromkeys(tried)), with_times=True)
-    columns |= {name: (np.array(texts, object), {}) for name, texts in made_by.items()}
-    found = dataset_of(columns, {"run": len(rows)}, {"run": np.arange(len(rows))})
-    return found.assign_attrs(build_attributes())
+    columns |= {name: (np.array(texts, object), {}) for name, texts in origin.items()}
+    dataset = dataset_of(columns, {"run": len(rows)}, {"run": np.arange(len(rows))})
+    return dataset.assign_attrs(build_attributes())
 
 
 OnError = Literal["raise", "record"]
 
 
 class Tabulation:
-    """A sweep that is planned, of which any runs can be made in any order; see `sweep`.
+    """A planned sweep, whose runs can be simulated in any order; see `sweep`.
 
     Parameters
     ----------
@@ -167,13 +166,13 @@ class Tabulation:
         repeats: int,
         seed: int,
         vary: Mapping[str, Any] | None,
-        unknown: Mapping[str, Any] | None,
-        samples: int,
-        trials: Trials,
         store: str | PathLike[str] | None,
         executor: Executor | None,
-        wall_time: bool,
         threads: int | None,
+        unknown: Mapping[str, Any] | None = None,
+        samples: int = 1,
+        trials: Trials = None,
+        wall_time: bool = False,
     ) -> None:
         extra("xarray", "analysis")  # fail before the runs if it is missing
         if not isinstance(scenario, Scenario):
@@ -197,15 +196,15 @@ class Tabulation:
         self.checked = [each for plan in self._plans for each in plan.checked]
         self._rows: list[Row | None] = [None] * len(self.checked)
 
-    def simulate(self, places: Sequence[int], progress: bool | Progress | None) -> None:
-        """Make the runs at some places of `checked`.
+    def simulate(self, indices: Sequence[int], progress: bool | Progress | None) -> None:
+        """Simulate some of the runs, by index in `checked`.
 
         Raises
         ------
         BatchInterrupted
             On Ctrl-C.
         """
-        some = [self.checked[place] for place in places]
+        some = [self.checked[index] for index in indices]
         try:
             with Collector(
                 self._tried, store=self._store, executor=self._executor, threads=self._threads
@@ -214,20 +213,19 @@ class Tabulation:
                 with reporter(progress, len(some), batch.done) as report:
                     rows = collector.rows(batch, report)
         except RowsInterrupted as interrupt:
-            kept = "" if self._store is None else str(self._store)
-            raise BatchInterrupted(runs_of(interrupt.rows), kept) from None
-        for place, row in zip(places, rows, strict=True):
-            self._rows[place] = row
+            raise interrupt.as_batch(self._store) from None
+        for index, row in zip(indices, rows, strict=True):
+            self._rows[index] = row
             if row.error is not None and row.identity:
-                plan = self._plans[place // self._repeats]
-                row.error.add_note(f"in {plan.place(place % self._repeats)}")
+                plan, repeat = self._plans[index // self._repeats], index % self._repeats
+                row.error.add_note(f"in {plan.path(repeat)}")
 
     def raise_first(self) -> None:
         """Raise the first error of a run."""
         raise_first(None if row is None else row.error for row in self._rows)
 
     def table(self) -> xarray.Dataset:
-        """Arrange the runs; those that were not made have the outcome ""."""
+        """Arrange the runs in a table; those not made have the outcome ""."""
         columns = row_columns(self._rows, trials=self._tried, with_times=self._with_times)
         columns |= _drawn(self._plans, self._variation, self._unknowns, self._repeats)
         kind = np.int64 if self._seed < 2**63 else np.uint64
@@ -254,12 +252,12 @@ def tabulate(
     *,
     progress: bool | Progress | None,
     on_error: OnError,
-    **how: Any,
+    **options: Any,
 ) -> xarray.Dataset:
     """Run a sweep over the given axes; see `sweep` and `Tabulation`."""
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
-    planned = Tabulation(scenario, axes, **how)
+    planned = Tabulation(scenario, axes, **options)
     if on_error == "raise":
         raise_first(planned.checked)
     planned.simulate(range(len(planned.checked)), progress)
