@@ -161,9 +161,9 @@ def test_a_cell_is_simulated_until_it_is_known_whether_most_clear_or_fail_otherw
     world: Any = None
     until = c2d.Until(threshold=0.5)
     seized, others = counting("seized"), [is_cleared, counting("slipping")]
-    assert Tally(world, until, seized, rows=rows).wants == 0
-    assert Tally(world, until, seized, others, rows=rows).wants == 5
-    assert Tally(world, until, seized, others, rows=rows[::2] * 2).wants == 0
+    assert Tally(world, until, seized, rows=rows).runs_needed == 0
+    assert Tally(world, until, seized, others, rows=rows).runs_needed == 5
+    assert Tally(world, until, seized, others, rows=rows[::2] * 2).runs_needed == 0
 
 
 def test_a_map_draws_one_model_with_its_unit_and_its_populations() -> None:

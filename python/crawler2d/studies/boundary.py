@@ -14,7 +14,7 @@ import numpy as np
 from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, raise_first
-from crawler2d.parameters.fields import is_whole, read_path
+from crawler2d.parameters.fields import is_whole, read_number_path, read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import (
     Campaign,
@@ -25,7 +25,7 @@ from crawler2d.studies.campaign import (
     campaign,
     is_cleared,
 )
-from crawler2d.studies.tables import Models, rate_table, read_models
+from crawler2d.studies.tables import Models, paths_of, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
 
 __all__ = [
+    "LONG_NAMES",
     "POINTS",
-    "SPOKEN",
     "Crossing",
     "Line",
     "Range",
@@ -45,15 +45,15 @@ __all__ = [
 ]
 
 POINTS = 7
-"""How many values are tried first."""
+"""Number of values that are tried first."""
 
-SPOKEN = {
+LONG_NAMES = {
     "bracket_low": "the rate passes one half above this",
     "bracket_high": "the rate passes one half below this",
     "rises": "the rate rises there",
     "monotone": "the rate passes one half no more than once",
 }
-"""The columns of a `Crossing`, in words."""
+"""Long names of the columns of a `Crossing`."""
 
 
 @takes_keywords
@@ -85,7 +85,7 @@ def critical(
     tolerance : float, optional
         Largest width of the bracket, above 0; None takes a hundredth of the whole.
     points : int
-        How many values are tried first, 2 to 1000.
+        Number of values that are tried first, 2 to 1000.
     **how
         See `crawler2d.studies`.
 
@@ -96,7 +96,7 @@ def critical(
         not), `sample` if there are unknowns, and `repeat`; the columns of `sweep`, `rate` and its
         interval; and for each model (and sample):
 
-        - `bracket_low`, `bracket_high`: the rate passes one half between them; nan if nowhere;
+        - `bracket_low`, `bracket_high`: the rate passes one half between them; NaN if nowhere;
         - `rises`: whether it rises there;
         - `monotone`: whether it passes one half no more than once among all values tried.
 
@@ -126,16 +126,13 @@ def critical(
     if not width > 0.0:
         raise ScenarioError("tolerance", width, "must be above 0")
     count = whole_number(points, "points", 2, 1000)
-    if type(read_path(scenario, path)) not in (int, float) or is_whole(scenario, path):
-        rule = "must be the path of a number that is no whole number"
-        raise ScenarioError("path", path, rule)
+    read_number_path(scenario, path, "path")
     fields = read_models(scenario, models)
     name = path.rpartition(".")[2].replace("[", "_").replace("]", "")
-    swept = [path, *dict.fromkeys(key for each in fields.values() for key in each)]
-    with campaign(scenario, how, swept, threshold=0.5) as study:
+    with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
         lines: list[Line] = []
         for label, own in fields.items():
-            at = partial(_moved, scenario.replace(own), path)
+            at = partial(_with_value, scenario.replace(own), path)
             lines.append(Line(study, (f"model={label}", name), at))
             lines[-1].add(np.linspace(low, high, count).tolist())
             lines[-1].narrow(width)
@@ -156,7 +153,7 @@ class Crossing(NamedTuple):
     Attributes
     ----------
     bracket_low, bracket_high : float
-        The first two neighbours between which it does; nan if nowhere.
+        The first two neighbours between which it does; NaN if nowhere.
     rises : bool
         Whether it rises there.
     monotone : bool
@@ -170,7 +167,7 @@ class Crossing(NamedTuple):
 
 
 class Line:
-    """The values that were tried of one model.
+    """The values of a field that were tried with one model.
 
     Parameters
     ----------
@@ -214,10 +211,10 @@ class Line:
     def narrow(self, width: float) -> None:
         """Halve the first bracket of every sample until it is no wider than this."""
         while True:
-            found = [self.crossing(sample) for sample in range(self.samples)]
+            crossings = [self.crossing(sample) for sample in range(self.samples)]
             wide = {
                 0.5 * (each.bracket_low + each.bracket_high)
-                for each in found
+                for each in crossings
                 if each.bracket_high - each.bracket_low > width
             }
             if not wide:
@@ -230,14 +227,14 @@ class Line:
 
     def crossing(self, sample: int = 0) -> Crossing:
         """Find where the rate passes one half."""
-        ways = [(value, rate >= 0.5) for value, rate in self.rates(sample).items()]
-        passes = [
-            (low, high, after) for (low, before), (high, after) in pairwise(ways) if before != after
+        above = [(value, rate >= 0.5) for value, rate in self.rates(sample).items()]
+        changes = [
+            (low, high, rises) for (low, was), (high, rises) in pairwise(above) if was != rises
         ]
-        return Crossing(*passes[0], monotone=len(passes) == 1) if passes else Crossing()
+        return Crossing(*changes[0], monotone=len(changes) == 1) if changes else Crossing()
 
 
-def _moved(base: Scenario, path: str, value: float) -> Scenario:
+def _with_value(base: Scenario, path: str, value: float) -> Scenario:
     return base.replace({path: value})
 
 
@@ -251,7 +248,7 @@ def _with_crossings(found: Found, lines: Sequence[Line]) -> Found:
     }
     return found.assign(
         {
-            name: (dims, values.reshape(shape), {"long_name": SPOKEN[name]})
+            name: (dims, values.reshape(shape), {"long_name": LONG_NAMES[name]})
             for name, values in columns.items()
         }
     )
@@ -343,7 +340,7 @@ def range_of(unknowns: Variation, path: str, cell: Scenario) -> Range:
 
 
 def check_ends(study: Campaign, over: Range, names: tuple[str, str]) -> None:
-    """Raise the rule that an end of a range breaks, before anything is simulated."""
+    """Refuse an end of a range that breaks a rule, before anything is simulated."""
     model, name = names
     for value in over.first if over.is_line else ():
         worlds = study.planner.worlds(over.at(value), (model, f"{name}={value:g}"))
@@ -351,7 +348,7 @@ def check_ends(study: Campaign, over: Range, names: tuple[str, str]) -> None:
 
 
 def line_over(study: Campaign, over: Range, names: tuple[str, str], counts: Counts) -> Line | None:
-    """Look where the rate passes one half over a range; None if that is no line."""
+    """Find where the rate passes one half over a range; None if its values are not continuous."""
     if not over.is_line:
         return None
     low, high = over.first

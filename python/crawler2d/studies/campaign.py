@@ -1,9 +1,10 @@
-"""Cells that are simulated again and again, each until its rate is known well enough."""
+"""Campaigns of runs: each cell is repeated until its rate is known well enough."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -16,10 +17,10 @@ from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import Row
-from crawler2d.runs.batch import BatchInterrupted
 from crawler2d.runs.branch import Trials, trial_names
+from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, Reporter, reporter, thread_count
-from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
+from crawler2d.sweeps.collect import Collector, RowsInterrupted
 from crawler2d.sweeps.plan import Planner, World
 from crawler2d.sweeps.sequential import Until, sequential
 from crawler2d.sweeps.statistics import Interval
@@ -44,7 +45,7 @@ __all__ = [
 
 
 def scaled_draws(planner: Planner, factors: Mapping[str, float]) -> Planner:
-    """Multiply what is drawn of some fields: the same numbers give values times a factor.
+    """Multiply the draws of some fields by factors.
 
     Parameters
     ----------
@@ -62,20 +63,19 @@ def scaled_draws(planner: Planner, factors: Mapping[str, float]) -> Planner:
         return planner
     return replace(
         planner,
-        variation=_of(planner.variation, factors),
-        unknowns=_of(planner.unknowns, factors),
+        variation=_scale(planner.variation, factors),
+        unknowns=_scale(planner.unknowns, factors),
     )
 
 
-def _of(variation: Variation, factors: Mapping[str, float]) -> Variation:
-    found = {
+def _scale(variation: Variation, factors: Mapping[str, float]) -> Variation:
+    scaled = {
         path: _ScaledDraws(each, factors[path])
-        # Levels are of the field's own value, which has the factor already.
-        if path in factors and not isinstance(each, Levels)
-        else each
         for path, each in variation.distributions.items()
+        # Levels are relative to the field's own value, which has the factor already.
+        if path in factors and not isinstance(each, Levels)
     }
-    return replace(variation, distributions=found)
+    return replace(variation, distributions={**variation.distributions, **scaled})
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class _ScaledDraws(Distribution):
 
 
 class Sampling(TypedDict, total=False):
-    """How a study is made: keywords that every function of `crawler2d.studies` takes.
+    """The keywords that every function of `crawler2d.studies` takes.
 
     vary, unknown : mapping of str to distribution
         What differs from run to run, and what is not known: see `sweep`.
@@ -122,7 +122,7 @@ class Sampling(TypedDict, total=False):
     threads : int
         See `simulate_many`.
     progress : bool or callable
-        See `simulate_many`; the number of all runs grows as cells want more.
+        See `simulate_many`; the number of all runs grows as cells need more.
     """
 
     vary: Mapping[str, Any] | None
@@ -157,7 +157,7 @@ class Cell:
     scenario : Scenario
         Without draws.
     factors : mapping of str to float
-        [-] By path: what the scenario's own value has been multiplied with, and draws are to be.
+        [-] By path: the factor of the scenario's own value, which draws get, too.
     """
 
     names: tuple[str, ...]
@@ -192,18 +192,18 @@ def counting(outcome: str) -> Counts:
 
 @dataclass(slots=True)
 class Tally:
-    """The runs of one cell with one sample of the unknowns, so far.
+    """The runs so far of one cell with one sample of the unknowns.
 
     Attributes
     ----------
     world : World
         What is simulated.
     until : Until
-        When that is enough.
+        When there are enough.
     counts : callable
         Which runs are successes.
     others : sequence of callable
-        Other ends of runs: enough are made where the rate of the commonest end of all is known.
+        Other outcomes: it is enough if the rate of the commonest one of all is known.
     rows : list of Row
         One a repeat.
     drawn : list of mapping of str to ndarray
@@ -221,14 +221,14 @@ class Tally:
     planner: Planner | None = None
 
     @property
-    def made(self) -> list[Row]:
+    def valid(self) -> list[Row]:
         """The runs with a result."""
         return [row for row in self.rows if row.error is None]
 
     @property
     def successes(self) -> int:
-        """How many of them count."""
-        return sum(map(self.counts, self.made))
+        """Number of runs that count."""
+        return sum(map(self.counts, self.valid))
 
     @property
     def interval(self) -> Interval:
@@ -236,16 +236,27 @@ class Tally:
         return self.interval_of(self.counts)
 
     def interval_of(self, counts: Counts) -> Interval:
-        """Return the rate of an end of runs, with its interval."""
-        made = self.made
-        return sequential(sum(map(counts, made)), len(made), self.until.confidence)
+        """Return the rate of other runs than successes, with its interval."""
+        valid = self.valid
+        return sequential(sum(map(counts, valid)), len(valid), self.until.confidence)
 
     @property
-    def wants(self) -> int:
-        """How many runs are still to be made: half as many again, so that few rounds are needed."""
-        count, made = len(self.rows), self.made
-        commonest = max(sum(map(each, made)) for each in (self.counts, *self.others))
-        if count >= self.until.most or self.until.is_done(commonest, len(made)):
+    def commonest_outcome(self) -> str:
+        """How most runs ended."""
+        return Counter(row.outcome for row in self.rows).most_common(1)[0][0]
+
+    @property
+    def commonest_failure(self) -> str:
+        """How most runs that do not count ended; "" if all count."""
+        ends = Counter(row.outcome for row in self.valid if not self.counts(row))
+        return ends.most_common(1)[0][0] if ends else ""
+
+    @property
+    def runs_needed(self) -> int:
+        """Number of runs to simulate next: half as many again, so that few rounds are needed."""
+        count, valid = len(self.rows), self.valid
+        commonest = max(sum(map(each, valid)) for each in (self.counts, *self.others))
+        if count >= self.until.most or self.until.is_done(commonest, len(valid)):
             return 0
         return min(max(self.until.least - count, count // 2, 5), self.until.most - count)
 
@@ -260,7 +271,7 @@ class Campaign:
     until : Until
         When a cell has been simulated often enough.
     threshold : float, optional
-        [-] On which side of it a rate lies is what the study, or its `until`, asks.
+        [-] The rate that the study, or its `until`, compares with.
     trials : tuple of str
         What is tried at every stop.
     planner : Planner
@@ -291,7 +302,6 @@ class Campaign:
         self,
         cells: Sequence[Cell],
         counts: Counts = is_cleared,
-        until: Until | None = None,
         others: Sequence[Counts] = (),
     ) -> list[list[Tally]]:
         """Simulate cells until each is known well enough.
@@ -302,10 +312,8 @@ class Campaign:
             The settings.
         counts : callable
             Which runs are successes.
-        until : Until, optional
-            Instead of the study's own.
         others : sequence of callable
-            Other ends of runs; see `Tally`.
+            Other outcomes; see `Tally`.
 
         Returns
         -------
@@ -318,20 +326,19 @@ class Campaign:
             If a cell or a draw breaks a rule; its cells have not been simulated.
         """
         self.settings += len(cells)
-        rule = self.until if until is None else until
-        found = []
+        by_cell = []
         for each in cells:
             planner = scaled_draws(self.planner, each.factors)
             worlds = planner.worlds(each.scenario, each.names)
-            found.append([Tally(world, rule, counts, others, planner=planner) for world in worlds])
-        everyone = [tally for tallies in found for tally in tallies]
+            by_cell.append([Tally(w, self.until, counts, others, planner=planner) for w in worlds])
+        everyone = [tally for tallies in by_cell for tally in tallies]
         raise_first(tally.world.checked for tally in everyone)
-        while due := [(tally, tally.wants) for tally in everyone if tally.wants]:
+        while due := [(tally, tally.runs_needed) for tally in everyone if tally.runs_needed]:
             self.simulate(due)
-        return found
+        return by_cell
 
     def simulate(self, due: Sequence[tuple[Tally, int]]) -> None:
-        """Simulate so many more runs of each tally.
+        """Simulate a number of further runs of each tally.
 
         Raises
         ------
@@ -353,6 +360,18 @@ class Campaign:
             tally.rows += [next(rows) for _ in plan.checked]
             tally.drawn.append(plan.drawn)
 
+    def attributes(self, figure: str, tallies: Iterable[Tally]) -> dict[str, Any]:
+        """Describe the study, for the attributes of its data set; `figure` is what it plots."""
+        return {
+            "figure": figure,
+            "scenario": self.base.to_json(),
+            "vary": self.planner.variation.text,
+            "unknown": self.planner.unknowns.text,
+            "settings": self.settings,
+            "runs": sum(len(tally.rows) for tally in tallies),
+            **build_attributes(),
+        }
+
 
 @contextlib.contextmanager
 def campaign(
@@ -369,7 +388,7 @@ def campaign(
     ----------
     base : Scenario
         What all cells share.
-    how : How
+    how : Sampling
         The keywords of the study.
     swept : sequence of str
         Paths that the study sets itself.
@@ -389,11 +408,11 @@ def campaign(
         raise ScenarioError("scenario", base, "must be a Scenario")
     base.validate()
     if repeats is None:
-        rule = Until(threshold=threshold)
+        until = Until(threshold=threshold)
     else:
         count = whole_number(repeats, "repeats", 1, 10**6)
-        rule = Until(least=count, most=count)
-    given: RateSampling = {"until": rule, **how}
+        until = Until(least=count, most=count)
+    given: RateSampling = {"until": until, **how}
     unknowns = Variation.read(base, how.get("unknown") or {}, swept, "unknown")
     variation = Variation.read(base, how.get("vary"), [*swept, *unknowns.distributions])
     if not isinstance(given["until"], Until):
@@ -414,5 +433,4 @@ def campaign(
         ):
             yield Campaign(base, given, planner, collector, report, threshold=threshold)
     except RowsInterrupted as interrupt:
-        kept = "" if store is None else str(store)
-        raise BatchInterrupted(runs_of(interrupt.rows), kept) from None
+        raise interrupt.as_batch(store) from None

@@ -1,9 +1,8 @@
-"""The candidates of a search: halved in rounds, and the two chosen, as data and in words."""
+"""The candidates of a search, its halving in rounds, and the table of its results."""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -11,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.common.extras import extra
-from crawler2d.runs.dataset import build_attributes
 from crawler2d.studies.campaign import Campaign, Tally
 from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.plan import Plan, Planner, World
@@ -27,7 +25,7 @@ __all__ = ["Candidate", "Confirmation", "FreshDraws", "halve", "ranked", "search
 
 
 class FreshDraws(Planner):
-    """Draws everything anew for every run: run k has sample k of the unknowns, and its repeat k."""
+    """Draws everything afresh: run k has sample k of the unknowns, and repeat k of that."""
 
     __slots__ = ()
 
@@ -42,14 +40,14 @@ class FreshDraws(Planner):
 
 @dataclass(slots=True)
 class Candidate:
-    """What may be chosen.
+    """A candidate of a search.
 
     Attributes
     ----------
     label : str or number
         Its name.
     cost : float
-        What is to be small.
+        To be minimized.
     tallies : list of Tally
         By terrain.
     rounds : int
@@ -69,14 +67,14 @@ class Candidate:
     @property
     def lowest(self) -> int:
         """The terrain on which its rate is lowest."""
-        rates = [tally.successes / max(len(tally.made), 1) for tally in self.tallies]
+        rates = [tally.successes / max(len(tally.valid), 1) for tally in self.tallies]
         return rates.index(min(rates))
 
     @property
     def rate(self) -> float:
         """[-] Its lowest rate; 0 without runs."""
         tally = self.tallies[self.lowest]
-        return tally.successes / max(len(tally.made), 1)
+        return tally.successes / max(len(tally.valid), 1)
 
     def fails(self, goal: float) -> bool:
         """Whether its rate certainly lies below the goal on some terrain."""
@@ -135,7 +133,7 @@ def _advance(study: Campaign, chosen: Sequence[Candidate], rounds: int, first: i
 
 _BOTH = ("candidate", "terrain")
 
-_SPOKEN = {
+_LONG_NAMES = {
     "rate": "rate of clearing in the search",
     "low": "lower bound",
     "high": "upper bound",
@@ -172,7 +170,7 @@ class Confirmation:
     @property
     def intervals(self) -> list[Interval]:
         """The rate on each terrain; the number of runs was fixed beforehand."""
-        return [wilson(t.successes, len(t.made), t.until.confidence) for t in self.pooled]
+        return [wilson(t.successes, len(t.valid), t.until.confidence) for t in self.pooled]
 
     def reaches(self, goal: float) -> bool:
         """Whether the rate is high enough on every terrain."""
@@ -214,8 +212,8 @@ def search_table(
     found = xr.Dataset(
         {
             **_intervals([[tally.interval for tally in row] for row in tallies]),
-            "count": (_BOTH, [[len(tally.made) for tally in row] for row in tallies]),
-            "ending": (_BOTH, [[_ending(tally) for tally in row] for row in tallies]),
+            "count": (_BOTH, [[len(tally.valid) for tally in row] for row in tallies]),
+            "ending": (_BOTH, [[tally.commonest_failure for tally in row] for row in tallies]),
             "cost": ("candidate", [each.cost for each in candidates]),
             "round": ("candidate", [each.rounds for each in candidates]),
         },
@@ -224,28 +222,22 @@ def search_table(
     again = _confirmed(xr, confirmed, grounds, goal)
     gaps = {"confirmed": False, "confirmed_count": 0}
     found = found.merge(again.reindex(candidate=labels, fill_value=gaps))
-    for name, text in _SPOKEN.items():
+    for name, text in _LONG_NAMES.items():
         if name in found:
             found[name].attrs["long_name"] = text
     runs = [*(t for row in tallies for t in row), *(t for each in confirmed for t in each.pooled)]
     runs += [tally for each in confirmed for robots in each.robots for tally in robots]
-    vary, unknown = study.planner.variation.text, study.planner.unknowns.text
+    attributes = study.attributes("search", runs)
     return Found(found.data_vars, found.coords).assign_attrs(
-        figure="search",
         winner=confirmed[0].candidate.label,
         runner_up=confirmed[1].candidate.label if len(confirmed) > 1 else "",
         verdict=_verdict(candidates, grounds, confirmed, goal),
         at_least=goal,
-        scenario=study.base.to_json(),
-        vary=vary,
-        unknown=unknown,
-        population="; ".join(filter(None, [unknown, vary])),
+        population="; ".join(filter(None, [attributes["unknown"], attributes["vary"]])),
         confidence_level=study.until.confidence,
         interval="sequential",
         seed=study.planner.seed,
-        settings=study.settings,
-        runs=sum(len(tally.rows) for tally in runs),
-        **build_attributes(),
+        **attributes,
     )
 
 
@@ -254,7 +246,7 @@ def _confirmed(
 ) -> xarray.Dataset:
     """Arrange the fresh runs of winner and runner-up."""
     columns = {f"confirmed_{k}": v for k, v in _intervals([c.intervals for c in confirmed]).items()}
-    columns["confirmed_count"] = (_BOTH, [[len(t.made) for t in c.pooled] for c in confirmed])
+    columns["confirmed_count"] = (_BOTH, [[len(t.valid) for t in c.pooled] for c in confirmed])
     columns["confirmed"] = ("candidate", [each.reaches(goal) for each in confirmed])
     coordinates = {"candidate": [c.candidate.label for c in confirmed], "terrain": list(grounds)}
     found: xarray.Dataset = xr.Dataset(columns, coordinates)
@@ -270,19 +262,13 @@ def _intervals(rows: Sequence[Sequence[Interval]]) -> dict[str, Any]:
     return {name: (_BOTH, parts[..., k], {"units": "1"}) for k, name in enumerate(Interval._fields)}
 
 
-def _ending(tally: Tally) -> str:
-    """Tell how most runs that did not succeed ended."""
-    ends = Counter(row.outcome for row in tally.made if not tally.counts(row))
-    return ends.most_common(1)[0][0] if ends else ""
-
-
 def _verdict(
     candidates: Sequence[Candidate],
     grounds: Sequence[Label],
     confirmed: Sequence[Confirmation],
     goal: float,
 ) -> str:
-    """Say what was chosen, why, and whether fresh runs bear it out."""
+    """Say what was chosen, why, and whether fresh runs confirm it."""
     first = confirmed[0].candidate
     reached = sum(each.rate >= goal for each in candidates)
     if first.rate >= goal:
@@ -297,7 +283,7 @@ def _verdict(
         rate, low, high = intervals[at]
         where = f" on {grounds[at]}" if len(grounds) > 1 else ""
         parts.append(
-            f"In {len(each.pooled[at].made)} fresh runs{where}, the {place} {each.candidate.label}"
+            f"In {len(each.pooled[at].valid)} fresh runs{where}, the {place} {each.candidate.label}"
             f" clears {rate:.3f} ({low:.3f} to {high:.3f}):"
             f" {'confirmed' if each.reaches(goal) else 'below the goal'}."
         )

@@ -1,4 +1,4 @@
-"""Which unknown decides whether the robot gets over, and where: runs and their data set."""
+"""The unknowns that decide an outcome: Sobol indices, and where along each the rate changes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs.dataset import build_attributes
 from crawler2d.studies.boundary import (
-    SPOKEN,
+    LONG_NAMES,
     Crossing,
     Line,
     Range,
@@ -26,7 +25,7 @@ from crawler2d.studies.boundary import (
 )
 from crawler2d.studies.campaign import Campaign, RateSampling, Tally, campaign, counting
 from crawler2d.studies.sensitivity import COVERAGE, RUN_TO_RUN, Design, bounds, estimate, rate_of
-from crawler2d.studies.tables import Models, read_models
+from crawler2d.studies.tables import Models, paths_of, read_models
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
@@ -36,16 +35,16 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.found import Found
 
-__all__ = ["Answer", "decision_table", "what_decides"]
+__all__ = ["ModelResult", "decision_table", "what_decides"]
 
-_SPOKEN = {
+_LONG_NAMES = {
     "first": "first-order index",
     "first_low": "its lower bound",
     "first_high": "its upper bound",
     "total": "total index",
     "total_low": "its lower bound",
     "total_high": "its upper bound",
-    **SPOKEN,
+    **LONG_NAMES,
     "range_low": "lower end of the range",
     "range_high": "upper end of the range",
     "own": "the scenario's own value",
@@ -60,8 +59,8 @@ _INDICES = ("first", "first_low", "first_high", "total", "total_low", "total_hig
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
-    """What was found of one model.
+class ModelResult:
+    """The runs of one model.
 
     Attributes
     ----------
@@ -76,9 +75,13 @@ class Answer:
 
 
 def decision_table(
-    study: Campaign, design: Design, models: Sequence[Any], answers: Sequence[Answer], outcome: str
+    study: Campaign,
+    design: Design,
+    models: Sequence[Any],
+    results: Sequence[ModelResult],
+    outcome: str,
 ) -> Found:
-    """Arrange what was found.
+    """Arrange the results.
 
     Parameters
     ----------
@@ -86,7 +89,7 @@ def decision_table(
         What was done.
     models : sequence of str or number
         Labels.
-    answers : sequence of Answer
+    results : sequence of ModelResult
         By model.
     outcome : str
         What the rates are rates of.
@@ -103,13 +106,15 @@ def decision_table(
     units = [field_attributes([path]).get("units", "1") for path in design.factors]
     rest = [""] * (len(names) - len(units))  # what varies is no field
     whole = len(design.matrices)
-    rates = [rate_of(each.matrices) for each in answers]
-    told = [len(each.matrices) == whole for each in answers]
+    rates = [rate_of(each.matrices) for each in results]
+    complete = [len(each.matrices) == whole for each in results]
     seed, confidence = study.planner.seed, study.until.confidence
     indices = np.stack(
         [
-            _indices(each.matrices, confidence, seed) if tells else np.full((6, len(names)), np.nan)
-            for each, tells in zip(answers, told, strict=True)
+            _indices(each.matrices, confidence, seed)
+            if is_complete
+            else np.full((6, len(names)), np.nan)
+            for each, is_complete in zip(results, complete, strict=True)
         ],
         axis=1,
     )
@@ -117,12 +122,12 @@ def decision_table(
     found = xr.Dataset(
         {
             "rate": ("model", rates),
-            "count": ("model", [sum(len(t.rows) for t in each.matrices[:2]) for each in answers]),
-            "caveat": ("model", [_caveat(*each) for each in zip(rates, told, strict=True)]),
+            "count": ("model", [sum(len(t.rows) for t in each.matrices[:2]) for each in results]),
+            "caveat": ("model", [_caveat(*each) for each in zip(rates, complete, strict=True)]),
             **{name: (both, values) for name, values in zip(_INDICES, indices, strict=True)},
             "outcome": (
                 ("model", "matrix", "sample"),
-                [_outcomes(each.matrices, whole) for each in answers],
+                [_outcomes(each.matrices, whole) for each in results],
             ),
         },
         {
@@ -133,34 +138,28 @@ def decision_table(
             "matrix": design.matrices,
         },
     )
-    boundaries = _boundaries(xr, answers, models, list(design.factors.values()))
+    boundaries = _boundaries(xr, results, models, list(design.factors.values()))
     gaps = {"rises": Crossing().rises, "monotone": Crossing().monotone}
     found = found.merge(boundaries.reindex(unknown=names, fill_value=gaps))
-    for name, text in _SPOKEN.items():
+    for name, text in _LONG_NAMES.items():
         found[name].attrs["long_name"] = text
     found["rate"].attrs["long_name"] = f"rate of {outcome}"
     for name in ("rate", "count", "tried_rate", *_INDICES):
         found[name].attrs["units"] = "1"
-    lines = [line for each in answers for _, line in each.lines if line is not None]
+    lines = [line for each in results for _, line in each.lines if line is not None]
     tallies = [tally for line in lines for each in line.tallies.values() for tally in each]
-    tallies += [tally for each in answers for tally in each.matrices]
-    vary, unknown = study.planner.variation.text, design.unknowns.text
+    tallies += [tally for each in results for tally in each.matrices]
+    attributes = {**study.attributes("what_decides", tallies), "unknown": design.unknowns.text}
     return Found(found.data_vars, found.coords).assign_attrs(
-        figure="what_decides",
         outcome=outcome,
-        scenario=study.base.to_json(),
-        vary=vary,
-        unknown=unknown,
-        population="; ".join(filter(None, [unknown, vary])),
+        population="; ".join(filter(None, [attributes["unknown"], attributes["vary"]])),
         until=str(study.until),
         confidence_level=confidence,
         interval="Bayesian bootstrap",
         coverage=COVERAGE,
         samples=found.sizes["sample"],
         seed=seed,
-        settings=study.settings,
-        runs=sum(len(tally.rows) for tally in tallies),
-        **build_attributes(),
+        **attributes,
     )
 
 
@@ -176,8 +175,8 @@ def _indices(matrices: Sequence[Tally], confidence: float, seed: int) -> NDArray
     return np.concatenate(parts)
 
 
-def _caveat(rate: float, tells: bool) -> str:
-    return "" if tells else f"cannot tell from a rate of {rate:.2f}"
+def _caveat(rate: float, is_complete: bool) -> str:
+    return "" if is_complete else f"cannot tell from a rate of {rate:.2f}"
 
 
 def _outcomes(matrices: Sequence[Tally], whole: int) -> list[list[str]]:
@@ -186,10 +185,10 @@ def _outcomes(matrices: Sequence[Tally], whole: int) -> list[list[str]]:
 
 
 def _boundaries(
-    xr: Any, answers: Sequence[Answer], models: Sequence[Any], names: Sequence[str]
+    xr: Any, results: Sequence[ModelResult], models: Sequence[Any], names: Sequence[str]
 ) -> xarray.Dataset:
     """Arrange crossings, ranges, and what was tried along them, by model and unknown."""
-    lines = [[line for _, line in each.lines] for each in answers]
+    lines = [[line for _, line in each.lines] for each in results]
     crossings = [[Crossing() if ln is None else ln.crossing() for ln in row] for row in lines]
     rates = [[{} if ln is None else ln.rates() for ln in row] for row in lines]
     longest = max(len(each) for row in rates for each in row)
@@ -201,9 +200,9 @@ def _boundaries(
         name: [[getattr(each, name) for each in row] for row in crossings]
         for name in Crossing._fields
     }
-    columns["range_low"] = [[along.first[0] for along, _ in each.lines] for each in answers]
-    columns["range_high"] = [[along.first[1] for along, _ in each.lines] for each in answers]
-    columns["own"] = [[along.own for along, _ in each.lines] for each in answers]
+    columns["range_low"] = [[along.first[0] for along, _ in each.lines] for each in results]
+    columns["range_high"] = [[along.first[1] for along, _ in each.lines] for each in results]
+    columns["own"] = [[along.own for along, _ in each.lines] for each in results]
     both = ("model", "unknown")
     found: xarray.Dataset = xr.Dataset(
         {
@@ -262,13 +261,13 @@ def what_decides(
           difference is what it decides together with others. An estimate may lie below 0;
         - `bracket_low`, `bracket_high`, `rises`, `monotone`: as of `critical`, over the range of
           the distribution (1 to 99 % of an unbounded one), all elements of a path with ``[*]``
-          together, the first of which is told; nan also for whole numbers and for "run to run";
+          together, with the values of the first; NaN also for whole numbers and "run to run";
         - `range_low`, `range_high`, `own`: ends of the range, and the scenario's own value;
         - `tried`, `tried_rate`: the values along the range, and the rate at each.
 
         For each model: `rate` over all that varies or is not known, of `count` runs; and `caveat`,
-        empty if the indices are there. They are nan where the rate is not from 0.1 to 0.9, because
-        too few runs end otherwise than the others; then only those for the rate are made. `outcome`
+        empty if the indices are there. They are NaN where the rate is not from 0.1 to 0.9, because
+        too few runs have the rarer outcome; then only those for the rate are made. `outcome`
         is that of every run of the design, "" of those that were not made; a store keeps the runs.
 
         `plot` draws the indices of one model, and ``plot(show="boundary")`` the ranges.
@@ -318,12 +317,12 @@ def what_decides(
     counts = counting(outcome)
     samples = _power_of_two(how.get("samples", 256))
     fields = read_models(scenario, models)
-    swept = list(dict.fromkeys(key for each in fields.values() for key in each))
+    swept = paths_of(fields)
     unknowns = _unknowns(scenario, how.pop("unknown", None), swept)
     how.pop("samples", None)
     with campaign(scenario, how, [*swept, *unknowns.distributions], threshold=0.5) as study:
         if len(unknowns.distributions) < 2 and not study.planner.variation.distributions:
-            rule = "must have two paths or more, because nothing varies from run to run"
+            rule = "must have two paths or more where nothing varies from run to run"
             raise ScenarioError("unknown", unknowns.text, rule)
         design = Design(study, unknowns, samples, counts)
         cells = {label: scenario.replace(own) for label, own in fields.items()}
@@ -334,7 +333,7 @@ def what_decides(
         }
         for (label, name), along in ranges.items():
             check_ends(study, along, (f"model={label}", name))
-        answers = []
+        results = []
         for label, cell in cells.items():
             matrices = design.run(cell, str(label))
             lines = []
@@ -342,8 +341,8 @@ def what_decides(
                 along = ranges[label, name]
                 line = line_over(study, along, (f"model={label}", name), counts)
                 lines.append((along, line))
-            answers.append(Answer(matrices, lines))
-        return decision_table(study, design, list(fields), answers, outcome)
+            results.append(ModelResult(matrices, lines))
+        return decision_table(study, design, list(fields), results, outcome)
 
 
 def _power_of_two(value: object) -> int:

@@ -1,4 +1,4 @@
-"""How fast a model drives, accelerates and brakes, and what limits that: runs with one doubled."""
+"""Speed, acceleration and braking distance of models, and what limits them."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def limiting_changes(
     least: float,
     falls: bool = False,
 ) -> NDArray[np.str_]:
-    """Name what limits a figure: what improves it when it is doubled, by more than chance does.
+    """Name what limits a figure: what improves it when doubled, by more than chance.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def limiting_changes(
     share : float
         [-] Share of the unchanged median by which a change must move it, at least.
     least : float
-        In units of the figure, the same; less is no figure.
+        The same in units of the figure.
     falls : bool
         Whether lower is better, as of a braking distance.
 
@@ -116,19 +116,19 @@ def limiting_changes(
     needed = np.maximum(np.maximum(share * np.abs(before), apart), least)
     counts = np.where(np.isnan(before), np.isfinite(medians), gain > needed)
     names = np.array([change.name for change in changes])
-    found = np.empty((values.shape[0], values.shape[2]), object)
-    for model, sample in np.ndindex(found.shape):
+    limits = np.empty((values.shape[0], values.shape[2]), object)
+    for model, sample in np.ndindex(limits.shape):
         own = names[1:][counts[model, 1:, sample]]
-        found[model, sample] = " and ".join(own) or "none of these"
-    return found.astype(str)
+        limits[model, sample] = " and ".join(own) or "none of these"
+    return limits.astype(str)
 
 
 _SHARE = 0.02
-"""[-] A change that moves a figure by less is no limit of it."""
+"""[-] A change that moves a figure by less does not limit it."""
 _OWN = ("drive.speed", "drive.schedule", "duration", "goal")
-"""What these studies set themselves."""
+"""Fields that these studies set themselves."""
 _COMMANDED = (*_OWN, "robot.drivetrain.max_speed")
-"""What may not be drawn: commanded is the largest speed."""
+"""Fields that may not be drawn, because the largest speed is commanded."""
 _PARTS = ("run-up", "one window", "two windows", "stop", "rest")
 
 
@@ -143,7 +143,7 @@ class Figure:
     command : Change
         Which inputs are its command.
     least : float
-        [units] A change below this is none.
+        [units] Smaller changes are neglected.
     values : callable
         Takes a finished run-up, and a stop from there if it `halts`; gives the figure, shape
         (samples, repeats).
@@ -163,7 +163,7 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What is asked of a study: models, commanded speed [m/s] and number of repeats."""
+    """The arguments of a study: models, commanded speed [m/s] and number of repeats."""
 
     models: Models | None
     speed: float | None
@@ -171,7 +171,7 @@ class Request:
 
 
 def limiting_study(figure: Figure, scenario: Scenario, asked: Request, how: Sampling) -> Found:
-    """Drive every model as it is and with each change, and arrange what came of it."""
+    """Drive every model as it is and with each change, and arrange the results."""
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
     given = None if asked.speed is None else real_number(asked.speed, "speed")
@@ -179,7 +179,7 @@ def limiting_study(figure: Figure, scenario: Scenario, asked: Request, how: Samp
         raise ScenarioError("speed", given, "must be above 0")
     fields = read_models(scenario, asked.models)
     for label, own in fields.items():
-        _refuse_own(own, f"models[{label!r}]")
+        _check_fields(own, f"models[{label!r}]")
     changes = (UNCHANGED, figure.command, TORQUE, FRICTION)
     with campaign(on_plane(scenario, given), _sampling(how), repeats=asked.repeats) as study:
         run_ups = [
@@ -217,39 +217,45 @@ def limiting_study(figure: Figure, scenario: Scenario, asked: Request, how: Samp
     ended = np.array([(halt or run_up).ended for run_up, halt in driven])
     one, every = found[figure.name], found[f"{figure.name}_with"]
     meanings = {change.name: change.meaning for change in changes[1:]}
-    told = {"long_name": "what limits it, found by doubling each", "share": _SHARE, **meanings}
-    how_ended = {"long_name": "how most of the longest runs ended"}
+    text = "what limits it, found by doubling each"
     return found.assign(
-        limit=(one.dims, limit.reshape(one.shape), told),
-        ended=(every.dims, ended.reshape(every.shape), how_ended),
+        limit=(
+            one.dims,
+            limit.reshape(one.shape),
+            {"long_name": text, "share": _SHARE, **meanings},
+        ),
+        ended=(
+            every.dims,
+            ended.reshape(every.shape),
+            {"long_name": "how most of the longest runs ended"},
+        ),
     )
 
 
-def _refuse_own(given: object, place: str) -> None:
+def _check_fields(given: object, place: str) -> None:
     """Refuse fields that the study sets itself."""
     for path in given if isinstance(given, Mapping) else ():
         if path in _OWN:
-            rule = f"must not have {path}, which the study sets; a speed is given by speed="
+            rule = f"must not have {path}, which the study sets; give a speed by speed="
             raise ScenarioError(place, path, rule)
 
 
 def _sampling(how: Sampling) -> Sampling:
-    """Take what the study commands out of what is drawn, or refuse it."""
+    """Remove what the study commands from the default draws, or refuse to draw it."""
     drawn = how.get("vary")
     vary = of_start() | of_contact() if drawn is None else drawn
     if isinstance(vary, Ranges):
         vary = vary.without(vary.optional.intersection(_COMMANDED))
     for name, given in (("vary", vary), ("unknown", how.get("unknown"))):
-        drawn_too = given if isinstance(given, Mapping) else {}
-        for path in _COMMANDED:
-            if path in drawn_too:
+        for path in given if isinstance(given, Mapping) else ():
+            if path in _COMMANDED:
                 rule = "must not draw what the study commands: give models for other speeds"
-                raise ScenarioError(f"{name}[{path!r}]", drawn_too[path], rule)
+                raise ScenarioError(f"{name}[{path!r}]", given[path], rule)
     return {**how, "vary": vary}
 
 
 _STANDS = 1e-3
-"""[m/s] A robot that is slower stands."""
+"""[m/s] A slower robot stands."""
 
 
 @takes_keywords
@@ -292,7 +298,7 @@ def max_speed(
 
         - `speed` [m/s]: median over the repeats; `speed_low`, `speed_high`: the lowest and the
           highest of them; with unknowns, `speed_band_low`, `..._median` and `..._high`: 5, 50 and
-          95 % of the medians. All are nan where a repeat has no steady speed, as on a slope down
+          95 % of the medians. All are NaN where a repeat has no steady speed, as on a slope down
           which it slides ever faster.
         - `limit`: "command", "torque", "friction", several joined by "and", or "none of these":
           what improves the median by more than 2 % and by more than the repeats lie apart;
@@ -307,7 +313,7 @@ def max_speed(
 
     Examples
     --------
-    On level ground, a belt with torque to spare is as fast as it is told to be:
+    On level ground, a belt with enough torque reaches the commanded speed:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
@@ -342,13 +348,13 @@ def acceleration(
     Returns
     -------
     Found
-        As of `max_speed`, with `acceleration` [m/s^2] in the place of `speed`, and besides, `speed`
-        [m/s]: the steady speed that was reached.
+        As of `max_speed`, with `acceleration` [m/s^2] in the place of `speed`, and `speed` [m/s],
+        the steady speed that was reached.
 
     Examples
     --------
-    The Engineer's acceleration is what its drivetrain is told, until that exceeds what its motors
-    have beside what their own rotors take:
+    The Engineer's acceleration is that of its drivetrain, until that exceeds what its motors
+    have, less what their own rotors take:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
@@ -385,9 +391,8 @@ def braking_distance(
     -------
     Found
         As of `max_speed`, with `braking_distance` [m] in the place of `speed`, where less is
-        better, and besides, `speed` [m/s]: the steady speed from which it brakes.
-        `braking_distance` is nan where a repeat does not come to rest, as on a slope down which it
-        slides.
+        better, and `speed` [m/s], the steady speed from which it brakes.
+        `braking_distance` is NaN where a repeat never stops, as on a slope down which it slides.
 
     Notes
     -----
@@ -412,7 +417,7 @@ def _speed(run_up: RunUp, _halt: Halt | None) -> NDArray[np.float64]:
 
 
 def _mean_acceleration(run_up: RunUp, _halt: Halt | None) -> NDArray[np.float64]:
-    behind = run_up.speed * run_up.time - run_up.ways[0]
+    behind = run_up.speed * run_up.time - run_up.path_lengths[0]
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = np.where(behind > 0.0, run_up.speed**2 / (2.0 * behind), np.nan)
     return np.where(np.abs(run_up.speed) < _STANDS, 0.0, mean)

@@ -1,4 +1,4 @@
-"""How runs end over two fields: a grid that is made finer where one end meets another."""
+"""Maps of how runs end over two fields: a grid, refined where outcomes change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.fields import is_whole, read_path
+from crawler2d.parameters.fields import read_number_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import (
     Cell,
@@ -24,7 +24,7 @@ from crawler2d.studies.campaign import (
     counting,
     is_cleared,
 )
-from crawler2d.studies.tables import Models, rate_table, read_models
+from crawler2d.studies.tables import Models, paths_of, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.sweeps.rates import BAND
 
@@ -48,29 +48,29 @@ class Grid:
         Of the finest grid.
     simulate : callable
         Given the places of cells, returns the tallies of each by sample.
-    judge : callable
-        Given the tallies of a cell, returns its rate, the number of its kind, 0 for one that is not
-        to be taken for its neighbours, and whether that is certain.
+    classify : callable
+        Given the tallies of a cell, returns its rate, the number of its kind, 0 for one that its
+        neighbours must not copy, and whether that is certain.
 
     Attributes
     ----------
     rates, kinds, certain : ndarray, shape (models, y, x)
-        [-] What `judge` says of a cell. Of a cell that is not simulated they are taken from those
-        around it, and certain if all of these are; nan where nothing is known yet.
+        [-] What `classify` returns. Of a cell that is not simulated they are taken from those
+        around it, and certain if all of these are; NaN where nothing is known yet.
     """
 
     def __init__(
         self,
         shape: tuple[int, int, int],
         simulate: Callable[[Sequence[tuple[int, ...]]], list[list[Tally]]],
-        judge: Callable[[Sequence[Tally]], tuple[float, int, bool]],
+        classify: Callable[[Sequence[Tally]], tuple[float, int, bool]],
     ) -> None:
         self.rates, self.kinds, self.certain = (np.full(shape, np.nan) for _ in range(3))
         self._tallies: dict[tuple[int, ...], list[Tally]] = {}
-        self._simulate, self._judge = simulate, judge
+        self._simulate, self._classify = simulate, classify
 
     def refine(self, stride: int, *, whole: bool) -> None:
-        """Simulate, of every so many cells, the whole grid, or what is not clear from the rest."""
+        """Simulate every `stride`-th cell: the whole grid, or those that neighbours leave open."""
         part = np.s_[:, ::stride, ::stride]
         if whole:
             self._add(np.ones(self.kinds[part].shape, bool), stride)
@@ -89,9 +89,9 @@ class Grid:
     @property
     def tried(self) -> NDArray[np.bool_]:
         """Which cells have been simulated, shape (models, y, x)."""
-        found = np.zeros(self.kinds.shape, bool)
-        found[tuple(np.array(list(self._tallies)).T)] = True
-        return found
+        tried = np.zeros(self.kinds.shape, bool)
+        tried[tuple(np.array(list(self._tallies)).T)] = True
+        return tried
 
     @property
     def tallies(self) -> list[list[Tally]]:
@@ -104,7 +104,7 @@ class Grid:
         return ~self.tried[:, ::stride, ::stride]
 
     def _agrees(self, stride: int) -> NDArray[np.bool_]:
-        """Tell where all that is known of a cell and its neighbours is one certain kind."""
+        """Whether a cell and its neighbours, as far as known, are all of one certain kind."""
         own = self.kinds[:, ::stride, ::stride]
         around = np.concatenate([_neighbours(own), own[None]])
         low, high = np.fmin.reduce(around), np.fmax.reduce(around)
@@ -115,12 +115,11 @@ class Grid:
         places = [(m, stride * j, stride * i) for m, j, i in np.argwhere(due).tolist()]
         for place, tallies in zip(places, self._simulate(places), strict=True):
             self._tallies[place] = tallies
-            found = self._judge(tallies)
-            self.rates[place], self.kinds[place], self.certain[place] = found
+            self.rates[place], self.kinds[place], self.certain[place] = self._classify(tallies)
 
 
 def _neighbours(grid: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Stack what the eight neighbours of every cell have; nan beyond the rim."""
+    """Stack the values of the eight neighbours of every cell; NaN beyond the rim."""
     _, rows, columns = grid.shape
     padded = np.pad(grid, ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
     return np.stack([padded[:, 1 + j : 1 + j + rows, 1 + i : 1 + i + columns] for j, i in _AROUND])
@@ -171,7 +170,7 @@ def seizure_map(
         - `unsure`: whether it is not certain that more than half of the runs end so: the interval
           of their rate, or with unknowns the band over the samples, begins at one half or below; of
           a cell that was not simulated, whether one next to it is unsure;
-        - `around`: where a cell was not simulated, the mean of the rates next to it; nan elsewhere.
+        - `around`: where a cell was not simulated, the mean of the rates next to it; NaN elsewhere.
 
         With unknowns, the end with the largest median over the samples is the commonest. `plot`
         draws one model: ``found.sel(model="belt").plot()``.
@@ -204,10 +203,10 @@ def seizure_map(
     halvings = whole_number(refine, "refine", 0, 6)
     (path_x, coarse_x), (path_y, coarse_y) = _axis(scenario, x, "x"), _axis(scenario, y, "y")
     if path_x == path_y:
-        raise ScenarioError("y", path_y, "must be another field than x")
+        raise ScenarioError("y", path_y, "must differ from x")
     names = short_names([path_x, path_y])
     fields = read_models(scenario, models)
-    swept = [path_x, path_y, *dict.fromkeys(key for each in fields.values() for key in each)]
+    swept = [path_x, path_y, *paths_of(fields)]
     values_x, values_y = _halved(coarse_x, halvings), _halved(coarse_y, halvings)
     with campaign(scenario, how, swept, threshold=0.5) as study:
         bases = {label: scenario.replace(own) for label, own in fields.items()}
@@ -220,13 +219,13 @@ def seizure_map(
                 cells.append(Cell((f"model={label}", *text), bases[label].replace(at)))
             return study.repeat(cells, counts, others=list(ends.values()))
 
-        def judge(tallies: Sequence[Tally]) -> tuple[float, int, bool]:
+        def classify(tallies: Sequence[Tally]) -> tuple[float, int, bool]:
             number, certain = _commonest(tallies, list(ends.values()))
-            rates = [tally.interval.rate for tally in tallies if tally.made]
+            rates = [tally.interval.rate for tally in tallies if tally.valid]
             rate = float(np.median(rates)) if rates else math.nan
             return rate, number + 1 if certain or len(tallies) > 1 else 0, certain
 
-        grid = Grid((len(fields), len(values_y), len(values_x)), simulate, judge)
+        grid = Grid((len(fields), len(values_y), len(values_x)), simulate, classify)
         for level in range(halvings + 1):
             grid.refine(2 ** (halvings - level), whole=level == 0)
         dims: dict[str, Any] = {
@@ -242,7 +241,7 @@ def seizure_map(
 
 
 def _ends(outcome: str) -> dict[str, Counts]:
-    """Return the ends that are told apart, by name."""
+    """Return the outcomes that are distinguished, by name."""
     named = {"cleared": is_cleared, outcome: counting(outcome)}
     return {**named, "otherwise": lambda row: not any(each(row) for each in named.values())}
 
@@ -287,23 +286,21 @@ def _axis(scenario: Scenario, given: object, place: str) -> tuple[str, list[floa
     if not (isinstance(given, (tuple, list)) and len(given) == 2 and isinstance(given[0], str)):
         raise ScenarioError(place, given, "must be a pair of a path and its values")
     path, listed = given
-    if type(read_path(scenario, path)) not in (int, float) or is_whole(scenario, path):
-        rule = "must be the path of a number that is no whole number"
-        raise ScenarioError(f"{place}[0]", path, rule)
-    if not isinstance(listed, (Sequence, np.ndarray)) or isinstance(listed, str):
-        raise ScenarioError(f"{place}[1]", listed, "must be at least two numbers, ascending")
-    values = [real_number(value, f"{place}[1][{k}]") for k, value in enumerate(listed)]
+    read_number_path(scenario, path, f"{place}[0]")
+    is_listed = isinstance(listed, (Sequence, np.ndarray)) and not isinstance(listed, str)
+    numbers = enumerate(listed if is_listed else ())
+    values = [real_number(value, f"{place}[1][{k}]") for k, value in numbers]
     if len(values) < 2 or not (np.diff(values) > 0.0).all():
-        raise ScenarioError(f"{place}[1]", values, "must be at least two numbers, ascending")
+        raise ScenarioError(f"{place}[1]", listed, "must be at least two numbers, ascending")
     return path, values
 
 
 def _halved(values: Sequence[float], times: int) -> list[float]:
-    """Put the middle between any two neighbours, again and again."""
-    found = np.array(values)
+    """Insert the midpoints of neighbours, several times."""
+    grid = np.array(values)
     for _ in range(times):
-        finer = np.empty(2 * found.size - 1)
-        finer[::2], finer[1::2] = found, 0.5 * (found[:-1] + found[1:])
-        found = finer
-    numbers: list[float] = found.tolist()
+        finer = np.empty(2 * grid.size - 1)
+        finer[::2], finer[1::2] = grid, 0.5 * (grid[:-1] + grid[1:])
+        grid = finer
+    numbers: list[float] = grid.tolist()
     return numbers

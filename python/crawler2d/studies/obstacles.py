@@ -1,4 +1,4 @@
-"""The highest obstacle, the steepest slope, the widest gap, and rates over a set of grounds."""
+"""The highest obstacle, the steepest slope, the widest gap, and rates over a set of terrains."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import NO_RESULT
-from crawler2d.studies.campaign import Cell, RateSampling, Tally, campaign
-from crawler2d.studies.tables import Models, rate_table, read_models
+from crawler2d.studies.campaign import Cell, RateSampling, campaign
+from crawler2d.studies.tables import Models, paths_of, rate_table, read_models, read_terrains
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
@@ -58,7 +58,7 @@ def max_obstacle(
         Dimensions `model`, `height`, `sample` if there are unknowns, and `repeat`; besides `rate`,
         `low`, `high`, `count`, `side`, and the columns of `sweep`:
 
-        - `highest` [m]: the greatest height whose rate is at least one half; nan if there is none;
+        - `highest` [m]: the greatest height whose rate is at least one half; NaN if there is none;
         - `certain` [m]: the greatest whose interval lies above one half;
         - `gaps`: how many lower heights have a rate below one half;
         - `limit`: how most runs end on the next height.
@@ -81,7 +81,7 @@ def max_obstacle(
     """
     radius = scenario.robot.outline.front_radius
     given = [radius * k / 6.0 for k in range(1, 13)] if heights is None else heights
-    return _ladder(scenario, "max_obstacle", ("terrain.height", given), models, how)
+    return _find_greatest(scenario, "max_obstacle", ("terrain.height", given), models, how)
 
 
 @takes_keywords
@@ -104,7 +104,7 @@ def max_slope(
         [rad] Angles to try; None takes 5 to 60 degrees, 5 apart.
     """
     given = [math.radians(5.0 * k) for k in range(1, 13)] if angles is None else angles
-    return _ladder(scenario, "max_slope", ("terrain.angle", given), models, how)
+    return _find_greatest(scenario, "max_slope", ("terrain.angle", given), models, how)
 
 
 @takes_keywords
@@ -128,10 +128,10 @@ def max_gap(
     """
     length = scenario.robot.outline.axle_distance
     given = [length * k / 10.0 for k in range(1, 11)] if widths is None else widths
-    return _ladder(scenario, "max_gap", ("terrain.width", given), models, how)
+    return _find_greatest(scenario, "max_gap", ("terrain.width", given), models, how)
 
 
-def _ladder(
+def _find_greatest(
     scenario: Scenario,
     figure: str,
     over: tuple[str, Sequence[float]],
@@ -141,23 +141,22 @@ def _ladder(
     path, values = over
     read_path(scenario, path)  # the terrain has it
     name = path.rpartition(".")[2]
-    rungs = sorted(float(value) for value in values)
-    if not rungs:
+    tried = sorted(float(value) for value in values)
+    if not tried:
         raise ScenarioError(f"{name}s", values, "must have at least one value")
     fields = read_models(scenario, models)
-    swept = [path, *dict.fromkeys(key for each in fields.values() for key in each)]
-    with campaign(scenario, how, swept, threshold=0.5) as study:
+    with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
         cells = [
             Cell((f"model={label}", f"{name}={value:g}"), scenario.replace({**own, path: value}))
             for label, own in fields.items()
-            for value in rungs
+            for value in tried
         ]
         tallies = study.repeat(cells)
         found = rate_table(
             study,
             figure,
             tallies,
-            {"model": (list(fields), {}), name: (rungs, field_attributes([path]))},
+            {"model": (list(fields), {}), name: (tried, field_attributes([path]))},
         )
     others = tuple(str(dim) for dim in found["rate"].dims if dim != name)
     rates = found["rate"].transpose(*others, name)
@@ -165,20 +164,20 @@ def _ladder(
     sure = (found["low"].transpose(*others, name) > 0.5).to_numpy()
     shape = often.shape[:-1]
     columns: dict[str, Any] = {
-        "highest": _greatest(often, rungs),
-        "certain": _greatest(sure, rungs),
+        "highest": _greatest(often, tried),
+        "certain": _greatest(sure, tried),
     }
-    below = np.array(rungs) < columns["highest"][..., None]
+    below = np.array(tried) < columns["highest"][..., None]
     columns["gaps"] = (~often & below).sum(axis=-1)
     flat = [tally for each in tallies for tally in each]
     order = found["rate"].dims.index(name)
     index = np.moveaxis(np.arange(len(flat)).reshape(found["rate"].shape), order, -1)
     limits = np.empty(shape, object)
     for place in np.ndindex(shape):
-        above = np.flatnonzero(np.array(rungs) > columns["highest"][place])
+        above = np.flatnonzero(np.array(tried) > columns["highest"][place])
         if math.isnan(columns["highest"][place]):
-            above = np.arange(len(rungs))
-        next_up = "" if above.size == 0 else _ending(flat[index[(*place, above[0])]])
+            above = np.arange(len(tried))
+        next_up = "" if above.size == 0 else flat[index[(*place, above[0])]].commonest_failure
         limits[place] = next_up or "none up to here"
     columns["limit"] = limits
     units = field_attributes([path]).get("units", "1")
@@ -191,16 +190,10 @@ def _ladder(
     return found.assign({k: (others, v, attributes[k]) for k, v in columns.items()})
 
 
-def _greatest(holds: np.ndarray[Any, Any], rungs: Sequence[float]) -> np.ndarray[Any, Any]:
-    """Return the greatest value of the last axis where something holds; nan if nowhere."""
-    where = np.where(holds, np.array(rungs), -np.inf).max(axis=-1)
+def _greatest(holds: np.ndarray[Any, Any], tried: Sequence[float]) -> np.ndarray[Any, Any]:
+    """Return the greatest value along the last axis where `holds`; NaN if nowhere."""
+    where = np.where(holds, np.array(tried), -np.inf).max(axis=-1)
     return np.where(np.isinf(where), np.nan, where)
-
-
-def _ending(tally: Tally) -> str:
-    """Tell how most runs that did not succeed ended."""
-    ends = Counter(row.outcome for row in tally.made if not tally.counts(row))
-    return ends.most_common(1)[0][0] if ends else ""
 
 
 @takes_keywords
@@ -231,7 +224,7 @@ def success(
     Found
         Dimensions `model`, `terrain`, `sample` if there are unknowns, and `repeat`; `rate` of runs
         that cleared with its interval and `count`; the columns of `sweep` for each run, of which
-        `outcome`, `stop_x` and `stop_mechanism` tell how and where it failed; and for every outcome
+        `outcome`, `stop_x` and `mechanism` tell how and where it failed; and for every outcome
         that occurred a column `ended_...`, how many runs ended so.
 
     Raises
@@ -248,11 +241,10 @@ def success(
     >>> found["rate"].sel(terrain="step").item(), found["ended_cleared"].values.tolist()
     (1.0, [[33, 0]])
     """
-    grounds = _grounds(scenario, terrains)
+    grounds = read_terrains(scenario, terrains)
     fields = read_models(scenario, models)
-    swept = ["terrain", *dict.fromkeys(key for each in fields.values() for key in each)]
     how = {"vary": of_start() | of_contact() | of_field(), **how}
-    with campaign(scenario, how, swept) as study:
+    with campaign(scenario, how, ["terrain", *paths_of(fields)]) as study:
         cells = [
             Cell((f"model={label}", f"terrain={name}"), scenario.replace({"terrain": each, **own}))
             for label, own in fields.items()
@@ -275,14 +267,3 @@ def success(
             for name in occurred
         }
     )
-
-
-def _grounds(scenario: Scenario, terrains: Mapping[str, Terrain] | None) -> Mapping[str, Terrain]:
-    if terrains is None:
-        return {scenario.terrain.kind: scenario.terrain}
-    if not isinstance(terrains, Mapping) or not terrains:
-        raise ScenarioError("terrains", terrains, "must be a mapping from labels to terrains")
-    for label, ground in terrains.items():
-        if not isinstance(ground, Terrain):
-            raise ScenarioError(f"terrains[{label!r}]", ground, "must be a terrain")
-    return terrains

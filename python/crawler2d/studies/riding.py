@@ -1,11 +1,10 @@
-"""How a model rides, how far its odometry is off, and how fast it is simulated."""
+"""Ride, error of odometry, and real-time factor of models."""
 
 from __future__ import annotations
 
 import math
 import platform
 import time
-from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["odometry", "real_time_factor", "ride"]
 
 _STANDS = 1e-3
-"""[m] A robot that has moved less has no odometry to be judged."""
+"""[m] A robot that has moved less has no error of odometry."""
 
 
 @takes_keywords
@@ -124,17 +123,14 @@ def ride(
                 for name, (unit, text, value) in measures.items()
             },
         )
-    ends = np.array([_ended(tally) for each in tallies for tally in each])
-    dims = tuple(dim for dim in found["vibration"].dims)
-    told = {"long_name": "how most runs ended"}
-    return found.assign(ended=(dims, ends.reshape(found["vibration"].shape), told))
+    return _with_ends(found, tallies, "vibration")
 
 
 @takes_keywords
 def odometry(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
 ) -> Found:
-    """Measure how far the way that a track has turned differs from the way that the robot made.
+    """Measure how far the distance run by a track differs from the distance moved by the robot.
 
     Odometry with the circumscribed radius reads how far the surface of the track has run. On level
     ground it reads too much where the track slides, and where it rolls on less than that radius, as
@@ -155,14 +151,14 @@ def odometry(
 
         - `odometry_error` [-]: the way that odometry reads over the way that was made, less 1;
         - `slip` [-]: the mean slip ratio, 1 less the way that was made over the one that was read;
-        - `rolling_radius` [m]: the radius with which odometry would read the way that was made; nan
+        - `rolling_radius` [m]: the radius with which odometry would read the way that was made; NaN
           unless all wheels of the chassis have the same radius;
         - `odometry_error_with` [-]: the error unchanged, and with the friction doubled;
         - `ended`: how most runs of each change ended;
         - and the columns of `sweep`.
 
         The first four are medians over the repeats, with bounds and bands as in `ride`; they are
-        nan where a repeat has not moved.
+        NaN where a repeat has not moved.
 
     Examples
     --------
@@ -208,14 +204,11 @@ def odometry(
             ),
         }
         found = measure_table(study, "odometry", tallies, dims, measures)
-    ends = np.array([_ended(tally) for each in tallies for tally in each])
-    like = found["odometry_error_with"]
-    told = {"long_name": "how most runs ended"}
-    return found.assign(ended=(like.dims, ends.reshape(like.shape), told))
+    return _with_ends(found, tallies, "odometry_error_with")
 
 
 def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArray[np.float64]:
-    """Return a figure of every run, shape (cells, samples, repeats); nan without a result."""
+    """Return a figure of every run, shape (cells, samples, repeats); NaN without a result."""
     return np.array(
         [
             [
@@ -227,18 +220,21 @@ def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArr
     )
 
 
-def _ended(tally: Tally) -> str:
-    return Counter(row.outcome for row in tally.rows).most_common(1)[0][0]
+def _with_ends(found: Found, tallies: list[list[Tally]], name: str) -> Found:
+    """Add how most runs ended, in the dimensions of a column."""
+    ends = np.array([tally.commonest_outcome for each in tallies for tally in each])
+    attributes = {"long_name": "how most runs ended"}
+    return found.assign(ended=(found[name].dims, ends.reshape(found[name].shape), attributes))
 
 
 def _ratio(row: Row) -> float:
-    """[-] The way that was made, by the way that the track has run."""
-    made, run = row.metrics["path_length"], row.metrics["track_distance"]
-    return made / run if min(abs(made), abs(run)) > _STANDS else math.nan
+    """[-] The distance moved over the distance that the track has run."""
+    moved, run = row.metrics["path_length"], row.metrics["track_distance"]
+    return moved / run if min(abs(moved), abs(run)) > _STANDS else math.nan
 
 
 def _radius(row: Row) -> float:
-    """[m] The circumscribed radius of the wheels of the chassis; nan if there is no single one."""
+    """[m] The circumscribed radius of the wheels of the chassis; NaN if there is no single one."""
     wheels = Scenario.from_json(row.scenario).robot.wheels()
     on_chassis = wheels["carrier"] == "chassis"
     radii = set(wheels["radius"][on_chassis].tolist())
@@ -308,9 +304,7 @@ def real_time_factor(
     ({'model': 1, 'motion': 2}, True)
     """
     for name, value in others.items():
-        rule = (
-            "must not be given: the time of this processor is measured, here and now, on one thread"
-        )
+        rule = "must not be given: the time of this processor is measured, now, on one thread"
         raise ScenarioError(name, value, rule)
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
@@ -349,8 +343,8 @@ def real_time_factor(
     from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
 
     found = Found(summary("factor", each))
-    told = {"units": "m", "long_name": "way along x"}
-    return found.assign(moved=(dims, np.reshape(moved, shape), told)).assign_attrs(
+    attributes = {"units": "m", "long_name": "way along x"}
+    return found.assign(moved=(dims, np.reshape(moved, shape), attributes)).assign_attrs(
         figure="real_time_factor",
         scenario=scenario.to_json(),
         duration=span,

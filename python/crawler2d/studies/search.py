@@ -23,8 +23,8 @@ from crawler2d.studies.candidates import (
     ranked,
     search_table,
 )
-from crawler2d.studies.tables import Models
-from crawler2d.sweeps.axes import Label, read_labels
+from crawler2d.studies.tables import Models, paths_of, read_terrains
+from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.sweep import variants
 from crawler2d.variation.draws import Variation
 from crawler2d.variation.variability import of_contact, of_field, of_start
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["search"]
 
-_ELSEWHERE = 2**64
-"""Seeds of users lie below this, so none draws what a seed above it does."""
+_FRESH_SEED = 2**64
+"""Users' seeds are smaller, so that seeds above it draw other numbers."""
 
 Objective = Callable[[Scenario], float]
 
@@ -144,9 +144,9 @@ def search(
     fresh = whole_number(confirm, "confirm", 1, 10**6)
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
-    grounds = _grounds(scenario, terrains)
+    grounds = read_terrains(scenario, terrains)
     fields = _fields(space)
-    swept = ["terrain", *dict.fromkeys(key for each in fields.values() for key in each)]
+    swept = ["terrain", *paths_of(fields)]
     if any(hasattr(ground, "seed") for ground in grounds.values()):
         how = {"vary": of_start() | of_contact() | of_field(), **how}
     with campaign(scenario, how, swept, repeats=whole_number(first, "first", 1, 10**6)) as study:
@@ -174,24 +174,13 @@ def _fields(space: object) -> dict[Label, Mapping[str, Any]]:
         raise ScenarioError(path, error.value, error.rule) from None
 
 
-def _grounds(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
-    """Return the terrains by label."""
-    if terrains is None:
-        return {scenario.terrain.kind: scenario.terrain}
-    found = read_labels(terrains, "terrains")
-    for label, ground in found.items():
-        if not isinstance(ground, Terrain):
-            raise ScenarioError(f"terrains[{label!r}]", ground, "must be a terrain")
-    return found
-
-
 def _candidates(
     study: Campaign,
     fields: Mapping[Label, Mapping[str, Any]],
     grounds: Mapping[Label, Any],
     objective: Objective | None,
 ) -> tuple[list[Candidate], list[str]]:
-    """Make the candidates, and say why others are left out."""
+    """Make the candidates, and list why others are left out."""
     own = study.planner
     nominal = replace(own, unknowns=Variation({}))
     planner = FreshDraws(own.variation, own.unknowns, own.seed)
@@ -221,7 +210,7 @@ def _cost(scenario: Scenario, label: Label, objective: Objective | None) -> floa
         return cost
     wheels = int(np.count_nonzero(scenario.robot.wheels()["side"] == "left"))
     if wheels == 0:
-        rule = f"must be given, because {label} has no wheels to count"
+        rule = f"must be given: {label} has no wheels to count"
         raise ScenarioError("objective", None, rule)
     return float(wheels)
 
@@ -229,9 +218,9 @@ def _cost(scenario: Scenario, label: Label, objective: Objective | None) -> floa
 def _confirmed(study: Campaign, chosen: Sequence[Candidate], fresh: int) -> list[Confirmation]:
     """Simulate what was chosen with draws that the search has not had."""
     own = study.planner
-    planner = FreshDraws(own.variation, own.unknowns, own.seed + _ELSEWHERE)
-    by_robot = replace(own, seed=own.seed + 2 * _ELSEWHERE)
-    found = []
+    planner = FreshDraws(own.variation, own.unknowns, own.seed + _FRESH_SEED)
+    by_robot = replace(own, seed=own.seed + 2 * _FRESH_SEED)
+    confirmations = []
     for candidate in chosen:
         worlds = [tally.world for tally in candidate.tallies]
         pooled = [Tally(world, study.until, planner=planner) for world in worlds]
@@ -242,10 +231,10 @@ def _confirmed(study: Campaign, chosen: Sequence[Candidate], fresh: int) -> list
             ]
             for world in (worlds if own.unknowns.distributions else [])
         ]
-        found.append(Confirmation(candidate, pooled, robots))
-    single = [tally for each in found for robots in each.robots for tally in robots]
+        confirmations.append(Confirmation(candidate, pooled, robots))
+    single = [tally for each in confirmations for robots in each.robots for tally in robots]
     raise_first(tally.world.checked for tally in single)
-    due = [(tally, fresh) for each in found for tally in each.pooled]
+    due = [(tally, fresh) for each in confirmations for tally in each.pooled]
     repeats = max(fresh // own.samples, 1)
     study.simulate([*due, *((tally, repeats) for tally in single)])
-    return found
+    return confirmations

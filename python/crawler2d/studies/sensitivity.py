@@ -195,8 +195,8 @@ def _of_shares(shares: NDArray[np.float64]) -> Indices:
 RUN_TO_RUN = "run to run"
 """All that varies from run to run, as one factor."""
 
-_TELLING = (0.1, 0.9)
-"""[-] Rates outside of which too few runs have the rarer outcome to tell what decides."""
+_INFORMATIVE = (0.1, 0.9)
+"""[-] Rates outside which too few runs have the rarer outcome to estimate indices."""
 
 
 class Design:
@@ -237,12 +237,12 @@ class Design:
         self._points = points(samples, sizes, study.planner.seed)
 
     def run(self, cell: Scenario, label: str) -> list[Tally]:
-        """Simulate A, then B, then the rest, for as long as the rate is one that tells.
+        """Simulate A, then B, then the rest, unless the rate makes indices uncertain.
 
         Returns
         -------
         list of Tally
-            One a matrix that was simulated.
+            One per matrix that was simulated.
 
         Raises
         ------
@@ -251,24 +251,24 @@ class Design:
         SimulationDiverged
             If a run has no result.
         """
-        found: list[Tally] = []
+        tallies: list[Tally] = []
         for matrices in ([0], [1], range(2, len(self.matrices))):
-            new = [self._planned(cell, label, matrix) for matrix in matrices]
+            new = [self._plan(cell, label, matrix) for matrix in matrices]
             self._study.settings += len(new)
             self._study.simulate([(tally, self._samples) for tally in new])
             raise_first(row.error for tally in new for row in tally.rows)
-            found += new
-            if not _TELLING[0] <= rate_of(found) <= _TELLING[1]:
+            tallies += new
+            if not _INFORMATIVE[0] <= rate_of(tallies) <= _INFORMATIVE[1]:
                 break
-        return found
+        return tallies
 
-    def _planned(self, cell: Scenario, label: str, matrix: int) -> Tally:
+    def _plan(self, cell: Scenario, label: str, matrix: int) -> Tally:
         study = self._study
         (world,) = study.planner.worlds(cell, (f"model={label}", f"matrix={self.matrices[matrix]}"))
         columns = self._points[matrix].T
         planner = FreshDraws(
-            _given(study.planner.variation, columns[len(self.factors) :]),
-            _given(self.unknowns, columns[: len(self.factors)]),
+            _fixed(study.planner.variation, columns[len(self.factors) :]),
+            _fixed(self.unknowns, columns[: len(self.factors)]),
             study.planner.seed,
             self._samples,
         )
@@ -281,8 +281,8 @@ def rate_of(matrices: list[Tally]) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Given(Variation):
-    """Draws from numbers that are given, instead of random ones."""
+class _FixedDraws(Variation):
+    """Draws from given numbers instead of random ones."""
 
     given: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
@@ -298,6 +298,6 @@ class _Given(Variation):
         return {path: each[:count] for path, each in self.given.items()}
 
 
-def _given(variation: Variation, columns: NDArray[np.float64]) -> _Given:
+def _fixed(variation: Variation, columns: NDArray[np.float64]) -> _FixedDraws:
     numbers = dict(zip(variation.distributions, columns, strict=True))
-    return _Given(variation.distributions, variation.optional, variation.text, numbers)
+    return _FixedDraws(variation.distributions, variation.optional, variation.text, numbers)

@@ -1,4 +1,4 @@
-"""Runs on a plane without end, made longer until they show a steady speed, or rest."""
+"""Runs on an endless plane, lengthened until the speed is steady, or the robot at rest."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ __all__ = ["Course", "Halt", "RunUp", "drive", "on_plane"]
 _LENGTH = 1e4
 """[m] Of the plane to either side."""
 _LONG = 1e4
-"""[s] A run is never long enough past its goal to have cleared it."""
+"""[s] Longer than any run, so that none clears the goal."""
 _ROUNDS = 4
-"""A course is driven so often at most, each time for twice as long."""
+"""A course is driven at most this often, each time for twice as long."""
 _PITCHES = 20.0
 """[-] Grouser pitches in a window: the speed of gear wheels swings with every pitch."""
 _STEADY = 0.03
 """[-] The mean speeds of two windows that differ by less are one: those of gear wheels do by 0.01,
 those of a robot that keeps accelerating by 0.18, for a window is a fourth of the time before."""
 _SPEED = 1e-3
-"""[m/s] A difference below this is none."""
+"""[m/s] Smaller differences of speed are neglected."""
 _REST = 1e-4
 """[m] A robot at rest moves less."""
 
 
 def on_plane(scenario: Scenario, speed: float | None) -> Scenario:
-    """Put a robot on its ground without end, at rest, and command a speed.
+    """Extend a robot's ground to an endless plane, with the robot at rest, and command a speed.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class Course(ABC):
         ]
 
     @property
-    def ways(self) -> NDArray[np.float64]:
+    def path_lengths(self) -> NDArray[np.float64]:
         """[m] How far the robot has moved along its axis, shape (durations, samples, repeats)."""
         return np.array(
             [[[_path_length(row) for row in tally.rows] for tally in own] for own in self.tallies]
@@ -143,7 +143,7 @@ class RunUp(Course):
         super().__init__(names, factors)
         self._scenario = scenario
         speed, drivetrain = scenario.drive.speed, scenario.robot.drivetrain
-        self.time = _looks(1.25 * speed / drivetrain.max_acceleration + 0.5)
+        self.time = _round_up(1.25 * speed / drivetrain.max_acceleration + 0.5)
         self._least = _PITCHES * scenario.robot.outline.grouser_pitch / speed
 
     @property
@@ -154,7 +154,7 @@ class RunUp(Course):
     @property
     def window(self) -> float:
         """[s] Over which a speed is a mean."""
-        return _looks(max(0.25 * self.time, self._least))
+        return _round_up(max(0.25 * self.time, self._least))
 
     @property
     def times(self) -> list[float]:
@@ -164,15 +164,15 @@ class RunUp(Course):
     @property
     def is_settled(self) -> NDArray[np.bool_]:
         """Whether the speed is steady."""
-        first, second = np.diff(self.ways, axis=0) / self.window
+        first, second = np.diff(self.path_lengths, axis=0) / self.window
         allowed = np.maximum(_STEADY * np.abs(second), _SPEED)
         return np.asarray(np.isnan(first + second) | (np.abs(second - first) <= allowed))
 
     @property
     def speed(self) -> NDArray[np.float64]:
-        """[m/s] Steady speed, shape (samples, repeats); nan if there is none."""
-        ways = self.ways
-        speed = (ways[2] - ways[0]) / (2.0 * self.window)
+        """[m/s] Steady speed, shape (samples, repeats); NaN if there is none."""
+        lengths = self.path_lengths
+        speed = (lengths[2] - lengths[0]) / (2.0 * self.window)
         return np.where(self.is_settled, speed, np.nan)
 
     def lengthen(self) -> None:
@@ -187,7 +187,9 @@ class Halt(Course):
         super().__init__(before._names, before._factors)
         self.before = before
         drivetrain = before.scenario.robot.drivetrain
-        self._time = _looks(1.25 * before.scenario.drive.speed / drivetrain.max_deceleration + 0.5)
+        self._time = _round_up(
+            1.25 * before.scenario.drive.speed / drivetrain.max_deceleration + 0.5
+        )
 
     @property
     def scenario(self) -> Scenario:
@@ -198,19 +200,19 @@ class Halt(Course):
     def times(self) -> list[float]:
         """[s] The durations."""
         stop = self.before.time
-        return [stop + self._time, stop + _looks(1.25 * self._time)]
+        return [stop + self._time, stop + _round_up(1.25 * self._time)]
 
     @property
     def is_settled(self) -> NDArray[np.bool_]:
         """Whether the robot is at rest."""
-        ways = self.ways
-        moved = np.abs(ways[1] - ways[0])
+        lengths = self.path_lengths
+        moved = np.abs(lengths[1] - lengths[0])
         return np.asarray(np.isnan(moved) | (moved <= _REST))
 
     @property
     def distance(self) -> NDArray[np.float64]:
-        """[m] From the command to rest, shape (samples, repeats); nan if it does not come to it."""
-        distance = self.ways[1] - self.before.ways[0]
+        """[m] From the command to rest, shape (samples, repeats); NaN if it never stops."""
+        distance = self.path_lengths[1] - self.before.path_lengths[0]
         return np.where(self.is_settled & np.isfinite(self.before.speed), distance, np.nan)
 
     def lengthen(self) -> None:
@@ -234,13 +236,13 @@ def drive(study: Campaign, courses: Sequence[Course]) -> None:
             course.lengthen()
 
 
-def _looks(time: float) -> float:
-    """[s] Round up to 10 ms, at which the core looks at a run in any case."""
+def _round_up(time: float) -> float:
+    """[s] Round up to 10 ms, at which the core samples a run in any case."""
     return math.ceil(100.0 * time) / 100.0
 
 
 def _path_length(row: Row) -> float:
-    """[m] How far a run has come, also where it ended early because nothing moved any more."""
+    """[m] The path length of a run that lasted to its end or stopped; NaN of any other."""
     if row.error is not None:
         return math.nan
     outcome = Outcome(row.outcome)

@@ -1,4 +1,4 @@
-"""The models that a study compares, and its runs as a data set: rates or measures by cell."""
+"""Models and terrains of a study, and its runs as a data set of rates or measures by cell."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs.dataset import build_attributes
-from crawler2d.sweeps.axes import field_attributes, short_names
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.sweeps.axes import Label, field_attributes, read_labels, short_names
 from crawler2d.sweeps.rates import banded
 from crawler2d.sweeps.sweep import Variant, variants
 from crawler2d.sweeps.tabulate import Column, dataset_of, row_columns
@@ -22,9 +23,17 @@ if TYPE_CHECKING:
 
     from crawler2d.studies.campaign import Campaign, Tally
     from crawler2d.sweeps.found import Found
-    from crawler2d.sweeps.statistics import Interval
-
-__all__ = ["Dims", "Measure", "Models", "measure_table", "rate_table", "read_models", "summary"]
+__all__ = [
+    "Dims",
+    "Measure",
+    "Models",
+    "measure_table",
+    "paths_of",
+    "rate_table",
+    "read_models",
+    "read_terrains",
+    "summary",
+]
 
 Models = Mapping[Any, Variant] | Sequence[Variant]
 """By label, or objects that label themselves; see `compare`."""
@@ -37,10 +46,26 @@ def read_models(scenario: Scenario, models: Models | None) -> dict[Any, Mapping[
     return variants(models)
 
 
+def read_terrains(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
+    """Return terrains by label; None is the scenario's own."""
+    if terrains is None:
+        return {scenario.terrain.kind: scenario.terrain}
+    by_label = read_labels(terrains, "terrains")
+    for label, terrain in by_label.items():
+        if not isinstance(terrain, Terrain):
+            raise ScenarioError(f"terrains[{label!r}]", terrain, "must be a terrain")
+    return by_label
+
+
+def paths_of(fields: Mapping[Any, Mapping[str, Any]]) -> list[str]:
+    """List the paths that any model replaces, each once."""
+    return list(dict.fromkeys(path for own in fields.values() for path in own))
+
+
 Dims = Mapping[str, tuple[Sequence[Any], Mapping[str, str]]]
 """Labels and attributes of each dimension of the cells of a study."""
 
-_SPOKEN = {
+_LONG_NAMES = {
     "rate": "rate",
     "low": "lower bound",
     "high": "upper bound",
@@ -55,7 +80,7 @@ def rate_table(
     tallies: Sequence[Sequence[Tally]],
     dims: Dims,
 ) -> Found:
-    """Arrange what a study found.
+    """Arrange the rates of a study.
 
     Parameters
     ----------
@@ -79,26 +104,25 @@ def rate_table(
 
     flat = [tally for each in tallies for tally in each]
     sizes, coordinates = _frame(campaign, dims)
-    whole = _runs(campaign, flat, sizes, coordinates)
-    unknowns = campaign.planner.unknowns.distributions
+    runs = _runs(campaign, flat, sizes, coordinates)
     intervals = [tally.interval for tally in flat]
     by_cell: dict[str, Column] = {
         "rate": (np.array([each.rate for each in intervals]), {}),
         "low": (np.array([each.low for each in intervals]), {}),
         "high": (np.array([each.high for each in intervals]), {}),
-        "count": (np.array([len(tally.made) for tally in flat]), {}),
-        "side": (np.array([_side(each, campaign.threshold) for each in intervals]), {}),
+        "count": (np.array([len(tally.valid) for tally in flat]), {}),
+        "side": (np.array([each.side(campaign.threshold) for each in intervals]), {}),
     }
     by_cell |= _sampled(campaign, flat)
     rates = dataset_of(by_cell, sizes, coordinates)
-    for name, text in _SPOKEN.items():
+    for name, text in _LONG_NAMES.items():
         rates[name].attrs = {"units": "1", "long_name": text}
-    if unknowns:
+    if "sample" in sizes:
         rates = rates.assign(banded(rates["rate"]))
     until = campaign.until
-    merged = whole.merge(rates)
+    merged = runs.merge(rates)
     return Found(merged.data_vars, merged.coords).assign_attrs(
-        **_attributes(campaign, figure, flat),
+        **campaign.attributes(figure, flat),
         until=str(until),
         confidence_level=until.confidence,
         interval="sequential",
@@ -114,7 +138,7 @@ class Measure:
     dims : tuple of str
         Those of the cells.
     values : ndarray, shape (..., samples, repeats)
-        nan where there is no figure.
+        NaN where there is no figure.
     units, long_name : str
         Unit, and what it is in words.
     """
@@ -132,7 +156,7 @@ def measure_table(
     dims: Dims,
     measures: Mapping[str, Measure],
 ) -> Found:
-    """Arrange what a study measured, each cell a fixed number of times.
+    """Arrange the measures of a study, which repeats each cell a fixed number of times.
 
     Parameters
     ----------
@@ -146,20 +170,20 @@ def measure_table(
     Found
         The columns of `sweep` for each run; and of each measure, say `speed`: `speed_each` of every
         repeat, their median `speed` and their bounds `speed_low` and `speed_high`, the lowest and
-        the highest, all three nan if a repeat has no figure; with unknowns, a band of the medians
-        over the samples, nan if a sample has none: `speed_band_low`, `speed_band_median` and
+        the highest, all three NaN if a repeat has no figure; with unknowns, a band of the medians
+        over the samples, NaN if a sample has none: `speed_band_low`, `speed_band_median` and
         `speed_band_high`.
     """
     from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
 
     flat = [tally for each in tallies for tally in each]
     sizes, coordinates = _frame(campaign, dims)
-    found = _runs(campaign, flat, sizes, coordinates)
-    found = found.merge(dataset_of(_sampled(campaign, flat), sizes, coordinates))
+    table = _runs(campaign, flat, sizes, coordinates)
+    table = table.merge(dataset_of(_sampled(campaign, flat), sizes, coordinates))
     for name, measure in measures.items():
-        found = found.assign(summary(name, _each(measure, found)))
-    return Found(found.data_vars, found.coords).assign_attrs(
-        **_attributes(campaign, figure, flat),
+        table = table.assign(summary(name, _each(measure, table)))
+    return Found(table.data_vars, table.coords).assign_attrs(
+        **campaign.attributes(figure, flat),
         repeats=campaign.until.most,
         measure=next(iter(measures)),
     )
@@ -191,10 +215,10 @@ def summary(name: str, each: xarray.DataArray) -> dict[str, xarray.DataArray]:
         for part, values in banded(parts[name][0]).items():
             text = str(values.attrs["long_name"]).replace("rates", "medians")
             parts[f"{name}_{part}"] = (values.where(known), text)
-    told = {"units": each.attrs["units"], "long_name": each.attrs["long_name"]}
+    units, long_name = each.attrs["units"], each.attrs["long_name"]
     return {
         key: values.assign_attrs(
-            told if key == name else told | {"long_name": f"{told['long_name']}, {text}"}
+            units=units, long_name=long_name if key == name else f"{long_name}, {text}"
         )
         for key, (values, text) in parts.items()
     }
@@ -222,13 +246,6 @@ def _frame(campaign: Campaign, dims: Dims) -> tuple[dict[str, int], dict[str, An
     return sizes, coordinates
 
 
-def _side(interval: Interval, threshold: float | None) -> int:
-    """-1 or 1 if a rate certainly lies below or above the threshold, else 0."""
-    if threshold is None:
-        return 0
-    return (interval.low > threshold) - (interval.high < threshold)
-
-
 def _runs(
     campaign: Campaign,
     flat: Sequence[Tally],
@@ -251,19 +268,6 @@ def _sampled(campaign: Campaign, flat: Sequence[Tally]) -> dict[str, Column]:
         values = np.array([tally.world.sampled.get(path, math.nan) for tally in flat])
         columns[f"unknown_{name}"] = (values, field_attributes([path]))
     return columns
-
-
-def _attributes(campaign: Campaign, figure: str, flat: Sequence[Tally]) -> dict[str, Any]:
-    """Say what was done, as attributes."""
-    return {
-        "figure": figure,
-        "scenario": campaign.base.to_json(),
-        "vary": campaign.planner.variation.text,
-        "unknown": campaign.planner.unknowns.text,
-        "settings": campaign.settings,
-        "runs": sum(len(tally.rows) for tally in flat),
-        **build_attributes(),
-    }
 
 
 def _drawn_values(campaign: Campaign, flat: Sequence[Tally], longest: int) -> dict[str, Column]:
