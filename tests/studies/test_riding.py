@@ -43,9 +43,9 @@ def test_how_runs_ended_is_told_by_model_and_sample() -> None:
     found = c2d.studies.ride(STEP, models=models, **HOW)
     assert found["ended"].values.tolist() == ["cleared", "seized"]
     unknown = {"terrain.friction": c2d.uniform(0.1, 1.0)}
-    banded = c2d.studies.ride(STEP, unknown=unknown, samples=3, **HOW)
-    assert banded["ended"].dims == banded["vibration"].dims == ("model", "sample")
-    assert banded["vibration_band_low"] <= banded["vibration_band_high"]
+    quantile_band = c2d.studies.ride(STEP, unknown=unknown, samples=3, **HOW)
+    assert quantile_band["ended"].dims == quantile_band["vibration"].dims == ("model", "sample")
+    assert quantile_band["vibration_band_low"] <= quantile_band["vibration_band_high"]
 
 
 def test_round_wheels_roll_on_their_radius() -> None:

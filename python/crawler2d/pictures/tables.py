@@ -1,4 +1,4 @@
-"""Figures of rates, searches and sensitivities: what `Found.plot` draws."""
+"""Figures of rates, searches and sensitivities: what `FigureDataset.plot` draws."""
 
 from __future__ import annotations
 

@@ -1,20 +1,19 @@
-"""Studies: questions about robots and grounds, each answered by as many runs as it takes.
+"""Studies of robots and grounds, each with as many runs as its answer needs.
 
-Every function takes a scenario and models, and returns a `Found`: an xarray data set with a plot of
-its own. All take the same keywords of how to simulate:
+Every function takes a scenario and models, and returns a `FigureDataset`: an xarray data set whose
+`plot` draws its figure. All take the same keywords:
 
 - `vary`, `unknown`, `samples`, `seed`, `trials`, `store`, `executor`, `threads`, `progress`: as
   `sweep`;
-- those that give rates take `until`: when a cell has been simulated often enough, an `Until`; those
-  that measure take `repeats`: how often each cell is simulated; `search` takes `first` and
-  `confirm`.
+- studies of rates take `until`, an `Until`: when a cell has been simulated often enough; studies that
+  measure take `repeats`, the runs of each cell; `search` takes `first` and `confirm`.
 
-Intervals of rates are those of `sequential`, which hold although the number of runs depends on what
-they showed. What is measured (`max_speed`, `acceleration`, `braking_distance`, `ride`, `odometry`)
-has no interval, but a median over the repeats, and the lowest and the highest of them. The
-attribute `settings` counts the cells that were tried.
+Intervals of rates are those of `sequential`, which hold although the number of runs depends on
+their results. Measures (`max_speed`, `acceleration`, `braking_distance`, `ride`, `odometry`) have no
+interval, but a median over the repeats, and the lowest and the highest of them. The attribute
+`settings` counts the cells that were tried.
 
-`real_time_factor` measures the machine, and takes `repeats` and `progress` alone.
+`real_time_factor` measures the machine, and takes only `repeats` and `progress`.
 
 >>> import crawler2d as c2d
 >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))

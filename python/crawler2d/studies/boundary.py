@@ -30,7 +30,7 @@ from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = [
     "LONG_NAMES",
@@ -66,7 +66,7 @@ def critical(
     tolerance: float | None = None,
     points: int = POINTS,
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Find where the rate of clearing passes one half along one field, such as a friction.
 
     Both ends and points evenly between them are tried first, so that a rate that goes up and down
@@ -91,7 +91,7 @@ def critical(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, the values that were tried for any model (`count` is 0 where a model was
         not), `sample` if there are unknowns, and `repeat`; the columns of `sweep`, `rate` and its
         interval; and for each model (and sample):
@@ -238,7 +238,7 @@ def _with_value(base: Scenario, path: str, value: float) -> Scenario:
     return base.replace({path: value})
 
 
-def _with_crossings(found: Found, lines: Sequence[Line]) -> Found:
+def _with_crossings(found: FigureDataset, lines: Sequence[Line]) -> FigureDataset:
     crossings = [[line.crossing(sample) for sample in range(line.samples)] for line in lines]
     dims = ("model", "sample") if "sample" in found["rate"].dims else ("model",)
     shape = [found.sizes[dim] for dim in dims]

@@ -13,13 +13,13 @@ from crawler2d.common.extras import extra
 from crawler2d.studies.campaign import Campaign, Tally
 from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.plan import Plan, Planner, World
-from crawler2d.sweeps.rates import banded
+from crawler2d.sweeps.rates import quantile_band
 from crawler2d.sweeps.statistics import Interval, wilson
 
 if TYPE_CHECKING:
     import xarray
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["Candidate", "Confirmation", "FreshDraws", "halve", "ranked", "search_table"]
 
@@ -183,7 +183,7 @@ def search_table(
     grounds: Sequence[Label],
     confirmed: Sequence[Confirmation],
     goal: float,
-) -> Found:
+) -> FigureDataset:
     """Arrange a search.
 
     Parameters
@@ -201,10 +201,10 @@ def search_table(
 
     Returns
     -------
-    Found
+    FigureDataset
         As `search` says.
     """
-    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     xr = extra("xarray", "analysis")
     tallies = [each.tallies for each in candidates]
@@ -228,7 +228,7 @@ def search_table(
     runs = [*(t for row in tallies for t in row), *(t for each in confirmed for t in each.pooled)]
     runs += [tally for each in confirmed for robots in each.robots for tally in robots]
     attributes = study.attributes("search", runs)
-    return Found(found.data_vars, found.coords).assign_attrs(
+    return FigureDataset(found.data_vars, found.coords).assign_attrs(
         winner=confirmed[0].candidate.label,
         runner_up=confirmed[1].candidate.label if len(confirmed) > 1 else "",
         verdict=_verdict(candidates, grounds, confirmed, goal),
@@ -254,7 +254,7 @@ def _confirmed(
         return found
     rates = [[[t.interval.rate for t in robots] for robots in c.robots] for c in confirmed]
     found["robot_rate"] = ((*_BOTH, "sample"), rates)
-    return found.assign(banded(found["robot_rate"]))
+    return found.assign(quantile_band(found["robot_rate"]))
 
 
 def _intervals(rows: Sequence[Sequence[Interval]]) -> dict[str, Any]:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["ModelResult", "decision_table", "what_decides"]
 
@@ -80,7 +80,7 @@ def decision_table(
     models: Sequence[Any],
     results: Sequence[ModelResult],
     outcome: str,
-) -> Found:
+) -> FigureDataset:
     """Arrange the results.
 
     Parameters
@@ -96,10 +96,10 @@ def decision_table(
 
     Returns
     -------
-    Found
+    FigureDataset
         As `what_decides` says.
     """
-    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     xr = extra("xarray", "analysis")
     names = [*design.factors.values(), *([RUN_TO_RUN] if design.is_varied else [])]
@@ -150,7 +150,7 @@ def decision_table(
     tallies = [tally for line in lines for each in line.tallies.values() for tally in each]
     tallies += [tally for each in results for tally in each.matrices]
     attributes = {**study.attributes("what_decides", tallies), "unknown": design.unknowns.text}
-    return Found(found.data_vars, found.coords).assign_attrs(
+    return FigureDataset(found.data_vars, found.coords).assign_attrs(
         outcome=outcome,
         population="; ".join(filter(None, [attributes["unknown"], attributes["vary"]])),
         until=str(study.until),
@@ -226,7 +226,7 @@ def what_decides(
     models: Models | None = None,
     outcome: str = "cleared",
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Find which of the unknowns decides whether the robot gets over.
 
     The outcome differs between runs because of what is not known of robot and floor, and because of
@@ -251,7 +251,7 @@ def what_decides(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`; `unknown`, by the last part of its path, and last "run to run" if
         anything varies; `place`, the values that were tried of each; and `matrix` and `sample`, the
         points of the design: A, B, and A with one factor of B. For each model and unknown:

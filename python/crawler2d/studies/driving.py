@@ -22,7 +22,7 @@ from crawler2d.variation.variability import of_contact, of_start
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = [
     "FRICTION",
@@ -170,7 +170,9 @@ class Request:
     repeats: int
 
 
-def limiting_study(figure: Figure, scenario: Scenario, asked: Request, how: Sampling) -> Found:
+def limiting_study(
+    figure: Figure, scenario: Scenario, asked: Request, how: Sampling
+) -> FigureDataset:
     """Drive every model as it is and with each change, and arrange the results."""
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
@@ -266,7 +268,7 @@ def max_speed(
     speed: float | None = None,
     repeats: int = 10,
     **how: Unpack[Sampling],
-) -> Found:
+) -> FigureDataset:
     """Measure the steady speed of each model at full command, and find what limits it.
 
     Each model stands on the scenario's level ground, or on the slope of its ramp, without end, and
@@ -292,7 +294,7 @@ def max_speed(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, `change` (what was doubled), `part` (one run for each instant), `sample`
         if there are unknowns, and `repeat`:
 
@@ -332,7 +334,7 @@ def acceleration(
     speed: float | None = None,
     repeats: int = 10,
     **how: Unpack[Sampling],
-) -> Found:
+) -> FigureDataset:
     """Measure the mean acceleration of each model from rest to its speed, and find what limits it.
 
     While it accelerates, a robot falls behind one that has its steady speed v from the start. If
@@ -347,7 +349,7 @@ def acceleration(
 
     Returns
     -------
-    Found
+    FigureDataset
         As of `max_speed`, with `acceleration` [m/s^2] in the place of `speed`, and `speed` [m/s],
         the steady speed that was reached.
 
@@ -376,7 +378,7 @@ def braking_distance(
     speed: float | None = None,
     repeats: int = 10,
     **how: Unpack[Sampling],
-) -> Found:
+) -> FigureDataset:
     """Measure how far each model moves from the command to stop until it rests, and what limits it.
 
     It brakes from its steady speed. The drivetrain's `max_deceleration` is an input of a robot;
@@ -389,7 +391,7 @@ def braking_distance(
 
     Returns
     -------
-    Found
+    FigureDataset
         As of `max_speed`, with `braking_distance` [m] in the place of `speed`, where less is
         better, and `speed` [m/s], the steady speed from which it brakes.
         `braking_distance` is NaN where a repeat never stops, as on a slope down which it slides.

@@ -31,7 +31,7 @@ from crawler2d.sweeps.rates import BAND
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["Grid", "seizure_map"]
 
@@ -135,7 +135,7 @@ def seizure_map(
     models: Models | None = None,
     refine: int = 1,
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Map how runs end over two fields, such as height and friction, and how often.
 
     A run clears, has the outcome that is asked for, or ends otherwise. Every cell of the grid is
@@ -160,7 +160,7 @@ def seizure_map(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, y, x (by the last part of their paths), `sample` if there are unknowns,
         and `repeat`; the columns of `sweep`, `rate` of the outcome and its interval; and for each
         cell:
@@ -259,8 +259,8 @@ def _commonest(tallies: Sequence[Tally], ends: Sequence[Counts]) -> tuple[int, b
 
 
 def _with_ends(
-    found: Found, grid: Grid, dims: tuple[str, ...], ends: Mapping[str, Counts]
-) -> Found:
+    found: FigureDataset, grid: Grid, dims: tuple[str, ...], ends: Mapping[str, Counts]
+) -> FigureDataset:
     names, tried = list(ends), grid.tried
     shape = tried.shape
     ending, unsure = np.empty(shape, object), np.zeros(shape, bool)

@@ -22,7 +22,7 @@ from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
 if TYPE_CHECKING:
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["max_gap", "max_obstacle", "max_slope", "success"]
 
@@ -34,7 +34,7 @@ def max_obstacle(
     models: Models | None = None,
     heights: Sequence[float] | None = None,
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Find the highest obstacle that each model clears.
 
     Every height is tried, because a lower one may fail where a higher one does not: wheels seize on
@@ -54,7 +54,7 @@ def max_obstacle(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, `height`, `sample` if there are unknowns, and `repeat`; besides `rate`,
         `low`, `high`, `count`, `side`, and the columns of `sweep`:
 
@@ -91,7 +91,7 @@ def max_slope(
     models: Models | None = None,
     angles: Sequence[float] | None = None,
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Find the steepest slope that each model climbs; see `max_obstacle`.
 
     Parameters
@@ -114,7 +114,7 @@ def max_gap(
     models: Models | None = None,
     widths: Sequence[float] | None = None,
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Find the widest gap that each model crosses; see `max_obstacle`.
 
     Parameters
@@ -137,7 +137,7 @@ def _find_greatest(
     over: tuple[str, Sequence[float]],
     models: Models | None,
     how: RateSampling,
-) -> Found:
+) -> FigureDataset:
     path, values = over
     read_path(scenario, path)  # the terrain has it
     name = path.rpartition(".")[2]
@@ -203,7 +203,7 @@ def success(
     terrains: Mapping[str, Terrain] | None = None,
     models: Models | None = None,
     **how: Unpack[RateSampling],
-) -> Found:
+) -> FigureDataset:
     """Find how often each model gets over each ground, and how and where it fails.
 
     Parameters
@@ -221,7 +221,7 @@ def success(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, `terrain`, `sample` if there are unknowns, and `repeat`; `rate` of runs
         that cleared with its interval and `count`; the columns of `sweep` for each run, of which
         `outcome`, `stop_x` and `mechanism` tell how and where it failed; and for every outcome

@@ -26,7 +26,7 @@ from crawler2d.studies.tables import Dims, Measure, Models, measure_table, read_
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["odometry", "real_time_factor", "ride"]
 
@@ -37,7 +37,7 @@ _STANDS = 1e-3
 @takes_keywords
 def ride(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
-) -> Found:
+) -> FigureDataset:
     """Measure how each model rides on the scenario's ground: how its chassis shakes and rocks.
 
     Parameters
@@ -54,7 +54,7 @@ def ride(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, `sample` if there are unknowns, and `repeat`:
 
         - `vibration` [m/s^2]: vertical acceleration of the chassis frame, averaged over 10 ms, root
@@ -129,7 +129,7 @@ def ride(
 @takes_keywords
 def odometry(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
-) -> Found:
+) -> FigureDataset:
     """Measure how far the distance run by a track differs from the distance moved by the robot.
 
     Odometry with the circumscribed radius reads how far the surface of the track has run. On level
@@ -145,7 +145,7 @@ def odometry(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, `change` (unchanged, and the friction doubled), `sample` if there are
         unknowns, and `repeat`:
 
@@ -220,7 +220,7 @@ def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArr
     )
 
 
-def _with_ends(found: Found, tallies: list[list[Tally]], name: str) -> Found:
+def _with_ends(found: FigureDataset, tallies: list[list[Tally]], name: str) -> FigureDataset:
     """Add how most runs ended, in the dimensions of a column."""
     ends = np.array([tally.commonest_outcome for each in tallies for tally in each])
     attributes = {"long_name": "how most runs ended"}
@@ -254,7 +254,7 @@ def real_time_factor(
     repeats: int = 10,
     progress: bool | Progress | None = True,
     **others: object,
-) -> Found:
+) -> FigureDataset:
     """Measure how many seconds are simulated in a second of processor time, on one thread.
 
     It is a figure of this machine, this build and this hour: so there is no store, no executor and
@@ -280,7 +280,7 @@ def real_time_factor(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `model`, `motion` ("standing" without a command, "driving" as the scenario
         commands) and `repeat`:
 
@@ -340,9 +340,9 @@ def real_time_factor(
         dims=(*dims, "repeat"),
         attrs={"units": "1", "long_name": "real-time factor"},
     )
-    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
-    found = Found(summary("factor", each))
+    found = FigureDataset(summary("factor", each))
     attributes = {"units": "m", "long_name": "way along x"}
     return found.assign(moved=(dims, np.reshape(moved, shape), attributes)).assign_attrs(
         figure="real_time_factor",

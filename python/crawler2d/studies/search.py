@@ -30,7 +30,7 @@ from crawler2d.variation.draws import Variation
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
 if TYPE_CHECKING:
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["search"]
 
@@ -51,7 +51,7 @@ def search(
     first: int = 20,
     confirm: int = 1000,
     **how: Unpack[Sampling],
-) -> Found:
+) -> FigureDataset:
     """Find the cheapest candidate that clears every terrain, such as the one with fewest wheels.
 
     In the search every run has a draw of its own of what varies *and* of what is not known: a fresh
@@ -87,7 +87,7 @@ def search(
 
     Returns
     -------
-    Found
+    FigureDataset
         Dimensions `candidate` and `terrain`. Of the search:
 
         - `rate`, `low`, `high`, `count`: with intervals that hold however often one looks; the

@@ -13,7 +13,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.sweeps.axes import Label, field_attributes, read_labels, short_names
-from crawler2d.sweeps.rates import banded
+from crawler2d.sweeps.rates import quantile_band
 from crawler2d.sweeps.sweep import Variant, variants
 from crawler2d.sweeps.tabulate import Column, dataset_of, row_columns
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from crawler2d.studies.campaign import Campaign, Tally
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 __all__ = [
     "Dims",
     "Measure",
@@ -79,7 +79,7 @@ def rate_table(
     figure: str,
     tallies: Sequence[Sequence[Tally]],
     dims: Dims,
-) -> Found:
+) -> FigureDataset:
     """Arrange the rates of a study.
 
     Parameters
@@ -87,7 +87,7 @@ def rate_table(
     campaign : Campaign
         The study.
     figure : str
-        What `Found.plot` draws.
+        What `FigureDataset.plot` draws.
     tallies : sequence of sequence of Tally
         By cell and sample; the last dimension of the cells changes fastest.
     dims : mapping of str to pair
@@ -95,12 +95,12 @@ def rate_table(
 
     Returns
     -------
-    Found
+    FigureDataset
         With `rate`, `low`, `high`, `count`, `side` for each cell (and `sample` of unknowns, with a
         band over them, as of `rate`), and the columns of `sweep` for each run; `repeat` is
         as long as the longest cell, and where a cell has fewer runs, its `outcome` is "".
     """
-    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     flat = [tally for each in tallies for tally in each]
     sizes, coordinates = _frame(campaign, dims)
@@ -118,10 +118,10 @@ def rate_table(
     for name, text in _LONG_NAMES.items():
         rates[name].attrs = {"units": "1", "long_name": text}
     if "sample" in sizes:
-        rates = rates.assign(banded(rates["rate"]))
+        rates = rates.assign(quantile_band(rates["rate"]))
     until = campaign.until
     merged = runs.merge(rates)
-    return Found(merged.data_vars, merged.coords).assign_attrs(
+    return FigureDataset(merged.data_vars, merged.coords).assign_attrs(
         **campaign.attributes(figure, flat),
         until=str(until),
         confidence_level=until.confidence,
@@ -155,7 +155,7 @@ def measure_table(
     tallies: Sequence[Sequence[Tally]],
     dims: Dims,
     measures: Mapping[str, Measure],
-) -> Found:
+) -> FigureDataset:
     """Arrange the measures of a study, which repeats each cell a fixed number of times.
 
     Parameters
@@ -163,18 +163,18 @@ def measure_table(
     campaign, figure, tallies, dims
         See `rate_table`.
     measures : mapping of str to Measure
-        By name, which no column of `sweep` has; the first is the one that `Found.plot` draws.
+        By name, which no column of `sweep` has; `FigureDataset.plot` draws the first.
 
     Returns
     -------
-    Found
+    FigureDataset
         The columns of `sweep` for each run; and of each measure, say `speed`: `speed_each` of every
         repeat, their median `speed` and their bounds `speed_low` and `speed_high`, the lowest and
         the highest, all three NaN if a repeat has no figure; with unknowns, a band of the medians
         over the samples, NaN if a sample has none: `speed_band_low`, `speed_band_median` and
         `speed_band_high`.
     """
-    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     flat = [tally for each in tallies for tally in each]
     sizes, coordinates = _frame(campaign, dims)
@@ -182,7 +182,7 @@ def measure_table(
     table = table.merge(dataset_of(_sampled(campaign, flat), sizes, coordinates))
     for name, measure in measures.items():
         table = table.assign(summary(name, _each(measure, table)))
-    return Found(table.data_vars, table.coords).assign_attrs(
+    return FigureDataset(table.data_vars, table.coords).assign_attrs(
         **campaign.attributes(figure, flat),
         repeats=campaign.until.most,
         measure=next(iter(measures)),
@@ -212,7 +212,7 @@ def summary(name: str, each: xarray.DataArray) -> dict[str, xarray.DataArray]:
     }
     if "sample" in each.dims:
         known = parts[name][0].notnull().all("sample")
-        for part, values in banded(parts[name][0]).items():
+        for part, values in quantile_band(parts[name][0]).items():
             text = str(values.attrs["long_name"]).replace("rates", "medians")
             parts[f"{name}_{part}"] = (values.where(known), text)
     units, long_name = each.attrs["units"], each.attrs["long_name"]

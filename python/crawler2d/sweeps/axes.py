@@ -1,4 +1,4 @@
-"""The axes and columns of a table: fields with their values, labels, and what stops add."""
+"""The axes and columns of tables: swept fields with their labels, and the columns of stops."""
 
 from __future__ import annotations
 
@@ -63,22 +63,22 @@ def read_labels(values: object, place: str) -> dict[Label, Any]:
     ScenarioError
         If there are no values, or a label is missing or not unique.
     """
-    given = _given(values, place)
+    given = _list_values(values, place)
     if not given:
         raise ScenarioError(place, values, "must have at least one value")
     if not all(isinstance(label, (int, float)) for _, label, _ in given):
         given = [(where, str(label), value) for where, label, value in given]
-    found: dict[Label, Any] = {}
+    by_label: dict[Label, Any] = {}
     for where, label, value in given:
-        if label in found:
+        if label in by_label:
             rule = f"must have unique labels, not {label} twice: give a mapping from labels"
             raise ScenarioError(where, value, rule)
-        found[label] = value
-    return found
+        by_label[label] = value
+    return by_label
 
 
-def _given(values: object, place: str) -> list[tuple[str, Label, Any]]:
-    """List the place of each value, its label, and the value."""
+def _list_values(values: object, place: str) -> list[tuple[str, Label, Any]]:
+    """List the path of each value, its label, and the value."""
     if isinstance(values, Mapping):
         return [(f"{place}[{key!r}]", _key(key, place), value) for key, value in values.items()]
     # A set has no order, and a string is a single value.
@@ -105,7 +105,7 @@ def _label(value: object, where: str) -> Label:
         return value
     label = _text(value)
     if len(label) > _LONGEST:
-        rule = "must have a short label: give a mapping from labels to values"
+        rule = f"must have a label of at most {_LONGEST} letters: give a mapping from labels"
         raise ScenarioError(where, value, rule)
     return label
 
@@ -122,14 +122,14 @@ def _text(value: Any) -> str:
     shown = []
     for field in dataclasses.fields(value):  # type: ignore[arg-type]
         inner = getattr(value, field.name)
-        if inner != field.default and _counts(value, field):
+        if inner != field.default and _matters(value, field):
             text = _text(inner)
             shown.append(f"{field.name}={text}" if field.kw_only else text)
     return f"{type(value).__name__}({', '.join(shown)})"
 
 
-def _counts(value: Any, field: dataclasses.Field[Any]) -> bool:
-    """Whether the value would be another one with the default of a field."""
+def _matters(value: Any, field: dataclasses.Field[Any]) -> bool:
+    """Whether the value would differ with the default of a field."""
     is_required = field.default is dataclasses.MISSING
     return is_required or dataclasses.replace(value, **{field.name: field.default}) != value
 
@@ -137,11 +137,11 @@ def _counts(value: Any, field: dataclasses.Field[Any]) -> bool:
 Column = tuple[type, str, list[Any]]
 
 
-_NEEDED = (
+_ALWAYS = (
     *("closed track", "closed track, clear of the ground", "belt"),
     *("belt, from the start", "closed track, from the start"),
 )
-"""Trials of every jam."""
+"""Trials that every jam has."""
 
 
 def short_name(trial: str) -> str:
@@ -155,17 +155,19 @@ def short_name(trial: str) -> str:
     return trial.replace(" x ", "_x").replace(", ", "_").replace(" ", "_")
 
 
-def stop_columns(why: Sequence[Diagnosis | None], asked: Sequence[str] = ()) -> dict[str, Column]:
-    """Kind, unit and values of each column, by name; for runs that did not stop they are empty.
+def stop_columns(
+    diagnoses: Sequence[Diagnosis | None], trials: Sequence[str] = ()
+) -> dict[str, Column]:
+    """Return type, unit and values of each column by name; empty for runs that did not stop.
 
-    Trials that were asked for, and those of every jam, have three columns each, named after them.
+    The given trials, and those of every jam, have three columns each, named after them.
     """
 
     def of(name: str, empty: Any) -> list[Any]:
-        return [empty if d is None else getattr(d, name) for d in why]
+        return [empty if d is None else getattr(d, name) for d in diagnoses]
 
     def of_edge(name: str, empty: Any) -> list[Any]:
-        pieces = [None if d is None else d.intrusion for d in why]
+        pieces = [None if d is None else d.intrusion for d in diagnoses]
         return [empty if piece is None else getattr(piece, name) for piece in pieces]
 
     columns: dict[str, Column] = {
@@ -174,25 +176,25 @@ def stop_columns(why: Sequence[Diagnosis | None], asked: Sequence[str] = ()) -> 
         "mechanism": (str, "", [str(each or "") for each in of("mechanism", "")]),
         "jammed": (bool, "", of("jammed", False)),
         "belly_side": (str, "", of("belly_side", "")),
-        "stop_x": (float, "m", [math.nan if d is None else d.position[0] for d in why]),
+        "stop_x": (float, "m", [math.nan if d is None else d.position[0] for d in diagnoses]),
         "stop_angle": (float, "rad", of("chassis_angle", math.nan)),
         "stop_edge": (int, "", of_edge("edge", -1)),
         "stop_side": (str, "", [str(each) for each in of_edge("side", "")]),
         "stop_carrier": (str, "", [str(each) for each in of_edge("carrier", "")]),
         "stop_bodies": (str, "", [_pair(each) for each in of_edge("bodies", ())]),
     }
-    for name in (each for each in TRIALS if each in asked or each in _NEEDED):
-        made = [_made(d, name) for d in why]
+    for name in (each for each in TRIALS if each in trials or each in _ALWAYS):
+        results = [_trial(d, name) for d in diagnoses]
         short = short_name(name)
-        columns[f"tried_{short}"] = (bool, "", [t is not None for t in made])
-        columns[f"freed_by_{short}"] = (bool, "", [t is not None and t.freed for t in made])
-        columns[f"then_{short}"] = (str, "", ["" if t is None else str(t.outcome) for t in made])
+        columns[f"tried_{short}"] = (bool, "", [t is not None for t in results])
+        columns[f"freed_by_{short}"] = (bool, "", [t is not None and t.freed for t in results])
+        columns[f"then_{short}"] = (str, "", ["" if t is None else str(t.outcome) for t in results])
     return columns
 
 
-def _made(why: Diagnosis | None, name: str) -> TrialResult | None:
-    trials = () if why is None else why.trials
-    return next((tried for tried in trials if tried.name == name), None)
+def _trial(diagnosis: Diagnosis | None, name: str) -> TrialResult | None:
+    trials = () if diagnosis is None else diagnosis.trials
+    return next((trial for trial in trials if trial.name == name), None)
 
 
 def _pair(bodies: tuple[int, ...]) -> str:
@@ -213,7 +215,7 @@ COLUMNS = (
     ),
     *("rate", "low", "high", "count", "distinct", "band_low", "band_median", "band_high"),
 )
-"""Columns of a sweep and its rates besides the metrics; no axis may have these names."""
+"""Columns of a sweep and of its rates, without the metrics; no axis may have these names."""
 
 Coordinate = tuple[str, "NDArray[Any]", dict[str, str]]
 """Dimension, values and attributes, as xarray expects them."""
@@ -221,7 +223,7 @@ Coordinate = tuple[str, "NDArray[Any]", dict[str, str]]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """Fields that change together: one dimension of the table."""
+    """Fields that are swept together: one dimension of the table."""
 
     name: str
     paths: tuple[str, ...]
@@ -229,7 +231,7 @@ class Axis:
     """By label, then by path; a path without a value keeps the scenario's own."""
 
     def points(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Yield the name of each point, for messages, and its values by path."""
+        """Yield the name of each point, for errors, and its values by path."""
         for label, row in self.values.items():
             yield f"{self.name}={label}", row
 
@@ -246,7 +248,7 @@ def read_axes(over: object) -> list[Axis]:
         raise ScenarioError("over", over, "must be a mapping from paths to values")
     keys = {key: _paths(key) for key in over}
     every = [path for paths in keys.values() for path in paths]
-    _refuse_undoing(every)
+    _check_order(every)
     dimensions = _dimensions(list(keys.values()))
     axes = []
     for (key, paths), name in zip(keys.items(), dimensions, strict=True):
@@ -263,7 +265,7 @@ def read_axes(over: object) -> list[Axis]:
 def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
     """Return the coordinates of the axes: labels, and numbers that are swept together."""
     names = short_names([path for axis in axes for path in axis.paths])
-    found: dict[str, Coordinate] = {}
+    by_name: dict[str, Coordinate] = {}
     for axis in axes:
         labels = list(axis.values)
         rows = axis.values.values()
@@ -271,12 +273,12 @@ def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
         attributes = field_attributes(axis.paths)
         if columns != [labels]:
             attributes.pop("units", None)  # labels have no unit, even if they are numbers
-        found[axis.name] = (axis.name, np.array(labels), attributes)
+        by_name[axis.name] = (axis.name, np.array(labels), attributes)
         if len(axis.paths) > 1:
             for path, numbers in zip(axis.paths, columns, strict=True):
                 if numbers is not None:
-                    found[names[path]] = (axis.name, np.array(numbers), field_attributes([path]))
-    return found
+                    by_name[names[path]] = (axis.name, np.array(numbers), field_attributes([path]))
+    return by_name
 
 
 def field_attributes(paths: Sequence[str]) -> dict[str, str]:
@@ -325,7 +327,7 @@ def _paths(key: object) -> tuple[str, ...]:
     return paths
 
 
-def _refuse_undoing(paths: Sequence[str]) -> None:
+def _check_order(paths: Sequence[str]) -> None:
     for index, path in enumerate(paths):
         for earlier in paths[:index]:
             if earlier == path:

@@ -1,4 +1,4 @@
-"""How often an outcome occurred, with its confidence interval."""
+"""Rates of an outcome, with confidence intervals."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
-__all__ = ["BAND", "banded", "rate", "rates_of"]
+__all__ = ["BAND", "quantile_band", "rate", "rates_of"]
 
 _STOPPED = "stopped"
 """Any outcome that is a stop."""
 
 _SAMPLE, _REPEAT = "sample", "repeat"
-"""The dimensions of what was drawn: of the unknowns, and from run to run."""
+"""The dimensions of the draws: of the unknowns, and from run to run."""
 
 _POSE = {"final_x": 1e-3, "final_y": 1e-3, "final_angle": math.radians(0.1)}
 """[m], [rad] Final poses closer than this count as one."""
 
-_SPOKEN = {
+_LONG_NAMES = {
     "low": "lower bound",
     "high": "upper bound",
     "count": "number of runs",
@@ -47,7 +47,7 @@ BAND = {"band_low": 0.05, "band_median": 0.5, "band_high": 0.95}
 """[-] Quantiles of a band of rates."""
 
 _FEW = 4
-"""So few distinct poses, or fewer, of at least `_MANY` runs are worth a warning."""
+"""So few distinct poses of at least `_MANY` runs are warned of."""
 _MANY = 10
 
 
@@ -58,7 +58,7 @@ def rate(
     dim: str | Iterable[str] = "repeat",
     *,
     confidence_level: float = 0.95,
-) -> Found:
+) -> FigureDataset:
     """Estimate the rate of an outcome in every cell, with Wilson's interval.
 
     A rate is one over what varied from run to run; where `sweep` had unknowns, there is one for
@@ -66,10 +66,9 @@ def rate(
     `dim` says so. Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are
     the missing runs of a joined table.
 
-    An interval counts what was drawn independently. Runs that are counted together and share a
-    draw, as the repeats of one sample do, or the runs of one repeat in several cells, are a cluster
-    of `sweeps.statistics.clustered`: the interval is Wilson's for the number of independent runs
-    that tell as much.
+    Runs that are counted together and share a draw, as the repeats of one sample do, or the runs of
+    one repeat in several cells, are correlated. They are a cluster: the interval is Wilson's for
+    the effective number of independent runs, see `sweeps.statistics.clustered`.
 
     Parameters
     ----------
@@ -85,15 +84,15 @@ def rate(
 
     Returns
     -------
-    Found
+    FigureDataset
         An `xarray.Dataset` whose `plot` draws it. Variables `rate`, `low`, `high` and `count`,
-        without the dimension `dim`. Without runs the rate is nan and the interval 0 to 1. A table
+        without the dimension `dim`. Without runs the rate is NaN and the interval 0 to 1. A table
         with final poses also gives `distinct`, how many of them differ by more than about 1 mm or
         0.1 degree.
 
         With unknowns, these have the dimension `sample`, and there are `band_low`, `band_median`
         and `band_high` besides: 5 %, 50 % and 95 % of the rates of a cell over the samples. A
-        band holds the chance of few repeats, too: each of its rates has its own interval.
+        band includes the scatter of few repeats: each of its rates has its own interval.
 
         The attributes `varied` and `unknown` name the populations; a rate without them says little.
 
@@ -133,7 +132,7 @@ def rates_of(
     dim: str | Iterable[str] = "repeat",
     *,
     confidence_level: float = 0.95,
-) -> Found:
+) -> FigureDataset:
     """Estimate rates, see `rate`, without a warning."""
     xr = extra("xarray", "analysis")
     wanted = _name(outcome, "outcome", [*Outcome, _STOPPED])
@@ -150,11 +149,11 @@ def rates_of(
     given = dim if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
     dims = [_name(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
     with xr.set_options(keep_attrs=True):  # those of the coordinates
-        made = outcomes.isin([str(each) for each in Outcome])
-        # Over no dimension at all, a sum stays what it was.
-        counts = made.sum(dims).astype(int)
+        valid = outcomes.isin([str(each) for each in Outcome])
+        # Over no dimension at all, a sum leaves booleans.
+        counts = valid.sum(dims).astype(int)
         own, together = _clusters(outcomes, dims)
-        per_cluster = [each.sum(together).astype(int) for each in (outcomes.isin(counted), made)]
+        per_cluster = [each.sum(together).astype(int) for each in (outcomes.isin(counted), valid)]
         intervals = xr.apply_ufunc(
             functools.partial(clustered, confidence=level),
             *per_cluster,
@@ -167,18 +166,18 @@ def rates_of(
             steps = [np.round(runs[name] / step) for name, step in _POSE.items()]
             core = [dims] * (1 + len(steps))
             variables["distinct"] = xr.apply_ufunc(
-                _distinct, made, *steps, input_core_dims=core, vectorize=True
+                _distinct, valid, *steps, input_core_dims=core, vectorize=True
             )
         if _SAMPLE in counts.dims:
-            variables |= banded(variables["rate"])
+            variables |= quantile_band(variables["rate"])
     for name, variable in variables.items():
         if name in counts.coords:
             rule = "must have no other dimension or coordinate of that name: rename it"
             raise ScenarioError("table", name, rule)
-        variable.attrs = {"units": "1", "long_name": _SPOKEN.get(name, f"rate of {wanted}")}
-    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+        variable.attrs = {"units": "1", "long_name": _LONG_NAMES.get(name, f"rate of {wanted}")}
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
-    return Found(
+    return FigureDataset(
         variables,
         attrs={
             "figure": "rates",
@@ -192,7 +191,7 @@ def rates_of(
 
 
 def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Tell the dimensions of clusters from those within them: runs of one draw are one cluster."""
+    """Split dimensions into those of clusters and those within: runs of one draw are a cluster."""
     drawn = [name for name in (_SAMPLE, _REPEAT) if name in outcomes.dims]
     if not drawn:
         return list(dims), []
@@ -200,11 +199,11 @@ def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str
     return own, [name for name in dims if name not in own]
 
 
-def banded(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
+def quantile_band(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
     """Return the band of rates over the samples of the unknowns, without that dimension."""
     band = rates.quantile(list(BAND.values()), _SAMPLE, skipna=True)
     parts = {name: band.sel(quantile=part, drop=True) for name, part in BAND.items()}
-    spoken = {name: {"units": "1", "long_name": _SPOKEN[name]} for name in parts}
+    spoken = {name: {"units": "1", "long_name": _LONG_NAMES[name]} for name in parts}
     return {name: part.assign_attrs(spoken[name]) for name, part in parts.items()}
 
 
@@ -222,9 +221,9 @@ def _warn_of_few(rates: xarray.Dataset) -> None:
     warn("table", found, reason)
 
 
-def _distinct(made: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
+def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
     """Count distinct poses, rounded to whole steps, of the runs with a result."""
-    return len(set(zip(*(each[made].tolist() for each in steps), strict=True)))
+    return len(set(zip(*(each[valid].tolist() for each in steps), strict=True)))
 
 
 def _texts(outcomes: Iterable[Any]) -> list[str]:

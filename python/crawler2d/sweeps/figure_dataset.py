@@ -1,4 +1,4 @@
-"""A data set that draws itself. It needs xarray, and is imported when the first is made."""
+"""A data set with a figure of its own. It needs xarray, and is imported on first use."""
 
 from __future__ import annotations
 
@@ -13,25 +13,24 @@ from crawler2d.pictures import tables
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Found"]
+__all__ = ["FigureDataset"]
 
 
 class _Plot(DatasetPlotAccessor):
-    """What `Found.plot` does when it is called; xarray's own plots are its methods."""
+    """What `FigureDataset.plot` does when it is called; xarray's own plots are its methods."""
 
     # xarray's own refuses to be called.
     def __call__(self, ax: Axes | None = None, **options: Any) -> Axes:  # type: ignore[override]
-        """Draw the figure of this kind of data set; see `Found`."""
-        found = self._ds
-        name = found.attrs.get("figure", "")
+        """Draw the figure of this kind of data set; see `FigureDataset`."""
+        name = self._ds.attrs.get("figure", "")
         if name not in tables.FIGURES:
-            rule = "must be a data set with a figure of its own: use plot.scatter and the like"
+            rule = "must be of a data set with a figure: use plot.scatter and the like"
             raise ScenarioError("plot", name or "none", rule)
-        drawn: Axes = tables.FIGURES[name](found, ax, **options)
-        return drawn
+        axes: Axes = tables.FIGURES[name](self._ds, ax, **options)
+        return axes
 
 
-class Found(xarray.Dataset):  # type: ignore[no-untyped-call] # xarray's subclass hook has no types
+class FigureDataset(xarray.Dataset):  # type: ignore[no-untyped-call] # xarray's subclass hook has no types
     """What `rate` and the studies return: an `xarray.Dataset` whose `plot` draws its figure.
 
     ``found.plot(ax=None)`` takes and returns one matplotlib Axes; None makes a figure. It works on
