@@ -5,12 +5,12 @@ Every function takes a scenario and models, and returns a `FigureDataset`: an xa
 
 - `vary`, `unknown`, `samples`, `seed`, `trials`, `store`, `executor`, `threads`, `progress`: as
   `sweep`;
-- studies of rates take `until`, an `Until`: when a cell has been simulated often enough; studies that
+- studies of rates take `until`, an `Until`: when a cell has been simulated often enough; those that
   measure take `repeats`, the runs of each cell; `search` takes `first` and `confirm`.
 
 Intervals of rates are those of `sequential`, which hold although the number of runs depends on
-their results. Measures (`max_speed`, `acceleration`, `braking_distance`, `ride`, `odometry`) have no
-interval, but a median over the repeats, and the lowest and the highest of them. The attribute
+their results. Measures (`max_speed`, `acceleration`, `braking_distance`, `ride`, `odometry`) have
+no interval, but a median over the repeats, and the lowest and the highest of them. The attribute
 `settings` counts the cells that were tried.
 
 `real_time_factor` measures the machine, and takes only `repeats` and `progress`.

@@ -244,15 +244,16 @@ def _check_fields(given: object, place: str) -> None:
 
 def _sampling(how: Sampling) -> Sampling:
     """Remove what the study commands from the default draws, or refuse to draw it."""
-    drawn = how.get("vary")
-    vary = of_start() | of_contact() if drawn is None else drawn
+    vary = how.get("vary")
+    if vary is None:
+        vary = of_start() | of_contact()
     if isinstance(vary, Ranges):
         vary = vary.without(vary.optional.intersection(_COMMANDED))
     for name, given in (("vary", vary), ("unknown", how.get("unknown"))):
-        for path in given if isinstance(given, Mapping) else ():
+        for path, drawn in given.items() if isinstance(given, Mapping) else ():
             if path in _COMMANDED:
                 rule = "must not draw what the study commands: give models for other speeds"
-                raise ScenarioError(f"{name}[{path!r}]", given[path], rule)
+                raise ScenarioError(f"{name}[{path!r}]", drawn, rule)
     return {**how, "vary": vary}
 
 
