@@ -139,7 +139,7 @@ def test_a_place_where_no_file_can_be_is_refused(tmp_path: Path) -> None:
         quiet(BASE, {}, repeats=1, store=tmp_path / "nowhere" / "a.sqlite")
     with pytest.raises(c2d.ScenarioError, match="must be the path of a file"):
         quiet(BASE, {}, repeats=1, store=7)
-    with pytest.raises(c2d.StoreError, match="is not there"):
+    with pytest.raises(c2d.StoreError, match="does not exist"):
         c2d.table(tmp_path / "none.sqlite")
 
 
@@ -182,7 +182,7 @@ def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:
     change(one, 1, metrics='{"time":0.5}')
     with pytest.raises(c2d.StoreError, match="hold different results of the run"):
         c2d.join_stores(third, one)
-    with pytest.raises(c2d.StoreError, match="is not there"):
+    with pytest.raises(c2d.StoreError, match="does not exist"):
         c2d.join_stores(third, tmp_path / "none.sqlite")
 
 

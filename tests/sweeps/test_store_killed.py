@@ -43,7 +43,7 @@ def test_a_store_killed_while_created_is_opened_again(tmp_path: Path, every: int
         assert c2d.check_store(path) == ()
         if not killed:
             break
-    assert list(dict.fromkeys(found)) == ["is not there", "is empty", "has 0 runs"]
+    assert list(dict.fromkeys(found)) == ["does not exist", "is empty", "has 0 runs"]
     assert len(found) > 100 / every
 
 

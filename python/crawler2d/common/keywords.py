@@ -8,9 +8,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import FunctionType
 from typing import Any, ParamSpec, Self, TypeVar, cast
 
-from crawler2d.errors import ArgumentError
+from crawler2d.errors import ArgumentError, ScenarioError
 
-__all__ = ["TakesKeywords", "limits_hint", "refuse_unknown", "suggestion", "takes_keywords"]
+__all__ = [
+    "TakesKeywords",
+    "limits_hint",
+    "read_choice",
+    "refuse_unknown",
+    "suggestion",
+    "takes_keywords",
+]
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -66,6 +73,20 @@ def suggestion(name: str, names: Iterable[str], paths: Iterable[str] = ()) -> st
         if not meant and limits_hint(name):
             return limits_hint(name)
     return f" (did you mean {' or '.join(meant[:_MOST])}?)" if meant else ""
+
+
+def read_choice(value: object, path: str, names: Sequence[str]) -> str:
+    """Return a name from a list.
+
+    Raises
+    ------
+    ScenarioError
+        If it is not in the list; the message suggests the nearest.
+    """
+    if isinstance(value, str) and value in names:
+        return str(value)
+    hint = suggestion(str(value), names)
+    raise ScenarioError(path, value, f"must be one of {', '.join(names)}{hint}")
 
 
 def refuse_unknown(

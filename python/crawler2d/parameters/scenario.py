@@ -19,7 +19,7 @@ from crawler2d.parameters.terrain import Terrain
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Scenario"]
+__all__ = ["Scenario", "check_scenario"]
 
 _LONGEST = 120
 """Characters of a terrain in a notebook: one of points may have thousands."""
@@ -200,6 +200,13 @@ class Scenario(ScenarioBase):
             return scenario_card(self.to_json(), self._in_words(), terrain)
         except Exception:  # the display of a scenario must never fail
             return None
+
+
+def check_scenario(scenario: object) -> Scenario:
+    """Refuse anything but a scenario, as the argument of that name."""
+    if not isinstance(scenario, Scenario):
+        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    return scenario
 
 
 def _leaves_mass_of_arms(before: Robot, after: Robot) -> bool:

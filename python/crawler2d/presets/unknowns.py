@@ -1,7 +1,7 @@
-"""What is not known of a robot and its floor, for `unknown` of a sweep.
+"""Ranges of what is not known of a robot and its floor, for `unknown` of a sweep.
 
-It is the same in every run, so it is sampled in an outer loop: each sample is a robot on a floor as
-they may be, and has a rate of its own.
+It is the same in every run, so it is sampled in an outer loop: each sample is a possible robot on a
+possible floor, and has a rate of its own.
 
 >>> import crawler2d as c2d
 >>> robot = c2d.robots.engineer(flippers=None)
@@ -26,14 +26,7 @@ from crawler2d.variation.distributions import (
 )
 
 __all__ = [
-    "BELLY",
-    "GENERAL",
-    "OF_ARMS",
-    "RANGES",
-    "ROTOR",
-    "ROTOR_OF_ARM",
     "RUN_UP",
-    "Range",
     "of_blows",
     "of_ground",
     "of_robot",
@@ -135,12 +128,12 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
 
 
 def of_blows(robot: Robot) -> Ranges:
-    """List what is not known of a blow on the ground: how much of it contacts give back.
+    """List what is not known of impacts on the ground: the restitution of contacts.
 
     Parameters
     ----------
     robot : Robot
-        Of a robot on chains there is nothing: those give nothing back.
+        A robot on chains has none: their contacts give nothing back.
 
     Examples
     --------
@@ -148,10 +141,10 @@ def of_blows(robot: Robot) -> Ranges:
     >>> dict(of_blows(c2d.robots.engineer()))
     {'solver.restitution': Uniform(low=0.0, high=1.0)}
     """
-    path, source = "solver.restitution", "between nothing and all, which no model of a robot states"
     if isinstance(robot.track, SegmentalTrack):
         return Ranges({})
-    return Ranges({path: uniform(0.0, 1.0)}, {path: source})
+    source = "between nothing and all, which no model of a robot states"
+    return Ranges.with_sources({"solver.restitution": (uniform(0.0, 1.0), source)})
 
 
 def of_robot(robot: Robot) -> Ranges:
@@ -176,7 +169,7 @@ def of_robot(robot: Robot) -> Ranges:
     Raises
     ------
     ScenarioError
-        If it is no Robot, or breaks a rule.
+        If it is not a Robot, or breaks a rule.
 
     Examples
     --------
@@ -218,11 +211,11 @@ def of_ground() -> Ranges:
         "public models of tracked robots: 0.5 (absolem.sdf:1018), 0.7"
         " (tracked_vehicle_simple.sdf:121), 1 (marv.sdf:649)"
     )
-    return Ranges({"terrain.friction": uniform(0.5, 1.0)}, {"terrain.friction": source})
+    return Ranges.with_sources({"terrain.friction": (uniform(0.5, 1.0), source)})
 
 
 def _rotors(robot: Robot) -> dict[str, Range]:
-    """Estimate the inertia of rotors that the robot does not state, if their motors have torque."""
+    """Estimate the inertia of rotors that a robot does not state, if their motors have torque."""
     robot.wheels()  # refuses a robot that breaks a rule
     drive, arms = robot.drivetrain, robot.flippers
     ratios = {}

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from crawler2d import _core
-from crawler2d.common.keywords import refuse_unknown, takes_keywords
+from crawler2d.common.keywords import read_choice, refuse_unknown, takes_keywords
 from crawler2d.errors import RunUnfinished, ScenarioError, own_error, raise_first
 from crawler2d.parameters.fields import field_hints, known_paths
 from crawler2d.parameters.robot import Robot
@@ -164,8 +164,7 @@ def simulate_many(
     >>> [str(run.outcome) for run in runs]
     ['cleared', 'tipped_over']
     """
-    if on_error not in ("raise", "record"):
-        raise ScenarioError("on_error", on_error, "must be one of raise, record")
+    read_choice(on_error, "on_error", ("raise", "record"))
     kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
     count = thread_count(threads)
     batch = list(scenarios)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, Self, TypeV
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
+from crawler2d.common.keywords import read_choice
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import ClosedTrack
@@ -30,7 +31,6 @@ __all__ = [
     "branch_scenario",
     "branch_time",
     "check_recording",
-    "escape_force_at",
     "read_push",
     "refuse_without_result",
     "run_of_trial",
@@ -46,9 +46,8 @@ RecordMode = Literal["full", "summary"]
 
 def check_recording(sample_interval: object, record: object) -> tuple[float, str]:
     """Check the arguments that select what to keep of a run."""
-    if record not in ("full", "summary"):
-        raise ScenarioError("record", record, "must be one of full, summary")
-    return real_number(sample_interval, "sample_interval"), str(record)
+    mode = read_choice(record, "record", ("full", "summary"))
+    return real_number(sample_interval, "sample_interval"), mode
 
 
 Trials = Literal["auto", "all"] | Sequence[str] | None
@@ -67,14 +66,7 @@ def trial_names(trials: Trials) -> tuple[str, ...]:
     if isinstance(trials, str) or not isinstance(trials, Sequence):
         rule = 'must be "auto", "all", None or a sequence of names'
         raise ScenarioError("trials", trials, rule)
-    return tuple(_trial_name(name, "trials") for name in trials)
-
-
-def _trial_name(name: object, path: str) -> str:
-    if name not in _ALL:
-        names = ", ".join(f'"{known}"' for known in _ALL)
-        raise ScenarioError(path, name, f"must be one of {names}")
-    return str(name)
+    return tuple(read_choice(name, "trials", _ALL) for name in trials)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -141,7 +133,7 @@ def trials_at(run: Record, time: float, names: tuple[str, ...]) -> tuple[TrialRe
 
 def trial_at(run: Record, time: float, name: str) -> TrialResult:
     """Make one trial at a stop."""
-    results = trials_at(run, time, (_trial_name(name, "name"),))
+    results = trials_at(run, time, (read_choice(name, "name", _ALL),))
     if not results:
         raise ScenarioError("name", name, "must be a trial that changes something on the robot")
     return results[0]
@@ -164,11 +156,6 @@ def try_variant(
     if result is None:
         raise ScenarioError("run", run, "must have stopped")
     return TrialResult.from_core(result)
-
-
-def escape_force_at(run: Record, time: float) -> EscapeForce:
-    """Measure the push that moves the robot on from a stop."""
-    return EscapeForce(*_core.escape_force(run.scenario.to_json(), time))
 
 
 def refuse_without_result(run: Record) -> None:

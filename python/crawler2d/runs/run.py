@@ -19,7 +19,6 @@ from crawler2d.runs.branch import (
     RecordMode,
     Trial,
     check_recording,
-    escape_force_at,
     run_of_trial,
     trial_at,
     trial_names,
@@ -331,7 +330,8 @@ class Run(Record):
         ScenarioError
             If the run did not end in a stop, or is a branch itself.
         """
-        return escape_force_at(self, branching.branch_time(self, "stop"))
+        time = branching.branch_time(self, "stop")
+        return EscapeForce(*_core.escape_force(self.scenario.to_json(), time))
 
     def tip_over(self) -> TipOver:
         """Say how the robot tipped over, and try what would have kept it upright.

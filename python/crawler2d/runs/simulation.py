@@ -9,7 +9,7 @@ from crawler2d import _core
 from crawler2d.common.arrays import Table, freeze_array, real_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.outcome import Outcome
 
@@ -87,9 +87,7 @@ class Simulation(TakesKeywords):
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        if not isinstance(scenario, Scenario):
-            raise ScenarioError("scenario", scenario, "must be a Scenario")
-        self.scenario = scenario
+        self.scenario = check_scenario(scenario)
         self._core = _core.Simulation(scenario.to_json())
 
     @property

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 
 from crawler2d.common.arrays import whole_number
+from crawler2d.common.keywords import read_choice
 from crawler2d.errors import ScenarioError, raise_first
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import Row
 from crawler2d.runs.branch import Trials, trial_names
@@ -182,9 +183,7 @@ def counting(outcome: str) -> Counts:
     ScenarioError
         If there is no such outcome.
     """
-    names = [*map(str, Outcome), "stopped"]
-    if outcome not in names:
-        raise ScenarioError("outcome", outcome, f"must be one of {', '.join(names)}")
+    read_choice(outcome, "outcome", [*map(str, Outcome), "stopped"])
     stops = {str(each) for each in Outcome if each.is_stop}
     counted = stops if outcome == "stopped" else {outcome}
     return lambda row: row.outcome in counted
@@ -404,9 +403,7 @@ def campaign(
     BatchInterrupted
         On Ctrl-C; a store keeps what was finished.
     """
-    if not isinstance(base, Scenario):
-        raise ScenarioError("scenario", base, "must be a Scenario")
-    base.validate()
+    check_scenario(base).validate()
     if repeats is None:
         until = Until(threshold=threshold)
     else:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.figure_dataset import FigureDataset
 
-__all__ = ["ModelResult", "decision_table", "what_decides"]
+__all__ = ["what_decides"]
 
 _LONG_NAMES = {
     "first": "first-order index",

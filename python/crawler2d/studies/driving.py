@@ -12,7 +12,7 @@ from crawler2d.common.arrays import real_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_path
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.studies.campaign import Sampling, campaign
 from crawler2d.studies.steady import Halt, RunUp, drive, on_plane
 from crawler2d.studies.tables import Dims, Measure, Models, measure_table, read_models
@@ -30,11 +30,9 @@ __all__ = [
     "UNCHANGED",
     "Change",
     "Figure",
-    "Request",
     "acceleration",
     "braking_distance",
     "limiting_changes",
-    "limiting_study",
     "max_speed",
 ]
 
@@ -161,29 +159,25 @@ class Figure:
     halts: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """The arguments of a study: models, commanded speed [m/s] and number of repeats."""
-
-    models: Models | None
-    speed: float | None
-    repeats: int
-
-
-def limiting_study(
-    figure: Figure, scenario: Scenario, asked: Request, how: Sampling
+def _limiting_study(
+    figure: Figure,
+    scenario: Scenario,
+    how: Sampling,
+    *,
+    models: Models | None,
+    speed: float | None,
+    repeats: int,
 ) -> FigureDataset:
     """Drive every model as it is and with each change, and arrange the results."""
-    if not isinstance(scenario, Scenario):
-        raise ScenarioError("scenario", scenario, "must be a Scenario")
-    given = None if asked.speed is None else real_number(asked.speed, "speed")
+    check_scenario(scenario)
+    given = None if speed is None else real_number(speed, "speed")
     if given is not None and not given > 0.0:
         raise ScenarioError("speed", given, "must be above 0")
-    fields = read_models(scenario, asked.models)
+    fields = read_models(scenario, models)
     for label, own in fields.items():
         _check_fields(own, f"models[{label!r}]")
     changes = (UNCHANGED, figure.command, TORQUE, FRICTION)
-    with campaign(on_plane(scenario, given), _sampling(how), repeats=asked.repeats) as study:
+    with campaign(on_plane(scenario, given), _sampling(how), repeats=repeats) as study:
         run_ups = [
             RunUp(
                 (f"model={label}", f"change={change.label}"),
@@ -324,7 +318,7 @@ def max_speed(
     >>> found["speed"].values.round(3).tolist(), found["limit"].values.tolist()
     ([1.39], ['command'])
     """
-    return limiting_study(_MAX_SPEED, scenario, Request(models, speed, repeats), how)
+    return _limiting_study(_MAX_SPEED, scenario, how, models=models, speed=speed, repeats=repeats)
 
 
 @takes_keywords
@@ -368,7 +362,9 @@ def acceleration(
     >>> found["limit"].values.tolist()
     ['command', 'torque']
     """
-    return limiting_study(_ACCELERATION, scenario, Request(models, speed, repeats), how)
+    return _limiting_study(
+        _ACCELERATION, scenario, how, models=models, speed=speed, repeats=repeats
+    )
 
 
 @takes_keywords
@@ -412,7 +408,7 @@ def braking_distance(
     >>> found["limit"].item()
     'command'
     """
-    return limiting_study(_BRAKING, scenario, Request(models, speed, repeats), how)
+    return _limiting_study(_BRAKING, scenario, how, models=models, speed=speed, repeats=repeats)
 
 
 def _speed(run_up: RunUp, _halt: Halt | None) -> NDArray[np.float64]:

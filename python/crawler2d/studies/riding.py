@@ -14,7 +14,7 @@ from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.results.record import Row
 from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, reporter
@@ -306,8 +306,7 @@ def real_time_factor(
     for name, value in others.items():
         rule = "must not be given: the time of this processor is measured, now, on one thread"
         raise ScenarioError(name, value, rule)
-    if not isinstance(scenario, Scenario):
-        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    check_scenario(scenario)
     span = real_number(duration, "duration")
     if not 0.0 < span <= 1000.0:
         raise ScenarioError("duration", span, "must be above 0 and at most 1000 s")

@@ -12,7 +12,7 @@ from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, raise_first
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.studies.campaign import Campaign, Sampling, Tally, campaign
 from crawler2d.studies.candidates import (
@@ -142,8 +142,7 @@ def search(
     if objective is not None and not callable(objective):
         raise ScenarioError("objective", objective, "must be a callable that takes a Scenario")
     fresh = whole_number(confirm, "confirm", 1, 10**6)
-    if not isinstance(scenario, Scenario):
-        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    check_scenario(scenario)
     grounds = read_terrains(scenario, terrains)
     fields = _fields(space)
     swept = ["terrain", *paths_of(fields)]

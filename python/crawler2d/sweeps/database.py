@@ -23,7 +23,6 @@ __all__ = [
     "COLUMNS",
     "INSERT",
     "Kept",
-    "Lock",
     "OtherBuild",
     "Place",
     "find_damage",

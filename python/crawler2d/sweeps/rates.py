@@ -11,7 +11,7 @@ import numpy as np
 
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
-from crawler2d.common.keywords import takes_keywords
+from crawler2d.common.keywords import read_choice, takes_keywords
 from crawler2d.errors import ScenarioError, warn
 from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.statistics import clustered
@@ -135,19 +135,19 @@ def rates_of(
 ) -> FigureDataset:
     """Estimate rates, see `rate`, without a warning."""
     xr = extra("xarray", "analysis")
-    wanted = _name(outcome, "outcome", [*Outcome, _STOPPED])
+    wanted = read_choice(outcome, "outcome", [*Outcome, _STOPPED])
     level = real_number(confidence_level, "confidence_level")
     if not 0.0 < level < 1.0:
         raise ScenarioError("confidence_level", level, "must be > 0 and < 1")
     counted = [str(each) for each in Outcome if each.is_stop] if wanted == _STOPPED else [wanted]
     if isinstance(table, xr.Dataset):
         runs = table
-        _name("outcome", "table", [str(name) for name in runs.data_vars])
+        read_choice("outcome", "table", [str(name) for name in runs.data_vars])
     else:
         runs = xr.Dataset({"outcome": ("repeat", np.array(_texts(table), dtype=str))})
     outcomes = runs["outcome"]
     given = dim if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
-    dims = [_name(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
+    dims = [read_choice(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
     with xr.set_options(keep_attrs=True):  # those of the coordinates
         valid = outcomes.isin([str(each) for each in Outcome])
         # Over no dimension at all, a sum leaves booleans.
@@ -229,17 +229,6 @@ def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
 def _texts(outcomes: Iterable[Any]) -> list[str]:
     names = list(Outcome)
     return [
-        "" if outcome is None else _name(outcome, f"outcomes[{index}]", names)
+        "" if outcome is None else read_choice(outcome, f"outcomes[{index}]", names)
         for index, outcome in enumerate(outcomes)
     ]
-
-
-def _name(value: object, path: str, names: Sequence[str]) -> str:
-    """Return a name from a list, or raise and suggest the nearest."""
-    if isinstance(value, str) and value in names:
-        return str(value)
-    import difflib  # noqa: PLC0415 - only a failure needs it
-
-    nearest = difflib.get_close_matches(str(value), names, n=1)
-    hint = f" (did you mean {nearest[0]}?)" if nearest else ""
-    raise ScenarioError(path, value, f"must be one of {', '.join(names)}{hint}")

@@ -30,7 +30,7 @@ from crawler2d.sweeps.database import (
     store_errors,
 )
 
-__all__ = ["Damage", "Store", "check_store", "join_stores", "stored_rows"]
+__all__ = ["Store", "check_store", "join_stores", "stored_rows"]
 
 # SQLite takes so many values in one query, in every version.
 _AT_ONCE = 500

@@ -13,9 +13,10 @@ import numpy as np
 from crawler2d._core import Passed
 from crawler2d.common.arrays import read_bool, whole_number
 from crawler2d.common.extras import extra
+from crawler2d.common.keywords import read_choice
 from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError, raise_first
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.results.record import Row
 from crawler2d.runs.branch import Trials, trial_names
 from crawler2d.runs.dataset import build_attributes
@@ -175,8 +176,7 @@ class Tabulation:
         wall_time: bool = False,
     ) -> None:
         extra("xarray", "analysis")  # fail before the runs if it is missing
-        if not isinstance(scenario, Scenario):
-            raise ScenarioError("scenario", scenario, "must be a Scenario")
+        check_scenario(scenario)
         if executor is not None and not isinstance(executor, Executor):
             raise ScenarioError("executor", executor, "must be a concurrent.futures.Executor")
         self._with_times = read_bool(wall_time, "wall_time")
@@ -255,8 +255,7 @@ def tabulate(
     **options: Any,
 ) -> xarray.Dataset:
     """Run a sweep over the given axes; see `sweep` and `Tabulation`."""
-    if on_error not in ("raise", "record"):
-        raise ScenarioError("on_error", on_error, "must be one of raise, record")
+    read_choice(on_error, "on_error", ("raise", "record"))
     planned = Tabulation(scenario, axes, **options)
     if on_error == "raise":
         raise_first(planned.checked)

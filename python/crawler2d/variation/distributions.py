@@ -26,7 +26,6 @@ __all__ = [
     "LogUniform",
     "Ranges",
     "Scaled",
-    "SciPyDistribution",
     "Shifted",
     "Uniform",
     "UniformInt",
@@ -404,10 +403,13 @@ class Ranges(Mapping[str, Distribution]):
         self.optional = frozenset(optional)
 
     @classmethod
-    def with_sources(cls, ranges: Mapping[str, tuple[Distribution, str]]) -> Ranges:
-        """Make ranges of pairs of a distribution and its source."""
+    def with_sources(
+        cls, ranges: Mapping[str, tuple[Distribution, str]], *, optional: bool = False
+    ) -> Ranges:
+        """Make ranges of pairs of a distribution and its source; all paths may be optional."""
         sources = {path: source for path, (_, source) in ranges.items()}
-        return cls({path: distribution for path, (distribution, _) in ranges.items()}, sources)
+        distributions = {path: distribution for path, (distribution, _) in ranges.items()}
+        return cls(distributions, sources, distributions if optional else ())
 
     def without(self, paths: Collection[str]) -> Ranges:
         """Leave out some paths, of which it need not have all."""

@@ -1,4 +1,4 @@
-"""What differs from run to run of the same robot on the same ground, for `vary` of a sweep.
+"""Ranges of what differs between runs of one robot on one ground, for `vary` of a sweep.
 
 A rate over it is how often the robot would get over if it tried again and again.
 
@@ -35,15 +35,12 @@ def of_start() -> Ranges:
     >>> list(of_start())
     ['start.approach', 'start.track_phase']
     """
-    found = {
-        "start.approach": shifted(-0.125, 0.125, of="robot.outline.axle_distance", least=0.0),
-        "start.track_phase": shifted(0.0, 1.0, of="robot.outline.grouser_pitch"),
-    }
-    sources = {
-        "start.approach": "a quarter of the axle distance: the wheel spacing of a line of five",
-        "start.track_phase": "one grouser pitch, after which the track looks the same",
-    }
-    return Ranges(found, sources, found)
+    approach = shifted(-0.125, 0.125, of="robot.outline.axle_distance", least=0.0)
+    spacing = "a quarter of the axle distance: the wheel spacing of a line of five"
+    phase = shifted(0.0, 1.0, of="robot.outline.grouser_pitch")
+    pitch = "one grouser pitch, after which the track looks the same"
+    ranges = {"start.approach": (approach, spacing), "start.track_phase": (phase, pitch)}
+    return Ranges.with_sources(ranges, optional=True)
 
 
 def of_contact() -> Ranges:
@@ -60,12 +57,11 @@ def of_contact() -> Ranges:
     >>> list(of_contact())
     ['drive.speed', 'terrain.friction']
     """
-    found = {"drive.speed": scaled(0.98, 1.02), "terrain.friction": scaled(0.98, 1.02)}
-    sources = {
-        "drive.speed": "estimate: how well a controller holds a speed",
-        "terrain.friction": "estimate: patches of one floor",
+    ranges = {
+        "drive.speed": (scaled(0.98, 1.02), "estimate: how well a controller holds a speed"),
+        "terrain.friction": (scaled(0.98, 1.02), "estimate: patches of one floor"),
     }
-    return Ranges(found, sources, found)
+    return Ranges.with_sources(ranges, optional=True)
 
 
 def of_field() -> Ranges:
@@ -81,6 +77,5 @@ def of_field() -> Ranges:
     >>> list(of_field())
     ['terrain.seed']
     """
-    sources = {"terrain.seed": "any field of the same measures"}
-    found = {"terrain.seed": uniform_int(0, 2**31 - 1)}
-    return Ranges(found, sources, found)
+    seeds = uniform_int(0, 2**31 - 1), "any field of the same measures"
+    return Ranges.with_sources({"terrain.seed": seeds}, optional=True)

@@ -6,10 +6,9 @@ audit has something to find.
 
 from __future__ import annotations
 
-import difflib
 from pathlib import Path
 
-from crawler2d.errors import ScenarioError
+from crawler2d.common.keywords import read_choice
 
 __all__ = ["names", "path"]
 
@@ -38,7 +37,7 @@ def path(name: str = "rover.sdf") -> Path:
     Raises
     ------
     ScenarioError
-        If there is none of that name; it has the nearest.
+        If there is none of that name; the message suggests the nearest.
 
     Examples
     --------
@@ -46,8 +45,4 @@ def path(name: str = "rover.sdf") -> Path:
     >>> c2d.read_robot(path("rover.urdf")).robot.in_words
     'rover: 5 round wheels in a line'
     """
-    if name not in _NAMES:
-        nearest = difflib.get_close_matches(str(name), _NAMES, n=1, cutoff=0.0)[0]
-        rule = f"must be one of {', '.join(_NAMES)} (did you mean {nearest}?)"
-        raise ScenarioError("name", name, rule)
-    return Path(__file__).with_name(name)
+    return Path(__file__).with_name(read_choice(name, "name", _NAMES))
