@@ -98,8 +98,8 @@ def test_a_limit_is_what_improves_the_median_by_more_than_chance(
 ) -> None:
     values = np.array([before, torque, friction])[None, :, None, :]
     changes = (UNCHANGED, TORQUE, FRICTION)
-    assert limiting_changes(values, changes, share=0.02, least=0.01).tolist() == [[expected]]
-    assert limiting_changes(-values, changes, share=0.02, least=0.01, falls=True).tolist() == [
+    assert limiting_changes(values, changes, fraction=0.02, least=0.01).tolist() == [[expected]]
+    assert limiting_changes(-values, changes, fraction=0.02, least=0.01, falls=True).tolist() == [
         [expected]
     ]
 

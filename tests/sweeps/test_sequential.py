@@ -327,10 +327,7 @@ def test_every_rate_reaches_the_default_width_within_the_default_most() -> None:
 @pytest.mark.parametrize(
     ("field", "value", "rule"),
     [
-        *(
-            ("width", value, "must be above 0 and at most 1")
-            for value in (0.0, -0.1, 1.001, math.nan)
-        ),
+        *(("width", value, "must be > 0 and at most 1") for value in (0.0, -0.1, 1.001, math.nan)),
         *(("width", value, "must be a number") for value in ("0.2", None, True)),
         *(("threshold", value, "must be between 0 and 1") for value in (0.0, 1, 50.0, math.nan)),
         ("threshold", "0.5", "must be a number"),

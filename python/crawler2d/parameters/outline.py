@@ -147,7 +147,7 @@ def _disc_pair(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
     for name in TrackOutline.property_fields:
         path = f"robot.outline.{name}"
         if name not in values:
-            raise ScenarioError(path, None, "must be given; or give discs instead")
+            raise ScenarioError(path, None, "must be given unless discs are")
         numbers[name] = real_number(values[name], path)
     if not numbers["axle_distance"] > 0.0:  # two discs do not show it
         raise ScenarioError(

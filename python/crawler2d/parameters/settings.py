@@ -159,7 +159,7 @@ class Solver(Parameters, path="solver"):
         [m] Gap up to which contacts are searched for, at least; in a fast or long step, as far as
         the robot moves in it.
     restitution : float
-        [-] Share of the impulses of a blow that contacts give back, 0 to 1 (Poisson's hypothesis,
+        [-] Fraction of the impulses of a blow that contacts return, 0 to 1 (Poisson's hypothesis,
         for normal and friction impulses alike). With 0, the default, a blow against edges that
         jam each other stops the robot at once; with 1 contacts give all of it back, as springs
         without dampers would. Where an outcome differs between the two, it hangs on what blows
@@ -205,7 +205,7 @@ class SeizureCriteria(Parameters, path="criteria"):
     stop_pitches : float
         [-] Grouser pitches at the commanded speed that must pass without progress.
     stop_progress : float
-        [-] Share of the commanded distance below which there is no progress.
+        [-] Fraction of the commanded distance below which there is no progress.
     stationary_distance : float
         [m] Largest change of pose that still counts as stationary.
     stationary_windows : int
@@ -221,24 +221,24 @@ class SeizureCriteria(Parameters, path="criteria"):
         The default is more than round wheels and belts sink in when they strike an edge (0.2 mm).
         With 0, the ground that the robot rests on joins the pieces under it.
     intrusion_load : float
-        [-] Share of the weight from which an intrusion counts as loaded; less is a passing touch.
+        [-] Fraction of the weight above which an intrusion counts as loaded.
     belly_load : float
-        [-] Share of the weight on the belly from which a stop without a seizure is a hang-up. The
+        [-] Fraction of the weight on the belly that makes a stop without a seizure a hang-up. The
         default exceeds the usual uncertainty of the friction coefficient.
     sliding_speed : float
-        [-] Share of the commanded speed from which a surface slides, or a drive turns. A contact
+        [-] Fraction of the commanded speed from which a surface slides, or a drive turns. A contact
         that sticks creeps in the solver by a thousandth of that.
     torque_limit : float
-        [-] Share of the torque limit from which a motor counts as at its limit, on average.
+        [-] Fraction of the torque limit from which a motor counts as at its limit, on average.
     cycling_distance : float
         [m] A robot that moves to and fro by this much within a stop window is cycling: more than
         the rattle of jammed grousers, less than the spacing of any wheels.
     imbalance : float
-        [-] Share of the weight that may stay unbalanced in the equilibrium of a stationary state.
+        [-] Fraction of the weight that may be unbalanced in the equilibrium of a stationary state.
     mean_imbalance : float
         [-] The same for the mean forces of a state that keeps rattling.
     creep_from, creep_to : float
-        [-] Shares of the commanded distance between which the robot counts as creeping.
+        [-] Fractions of the commanded distance between which the robot counts as creeping.
     escape_distance : float
         [m] Advance that counts as escaping from a stop.
     escape_time : float

@@ -28,8 +28,8 @@ _NAMES = {
     BodyKind.ROLLER: "a return roller",
 }
 """Names of the bodies that are not wheels."""
-_LEAST_SHARE = 0.02
-"""[-] Smaller shares are left out."""
+_LEAST_FRACTION = 0.02
+"""[-] Smaller fractions are left out."""
 _LEAST_DEPTH = 5e-4
 """[m] Smaller depths round to 0 mm."""
 _LEAST_SLIP = 5e-3
@@ -229,7 +229,7 @@ def _bearers(d: Findings) -> str:
         forces[int(body)] += float(force)
         sliding[int(body)] += float(force) * bool(slides)
     bearers = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
-    bearers = [body for body in bearers if forces[body] >= _LEAST_SHARE * sum(forces.values())]
+    bearers = [body for body in bearers if forces[body] >= _LEAST_FRACTION * sum(forces.values())]
     names = [body_name(d, body) for body in bearers]
     if len(names) == 2 and names[0] == names[1]:
         names[1] = "another"
@@ -259,7 +259,7 @@ def body_name(d: Findings, body: int) -> str:
 
 
 def _belly(d: Findings) -> str:
-    if d.belly_share < _LEAST_SHARE:
+    if d.belly_share < _LEAST_FRACTION:
         return ""
     side = d.belly_side
     part = f"the {side}" if side in ("tail", "nose") else "the belly"
@@ -288,7 +288,7 @@ def _drives(d: Findings) -> str:
 
 
 def _progress(d: Findings) -> str:
-    if d.progress < _LEAST_SHARE:
+    if d.progress < _LEAST_FRACTION:
         return ""
     return f"it still creeps at {_percent(d.progress)} of the commanded speed"
 
@@ -303,8 +303,8 @@ def _balance(d: Findings) -> str:
     return f"no contact forces balance it: {residual}"
 
 
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %"
+def _percent(fraction: float) -> str:
+    return f"{100 * fraction:.0f} %"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -351,17 +351,17 @@ class Diagnosis(Findings):
         The contacts that bear: the columns of `Run.contacts` without `time` and `penetration`, plus
         `slides` and `in_pocket`.
     belly_share : float
-        [-] Share of the load that the belly carries.
+        [-] Fraction of the load that the belly carries.
     sliding_share : float
-        [-] Share of the normal force that is at contacts sliding at their friction limit.
+        [-] Fraction of the normal force that is at contacts sliding at their friction limit.
     stalled_share : float
-        [-] Share of the motors with ground contact that are at their torque limit.
+        [-] Fraction of the motors with ground contact that are at their torque limit.
     progress : float
-        [-] Share of the commanded distance made in the last stop window.
+        [-] Fraction of the commanded distance made in the last stop window.
     stationary : bool
         The pose did not change.
     imbalance : float or None
-        [-] Smallest residual force that any choice of contact forces leaves, as a share of the
+        [-] Smallest residual force that any choice of contact forces leaves, as a fraction of the
         weight.
     certified : bool
         The imbalance is within `criteria`: the pose may be an equilibrium.

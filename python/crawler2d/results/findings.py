@@ -58,7 +58,7 @@ class Intrusion:
     x, y : float
         [m] The deepest point.
     force : float
-        [N] Mean normal force of the track on the piece; what the belly rests on jams nothing.
+        [N] Mean normal force of the track on the piece; the belly jams nothing.
     """
 
     edge: int
@@ -234,7 +234,7 @@ class Balance:
     Attributes
     ----------
     imbalance : float
-        [-] Smallest residual force that any choice of forces leaves, as a share of the weight.
+        [-] Smallest residual force that any choice of forces leaves, as a fraction of the weight.
     tolerance : float
         [-] Largest imbalance of an equilibrium: `criteria.imbalance`, or `criteria.mean_imbalance`
         for a robot that does not stand still.

@@ -95,12 +95,12 @@ def find_tip_over(scenario: Scenario, *, try_changes: bool) -> TipOver | None:
 
 def _try_changes(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, Outcome]]:
     """Yield each change, and how the run then ends."""
-    for change, share in _SLOWER.items():
-        yield change, _outcome(_slower(scenario, share))
+    for change, fraction in _SLOWER.items():
+        yield change, _outcome(_slower(scenario, fraction))
     length = scenario.robot.outline.axle_distance
     x = scenario.robot.center_of_mass[0]
-    for share in _SHIFTS:
-        shift = share * length * (1.0 if backwards else -1.0)
+    for fraction in _SHIFTS:
+        shift = fraction * length * (1.0 if backwards else -1.0)
         end = _outcome(scenario.replace({"robot.center_of_mass[0]": x + shift}))
         direction = "forward" if backwards else "back"
         yield f"centre of mass {1e3 * abs(shift):.0f} mm further {direction}", end
@@ -108,15 +108,17 @@ def _try_changes(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, 
             return
 
 
-def _slower(scenario: Scenario, share: float) -> Scenario:
+def _slower(scenario: Scenario, fraction: float) -> Scenario:
     """Drive the same way in more time."""
     drive = scenario.drive
     changes: dict[str, Any] = {
-        "drive.speed": share * drive.speed,
-        "duration": scenario.duration / share,
+        "drive.speed": fraction * drive.speed,
+        "duration": scenario.duration / fraction,
     }
     if drive.schedule is not None:
-        changes["drive.schedule"] = [(t / share, share * speed) for t, speed in drive.schedule]
+        changes["drive.schedule"] = [
+            (t / fraction, fraction * speed) for t, speed in drive.schedule
+        ]
     return scenario.replace(changes)
 
 

@@ -159,7 +159,7 @@ class CrossCheck(Generic[R]):
     run, other : Run
         The run, and that in the other engine, both with their histories.
     same_outcome : bool
-        Whether both ended alike. "seized" rests on trials, which crawler2d's own dynamics make in
+        Whether both ended alike. "seized" depends on trials, which crawler2d's own dynamics make in
         both; see docs/decisions/0016.
     distance : float
         [m] From the pose in which `run` ended to that of `other`.

@@ -148,7 +148,7 @@ def _bar(total: int, begun: int, unit: str) -> Iterator[Progress]:
 
 
 def _in_a_notebook() -> bool:
-    """Whether this code runs in a kernel, not only beside imported parts of one."""
+    """Whether this code runs in a kernel, not only next to imported parts of one."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return hasattr(shell, "kernel")

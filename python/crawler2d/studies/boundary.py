@@ -75,7 +75,7 @@ def critical(
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        What all runs fraction.
     path : str
         Of a number, such as ``terrain.friction``.
     between : tuple of 2 floats
@@ -124,7 +124,7 @@ def critical(
         raise ScenarioError("between", (low, high), "must be two numbers, the smaller first")
     width = (high - low) / 100.0 if tolerance is None else real_number(tolerance, "tolerance")
     if not width > 0.0:
-        raise ScenarioError("tolerance", width, "must be above 0")
+        raise ScenarioError("tolerance", width, "must be > 0")
     count = whole_number(points, "points", 2, 1000)
     read_number_path(scenario, path, "path")
     fields = read_models(scenario, models)
@@ -143,8 +143,8 @@ def critical(
         empty = [Tally(some.world, some.until, some.counts)] * samples
         tallies = [line.tallies.get(value, empty) for line in lines for value in values]
         dims = {"model": (list(fields), {}), name: (values, field_attributes([path]))}
-        found = rate_table(study, "critical", tallies, dims)
-    return _with_crossings(found, lines)
+        table = rate_table(study, "critical", tallies, dims)
+    return _with_crossings(table, lines)
 
 
 class Crossing(NamedTuple):
@@ -238,15 +238,15 @@ def _with_value(base: Scenario, path: str, value: float) -> Scenario:
     return base.replace({path: value})
 
 
-def _with_crossings(found: FigureDataset, lines: Sequence[Line]) -> FigureDataset:
+def _with_crossings(table: FigureDataset, lines: Sequence[Line]) -> FigureDataset:
     crossings = [[line.crossing(sample) for sample in range(line.samples)] for line in lines]
-    dims = ("model", "sample") if "sample" in found["rate"].dims else ("model",)
-    shape = [found.sizes[dim] for dim in dims]
+    dims = ("model", "sample") if "sample" in table["rate"].dims else ("model",)
+    shape = [table.sizes[dim] for dim in dims]
     columns: Mapping[str, Any] = {
         name: np.array([[getattr(each, name) for each in row] for row in crossings])
         for name in Crossing._fields
     }
-    return found.assign(
+    return table.assign(
         {
             name: (dims, values.reshape(shape), {"long_name": LONG_NAMES[name]})
             for name, values in columns.items()
@@ -264,7 +264,7 @@ _TAIL = 0.01
 """[-] Of an unbounded distribution, how much of each end is left out of its range."""
 
 _NARROW = 0.01
-"""[-] Width of a bracket, as a share of the range."""
+"""[-] Width of a bracket, as a fraction of the range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,7 +289,7 @@ class Range:
 
     @property
     def first(self) -> tuple[float, float]:
-        """The ends of the first field, which tells where the others are."""
+        """The ends of the first field; those of the others move in proportion."""
         return next(iter(self.ends.values()))
 
     @property
@@ -301,9 +301,9 @@ class Range:
     def at(self, value: float) -> Scenario:
         """Return the scenario with this value of the first field."""
         low, high = self.first
-        share = (value - low) / (high - low)
+        fraction = (value - low) / (high - low)
         moved = {
-            field: value if ends == self.first else ends[0] + share * (ends[1] - ends[0])
+            field: value if ends == self.first else ends[0] + fraction * (ends[1] - ends[0])
             for field, ends in self.ends.items()
         }
         return self.cell.replace(moved)

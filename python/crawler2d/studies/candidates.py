@@ -209,7 +209,7 @@ def search_table(
     xr = extra("xarray", "analysis")
     tallies = [each.tallies for each in candidates]
     labels = [each.label for each in candidates]
-    found = xr.Dataset(
+    dataset = xr.Dataset(
         {
             **_intervals([[tally.interval for tally in row] for row in tallies]),
             "count": (_BOTH, [[len(tally.valid) for tally in row] for row in tallies]),
@@ -221,14 +221,14 @@ def search_table(
     )
     again = _confirmed(xr, confirmed, grounds, goal)
     gaps = {"confirmed": False, "confirmed_count": 0}
-    found = found.merge(again.reindex(candidate=labels, fill_value=gaps))
+    dataset = dataset.merge(again.reindex(candidate=labels, fill_value=gaps))
     for name, text in _LONG_NAMES.items():
-        if name in found:
-            found[name].attrs["long_name"] = text
+        if name in dataset:
+            dataset[name].attrs["long_name"] = text
     runs = [*(t for row in tallies for t in row), *(t for each in confirmed for t in each.pooled)]
     runs += [tally for each in confirmed for robots in each.robots for tally in robots]
     attributes = study.attributes("search", runs)
-    return FigureDataset(found.data_vars, found.coords).assign_attrs(
+    return FigureDataset(dataset.data_vars, dataset.coords).assign_attrs(
         winner=confirmed[0].candidate.label,
         runner_up=confirmed[1].candidate.label if len(confirmed) > 1 else "",
         verdict=_verdict(candidates, grounds, confirmed, goal),
@@ -249,12 +249,12 @@ def _confirmed(
     columns["confirmed_count"] = (_BOTH, [[len(t.valid) for t in c.pooled] for c in confirmed])
     columns["confirmed"] = ("candidate", [each.reaches(goal) for each in confirmed])
     coordinates = {"candidate": [c.candidate.label for c in confirmed], "terrain": list(grounds)}
-    found: xarray.Dataset = xr.Dataset(columns, coordinates)
+    dataset: xarray.Dataset = xr.Dataset(columns, coordinates)
     if not confirmed[0].robots:
-        return found
+        return dataset
     rates = [[[t.interval.rate for t in robots] for robots in c.robots] for c in confirmed]
-    found["robot_rate"] = ((*_BOTH, "sample"), rates)
-    return found.assign(quantile_band(found["robot_rate"]))
+    dataset["robot_rate"] = ((*_BOTH, "sample"), rates)
+    return dataset.assign(quantile_band(dataset["robot_rate"]))
 
 
 def _intervals(rows: Sequence[Sequence[Interval]]) -> dict[str, Any]:

@@ -119,7 +119,7 @@ def decision_table(
         axis=1,
     )
     both = ("model", "unknown")
-    found = xr.Dataset(
+    dataset = xr.Dataset(
         {
             "rate": ("model", rates),
             "count": ("model", [sum(len(t.rows) for t in each.matrices[:2]) for each in results]),
@@ -140,24 +140,24 @@ def decision_table(
     )
     boundaries = _boundaries(xr, results, models, list(design.factors.values()))
     gaps = {"rises": Crossing().rises, "monotone": Crossing().monotone}
-    found = found.merge(boundaries.reindex(unknown=names, fill_value=gaps))
+    dataset = dataset.merge(boundaries.reindex(unknown=names, fill_value=gaps))
     for name, text in _LONG_NAMES.items():
-        found[name].attrs["long_name"] = text
-    found["rate"].attrs["long_name"] = f"rate of {outcome}"
+        dataset[name].attrs["long_name"] = text
+    dataset["rate"].attrs["long_name"] = f"rate of {outcome}"
     for name in ("rate", "count", "tried_rate", *_INDICES):
-        found[name].attrs["units"] = "1"
+        dataset[name].attrs["units"] = "1"
     lines = [line for each in results for _, line in each.lines if line is not None]
     tallies = [tally for line in lines for each in line.tallies.values() for tally in each]
     tallies += [tally for each in results for tally in each.matrices]
     attributes = {**study.attributes("what_decides", tallies), "unknown": design.unknowns.text}
-    return FigureDataset(found.data_vars, found.coords).assign_attrs(
+    return FigureDataset(dataset.data_vars, dataset.coords).assign_attrs(
         outcome=outcome,
         population="; ".join(filter(None, [attributes["unknown"], attributes["vary"]])),
         until=str(study.until),
         confidence_level=confidence,
         interval="Bayesian bootstrap",
         coverage=COVERAGE,
-        samples=found.sizes["sample"],
+        samples=dataset.sizes["sample"],
         seed=seed,
         **attributes,
     )
@@ -180,8 +180,8 @@ def _caveat(rate: float, is_complete: bool) -> str:
 
 
 def _outcomes(matrices: Sequence[Tally], whole: int) -> list[list[str]]:
-    found = [[row.outcome for row in tally.rows] for tally in matrices]
-    return found + [[""] * len(found[0])] * (whole - len(found))
+    outcomes = [[row.outcome for row in tally.rows] for tally in matrices]
+    return outcomes + [[""] * len(outcomes[0])] * (whole - len(outcomes))
 
 
 def _boundaries(
@@ -204,7 +204,7 @@ def _boundaries(
     columns["range_high"] = [[along.first[1] for along, _ in each.lines] for each in results]
     columns["own"] = [[along.own for along, _ in each.lines] for each in results]
     both = ("model", "unknown")
-    found: xarray.Dataset = xr.Dataset(
+    dataset: xarray.Dataset = xr.Dataset(
         {
             **{name: (both, values) for name, values in columns.items()},
             "tried": ((*both, "place"), tried[0]),
@@ -212,7 +212,7 @@ def _boundaries(
         },
         {"model": list(models), "unknown": list(names)},
     )
-    return found
+    return dataset
 
 
 _FEWEST, _MOST = 32, 2**16
@@ -256,8 +256,8 @@ def what_decides(
         anything varies; `place`, the values that were tried of each; and `matrix` and `sample`, the
         points of the design: A, B, and A with one factor of B. For each model and unknown:
 
-        - `first`: the share of the variance that would go if this one were known; `total`: the
-          share that would be left if all others were; with `..._low` and `..._high`. The
+        - `first`: the fraction of the variance that would go if this one were known; `total`: the
+          fraction that would be left if all others were; with `..._low` and `..._high`. The
           difference is what it decides together with others. An estimate may lie below 0;
         - `bracket_low`, `bracket_high`, `rises`, `monotone`: as of `critical`, over the range of
           the distribution (1 to 99 % of an unbounded one), all elements of a path with ``[*]``
@@ -290,8 +290,7 @@ def what_decides(
 
     Examples
     --------
-    Whether a belt climbs a slope is decided by friction; motors that are strong enough matter no
-    more:
+    Friction decides whether a belt climbs a slope; motors that are strong enough do not matter:
 
     >>> import math
     >>> import crawler2d as c2d

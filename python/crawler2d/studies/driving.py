@@ -81,7 +81,7 @@ def limiting_changes(
     values: NDArray[np.float64],
     changes: tuple[Change, ...],
     *,
-    share: float,
+    fraction: float,
     least: float,
     falls: bool = False,
 ) -> NDArray[np.str_]:
@@ -93,8 +93,8 @@ def limiting_changes(
         Of m models, n changes, s samples and r repeats; nan where there is no figure.
     changes : tuple of n Change
         The first is that nothing is changed.
-    share : float
-        [-] Share of the unchanged median by which a change must move it, at least.
+    fraction : float
+        [-] Fraction of the unchanged median by which a change must move it, at least.
     least : float
         The same in units of the figure.
     falls : bool
@@ -111,7 +111,7 @@ def limiting_changes(
     before = medians[:, :1]
     apart = np.ptp(values[:, :1], axis=-1)
     gain = (before - medians) if falls else (medians - before)
-    needed = np.maximum(np.maximum(share * np.abs(before), apart), least)
+    needed = np.maximum(np.maximum(fraction * np.abs(before), apart), least)
     counts = np.where(np.isnan(before), np.isfinite(medians), gain > needed)
     names = np.array([change.name for change in changes])
     limits = np.empty((values.shape[0], values.shape[2]), object)
@@ -121,7 +121,7 @@ def limiting_changes(
     return limits.astype(str)
 
 
-_SHARE = 0.02
+_FRACTION = 0.02
 """[-] A change that moves a figure by less does not limit it."""
 _OWN = ("drive.speed", "drive.schedule", "duration", "goal")
 """Fields that these studies set themselves."""
@@ -172,7 +172,7 @@ def _limiting_study(
     check_scenario(scenario)
     given = None if speed is None else real_number(speed, "speed")
     if given is not None and not given > 0.0:
-        raise ScenarioError("speed", given, "must be above 0")
+        raise ScenarioError("speed", given, "must be > 0 m/s")
     fields = read_models(scenario, models)
     for label, own in fields.items():
         _check_fields(own, f"models[{label!r}]")
@@ -208,17 +208,19 @@ def _limiting_study(
             "part": (_PARTS[: 3 + 2 * figure.halts], {"long_name": "how far a run goes"}),
         }
         tallies = [part for both in driven for course in both if course for part in course.tallies]
-        found = measure_table(study, figure.study, tallies, dims, measures)
-    limit = limiting_changes(values, changes, share=_SHARE, least=figure.least, falls=figure.halts)
+        table = measure_table(study, figure.study, tallies, dims, measures)
+    limit = limiting_changes(
+        values, changes, fraction=_FRACTION, least=figure.least, falls=figure.halts
+    )
     ended = np.array([(halt or run_up).ended for run_up, halt in driven])
-    one, every = found[figure.name], found[f"{figure.name}_with"]
+    one, every = table[figure.name], table[f"{figure.name}_with"]
     meanings = {change.name: change.meaning for change in changes[1:]}
     text = "what limits it, found by doubling each"
-    return found.assign(
+    return table.assign(
         limit=(
             one.dims,
             limit.reshape(one.shape),
-            {"long_name": text, "share": _SHARE, **meanings},
+            {"long_name": text, "share": _FRACTION, **meanings},
         ),
         ended=(
             every.dims,

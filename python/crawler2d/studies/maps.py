@@ -235,9 +235,9 @@ def seizure_map(
         }
         with warnings.catch_warnings():  # a cell that was not simulated has no band
             warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
-            found = rate_table(study, "seizure_map", grid.tallies, dims)
-    found["rate"].attrs["long_name"] = f"rate of {outcome}"
-    return _with_ends(found, grid, tuple(dims), ends).assign_attrs(outcome=outcome)
+            table = rate_table(study, "seizure_map", grid.tallies, dims)
+    table["rate"].attrs["long_name"] = f"rate of {outcome}"
+    return _with_ends(table, grid, tuple(dims), ends).assign_attrs(outcome=outcome)
 
 
 def _ends(outcome: str) -> dict[str, Counts]:
@@ -259,7 +259,7 @@ def _commonest(tallies: Sequence[Tally], ends: Sequence[Counts]) -> tuple[int, b
 
 
 def _with_ends(
-    found: FigureDataset, grid: Grid, dims: tuple[str, ...], ends: Mapping[str, Counts]
+    table: FigureDataset, grid: Grid, dims: tuple[str, ...], ends: Mapping[str, Counts]
 ) -> FigureDataset:
     names, tried = list(ends), grid.tried
     shape = tried.shape
@@ -278,7 +278,7 @@ def _with_ends(
             {"units": "1", "long_name": "mean rate of the cells around one that was not simulated"},
         ),
     }
-    return found.assign(columns)
+    return table.assign(columns)
 
 
 def _axis(scenario: Scenario, given: object, place: str) -> tuple[str, list[float]]:

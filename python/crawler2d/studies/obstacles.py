@@ -152,16 +152,16 @@ def _find_greatest(
             for value in tried
         ]
         tallies = study.repeat(cells)
-        found = rate_table(
+        table = rate_table(
             study,
             figure,
             tallies,
             {"model": (list(fields), {}), name: (tried, field_attributes([path]))},
         )
-    others = tuple(str(dim) for dim in found["rate"].dims if dim != name)
-    rates = found["rate"].transpose(*others, name)
+    others = tuple(str(dim) for dim in table["rate"].dims if dim != name)
+    rates = table["rate"].transpose(*others, name)
     often = (rates >= 0.5).to_numpy()
-    sure = (found["low"].transpose(*others, name) > 0.5).to_numpy()
+    sure = (table["low"].transpose(*others, name) > 0.5).to_numpy()
     shape = often.shape[:-1]
     columns: dict[str, Any] = {
         "highest": _greatest(often, tried),
@@ -170,8 +170,8 @@ def _find_greatest(
     below = np.array(tried) < columns["highest"][..., None]
     columns["gaps"] = (~often & below).sum(axis=-1)
     flat = [tally for each in tallies for tally in each]
-    order = found["rate"].dims.index(name)
-    index = np.moveaxis(np.arange(len(flat)).reshape(found["rate"].shape), order, -1)
+    order = table["rate"].dims.index(name)
+    index = np.moveaxis(np.arange(len(flat)).reshape(table["rate"].shape), order, -1)
     limits = np.empty(shape, object)
     for place in np.ndindex(shape):
         above = np.flatnonzero(np.array(tried) > columns["highest"][place])
@@ -187,7 +187,7 @@ def _find_greatest(
         "gaps": {"units": "1", "long_name": f"lower {name}s with a rate below 0.5"},
         "limit": {"long_name": "how most runs end on the next"},
     }
-    return found.assign({k: (others, v, attributes[k]) for k, v in columns.items()})
+    return table.assign({k: (others, v, attributes[k]) for k, v in columns.items()})
 
 
 def _greatest(holds: np.ndarray[Any, Any], tried: Sequence[float]) -> np.ndarray[Any, Any]:
@@ -253,11 +253,11 @@ def success(
         tallies = study.repeat(cells)
         no_units: dict[str, str] = {}
         dims = {"model": (list(fields), no_units), "terrain": (list(grounds), no_units)}
-        found = rate_table(study, "success", tallies, dims)
+        table = rate_table(study, "success", tallies, dims)
     ends = [Counter(row.outcome for row in tally.rows) for each in tallies for tally in each]
     occurred = [each for each in (*map(str, Outcome), *NO_RESULT) if any(end[each] for end in ends)]
-    shape, dimensions = found["rate"].shape, found["rate"].dims
-    return found.assign(
+    shape, dimensions = table["rate"].shape, table["rate"].dims
+    return table.assign(
         {
             f"ended_{name}": (
                 dimensions,

@@ -113,7 +113,7 @@ def ride(
         fields = read_models(scenario, models)
         cells = [Cell((f"model={label}",), scenario.replace(own)) for label, own in fields.items()]
         tallies = study.repeat(cells)
-        found = measure_table(
+        table = measure_table(
             study,
             "ride",
             tallies,
@@ -123,7 +123,7 @@ def ride(
                 for name, (unit, text, value) in measures.items()
             },
         )
-    return _with_ends(found, tallies, "vibration")
+    return _with_ends(table, tallies, "vibration")
 
 
 @takes_keywords
@@ -203,8 +203,8 @@ def odometry(
                 both, 1.0 / ratios - 1.0, "1", f"{text} with each change"
             ),
         }
-        found = measure_table(study, "odometry", tallies, dims, measures)
-    return _with_ends(found, tallies, "odometry_error_with")
+        table = measure_table(study, "odometry", tallies, dims, measures)
+    return _with_ends(table, tallies, "odometry_error_with")
 
 
 def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArray[np.float64]:
@@ -220,11 +220,11 @@ def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArr
     )
 
 
-def _with_ends(found: FigureDataset, tallies: list[list[Tally]], name: str) -> FigureDataset:
+def _with_ends(table: FigureDataset, tallies: list[list[Tally]], name: str) -> FigureDataset:
     """Add how most runs ended, in the dimensions of a column."""
     ends = np.array([tally.commonest_outcome for each in tallies for tally in each])
     attributes = {"long_name": "how most runs ended"}
-    return found.assign(ended=(found[name].dims, ends.reshape(found[name].shape), attributes))
+    return table.assign(ended=(table[name].dims, ends.reshape(table[name].shape), attributes))
 
 
 def _ratio(row: Row) -> float:
@@ -288,7 +288,7 @@ def real_time_factor(
           the lowest and the highest of them; `factor_each`;
         - `moved` [m]: how far the robot came, along x.
 
-        The attributes name the processor, as far as it tells, and the build.
+        The attributes name the processor, if it is known, and the build.
 
     Raises
     ------
@@ -309,7 +309,7 @@ def real_time_factor(
     check_scenario(scenario)
     span = real_number(duration, "duration")
     if not 0.0 < span <= 1000.0:
-        raise ScenarioError("duration", span, "must be above 0 and at most 1000 s")
+        raise ScenarioError("duration", span, "must be > 0 s and at most 1000 s")
     count = whole_number(repeats, "repeats", 1, 1000)
     xr = extra("xarray", "analysis")
     fields = read_models(scenario, models)
@@ -341,9 +341,9 @@ def real_time_factor(
     )
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
-    found = FigureDataset(summary("factor", each))
+    table = FigureDataset(summary("factor", each))
     attributes = {"units": "m", "long_name": "way along x"}
-    return found.assign(moved=(dims, np.reshape(moved, shape), attributes)).assign_attrs(
+    return table.assign(moved=(dims, np.reshape(moved, shape), attributes)).assign_attrs(
         figure="real_time_factor",
         scenario=scenario.to_json(),
         duration=span,

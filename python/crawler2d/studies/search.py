@@ -138,7 +138,7 @@ def search(
     extra("xarray", "analysis")  # fail before the runs if it is missing
     goal = real_number(at_least, "at_least")
     if not 0.0 < goal <= 1.0:
-        raise ScenarioError("at_least", goal, "must be above 0, at most 1")
+        raise ScenarioError("at_least", goal, "must be > 0 and at most 1")
     if objective is not None and not callable(objective):
         raise ScenarioError("objective", objective, "must be a callable that takes a Scenario")
     fresh = whole_number(confirm, "confirm", 1, 10**6)

@@ -174,8 +174,8 @@ def bounds(
     drawn = []
     for page in f_ab:
         kinds = np.bincount((4 * f_a + 2 * f_b + page).astype(int), minlength=8)
-        first = _of_shares(rng.dirichlet(kinds + _ADDED_FIRST, _RESAMPLES)).first
-        total = _of_shares(rng.dirichlet(kinds + _ADDED_TOTAL, _RESAMPLES)).total
+        first = _of_fractions(rng.dirichlet(kinds + _ADDED_FIRST, _RESAMPLES)).first
+        total = _of_fractions(rng.dirichlet(kinds + _ADDED_TOTAL, _RESAMPLES)).total
         drawn.append((first, total))
     low, high = np.quantile(drawn, [tail, 1.0 - tail], axis=2).clip(0.0, 1.0)
     high[:, 0] = np.minimum(high[:, 0], high[:, 1])  # a first-order index is at most the total one
@@ -183,13 +183,13 @@ def bounds(
     return Indices(*np.minimum(low, own).T), Indices(*np.maximum(high, own).T)
 
 
-def _of_shares(shares: NDArray[np.float64]) -> Indices:
-    """Compute the indices of a factor from the shares of the eight kinds, shape (..., 8)."""
+def _of_fractions(fractions: NDArray[np.float64]) -> Indices:
+    """Compute the indices of a factor from the fractions of the eight kinds, shape (..., 8)."""
     a, b, swapped = np.indices((2, 2, 2)).reshape(3, 8)
-    rate = shares @ (0.5 * (a + b))
+    rate = fractions @ (0.5 * (a + b))
     variance = rate * (1.0 - rate)
-    moved = shares @ (b * (swapped - a)) - rate * (shares @ (swapped - a))
-    return Indices(moved / variance, 0.5 * (shares @ (swapped - a) ** 2) / variance)
+    moved = fractions @ (b * (swapped - a)) - rate * (fractions @ (swapped - a))
+    return Indices(moved / variance, 0.5 * (fractions @ (swapped - a) ** 2) / variance)
 
 
 RUN_TO_RUN = "run to run"

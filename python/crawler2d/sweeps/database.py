@@ -146,8 +146,8 @@ _guard = threading.Lock()
 class Lock:
     """Keeps every other writer out of a file, by whatever name it finds the file.
 
-    It ends with this process, however that ends. Nothing lies beside the file that could be
-    removed. Readers, and SQLite itself, do not notice.
+    It ends with this process, however that ends. There is no lock file that could be removed.
+    Readers, and SQLite itself, are not affected.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def _key(status: os.stat_result) -> tuple[int, int]:
     return status.st_dev, status.st_ino
 
 
-# "c2ds": what tells the file from those of other programs.
+# "c2ds": distinguishes the file from those of other programs.
 _APPLICATION = 0x63326473
 _VERSION = 2
 _TABLE = """CREATE TABLE run (
@@ -271,8 +271,8 @@ def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
         lock = stack.enter_context(contextlib.closing(Lock(real)))
         if not real.is_file() or real.stat().st_nlink > 1:
             raise StoreError(
-                f"{path} must be a file without a second name, a hard link: SQLite loses what is"
-                " written under two names. Copy it"
+                f"{path} has a second name, a hard link, and SQLite loses what is written under two"
+                " names: make a copy of it"
             )
         connection = stack.enter_context(contextlib.closing(_connect(real, "rw")))
         # One transaction: whenever the process is killed, the file is empty or whole.
@@ -285,7 +285,7 @@ def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
         _check(connection, path)
         if version < _VERSION:
             _convert(connection, path)
-        # Also what was so before: if nothing can be written, that is told before the first run.
+        # Written even if it is unchanged: a file that cannot be written fails before the first run.
         connection.execute(f"PRAGMA user_version = {_VERSION}")
         connection.execute("COMMIT")
         connection.execute("PRAGMA journal_mode = WAL")
@@ -313,7 +313,7 @@ def open_to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
         try:
             return _snapshot(_connect(real, "rw"), path, checked)
         except sqlite3.OperationalError as error:
-            # SQLite reads a file with a log only where it can write beside it. Without a log the
+            # SQLite reads a file with a log only in a folder that can be written. Without a log the
             # file is whole, and where nobody can write it does not change while it is read.
             log = _log(real)
             if _kind(error) not in {"CANTOPEN", "READONLY"}:

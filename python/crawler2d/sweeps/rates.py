@@ -120,10 +120,10 @@ def rate(
     >>> rate(outcomes, "seized")["rate"].item(), rate(outcomes, "stopped")["rate"].item()
     (0.25, 0.5)
     """
-    found = rates_of(table, outcome, dim, confidence_level=confidence_level)
-    if _SAMPLE not in found.dims and "distinct" in found:
-        _warn_of_few(found)
-    return found
+    rates = rates_of(table, outcome, dim, confidence_level=confidence_level)
+    if _SAMPLE not in rates.dims and "distinct" in rates:
+        _warn_of_few(rates)
+    return rates
 
 
 def rates_of(
@@ -138,7 +138,7 @@ def rates_of(
     wanted = read_choice(outcome, "outcome", [*Outcome, _STOPPED])
     level = real_number(confidence_level, "confidence_level")
     if not 0.0 < level < 1.0:
-        raise ScenarioError("confidence_level", level, "must be > 0 and < 1")
+        raise ScenarioError("confidence_level", level, "must be between 0 and 1")
     counted = [str(each) for each in Outcome if each.is_stop] if wanted == _STOPPED else [wanted]
     if isinstance(table, xr.Dataset):
         runs = table
@@ -217,8 +217,8 @@ def _warn_of_few(rates: xarray.Dataset) -> None:
         f"should have more than {_FEW} distinct final poses in every cell: where {cause}, rates say"
         " little of other robots or floors (unknown= gives a band over what is not known)"
     )
-    found = f"{_FEW} or fewer in {few} of {rates['count'].size} cells"
-    warn("table", found, reason)
+    few_text = f"{_FEW} or fewer in {few} of {rates['count'].size} cells"
+    warn("table", few_text, reason)
 
 
 def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:

@@ -146,7 +146,7 @@ class Until(TakesKeywords):
             number = real_number(value, f"until.{name}")
             object.__setattr__(self, name, number)
             if not 0.0 < number < 1.0 and not (name == "width" and number == 1.0):
-                rule = "above 0 and at most 1" if name == "width" else "between 0 and 1"
+                rule = "> 0 and at most 1" if name == "width" else "between 0 and 1"
                 raise ScenarioError(f"until.{name}", number, f"must be {rule}")
         for name in ("least", "most"):
             lowest = 0 if name == "least" else max(self.least, 1)

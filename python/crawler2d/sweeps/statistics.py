@@ -156,7 +156,7 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
     z = _normal_quantile(confidence)
     hits, runs = (np.asarray(each, dtype=np.float64).ravel() for each in (successes, counts))
     if hits.shape != runs.shape or not ((hits >= 0.0) & (hits <= runs)).all():
-        raise ScenarioError("successes", hits, f"must be from 0 to counts, {runs}")
+        raise ScenarioError("successes", hits, f"must be from 0 to counts = {runs}")
     hits, runs = hits[runs > 0.0], runs[runs > 0.0]
     total = float(runs.sum())
     if total == 0.0:
