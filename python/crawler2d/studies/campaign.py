@@ -410,13 +410,16 @@ def campaign(
         count = whole_number(repeats, "repeats", 1, 10**6)
         until = Until(least=count, most=count)
     given: RateSampling = {"until": until, **how}
-    unknowns = Variation.read(base, how.get("unknown") or {}, swept, "unknown")
-    variation = Variation.read(base, how.get("vary"), [*swept, *unknowns.distributions])
     if not isinstance(given["until"], Until):
         raise ScenarioError("until", given["until"], "must be an Until")
-    seed = whole_number(how.get("seed", 0), "seed", 0, 2**64 - 1)
-    samples = whole_number(how.get("samples", 20), "samples", 1, 10**5)
-    planner = Planner(variation, unknowns, seed, samples)
+    planner = Planner.read(
+        base,
+        swept,
+        vary=how.get("vary"),
+        unknown=how.get("unknown"),
+        seed=how.get("seed", 0),
+        samples=how.get("samples", 20),
+    )
     store = how.get("store")
     try:
         with (

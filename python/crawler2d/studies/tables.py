@@ -12,10 +12,10 @@ import numpy as np
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
-from crawler2d.sweeps.axes import Label, field_attributes, read_labels, short_names
+from crawler2d.sweeps.axes import Label, read_labels
 from crawler2d.sweeps.rates import quantile_band
 from crawler2d.sweeps.sweep import Variant, variants
-from crawler2d.sweeps.tabulate import Column, dataset_of, row_columns
+from crawler2d.sweeps.tabulate import Column, dataset_of, draw_columns, row_columns
 
 if TYPE_CHECKING:
     import xarray
@@ -256,27 +256,26 @@ def _runs(
     longest = max((len(tally.rows) for tally in flat), default=0)
     rows = [row for t in flat for row in (*t.rows, *[None] * (longest - len(t.rows)))]
     columns = row_columns(rows, trials=campaign.trials, with_times=True)
-    columns |= _drawn_values(campaign, flat, longest)
+    columns |= draw_columns(
+        "drawn",
+        campaign.planner.variation,
+        lambda path: np.concatenate([_drawn(tally, path, longest) for tally in flat]),
+    )
     return dataset_of(
         columns, {**sizes, "repeat": longest}, {**coordinates, "repeat": np.arange(longest)}
     )
 
 
+def _drawn(tally: Tally, path: str, longest: int) -> NDArray[np.float64]:
+    """Join the draws of all batches of a tally; NaN beyond its last run."""
+    batches = [drawn[path] for drawn in tally.drawn if path in drawn]
+    values = np.concatenate(batches) if batches else np.empty(0)
+    return np.pad(values, (0, longest - values.size), constant_values=math.nan)
+
+
 def _sampled(campaign: Campaign, flat: Sequence[Tally]) -> dict[str, Column]:
-    columns: dict[str, Column] = {}
-    for path, name in short_names(list(campaign.planner.unknowns.distributions)).items():
-        values = np.array([tally.world.sampled.get(path, math.nan) for tally in flat])
-        columns[f"unknown_{name}"] = (values, field_attributes([path]))
-    return columns
-
-
-def _drawn_values(campaign: Campaign, flat: Sequence[Tally], longest: int) -> dict[str, Column]:
-    columns: dict[str, Column] = {}
-    for path, name in short_names(list(campaign.planner.variation.distributions)).items():
-        parts = []
-        for tally in flat:
-            own = [drawn[path] for drawn in tally.drawn if path in drawn]
-            values = np.concatenate(own) if own else np.empty(0)
-            parts.append(np.pad(values, (0, longest - values.size), constant_values=math.nan))
-        columns[f"drawn_{name}"] = (np.concatenate(parts), field_attributes([path]))
-    return columns
+    return draw_columns(
+        "unknown",
+        campaign.planner.unknowns,
+        lambda path: np.array([tally.world.sampled.get(path, math.nan) for tally in flat]),
+    )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d import _core
+from crawler2d.common.arrays import whole_number
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import excluded, read_path
 from crawler2d.parameters.scenario import Scenario
@@ -105,6 +106,32 @@ class Planner:
     unknowns: Variation
     seed: int
     samples: int = 1
+
+    @classmethod
+    def read(
+        cls,
+        scenario: Scenario,
+        swept: Sequence[str],
+        *,
+        vary: object,
+        unknown: object,
+        seed: int,
+        samples: int,
+    ) -> Planner:
+        """Read the arguments of that name; the paths `swept` are set otherwise.
+
+        Raises
+        ------
+        ScenarioError
+            If one of them breaks a rule.
+        """
+        unknowns = Variation.read(scenario, unknown or {}, swept, "unknown")
+        return cls(
+            Variation.read(scenario, vary, [*swept, *unknowns.distributions]),
+            unknowns,
+            whole_number(seed, "seed", 0, 2**64 - 1),
+            whole_number(samples, "samples", 1, 10**5),
+        )
 
     def worlds(
         self, cell: Scenario, names: Sequence[str], like: _core.Passed | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
@@ -24,7 +24,7 @@ from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
 from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names, stop_columns
 from crawler2d.sweeps.collect import Collector, RowsInterrupted
-from crawler2d.sweeps.plan import Plan, Planner, plan_runs
+from crawler2d.sweeps.plan import Planner, plan_runs
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
 
@@ -32,7 +32,16 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["Column", "OnError", "Tabulation", "dataset_of", "row_columns", "table", "tabulate"]
+__all__ = [
+    "Column",
+    "OnError",
+    "Tabulation",
+    "dataset_of",
+    "draw_columns",
+    "row_columns",
+    "table",
+    "tabulate",
+]
 
 Column = tuple["NDArray[Any]", dict[str, str]]
 """Values of all runs, shape (n,), and attributes."""
@@ -63,6 +72,14 @@ def row_columns(
         "scenario": ["" if row is None else row.scenario for row in rows],
     }
     return columns | {name: (np.array(values, object), {}) for name, values in texts.items()}
+
+
+def draw_columns(
+    kind: str, variation: Variation, values: Callable[[str], NDArray[np.float64]]
+) -> dict[str, Column]:
+    """Write the draws of every path as columns: `drawn_...` or `unknown_...`."""
+    names = short_names(list(variation.distributions))
+    return {f"{kind}_{n}": (values(path), field_attributes([path])) for path, n in names.items()}
 
 
 def dataset_of(
@@ -183,16 +200,13 @@ class Tabulation:
         self._tried = trial_names(trials)
         self._store, self._executor, self._threads = store, executor, thread_count(threads)
         self._repeats = whole_number(repeats, "repeats", 1, 10**6)
-        samples = whole_number(samples, "samples", 1, 10**5)
-        self._seed = whole_number(seed, "seed", 0, 2**64 - 1)
         base = Passed(scenario.to_json())
         swept = [path for axis in axes for path in axis.paths]
         self._scenario, self._axes = scenario, axes
-        self._unknowns = Variation.read(scenario, unknown or {}, swept, "unknown")
-        self._variation = Variation.read(scenario, vary, [*swept, *self._unknowns.distributions])
-        self._samples = samples if self._unknowns.distributions else 1
-        planner = Planner(self._variation, self._unknowns, self._seed, self._samples)
-        self._plans = plan_runs(scenario, axes, planner, repeats=self._repeats, like=base)
+        self._planner = Planner.read(
+            scenario, swept, vary=vary, unknown=unknown, seed=seed, samples=samples
+        )
+        self._plans = plan_runs(scenario, axes, self._planner, repeats=self._repeats, like=base)
         self.checked = [each for plan in self._plans for each in plan.checked]
         self._rows: list[Row | None] = [None] * len(self.checked)
 
@@ -227,21 +241,32 @@ class Tabulation:
     def table(self) -> xarray.Dataset:
         """Arrange the runs in a table; those not made have the outcome ""."""
         columns = row_columns(self._rows, trials=self._tried, with_times=self._with_times)
-        columns |= _drawn(self._plans, self._variation, self._unknowns, self._repeats)
-        kind = np.int64 if self._seed < 2**63 else np.uint64
-        columns["seed"] = (np.full(len(self._rows), self._seed, kind), {})
+        plans, repeats, planner = self._plans, self._repeats, self._planner
+        missing = np.full(repeats, np.nan)
+        columns |= draw_columns(
+            "drawn",
+            planner.variation,
+            lambda path: np.concatenate([plan.drawn.get(path, missing) for plan in plans]),
+        )
+        columns |= draw_columns(
+            "unknown",
+            planner.unknowns,
+            lambda path: np.repeat([p.world.sampled.get(path, np.nan) for p in plans], repeats),
+        )
+        kind = np.int64 if planner.seed < 2**63 else np.uint64
+        columns["seed"] = (np.full(len(self._rows), planner.seed, kind), {})
         dims = {axis.name: len(axis.values) for axis in self._axes}
         labels: dict[str, Any] = coordinates(self._axes)
-        if self._unknowns.distributions:
-            dims["sample"] = self._samples
-            labels["sample"] = np.arange(self._samples)
-        dims["repeat"] = self._repeats
-        labels["repeat"] = np.arange(self._repeats)
+        if planner.unknowns.distributions:
+            dims["sample"] = planner.samples
+            labels["sample"] = np.arange(planner.samples)
+        dims["repeat"] = repeats
+        labels["repeat"] = np.arange(repeats)
         dataset = dataset_of(columns, dims, labels)
         return dataset.assign_attrs(
             scenario=self._scenario.to_json(),
-            vary=self._variation.text,
-            unknown=self._unknowns.text,
+            vary=planner.variation.text,
+            unknown=planner.unknowns.text,
             **build_attributes(),
         )
 
@@ -263,18 +288,3 @@ def tabulate(
     if on_error == "raise":
         planned.raise_first()
     return planned.table()
-
-
-def _drawn(
-    plans: Sequence[Plan], variation: Variation, unknowns: Variation, repeats: int
-) -> dict[str, Column]:
-    """List what was drawn for each run: `drawn_...` in its repeat, `unknown_...` in its sample."""
-    columns: dict[str, Column] = {}
-    missing = np.full(repeats, np.nan)
-    for path, name in short_names(list(variation.distributions)).items():
-        values = np.concatenate([plan.drawn.get(path, missing) for plan in plans])
-        columns[f"drawn_{name}"] = (values, field_attributes([path]))
-    for path, name in short_names(list(unknowns.distributions)).items():
-        values = np.repeat([plan.world.sampled.get(path, np.nan) for plan in plans], repeats)
-        columns[f"unknown_{name}"] = (values, field_attributes([path]))
-    return columns
