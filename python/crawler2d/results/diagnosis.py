@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from crawler2d.common.arrays import Table
 from crawler2d.common.bodies import BodyKind
-from crawler2d.results.findings import Findings, Intrusion, Mechanism, TrialResult
+from crawler2d.results.findings import Intrusion, Mechanism, TrialResult
 from crawler2d.results.outcome import Outcome
 
 __all__ = ["Diagnosis", "body_name", "in_words", "sentence", "trial_text"]
@@ -69,246 +70,8 @@ _GRIPS = {
 """What the mechanism adds to the bodies that bear on the ground inside."""
 
 
-def sentence(d: Findings) -> str:
-    """Describe a stop, then the trials.
-
-    Each clause states one fact; what follows from the outcome or from another clause is left out.
-    """
-    clauses = (_intrusion, _bearers, _belly, _drives, _progress, _balance)
-    facts = ": ".join(filter(None, (_head(d), "; ".join(filter(None, (f(d) for f in clauses))))))
-    if d.passing:
-        return f"{facts}. {_continuation(d)}"
-    tried = "; ".join(filter(None, (trial_text(d, each) for each in d.trials)))
-    return f"{facts}. Tried: {tried}{_belt_limit(d)}" if tried else facts
-
-
-def trial_text(d: Findings, tried: TrialResult) -> str:
-    """Describe the change and the result of a trial; empty for a control."""
-    return f"{_CHANGES[tried.name]}: {_result(d, tried)}" if tried.name in _CHANGES else ""
-
-
-def _head(d: Findings) -> str:
-    if d.passing:
-        return f"in passing, {_word(d.symptom)}"
-    where = _where(d.intrusion) if d.outcome == Outcome.SEIZED and d.intrusion else ""
-    on_end = d.outcome == Outcome.HUNG_UP and d.belly_side in ("tail", "nose")
-    return f"{_word(d.outcome)}{where}" + (f" on the {d.belly_side} of its hull" if on_end else "")
-
-
-def _word(outcome: Outcome) -> str:
-    return str(outcome).replace("_", " ")
-
-
-def _continuation(d: Findings) -> str:
-    """Say which control got out of a passing stop."""
-    control = next(tried for tried in d.trials if tried.freed)
-    by_itself = control.name == "unchanged"
-    text = "It goes on by itself" if by_itself else "With its track built anew it goes on"
-    return f"{text}: {_result(d, control)}"
-
-
-def _belt_limit(d: Findings) -> str:
-    """Say so if no belt that was tried from the start came to the stop, or none got past it."""
-    starts = [tried for tried in d.trials if tried.is_from_the_start]
-    if not starts or any(map(_is_past, starts)):
-        return ""
-    return f". No belt {'got past here' if d.reached_by_belt else 'came this far'} from the start"
-
-
-def _is_past(tried: TrialResult) -> bool:
-    """Whether a belt got past the stop, be it to tip over farther on."""
-    is_lost = tried.outcome in (Outcome.TIPPED_OVER, Outcome.LEFT_TERRAIN)
-    return tried.freed or (is_lost and tried.distance > 0.0)
-
-
-def _result(d: Findings, tried: TrialResult) -> str:
-    """Describe the result of a trial."""
-    end = _end(d, tried)
-    if tried.freed:
-        text = f"{'past here' if tried.is_from_the_start else 'free'} after {tried.time:.1f} s"
-        if tried.outcome != Outcome.TIMED_OUT:
-            text += f", then {end}"
-    elif tried.is_from_the_start:
-        text = f"{end} {_advance(tried) or 'here'}"
-    elif tried.outcome == Outcome.TIMED_OUT:
-        text = "still moving, but not free"
-    else:
-        is_placed = tried.distance < 0.0 or _is_jammed_elsewhere(d, tried)
-        further = "" if is_placed else _advance(tried)
-        text = f"{end} {further}" if further else end
-    if tried.starts > 1:
-        text += f" ({tried.freeing} of {tried.starts} times free)"
-    return text
-
-
-def _advance(tried: TrialResult) -> str:
-    """Say how far ahead or short of the stop a trial ended."""
-    if abs(tried.distance) < _LEAST_DEPTH:
-        return ""
-    direction = "further on" if tried.distance > 0.0 else "short of here"
-    return f"{1e3 * abs(tried.distance):.0f} mm {direction}"
-
-
-def _end(d: Findings, tried: TrialResult) -> str:
-    if not tried.jammed:
-        return in_words(tried.outcome)
-    jam = tried.intrusion
-    if jam is None:
-        return "is jammed"
-    if _is_jammed_elsewhere(d, tried):
-        return f"is jammed{_where(jam)}, in {_track(jam)} at x = {jam.x:z.3f} m, y = {jam.y:z.3f} m"
-    again = d.intrusion is not None and sorted(jam.bodies) == sorted(d.intrusion.bodies)
-    return "is jammed again" if again else f"is jammed again,{_where(jam)}"
-
-
-def _is_jammed_elsewhere(d: Findings, tried: TrialResult) -> bool:
-    """Whether a trial ended in a jam at another edge, or in another track, than the stop."""
-    was, jam = d.intrusion, tried.intrusion
-    if not tried.jammed or jam is None:
-        return False
-    here = (jam.side, jam.carrier, jam.edge)
-    return not d.jammed or was is None or here != (was.side, was.carrier, was.edge)
-
-
-def _intrusion(d: Findings) -> str:
-    """Say which ground is inside the track, and where, unless the head says that."""
-    piece = d.intrusion
-    if piece is None:
-        return ""
-    where = "" if d.outcome == Outcome.SEIZED and not d.passing else _where(piece)
-    roots = ""
-    if _has_grousers(piece) and piece.bodies[0] != piece.bodies[1]:
-        is_past = piece.root_depth > _LEAST_DEPTH
-        how_far = f"{1e3 * piece.root_depth:.0f} mm past" if is_past else "not as far as"
-        roots = f" ({how_far} the grouser roots)"
-    place = f"the ground at x = {piece.x:z.3f} m, y = {piece.y:z.3f} m"
-    return f"{place} stands {1e3 * piece.depth:.0f} mm inside {_track(piece)}{roots}{where}"
-
-
-def _has_grousers(piece: Intrusion) -> bool:
-    return piece.depth - piece.root_depth > _LEAST_DEPTH
-
-
-def _track(piece: Intrusion) -> str:
-    side = "" if piece.side == "both" else f"{piece.side} "
-    if piece.carrier == "chassis":
-        return f"the {side}track"
-    return f"the track of the {side}{piece.carrier}"
-
-
-def _where(piece: Intrusion) -> str:
-    """Say between which bodies a piece of ground is."""
-    rear, front = sorted(piece.bodies)
-    kind = BodyKind(piece.body_kinds[0])
-    if rear != front and kind.is_in_chain:
-        return f" under the shoes between {' and '.join(_in_chain(piece))}"
-    if rear != front:
-        return f" between wheels {rear} and {front}"
-    if kind.is_in_chain:
-        return " between two shoes"
-    name = _NAMES.get(kind, f"wheel {rear}")
-    return f" between two grousers of {name}" if _has_grousers(piece) else f" at {name}"
-
-
-def _in_chain(piece: Intrusion) -> list[str]:
-    """Name the wheels that the chain runs on, on either side of an intrusion."""
-    names = [_NAMES[BodyKind(kind)] for kind in piece.body_kinds]
-    return [names[0], "the next"] if names[0] == names[1] else names
-
-
-def _bearers(d: Findings) -> str:
-    """Say which bodies bear on the ground inside the track, most loaded first."""
-    contacts = d.contacts
-    rows = np.flatnonzero(contacts["in_pocket"])
-    bodies = contacts["body"][rows]
-    forces = {int(body): 0.0 for body in bodies}
-    sliding = dict(forces)
-    for body, force, slides in zip(
-        bodies, contacts["normal_force"][rows], contacts["slides"][rows], strict=True
-    ):
-        forces[int(body)] += float(force)
-        sliding[int(body)] += float(force) * bool(slides)
-    bearers = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
-    bearers = [body for body in bearers if forces[body] >= _LEAST_FRACTION * sum(forces.values())]
-    names = [body_name(d, body) for body in bearers]
-    if len(names) == 2 and names[0] == names[1]:
-        names[1] = "another"
-    slides = [sliding[body] > 0.5 * forces[body] for body in bearers]
-    does = ["slides on it under a load of" if slide else "bears on it with" for slide in slides]
-    newtons = [f"{forces[body]:.0f} N" for body in bearers]
-    if not bearers:
-        return ""
-    text = f"{names[0]} {does[0]} {newtons[0]}"
-    if len(bearers) == 2 and does[0] != does[1]:
-        text += f" and {names[1]} {does[1]} {newtons[1]}"
-    elif len(bearers) == 2:
-        text += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
-    return text + _GRIPS.get(str(d.mechanism), "")
-
-
-def in_words(outcome: Outcome) -> str:
-    """Say how a trial ends, in the present tense."""
-    return _ENDS[outcome]
-
-
-def body_name(d: Findings, body: int) -> str:
-    """Name a body that bears in a stop."""
-    kinds = d.contacts["body_kind"][d.contacts["body"] == body]
-    kind = BodyKind(kinds[0]) if len(kinds) else BodyKind.WHEEL
-    return _NAMES.get(kind, f"wheel {body}")
-
-
-def _belly(d: Findings) -> str:
-    if d.belly_share < _LEAST_FRACTION:
-        return ""
-    side = d.belly_side
-    part = f"the {side}" if side in ("tail", "nose") else "the belly"
-    text = f"{part} carries {_percent(d.belly_share)} of the supporting force"
-    on_belly = d.contacts["body_kind"] == BodyKind.BELLY
-    if d.outcome != Outcome.HUNG_UP or not on_belly.any():
-        return text
-    force = d.contacts["normal_force"][on_belly]
-    x, y = (np.average(d.contacts[name][on_belly], weights=force) for name in ("x", "y"))
-    return f"{text} at x = {x:z.3f} m, y = {y:z.3f} m"
-
-
-def _drives(d: Findings) -> str:
-    """Describe motors and surfaces, unless the ground inside the track implies it."""
-    if d.stalled_share > 0.0:
-        of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
-        return f"{of}the motors are at their torque limit"
-    if d.symptom == Outcome.CYCLING:
-        return "it moves to and fro"
-    track = d.contacts["body_kind"] != BodyKind.BELLY
-    forces = d.contacts["normal_force"][track]
-    if d.outcome != Outcome.SLIPPING or forces.sum() == 0.0:
-        return ""
-    slip = float(np.average(np.abs(d.contacts["surface_speed"][track]), weights=forces))
-    return f"the track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
-
-
-def _progress(d: Findings) -> str:
-    if d.progress < _LEAST_FRACTION:
-        return ""
-    return f"it still creeps at {_percent(d.progress)} of the commanded speed"
-
-
-def _balance(d: Findings) -> str:
-    """Say if the forces do not balance."""
-    if d.certified:
-        return ""
-    if d.imbalance is None:
-        return "the balance of forces could not be computed"
-    residual = f"the smallest residual is {100 * d.imbalance:.2g} % of the weight"
-    return f"no contact forces balance it: {residual}"
-
-
-def _percent(fraction: float) -> str:
-    return f"{100 * fraction:.0f} %"
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Diagnosis(Findings):
+class Diagnosis:
     """Why a robot stopped although commanded to move; see `Run.diagnosis`.
 
     ``str(diagnosis)`` says it in a sentence. All forces, speeds and the pose are means over the
@@ -369,6 +132,26 @@ class Diagnosis(Findings):
         [-] The imbalance if it is, else None.
     """
 
+    outcome: Outcome
+    symptom: Outcome
+    passing: bool
+    trials: tuple[TrialResult, ...]
+    jammed: bool
+    mechanism: Mechanism | None
+    time: float
+    since: float
+    position: tuple[float, float]
+    chassis_angle: float
+    intrusion: Intrusion | None
+    contacts: Table
+    belly_share: float
+    sliding_share: float
+    stalled_share: float
+    progress: float
+    stationary: bool
+    imbalance: float | None
+    certified: bool
+
     @classmethod
     def from_core(cls, result: Mapping[str, Any]) -> Diagnosis:
         """Convert the dictionary that the core returns."""
@@ -382,6 +165,40 @@ class Diagnosis(Findings):
         values["contacts"] = Table(values["contacts"])
         return cls(**values)
 
+    @property
+    def certificate(self) -> float | None:
+        """[-] The imbalance if it proves that forces can balance the stop, else None."""
+        return self.imbalance if self.certified else None
+
+    @property
+    def freed_by(self) -> tuple[str, ...]:
+        """Names of the trials made so far that freed the robot."""
+        return tuple(tried.name for tried in self.trials if tried.freed)
+
+    @property
+    def reached_by_belt(self) -> bool | None:
+        """Whether a belt came as far as the robot from the start; None if none was tried."""
+        starts = [tried.distance >= 0.0 for tried in self.trials if tried.is_from_the_start]
+        return any(starts) if starts else None
+
+    @property
+    def belly_side(self) -> Literal["", "underside", "tail", "nose"]:
+        """Where the ground pushes against the belly; "" if it does not.
+
+        At the tail or the nose if it pushes along the belly more than away from its underside: so
+        it does when a robot stands on the tail of its hull.
+        """
+        on_belly = self.contacts["body_kind"] == BodyKind.BELLY
+        force = self.contacts["normal_force"][on_belly]
+        if not force.size:
+            return ""
+        x, y = (force @ self.contacts[name][on_belly] for name in ("normal_x", "normal_y"))
+        sine, cosine = math.sin(self.chassis_angle), math.cos(self.chassis_angle)
+        along, across = cosine * x + sine * y, cosine * y - sine * x
+        if abs(along) <= across:
+            return "underside"
+        return "tail" if along > 0.0 else "nose"
+
     def to_dict(self) -> dict[str, Any]:
         """Write the dictionary that `from_core` reads."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
@@ -393,3 +210,241 @@ class Diagnosis(Findings):
     def __str__(self) -> str:
         """Say it in one sentence."""
         return sentence(self)
+
+
+def sentence(d: Diagnosis) -> str:
+    """Describe a stop, then the trials.
+
+    Each clause states one fact; what follows from the outcome or from another clause is left out.
+    """
+    clauses = (_intrusion, _bearers, _belly, _drives, _progress, _balance)
+    facts = ": ".join(filter(None, (_head(d), "; ".join(filter(None, (f(d) for f in clauses))))))
+    if d.passing:
+        return f"{facts}. {_continuation(d)}"
+    tried = "; ".join(filter(None, (trial_text(d, each) for each in d.trials)))
+    return f"{facts}. Tried: {tried}{_belt_limit(d)}" if tried else facts
+
+
+def trial_text(d: Diagnosis, tried: TrialResult) -> str:
+    """Describe the change and the result of a trial; empty for a control."""
+    return f"{_CHANGES[tried.name]}: {_result(d, tried)}" if tried.name in _CHANGES else ""
+
+
+def _head(d: Diagnosis) -> str:
+    if d.passing:
+        return f"in passing, {_word(d.symptom)}"
+    where = _where(d.intrusion) if d.outcome == Outcome.SEIZED and d.intrusion else ""
+    on_end = d.outcome == Outcome.HUNG_UP and d.belly_side in ("tail", "nose")
+    return f"{_word(d.outcome)}{where}" + (f" on the {d.belly_side} of its hull" if on_end else "")
+
+
+def _word(outcome: Outcome) -> str:
+    return str(outcome).replace("_", " ")
+
+
+def _continuation(d: Diagnosis) -> str:
+    """Say which control got out of a passing stop."""
+    control = next(tried for tried in d.trials if tried.freed)
+    by_itself = control.name == "unchanged"
+    text = "It goes on by itself" if by_itself else "With its track built anew it goes on"
+    return f"{text}: {_result(d, control)}"
+
+
+def _belt_limit(d: Diagnosis) -> str:
+    """Say so if no belt that was tried from the start came to the stop, or none got past it."""
+    starts = [tried for tried in d.trials if tried.is_from_the_start]
+    if not starts or any(map(_is_past, starts)):
+        return ""
+    return f". No belt {'got past here' if d.reached_by_belt else 'came this far'} from the start"
+
+
+def _is_past(tried: TrialResult) -> bool:
+    """Whether a belt got past the stop, be it to tip over farther on."""
+    is_lost = tried.outcome in (Outcome.TIPPED_OVER, Outcome.LEFT_TERRAIN)
+    return tried.freed or (is_lost and tried.distance > 0.0)
+
+
+def _result(d: Diagnosis, tried: TrialResult) -> str:
+    """Describe the result of a trial."""
+    end = _end(d, tried)
+    if tried.freed:
+        text = f"{'past here' if tried.is_from_the_start else 'free'} after {tried.time:.1f} s"
+        if tried.outcome != Outcome.TIMED_OUT:
+            text += f", then {end}"
+    elif tried.is_from_the_start:
+        text = f"{end} {_advance(tried) or 'here'}"
+    elif tried.outcome == Outcome.TIMED_OUT:
+        text = "still moving, but not free"
+    else:
+        is_placed = tried.distance < 0.0 or _is_jammed_elsewhere(d, tried)
+        further = "" if is_placed else _advance(tried)
+        text = f"{end} {further}" if further else end
+    if tried.starts > 1:
+        text += f" ({tried.freeing} of {tried.starts} times free)"
+    return text
+
+
+def _advance(tried: TrialResult) -> str:
+    """Say how far ahead or short of the stop a trial ended."""
+    if abs(tried.distance) < _LEAST_DEPTH:
+        return ""
+    direction = "further on" if tried.distance > 0.0 else "short of here"
+    return f"{1e3 * abs(tried.distance):.0f} mm {direction}"
+
+
+def _end(d: Diagnosis, tried: TrialResult) -> str:
+    if not tried.jammed:
+        return in_words(tried.outcome)
+    jam = tried.intrusion
+    if jam is None:
+        return "is jammed"
+    if _is_jammed_elsewhere(d, tried):
+        return f"is jammed{_where(jam)}, in {_track(jam)} at x = {jam.x:z.3f} m, y = {jam.y:z.3f} m"
+    again = d.intrusion is not None and sorted(jam.bodies) == sorted(d.intrusion.bodies)
+    return "is jammed again" if again else f"is jammed again,{_where(jam)}"
+
+
+def _is_jammed_elsewhere(d: Diagnosis, tried: TrialResult) -> bool:
+    """Whether a trial ended in a jam at another edge, or in another track, than the stop."""
+    was, jam = d.intrusion, tried.intrusion
+    if not tried.jammed or jam is None:
+        return False
+    here = (jam.side, jam.carrier, jam.edge)
+    return not d.jammed or was is None or here != (was.side, was.carrier, was.edge)
+
+
+def _intrusion(d: Diagnosis) -> str:
+    """Say which ground is inside the track, and where, unless the head says that."""
+    piece = d.intrusion
+    if piece is None:
+        return ""
+    where = "" if d.outcome == Outcome.SEIZED and not d.passing else _where(piece)
+    roots = ""
+    if _has_grousers(piece) and piece.bodies[0] != piece.bodies[1]:
+        is_past = piece.root_depth > _LEAST_DEPTH
+        how_far = f"{1e3 * piece.root_depth:.0f} mm past" if is_past else "not as far as"
+        roots = f" ({how_far} the grouser roots)"
+    place = f"the ground at x = {piece.x:z.3f} m, y = {piece.y:z.3f} m"
+    return f"{place} stands {1e3 * piece.depth:.0f} mm inside {_track(piece)}{roots}{where}"
+
+
+def _has_grousers(piece: Intrusion) -> bool:
+    return piece.depth - piece.root_depth > _LEAST_DEPTH
+
+
+def _track(piece: Intrusion) -> str:
+    side = "" if piece.side == "both" else f"{piece.side} "
+    if piece.carrier == "chassis":
+        return f"the {side}track"
+    return f"the track of the {side}{piece.carrier}"
+
+
+def _where(piece: Intrusion) -> str:
+    """Say between which bodies a piece of ground is."""
+    rear, front = sorted(piece.bodies)
+    kind = BodyKind(piece.body_kinds[0])
+    if rear != front and kind.is_in_chain:
+        return f" under the shoes between {' and '.join(_in_chain(piece))}"
+    if rear != front:
+        return f" between wheels {rear} and {front}"
+    if kind.is_in_chain:
+        return " between two shoes"
+    name = _NAMES.get(kind, f"wheel {rear}")
+    return f" between two grousers of {name}" if _has_grousers(piece) else f" at {name}"
+
+
+def _in_chain(piece: Intrusion) -> list[str]:
+    """Name the wheels that the chain runs on, on either side of an intrusion."""
+    names = [_NAMES[BodyKind(kind)] for kind in piece.body_kinds]
+    return [names[0], "the next"] if names[0] == names[1] else names
+
+
+def _bearers(d: Diagnosis) -> str:
+    """Say which bodies bear on the ground inside the track, most loaded first."""
+    contacts = d.contacts
+    rows = np.flatnonzero(contacts["in_pocket"])
+    bodies = contacts["body"][rows]
+    forces = {int(body): 0.0 for body in bodies}
+    sliding = dict(forces)
+    for body, force, slides in zip(
+        bodies, contacts["normal_force"][rows], contacts["slides"][rows], strict=True
+    ):
+        forces[int(body)] += float(force)
+        sliding[int(body)] += float(force) * bool(slides)
+    bearers = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
+    bearers = [body for body in bearers if forces[body] >= _LEAST_FRACTION * sum(forces.values())]
+    names = [body_name(d, body) for body in bearers]
+    if len(names) == 2 and names[0] == names[1]:
+        names[1] = "another"
+    slides = [sliding[body] > 0.5 * forces[body] for body in bearers]
+    does = ["slides on it under a load of" if slide else "bears on it with" for slide in slides]
+    newtons = [f"{forces[body]:.0f} N" for body in bearers]
+    if not bearers:
+        return ""
+    text = f"{names[0]} {does[0]} {newtons[0]}"
+    if len(bearers) == 2 and does[0] != does[1]:
+        text += f" and {names[1]} {does[1]} {newtons[1]}"
+    elif len(bearers) == 2:
+        text += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
+    return text + _GRIPS.get(str(d.mechanism), "")
+
+
+def in_words(outcome: Outcome) -> str:
+    """Say how a trial ends, in the present tense."""
+    return _ENDS[outcome]
+
+
+def body_name(d: Diagnosis, body: int) -> str:
+    """Name a body that bears in a stop."""
+    kinds = d.contacts["body_kind"][d.contacts["body"] == body]
+    kind = BodyKind(kinds[0]) if len(kinds) else BodyKind.WHEEL
+    return _NAMES.get(kind, f"wheel {body}")
+
+
+def _belly(d: Diagnosis) -> str:
+    if d.belly_share < _LEAST_FRACTION:
+        return ""
+    side = d.belly_side
+    part = f"the {side}" if side in ("tail", "nose") else "the belly"
+    text = f"{part} carries {_percent(d.belly_share)} of the supporting force"
+    on_belly = d.contacts["body_kind"] == BodyKind.BELLY
+    if d.outcome != Outcome.HUNG_UP or not on_belly.any():
+        return text
+    force = d.contacts["normal_force"][on_belly]
+    x, y = (np.average(d.contacts[name][on_belly], weights=force) for name in ("x", "y"))
+    return f"{text} at x = {x:z.3f} m, y = {y:z.3f} m"
+
+
+def _drives(d: Diagnosis) -> str:
+    """Describe motors and surfaces, unless the ground inside the track implies it."""
+    if d.stalled_share > 0.0:
+        of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
+        return f"{of}the motors are at their torque limit"
+    if d.symptom == Outcome.CYCLING:
+        return "it moves to and fro"
+    track = d.contacts["body_kind"] != BodyKind.BELLY
+    forces = d.contacts["normal_force"][track]
+    if d.outcome != Outcome.SLIPPING or forces.sum() == 0.0:
+        return ""
+    slip = float(np.average(np.abs(d.contacts["surface_speed"][track]), weights=forces))
+    return f"the track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
+
+
+def _progress(d: Diagnosis) -> str:
+    if d.progress < _LEAST_FRACTION:
+        return ""
+    return f"it still creeps at {_percent(d.progress)} of the commanded speed"
+
+
+def _balance(d: Diagnosis) -> str:
+    """Say if the forces do not balance."""
+    if d.certified:
+        return ""
+    if d.imbalance is None:
+        return "the balance of forces could not be computed"
+    residual = f"the smallest residual is {100 * d.imbalance:.2g} % of the weight"
+    return f"no contact forces balance it: {residual}"
+
+
+def _percent(fraction: float) -> str:
+    return f"{100 * fraction:.0f} %"

@@ -1,4 +1,4 @@
-"""The data of a diagnosis: intrusions, trials, and whether forces could balance a stop."""
+"""What is found about a stop: intrusions, trials, and whether forces could balance it."""
 
 from __future__ import annotations
 
@@ -6,13 +6,11 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, Literal
+from typing import Any
 
-from crawler2d.common.arrays import Table
-from crawler2d.common.bodies import BodyKind
 from crawler2d.results.outcome import MECHANISMS, Outcome, glossary_text
 
-__all__ = ["Balance", "Findings", "Intrusion", "Mechanism", "Pull", "TrialResult"]
+__all__ = ["Balance", "Intrusion", "Mechanism", "Pull", "TrialResult"]
 
 
 class Mechanism(StrEnum):
@@ -139,65 +137,6 @@ class TrialResult:
     def is_from_the_start(self) -> bool:
         """Whether the robot started where its run did, and not in the pose of the stop."""
         return self.name.endswith(", from the start")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Findings:
-    """The fields of a `Diagnosis`, which documents them, and properties derived from them."""
-
-    outcome: Outcome
-    symptom: Outcome
-    passing: bool
-    trials: tuple[TrialResult, ...]
-    jammed: bool
-    mechanism: Mechanism | None
-    time: float
-    since: float
-    position: tuple[float, float]
-    chassis_angle: float
-    intrusion: Intrusion | None
-    contacts: Table
-    belly_share: float
-    sliding_share: float
-    stalled_share: float
-    progress: float
-    stationary: bool
-    imbalance: float | None
-    certified: bool
-
-    @property
-    def certificate(self) -> float | None:
-        """[-] The imbalance if it proves that forces can balance the stop, else None."""
-        return self.imbalance if self.certified else None
-
-    @property
-    def freed_by(self) -> tuple[str, ...]:
-        """Names of the trials made so far that freed the robot."""
-        return tuple(tried.name for tried in self.trials if tried.freed)
-
-    @property
-    def reached_by_belt(self) -> bool | None:
-        """Whether a belt came as far as the robot from the start; None if none was tried."""
-        starts = [tried.distance >= 0.0 for tried in self.trials if tried.is_from_the_start]
-        return any(starts) if starts else None
-
-    @property
-    def belly_side(self) -> Literal["", "underside", "tail", "nose"]:
-        """Where the ground pushes against the belly; "" if it does not.
-
-        At the tail or the nose if it pushes along the belly more than away from its underside: so
-        it does when a robot stands on the tail of its hull.
-        """
-        on_belly = self.contacts["body_kind"] == BodyKind.BELLY
-        force = self.contacts["normal_force"][on_belly]
-        if not force.size:
-            return ""
-        x, y = (force @ self.contacts[name][on_belly] for name in ("normal_x", "normal_y"))
-        sine, cosine = math.sin(self.chassis_angle), math.cos(self.chassis_angle)
-        along, across = cosine * x + sine * y, cosine * y - sine * x
-        if abs(along) <= across:
-            return "underside"
-        return "tail" if along > 0.0 else "nose"
 
 
 _TRIED = (0.02, 5.0)
