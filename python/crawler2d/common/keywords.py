@@ -85,7 +85,10 @@ def read_choice(value: object, path: str, names: Sequence[str]) -> str:
     """
     if isinstance(value, str) and value in names:
         return str(value)
-    hint = suggestion(str(value), names)
+    import difflib  # noqa: PLC0415 - only a failure needs it
+
+    nearest = difflib.get_close_matches(str(value), names, n=1)
+    hint = f" (did you mean {nearest[0]}?)" if nearest else ""
     raise ScenarioError(path, value, f"must be one of {', '.join(names)}{hint}")
 
 

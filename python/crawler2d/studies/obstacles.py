@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import NO_RESULT
-from crawler2d.studies.campaign import Cell, RateSampling, campaign
+from crawler2d.studies.campaign import Cell, RateSampling, Tally, campaign
 from crawler2d.studies.tables import Models, paths_of, rate_table, read_models, read_terrains
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.variability import of_contact, of_field, of_start
@@ -158,28 +158,15 @@ def _find_greatest(
             tallies,
             {"model": (list(fields), {}), name: (tried, field_attributes([path]))},
         )
-    others = tuple(str(dim) for dim in table["rate"].dims if dim != name)
-    rates = table["rate"].transpose(*others, name)
-    often = (rates >= 0.5).to_numpy()
-    sure = (table["low"].transpose(*others, name) > 0.5).to_numpy()
-    shape = often.shape[:-1]
-    columns: dict[str, Any] = {
-        "highest": _greatest(often, tried),
-        "certain": _greatest(sure, tried),
-    }
-    below = np.array(tried) < columns["highest"][..., None]
-    columns["gaps"] = (~often & below).sum(axis=-1)
-    flat = [tally for each in tallies for tally in each]
-    order = table["rate"].dims.index(name)
-    index = np.moveaxis(np.arange(len(flat)).reshape(table["rate"].shape), order, -1)
-    limits = np.empty(shape, object)
-    for place in np.ndindex(shape):
-        above = np.flatnonzero(np.array(tried) > columns["highest"][place])
-        if math.isnan(columns["highest"][place]):
-            above = np.arange(len(tried))
-        next_up = "" if above.size == 0 else flat[index[(*place, above[0])]].commonest_failure
-        limits[place] = next_up or "none up to here"
-    columns["limit"] = limits
+    count = len(tried)
+    rows = [
+        [cell[sample] for cell in tallies[begin : begin + count]]
+        for begin in range(0, len(tallies), count)
+        for sample in range(len(tallies[begin]))
+    ]
+    columns = zip(*(_limits(row, tried) for row in rows), strict=True)
+    dims = tuple(str(dim) for dim in table["rate"].dims if dim != name)
+    shape = [table.sizes[dim] for dim in dims]
     units = field_attributes([path]).get("units", "1")
     attributes: Mapping[str, dict[str, str]] = {
         "highest": {"units": units, "long_name": f"greatest {name} with a rate of 0.5 or more"},
@@ -187,13 +174,24 @@ def _find_greatest(
         "gaps": {"units": "1", "long_name": f"lower {name}s with a rate below 0.5"},
         "limit": {"long_name": "how most runs end on the next"},
     }
-    return table.assign({k: (others, v, attributes[k]) for k, v in columns.items()})
+    return table.assign(
+        {
+            key: (dims, np.reshape(column, shape), attributes[key])
+            for key, column in zip(attributes, columns, strict=True)
+        }
+    )
 
 
-def _greatest(holds: np.ndarray[Any, Any], tried: Sequence[float]) -> np.ndarray[Any, Any]:
-    """Return the greatest value along the last axis where `holds`; NaN if nowhere."""
-    where = np.where(holds, np.array(tried), -np.inf).max(axis=-1)
-    return np.where(np.isinf(where), np.nan, where)
+def _limits(row: Sequence[Tally], values: Sequence[float]) -> tuple[float, float, int, str]:
+    """Return the greatest value that is cleared, that certainly is, gaps below, and the limit."""
+    intervals = [tally.interval for tally in row]
+    cleared = [v for v, each in zip(values, intervals, strict=True) if each.rate >= 0.5]
+    certain = [v for v, each in zip(values, intervals, strict=True) if each.low > 0.5]
+    highest = max(cleared, default=math.nan)
+    gaps = sum(value < highest for value in values) - sum(value < highest for value in cleared)
+    beyond = [t for t, value in zip(row, values, strict=True) if not value <= highest]
+    limit = beyond[0].commonest_failure if beyond else ""
+    return highest, max(certain, default=math.nan), gaps, limit or "none up to here"
 
 
 @takes_keywords
