@@ -361,31 +361,25 @@ def _in_chain(piece: Intrusion) -> list[str]:
 
 def _bearers(d: Diagnosis) -> str:
     """Say which bodies bear on the ground inside the track, most loaded first."""
-    contacts = d.contacts
-    rows = np.flatnonzero(contacts["in_pocket"])
-    bodies = contacts["body"][rows]
-    forces = {int(body): 0.0 for body in bodies}
-    sliding = dict(forces)
-    for body, force, slides in zip(
-        bodies, contacts["normal_force"][rows], contacts["slides"][rows], strict=True
-    ):
-        forces[int(body)] += float(force)
-        sliding[int(body)] += float(force) * bool(slides)
-    bearers = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
-    bearers = [body for body in bearers if forces[body] >= _LEAST_FRACTION * sum(forces.values())]
+    inside = d.contacts["in_pocket"].astype(bool)
+    bodies, forces = d.contacts["body"][inside], d.contacts["normal_force"][inside]
+    slides = d.contacts["slides"][inside].astype(bool)
+    loads = {body: float(forces[bodies == body].sum()) for body in dict.fromkeys(bodies.tolist())}
+    bearers = sorted(loads, key=loads.__getitem__, reverse=True)[:2]
+    bearers = [body for body in bearers if loads[body] >= _LEAST_FRACTION * sum(loads.values())]
+    if not bearers:
+        return ""
     names = [body_name(d, body) for body in bearers]
     if len(names) == 2 and names[0] == names[1]:
         names[1] = "another"
-    slides = [sliding[body] > 0.5 * forces[body] for body in bearers]
-    does = ["slides on it under a load of" if slide else "bears on it with" for slide in slides]
-    newtons = [f"{forces[body]:.0f} N" for body in bearers]
-    if not bearers:
-        return ""
-    text = f"{names[0]} {does[0]} {newtons[0]}"
-    if len(bearers) == 2 and does[0] != does[1]:
-        text += f" and {names[1]} {does[1]} {newtons[1]}"
+    sliding = [forces[(bodies == body) & slides].sum() > 0.5 * loads[body] for body in bearers]
+    verbs = ["slides on it under a load of" if each else "bears on it with" for each in sliding]
+    newtons = [f"{loads[body]:.0f} N" for body in bearers]
+    text = f"{names[0]} {verbs[0]} {newtons[0]}"
+    if len(bearers) == 2 and verbs[0] != verbs[1]:
+        text += f" and {names[1]} {verbs[1]} {newtons[1]}"
     elif len(bearers) == 2:
-        text += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
+        text += f", {names[1]} {'under' if sliding[1] else 'with'} {newtons[1]}"
     return text + _GRIPS.get(str(d.mechanism), "")
 
 

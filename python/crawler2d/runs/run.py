@@ -13,13 +13,17 @@ from crawler2d.common.units import table_of_metrics
 from crawler2d.errors import ScenarioError
 from crawler2d.results.record import Record
 from crawler2d.results.tip_over import TipOver, find_tip_over
-from crawler2d.runs import branch as branching
 from crawler2d.runs.branch import (
     EscapeForce,
     RecordMode,
     Trial,
+    branch_scenario,
+    branch_time,
     check_recording,
+    read_push,
+    refuse_without_result,
     run_of_trial,
+    simulate_branch,
     trial_at,
     trial_names,
     trials_at,
@@ -174,8 +178,8 @@ class Run(Record):
         >>> str(run.outcome), str(run.branch(track=c2d.BeltTrack()).outcome)
         ('seized', 'cleared')
         """
-        time = branching.branch_time(self, at)
-        variant = branching.branch_scenario(
+        time = branch_time(self, at)
+        variant = branch_scenario(
             self,
             track=track,
             friction=friction,
@@ -223,7 +227,7 @@ class Run(Record):
         >>> [trial.name for trial in run.trials() if trial.freed]
         ['closed track', 'belt', 'friction x 2']
         """
-        time = branching.branch_time(self, "stop")
+        time = branch_time(self, "stop")
         results = trials_at(self, time, trial_names("all"))
         self._add_to_diagnosis(*results)
         return tuple(Trial.of(each, partial(self._run_of_trial, time, each)) for each in results)
@@ -268,12 +272,12 @@ class Run(Record):
         >>> run.what_if("torque x 2").freed, run.what_if(track=c2d.BeltTrack()).freed
         (False, True)
         """
-        time = branching.branch_time(self, "stop")
+        time = branch_time(self, "stop")
         if name is not None:
             result = trial_at(self, time, name)
             self._add_to_diagnosis(result)
             return Trial.of(result, partial(self._run_of_trial, time, result))
-        variant = branching.branch_scenario(
+        variant = branch_scenario(
             self,
             track=track,
             friction=friction,
@@ -282,7 +286,7 @@ class Run(Record):
             drive=drive,
             duration=None,
         )
-        result = try_variant(self, time, variant, branching.read_push(push))
+        result = try_variant(self, time, variant, read_push(push))
         variant = variant.replace({"duration": result.duration})
         return Trial.of(result, partial(self._branch_as, variant, time, push))
 
@@ -294,7 +298,7 @@ class Run(Record):
         record: RecordMode = "full",
         sample_interval: float = 0.01,
     ) -> Run:
-        result = branching.simulate_branch(
+        result = simulate_branch(
             self, time, variant, push=push, record=record, sample_interval=sample_interval
         )
         return Run(variant, result, trunk=(self.scenario, time))
@@ -330,7 +334,7 @@ class Run(Record):
         ScenarioError
             If the run did not end in a stop, or is a branch itself.
         """
-        time = branching.branch_time(self, "stop")
+        time = branch_time(self, "stop")
         return EscapeForce(*_core.escape_force(self.scenario.to_json(), time))
 
     def tip_over(self) -> TipOver:
@@ -358,7 +362,7 @@ class Run(Record):
         >>> fall.backwards, fall.held_by
         (True, ('centre of mass 36 mm further forward',))
         """
-        branching.refuse_without_result(self)
+        refuse_without_result(self)
         tip_over = find_tip_over(self.scenario, try_changes=True)
         if tip_over is None:
             raise ScenarioError("run", self, f"must have tipped over, not {self.outcome}")

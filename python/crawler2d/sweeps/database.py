@@ -108,7 +108,7 @@ def read_checked(values: Sequence[Any]) -> Kept:
             {name: _number(value) for name, value in json.loads(metrics).items()},
             None if diagnosis is None else read_diagnosis(diagnosis),
             _number(wall_time),
-            None if error is None else _error(*json.loads(error)),
+            None if error is None else _read_error(*json.loads(error)),
         )
         row.read_diagnosis()
         return row, str(build), tuple(map(str, json.loads(trials)))
@@ -125,7 +125,7 @@ def _number(value: float | None) -> float:
     return value
 
 
-def _error(name: str, *arguments: Any) -> Crawler2dError:
+def _read_error(name: str, *arguments: Any) -> Crawler2dError:
     return _ERRORS[name](*arguments)
 
 
@@ -315,7 +315,7 @@ def open_to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
         except sqlite3.OperationalError as error:
             # SQLite reads a file with a log only in a folder that can be written. Without a log the
             # file is whole, and where nobody can write it does not change while it is read.
-            log = _log(real)
+            log = Path(f"{real}-wal")
             if _kind(error) not in {"CANTOPEN", "READONLY"}:
                 raise
             if log.exists() and log.stat().st_size > 0:
@@ -390,10 +390,6 @@ def store_errors(path: Path) -> Iterator[None]:
 def _kind(error: sqlite3.Error) -> str:
     """Return the kind of an error without its details: IOERR of SQLITE_IOERR_WRITE."""
     return f"{getattr(error, 'sqlite_errorname', '')}__".split("_")[1]
-
-
-def _log(real: Path) -> Path:
-    return Path(f"{real}-wal")
 
 
 def _connect(real: Path, mode: str) -> sqlite3.Connection:
