@@ -89,6 +89,8 @@ def read_choice(value: object, path: str, names: Sequence[str]) -> str:
 
     nearest = difflib.get_close_matches(str(value), names, n=1)
     hint = f" (did you mean {nearest[0]}?)" if nearest else ""
+    if any("," in name for name in names):
+        names = [f'"{name}"' for name in names]
     raise ScenarioError(path, value, f"must be one of {', '.join(names)}{hint}")
 
 
