@@ -186,7 +186,7 @@ def test_a_number_that_follows_from_discs_is_not_replaced() -> None:
             refused(lambda path=path: Scenario(TRAPEZOID, STEP).replace({path: 0.1})),
         ):
             assert (each.path, each.value) == (path, 0.1)
-            assert "follows from" in each.rule
+            assert "determine it" in each.rule
     plain = json.loads(Scenario(TRAPEZOID, STEP).to_json())
     plain["robot"]["outline"]["front_radius"] = 0.05
     error = refused(lambda: Scenario.from_json(json.dumps(plain)))
