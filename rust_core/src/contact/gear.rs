@@ -6,6 +6,8 @@
 //!
 //! The equations: docs/physics.md, "Contacts".
 
+use rapier2d_f64::parry::bounding_volume::Aabb;
+
 use super::Contact;
 use super::lane::{Lane, On, Region, Touch};
 use super::redundant::{Tip, run_yields, thin_out, tip_yields};
@@ -38,14 +40,6 @@ struct Grouser {
 }
 
 impl Grouser {
-    /// The smallest and largest coordinates of its corners [m].
-    fn bounds(&self) -> (Vector, Vector) {
-        let [first, others @ ..] = self.corners;
-        others.iter().fold((first, first), |(low, high), corner| {
-            (low.min(*corner), high.max(*corner))
-        })
-    }
-
     /// Whether a point lies in the grouser.
     fn contains(&self, point: Vector) -> bool {
         let mut sides = self.corners.iter().zip(&self.normals);
@@ -133,9 +127,9 @@ impl GearContact {
                 corners: self.grouser.corners.map(|p| center + axis.rotate(p)),
                 normals: self.grouser.normals.map(|n| axis.rotate(n)),
             };
-            let (low, high) = grouser.bounds();
-            let near = lane.narrow_of_runs(&region, [low.x, high.x], prediction);
-            if low.y - prediction > lane.top(&near) {
+            let Aabb { mins, maxs } = Aabb::from_points(grouser.corners);
+            let near = lane.narrow_of_runs(&region, [mins.x, maxs.x], prediction);
+            if mins.y - prediction > lane.top(&near) {
                 continue;
             }
             self.find_tips((lane, &near), &grouser, prediction, contacts);

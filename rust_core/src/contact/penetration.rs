@@ -5,6 +5,8 @@
 
 use std::collections::HashSet;
 
+use rapier2d_f64::parry::query::PointQuery;
+use rapier2d_f64::parry::shape::Segment;
 use serde::{Deserialize, Serialize};
 
 use super::Contact;
@@ -58,10 +60,8 @@ fn depth_of_disc(center: Vector, radius: f64, lane: &Profile) -> f64 {
     // Inside, the nearest ground is no farther than that right above.
     let far = if is_inside { below } else { radius };
     let distance = |facet: usize| {
-        let (a, b) = (lane.points[facet], lane.points[facet + 1]);
-        let edge = b - a;
-        let fraction = ((center - a).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-        (a + edge * fraction - center).length()
+        let face = Segment::new(lane.points[facet], lane.points[facet + 1]);
+        (face.project_local_point(center, true).point - center).length()
     };
     let facets = lane.facets(center.x - far, center.x + far);
     let nearest = facets.map(distance).fold(far, f64::min);

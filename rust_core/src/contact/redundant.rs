@@ -215,7 +215,7 @@ impl Displacements {
         }
     }
 
-    /// Leaves the displacements at which the gap of a contact is open.
+    /// Leaves the displacements at which the gap of a contact is open. parry's clipping does not say which corners are new.
     fn cut(&mut self, contact: &Contact) {
         let old = std::mem::take(&mut self.corners);
         let gaps: Vec<f64> = old.iter().map(|c| gap_after(contact, c.at)).collect();

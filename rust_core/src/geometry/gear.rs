@@ -155,7 +155,7 @@ impl Gear {
         self.directions().flat_map(of_grouser).collect()
     }
 
-    /// [m^2] Area of the outline.
+    /// [m^2] Area of the outline. parry has areas and moments of polygons only; here the root arcs are exact.
     pub fn area(&self) -> f64 {
         let root = self.root_radius;
         let arc = 0.5 * root * root * self.arc();

@@ -1,4 +1,5 @@
-//! The convex hull of discs: found by rolling a tangent once round, and made of arcs and straight runs.
+//! The convex hull of discs: found by rolling a tangent once round, and made of arcs and straight runs. parry's hulls are of
+//! points.
 
 use std::f64::consts::TAU;
 

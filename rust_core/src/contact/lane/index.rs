@@ -3,12 +3,14 @@
 //!
 //! A table over x leads to the pieces under a place. If there are many, a hierarchy above them knows how
 //! high each stretch reaches and which way it faces, so that on flat ground only the pieces right below
-//! a part are visited.
+//! a part are visited. parry's hierarchy bounds places only, this one normals and roofs, too.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
 use std::cell::Cell;
 use std::ops::{Range, RangeInclusive};
+
+use rapier2d_f64::parry::bounding_volume::{Aabb, BoundingVolume};
 
 use super::Corner;
 use super::features::{Face, ROUNDING};
@@ -78,8 +80,7 @@ impl Region {
 /// Bounds of a stretch of the ground.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretch {
-    low: Vector,
-    high: Vector,
+    bounds: Aabb,
     /// The normals that point farthest to the right and to the left.
     normals: [Vector; 2],
     pub roof: Roof,
@@ -93,8 +94,7 @@ impl Stretch {
         let [right, left] = self.normals;
         let [other_right, other_left] = other.normals;
         Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
+            bounds: self.bounds.merged(&other.bounds),
             // No normal points down, so they can be ordered by x.
             normals: [
                 if right.x < other_right.x {
@@ -115,9 +115,8 @@ impl Stretch {
 
     /// Whether a disc within `reach` of its centre may bear on the stretch.
     pub(crate) fn may_face(&self, center: Vector, reach: f64) -> bool {
-        let away = (self.low - center)
-            .max(center - self.high)
-            .max(Vector::ZERO);
+        let Aabb { mins, maxs } = self.bounds;
+        let away = (mins - center).max(center - maxs).max(Vector::ZERO);
         if away.length_squared() > reach * reach {
             return false;
         }
@@ -125,22 +124,22 @@ impl Stretch {
         // Bounds of the cross products of the stretch's outermost normals with the vector from the stretch to
         // the centre: that vector, or its opposite in penetration, must lie between the normals.
         let bounds = |n: Vector| {
-            let (a, b) = (n.x * self.low.y, n.x * self.high.y);
+            let (a, b) = (n.x * mins.y, n.x * maxs.y);
             let here = cross(n, center);
             (
-                here - a.max(b) + n.y * self.low.x,
-                here - a.min(b) + n.y * self.high.x,
+                here - a.max(b) + n.y * mins.x,
+                here - a.min(b) + n.y * maxs.x,
             )
         };
         let (of_right, of_left) = (bounds(right), bounds(left));
         let above = of_right.1 >= -ROUNDING && of_left.0 <= ROUNDING;
         let below = of_right.0 <= ROUNDING && of_left.1 >= -ROUNDING;
-        above || (below && center.y <= self.high.y)
+        above || (below && center.y <= maxs.y)
     }
 
     /// Whether any of it lies within `margin` of a range of x.
     pub(crate) fn reaches(&self, [low, high]: [f64; 2], margin: f64) -> bool {
-        self.low.x - margin <= high && low <= self.high.x + margin
+        self.bounds.mins.x - margin <= high && low <= self.bounds.maxs.x + margin
     }
 
     /// Whether the stretch may have this normal.
@@ -164,7 +163,7 @@ impl Index {
             })
             .collect();
         let pieces = pieces(profile, faces, corners);
-        let tops: Vec<f64> = pieces.iter().map(|piece| piece.high.y).collect();
+        let tops: Vec<f64> = pieces.iter().map(|piece| piece.bounds.maxs.y).collect();
         Self {
             begins,
             cells,
@@ -243,7 +242,9 @@ impl Index {
             return tops.copied().fold(f64::NEG_INFINITY, f64::max);
         }
         let (level, stretches) = self.cover(region);
-        let tops = self.levels[level][stretches].iter().map(|s| s.high.y);
+        let tops = self.levels[level][stretches]
+            .iter()
+            .map(|s| s.bounds.maxs.y);
         tops.fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -354,8 +355,7 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
         let (face, corner, next) = (&faces[i], &corners[i], &corners[i + 1]);
         let points = profile.points[corner.facet..=next.facet].iter();
         let place = |point: &Vector| Stretch {
-            low: *point,
-            high: *point,
+            bounds: Aabb::new(*point, *point),
             normals: [face.normal; 2],
             roof: [*point; 2],
             is_convex: corner.is_convex || next.is_convex,
