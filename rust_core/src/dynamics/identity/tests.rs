@@ -27,7 +27,7 @@ impl Steps {
         let mut contacts = contacts.to_vec();
         self.identity.recognise(&self.last, &mut contacts, 0.0);
         self.identity.keep(&self.last, STEP);
-        self.last = contacts.to_vec();
+        self.last.clone_from(&contacts);
         contacts.iter().map(|contact| contact.number).collect()
     }
 
