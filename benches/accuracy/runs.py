@@ -62,7 +62,7 @@ class Interrupted(KeyboardInterrupt):
 def plan(cell: Cell, setting: Setting, count: int, seed: int) -> list[Passed]:
     """Draw the first runs of a cell, as a sweep does."""
     base = cell.scenario(setting)
-    planner = Planner(Variation.of(base, None, ()), Variation({}), seed)
+    planner = Planner(Variation.read(base, None, ()), Variation({}), seed)
     (plan,) = plan_runs(base, (), planner, repeats=count)
     for each in plan.checked:
         if isinstance(each, ScenarioError):

@@ -16,7 +16,7 @@ import numpy as np
 from crawler2d import Robot, Scenario
 from crawler2d.model_tree import Array, Joint, Link, Pose, Shape, Tree, from_quaternion
 from crawler2d.parameters.terrain import Flat
-from crawler2d.reading.wheels import below
+from crawler2d.reading.wheels import subtrees
 from crawler2d.writing.carriers import across_of
 from crawler2d.writing.formats import URDF, document, urdf_of
 from crawler2d.writing.model import model_of
@@ -140,7 +140,7 @@ def model_of_robot(robot: Robot) -> RobotModel:
     """
     text = Scenario(robot, Flat()).to_json()
     across = across_of(robot.gauge, None, None)
-    tree = model_of(json.loads(text)["robot"], text, across, friction=1.0, form=URDF)
+    tree = model_of(json.loads(text)["robot"], text, across, friction=1.0, target=URDF)
     is_coupled = robot.drivetrain.torque_sharing == "track"
     joints = [joint for joint in tree.joints.values() if joint.kind == "hinge"]
     many = len(joints) // 2 if is_coupled else 1
@@ -212,7 +212,7 @@ def rigid_bodies(
         The chassis first, all in the chassis frame; rotations are rows of a matrix, one after the
         other.
     """
-    attached = below(tree)
+    attached = subtrees(tree)
     to_chassis = Pose(place=-origin)
     moves = dict.fromkeys(attached, to_chassis)
     for flipper, angle in held.items():

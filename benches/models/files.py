@@ -1,4 +1,4 @@
-"""The model files that the engines load: public, exported, patched, and changed ones."""
+"""The model files that the engines load: public, exported, patch_file, and changed ones."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from benches.adapters.robots import RobotModel, Wheel, cleaned, rigid_bodies
 from benches.models.cases import CASES, Case
 from crawler2d import Reading, Robot, read_robot
 from crawler2d.model_tree import Link, Shape, Tree
-from crawler2d.patching.patch import patched
-from crawler2d.reading.wheels import below
+from crawler2d.patching.patch import patch_file
+from crawler2d.reading.wheels import subtrees
 from crawler2d.writing.formats import document, urdf_of
 
 _LEFT = np.array([0.0, 1.0, 0.0])
@@ -72,7 +72,7 @@ def patch(case: Case, robot: Robot, form: str) -> RobotModel:
     own, flippers = reading.robot, reading.robot.flippers
     if flippers is not None and robot.flippers is not None:
         flippers = replace(flippers, track=robot.flippers.track)
-    text = patched(reading, replace(own, track=robot.track, flippers=flippers)).text
+    text = patch_file(reading, replace(own, track=robot.track, flippers=flippers)).text
     file = f"{Path(case.file).stem}_patch.{case.form}"
     return loaded(_reread(text, file, **case.how), form, case.angle)
 
@@ -170,7 +170,7 @@ def balanced(reading: Reading) -> Tree:
 def on_axles(reading: Reading) -> Tree:
     """Return a robot whose flippers, with everything attached to them, pivot on the end axles."""
     tree, height = reading.tree, reading.frame.place[2]
-    hanging = below(tree)
+    hanging = subtrees(tree)
     table = reading.wheels
     arms = {
         tree.joints[wheel].parent

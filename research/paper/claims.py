@@ -19,7 +19,7 @@ from research.tables import markdown_table, mm
 
 if TYPE_CHECKING:
     from crawler2d.parameters.terrain import Terrain
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
     from research.paper.design import Setting, Work
     from research.paper.figures import Shaking
 
@@ -445,7 +445,9 @@ def _chains_stick(work: Work) -> Claim:
     )
 
 
-def _cross(work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]) -> Found:
+def _cross(
+    work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]
+) -> FigureDataset:
     """Drive layouts without flippers over some grounds."""
     models = models_of(names, setting, flippers=False)
     return _success(work, grounds, models, work.design.claim_repeats)
@@ -453,14 +455,14 @@ def _cross(work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequ
 
 def _success(
     work: Work, grounds: Mapping[str, Any], models: Mapping[str, Any], repeats: int
-) -> Found:
+) -> FigureDataset:
     base = climb(next(iter(grounds.values())))
     return work.count(
         c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
     )
 
 
-def _count(runs: Found, model: str, ground: str, label: str = "") -> _Count:
+def _count(runs: FigureDataset, model: str, ground: str, label: str = "") -> _Count:
     own = runs.sel(model=model, terrain=ground)
     cleared = int((own["outcome"].to_numpy() == "cleared").sum())
     return _Count(label or model, cleared, own["count"].item())
@@ -492,7 +494,7 @@ def _mass_sticks(work: Work) -> Claim:
     )
 
 
-def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> Found:
+def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> FigureDataset:
     """Drive robots over as many fields as Table 2 has, and the same ones."""
     field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
     return _success(work, field, models, work.design.field_repeats)
@@ -536,13 +538,13 @@ def _odometry_of_gears(work: Work) -> Claim:
     )
 
 
-def _drive_level(work: Work, study: Any, names: Sequence[str]) -> Found:
+def _drive_level(work: Work, study: Any, names: Sequence[str]) -> FigureDataset:
     """Drive layouts without flippers over level ground."""
     base = c2d.Scenario(
         study_robot(), c2d.terrains.flat(), drive=c2d.Drive(speed=TABLE_1.max_speed)
     )
     repeats, models = work.design.driving_repeats, models_of(names, flippers=False)
-    runs: Found = study(base, models=models, repeats=repeats, **work.sampling)
+    runs: FigureDataset = study(base, models=models, repeats=repeats, **work.sampling)
     return work.count(runs)
 
 

@@ -24,7 +24,7 @@ from research.tables import splice
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 STORE = "paper.sqlite"
 """The file that keeps every run."""
@@ -57,17 +57,17 @@ class Pages:
         How runs are made, and how many.
     sections : dict of str to str
         By name, as far as they are done.
-    fields : list of pair of Setting and Found
+    fields : list of pair of Setting and FigureDataset
         The runs of Table 2, so far.
-    blocks : dict of str to Found
+    blocks : dict of str to FigureDataset
         Those over the parallelepiped of Table 3, by setting.
     """
 
     job: Job
     work: Work
     sections: dict[str, str] = field(default_factory=dict)
-    fields: list[tuple[Setting, Found]] = field(default_factory=list)
-    blocks: dict[str, Found] = field(default_factory=dict)
+    fields: list[tuple[Setting, FigureDataset]] = field(default_factory=list)
+    blocks: dict[str, FigureDataset] = field(default_factory=dict)
 
     @property
     def into(self) -> Path | None:

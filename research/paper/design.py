@@ -20,7 +20,7 @@ from research.models import study_models, study_robot
 
 if TYPE_CHECKING:
     from crawler2d.parameters.terrain import Terrain
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 
 # [-] No interval is so narrow: the number of runs decides.
@@ -106,7 +106,7 @@ class Work:
         until = c2d.Until(width=_NO_WIDTH, least=repeats, most=repeats)
         return RateSampling(**self.sampling, until=until)
 
-    def count(self, found: Found) -> Found:
+    def count(self, found: FigureDataset) -> FigureDataset:
         """Count what a study has tried, and return it; what two studies try counts twice."""
         self.tried.update({name: found.attrs[name] for name in ("settings", "runs")})
         return found

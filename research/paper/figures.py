@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
     from research.paper.design import Work
 
 _PHASED: dict[str, Track] = {
@@ -230,12 +230,12 @@ def equation_text(phases: Sequence[Phase], shaken: Sequence[Shaking]) -> str:
     )
 
 
-def stuck_runs(tables: Mapping[str, Found]) -> list[Stuck]:
+def stuck_runs(tables: Mapping[str, FigureDataset]) -> list[Stuck]:
     """Take, for each figure, the first run that seized with an edge between two wheels.
 
     Parameters
     ----------
-    tables : mapping of str to Found
+    tables : mapping of str to FigureDataset
         What was run over the parallelepiped of Table 3, by setting, with the dimensions `model`,
         `height` and `repeat`: a sharp corner on level ground, as in the figures.
 

@@ -14,7 +14,7 @@ from research.paper.design import PRESET, READINGS, SETTINGS, climb, models_of
 from research.tables import gaps, group_by, markdown_table, mm, percent
 
 if TYPE_CHECKING:
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
     from research.paper.design import Work
 
 _PAPER = {row.model: row for row in TABLE_3}
@@ -134,7 +134,7 @@ def driving(work: Work) -> list[Driving]:
     return rows
 
 
-def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, Found]]:
+def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, FigureDataset]]:
     """Find the highest parallelepiped, in every setting; returns the runs, too, by setting."""
     heights, repeats = work.design.heights, work.design.height_repeats
     rows, tables = [], {}
@@ -222,7 +222,7 @@ def computing(work: Work) -> list[Computing]:
     ]
 
 
-def measure_factors(work: Work, base: c2d.Scenario, models: Any) -> Found:
+def measure_factors(work: Work, base: c2d.Scenario, models: Any) -> FigureDataset:
     """Measure real-time factors on one thread of this machine."""
     return c2d.studies.real_time_factor(
         base,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from crawler2d.results.record import Row
-    from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.figure_dataset import FigureDataset
     from research.paper.design import Work
 
 FIELDS: Mapping[str, RandomStepfield] = {
@@ -108,12 +108,12 @@ class Failure:
     """Of its scenario, by which the store finds it."""
 
 
-def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Found]]:
+def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, FigureDataset]]:
     """Drive some layouts over the fields, in one setting after the other.
 
     Yields
     ------
-    tuple of Setting and Found
+    tuple of Setting and FigureDataset
         Dimensions `model`, `terrain` and `repeat`; every run has a field of its own, the same for
         every layout and setting.
     """
@@ -122,7 +122,7 @@ def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Fo
         yield setting, cross(setting, names, work, work.design.field_repeats)
 
 
-def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) -> Found:
+def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) -> FigureDataset:
     """Drive some layouts over the fields in one setting; see `cross_fields`."""
     grounds = {name: replace(field, friction=setting.friction) for name, field in FIELDS.items()}
     base = climb(next(iter(grounds.values())))
@@ -132,7 +132,7 @@ def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) ->
     )
 
 
-def cells(setting: Setting, runs: Found) -> list[FieldCell]:
+def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:
     """Count how the runs of `cross_fields` ended, one row per layout and field."""
     rows = []
     for model in runs["model"].to_numpy().tolist():
@@ -227,12 +227,12 @@ def place_of(x: float, half_length: float, barrier: tuple[float, float] | None) 
     return "beyond" if x - half_length > barrier[1] else "at"
 
 
-def failures(tables: Iterable[tuple[Setting, Found]], store: Path) -> list[Failure]:
+def failures(tables: Iterable[tuple[Setting, FigureDataset]], store: Path) -> list[Failure]:
     """List the runs of `cross_fields` that did not clear, with what the store knows of them.
 
     Parameters
     ----------
-    tables : iterable of Setting and Found
+    tables : iterable of Setting and FigureDataset
         What was made under each setting, with the dimensions `model`, `terrain` and `repeat`.
     store : Path
         Where the runs are.
@@ -246,7 +246,7 @@ def failures(tables: Iterable[tuple[Setting, Found]], store: Path) -> list[Failu
             identity = str(runs["identity"].to_numpy()[model, obstacle, repeat])
             failed[identity] = (setting, models[model], obstacles[obstacle], repeat)
     with Store(store) as kept:
-        rows = kept.found(list(failed))
+        rows = kept.read(list(failed))
     return [_failure(rows[identity], *place) for identity, place in failed.items()]
 
 
@@ -378,7 +378,7 @@ def plot_table_2(rows: Sequence[Comparison]) -> Figure:
 
 
 def _failure(row: Row, setting: Setting, model: str, obstacle: str, repeat: int) -> Failure:
-    scenario, why = c2d.Scenario.from_json(row.scenario), row.why()
+    scenario, why = c2d.Scenario.from_json(row.scenario), row.read_diagnosis()
     inside = None if why is None else why.intrusion
     x = row.metrics.get("final_x", math.nan) if why is None else why.position[0]
     field, outline = scenario.terrain, scenario.robot.outline

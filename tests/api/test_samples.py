@@ -10,7 +10,7 @@ import crawler2d as c2d
 from crawler2d.audits.subject import standard_obstacles
 from crawler2d.audits.text import linted
 from crawler2d.parameters.fields import to_dict
-from crawler2d.patching.patch import patched
+from crawler2d.patching.patch import patch_file
 from tests.shared import refused
 
 NAMES = c2d.samples.names()
@@ -96,7 +96,7 @@ def test_the_wheels_of_a_sample_can_be_changed_in_its_file(
 ) -> None:
     reading = read(name)
     changed = tmp_path / name
-    changed.write_text(patched(reading, reading.robot.with_track(track)).text, encoding="utf-8")
+    changed.write_text(patch_file(reading, reading.robot.with_track(track)).text, encoding="utf-8")
     again = c2d.read_robot(changed).robot
     assert isinstance(again.track, c2d.LineOfWheels)
     assert again.track.count == track.count

@@ -21,7 +21,7 @@ TAPERED = c2d.GearWheel(grouser_count=7, base_thickness=0.02, tip_thickness=0.00
 
 
 def tree_of(robot: c2d.Robot, target: Format = SDF) -> Tree:
-    text = robot._alone()
+    text = robot._at_rest()
     plain = json.loads(text)["robot"]
     return model_of(plain, text, across_of(plain["gauge"], None, None), friction=1.0, target=target)
 
@@ -56,7 +56,7 @@ def dense(polygon: np.ndarray) -> np.ndarray:
 def test_a_gear_wheel_has_its_exact_outline(wheel: c2d.GearWheel) -> None:
     robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3, wheel=wheel))
     tree = tree_of(robot, MJCF)
-    bodies = _core.geometry(robot._alone())["bodies"]
+    bodies = _core.geometry(robot._at_rest())["bodies"]
     wheels = robot.wheels()
     for number in range(3):
         link = tree.by_name[f"left_wheel_{number + 1}"]
@@ -75,7 +75,7 @@ def test_a_belt_has_its_exact_outline(number: int) -> None:
     of: Any = [c2d.BeltTrack(), c2d.ClosedTrack(c2d.CircumferentialWheels(18))][number % 2]
     robot = drawn(number).without_flippers().with_track(of)
     tree = tree_of(robot)
-    (carrier,) = _core.geometry(robot._alone())["carriers"]
+    (carrier,) = _core.geometry(robot._at_rest())["carriers"]
     envelope = np.array(carrier["envelope"])
     inside = deepest(tree.by_name["left_track"].shapes, dense(envelope))
     assert inside.min() > -1e-9
@@ -119,7 +119,7 @@ def test_wheels_are_hoops_only_where_uniform_ones_leave_no_chassis() -> None:
 
 def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> None:
     robot = c2d.robots.engineer(track=c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=5)))
-    text = robot._alone()
+    text = robot._at_rest()
     scene = Scene(text, on_chassis(at_start(text)))
     tree = tree_of(robot)
     for number in range(3):

@@ -27,7 +27,7 @@ from crawler2d.audits.issues import SEIZES, Check, Issue, repository_of
 from crawler2d.audits.lint import SEVERITIES
 from crawler2d.audits.verdicts import Share, Verdict
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.fields import to_plain
+from crawler2d.parameters.fields import to_dict
 from crawler2d.reading.log import list_names
 
 __all__ = ["against", "entry_of", "read_baseline", "write_baseline"]
@@ -94,7 +94,7 @@ def entry_of(check: Check) -> Plain:
     kept: Plain = {
         "crawler2d": build["version"],
         "build": build["build_id"],
-        "robot": to_plain(check.found.robot),
+        "robot": to_dict(check.found.robot),
         "lint": [
             [each.severity, each.rule, _told(each.what, check.path)] for each in check.found.lint
         ],

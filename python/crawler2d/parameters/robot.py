@@ -418,12 +418,12 @@ class Robot(Parameters, path="robot"):
         >>> c2d.read_robot(path).robot.mass == robot.mass
         True
         """
-        from crawler2d.writing.export import written_world  # noqa: PLC0415 - as above
+        from crawler2d.writing.export import export_world  # noqa: PLC0415 - as above
 
         if not isinstance(terrain, Terrain):
             raise ScenarioError("terrain", terrain, "must be a terrain")
         widths = {"track_width": track_width, "chassis_width": chassis_width}
-        return written_world(self._at_rest(terrain), self._at_rest(), path, **widths)
+        return export_world(self._at_rest(terrain), self._at_rest(), path, **widths)
 
     @property
     def in_words(self) -> str:
@@ -445,9 +445,9 @@ class Robot(Parameters, path="robot"):
         track_width: float | None,
         chassis_width: float | None,
     ) -> str:
-        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+        from crawler2d.writing.export import export_robot  # noqa: PLC0415 - costs nothing until used
 
-        return written(
+        return export_robot(
             self._at_rest(),
             format_,
             path,

@@ -10,7 +10,8 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Pose, Tree, Where
-from crawler2d.parameters.robot import Robot, TrackOutline
+from crawler2d.parameters.outline import TrackOutline
+from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.engines import combine_friction, drivetrain_of
 from crawler2d.reading.flippers import ArmPair, AtEnd, arm_pairs, arms_at, flippers_of

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crawler2d.common.bodies import ends_of
+from crawler2d.common.bodies import end_discs
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Shape, Where
 from crawler2d.parameters.track import GearWheel, HybridWheels, LineOfWheels, RoundWheel
@@ -183,7 +183,7 @@ def wheels_of(
 def ends_among(drums: list[Pair]) -> tuple[Pair, Pair]:
     """Return the drums on the rear and on the front end axle, as an outline has them."""
     discs = [(drum.x, drum.y, drum.radius) for drum in drums]
-    rear, front = ends_of(discs)
+    rear, front = end_discs(discs)
     return drums[discs.index(rear)], drums[discs.index(front)]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
-from crawler2d.common.bodies import Lane, discs_in, ends_of
+from crawler2d.common.bodies import Lane, discs_in, end_discs
 from crawler2d.drawings.scene import Scene, at_start
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Friction, Pose, Tree, from_rpy
@@ -222,7 +222,7 @@ def _build_model(
         raise ScenarioError("friction", friction, "must be between 0 and 1000")
     target = _WRITERS[name][0]
     tree = model_of(robot, text, across, friction=friction, target=target)
-    drivetrain, ends = robot["drivetrain"], ends_of(discs_in(robot["outline"]))
+    drivetrain, ends = robot["drivetrain"], end_discs(discs_in(robot["outline"]))
     limits = Limits(
         speed=float(drivetrain["max_speed"]),
         acceleration=float(drivetrain["max_acceleration"]),

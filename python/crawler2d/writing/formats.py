@@ -274,7 +274,7 @@ def _limits(joint: Joint, *names: str) -> dict[str, str]:
 
 
 def _plugins(tree: Tree, across: Across, limits: Limits) -> Iterator[XML]:
-    """Yield the drives of the model, commanded by cmd_vel of its name, and servos of its flippers."""
+    """Yield the drives of the model, commanded by its cmd_vel, and servos of its flippers."""
     for radius, joints in wheels_by_radius(tree, limits):
         # A drive has one radius, and all obey the same command.
         yield _plugin(

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from crawler2d.common.bodies import discs_in, ends_of
+from crawler2d.common.bodies import discs_in, end_discs
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import NOWHERE, Array, Joint, Link, Pose, Shape, Tree
 from crawler2d.writing.carriers import (
@@ -124,7 +124,7 @@ class _Model:
         outline, drivetrain = robot["outline"], robot["drivetrain"]
         self.speed = float(drivetrain["max_speed"])
         # [N] Of one side; its torque acts at the radius of the belt round the rear end.
-        rear, front = ends_of(discs_in(outline))
+        rear, front = end_discs(discs_in(outline))
         belt_radius = rear[2] - outline["grouser_height"]
         self.force = drivetrain["max_torque"] / belt_radius
         # [kg] At the surface of one side, as heavy as the rotor of its motor.
