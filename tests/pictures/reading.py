@@ -62,7 +62,7 @@ class PageRobot:
                 own, _ = self.pose(body, frame)
                 for outline in body["outlines"]:
                     line = _through(self._shapes[outline], [own, *frames])
-                    found.append((body["kind"], body["body"], line))
+                    found.append((body["look"], body["body"], line))
             for outline, own in self.grousers(carrier["circuit"], frame):
                 line = _through(self._shapes[outline], [own, *frames])
                 found.append(("grouser", None, line))

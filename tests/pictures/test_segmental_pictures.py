@@ -94,7 +94,7 @@ def test_each_pose_has_its_shoes(chain: c2d.Run) -> None:
 def test_other_tracks_have_no_shoes() -> None:
     page = page_of(simulated(c2d.GrouserBeltTrack(), duration=0.5))
     (chassis,) = page["robot"]["carriers"]
-    assert "shoe" not in {body["kind"] for body in chassis["bodies"]}
+    assert "shoe" not in {body["look"] for body in chassis["bodies"]}
 
 
 def test_fifteen_seconds_of_a_chain_take_less_than_500_kb() -> None:
@@ -174,13 +174,16 @@ def test_the_page_has_sprocket_idler_and_wheels(terrain: Any) -> None:
     robot, scene = page_of(run)["robot"], scene_of(run)
     (chassis,) = robot["carriers"]
     assert (chassis["envelope"], chassis["circuit"]) == (None, None)
-    kinds = [body["kind"] for body in chassis["bodies"]]
-    counts = {kind: kinds.count(kind) for kind in kinds}
-    wheels = {"sprocket": 1, "idler": 1, "road_wheel": 7, "roller": 3}
-    assert counts == {"shoe": 22, **wheels, "belly": 1}
+    looks = [body["look"] for body in chassis["bodies"]]
+    counts = {look: looks.count(look) for look in looks}
+    assert counts == {"shoe": 22, "wheel": 1, "chain wheel": 1 + 7 + 3, "belly": 1}
+    wheels = {BodyKind.IDLER: 1, BodyKind.ROAD_WHEEL: 7, BodyKind.ROLLER: 3}
+    shown = {body["body"] for body in chassis["bodies"] if body["look"] == "chain wheel"}
+    for kind, count in wheels.items():
+        assert len(shown & set(rows_of(scene, kind))) == count
     # Of two tracks the right one is in front.
     (row,) = rows_of(scene, BodyKind.SPROCKET)
-    sprocket = next(body for body in chassis["bodies"] if body["kind"] == "sprocket")
+    sprocket = next(body for body in chassis["bodies"] if body["look"] == "wheel")
     assert sprocket["body"] == row
     outline = unpacked(robot["outlines"][sprocket["outlines"][0]]).reshape(-1, 2)
     assert np.abs(outline - scene.bodies["outline"][row]).max() < 1e-5

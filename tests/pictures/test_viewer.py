@@ -125,10 +125,10 @@ def test_every_kind_of_robot_and_ground_has_a_page(scenario: c2d.Scenario) -> No
     assert recording["frames"]["count"] == run.time.size
     (chassis, *_) = recording["robot"]["carriers"]
     # Nothing gets inside what is closed, and only a belt carries something along.
-    kinds = {body["kind"] for body in chassis["bodies"]}
-    closed = kinds & {"belt", "skid", "guide", "shoe"}
+    looks = {body["look"] for body in chassis["bodies"]}
+    closed = looks & {"hull", "guide", "shoe"}
     assert bool(chassis["envelope"]) is not bool(closed)
-    assert bool(chassis["circuit"]) is ("belt" in kinds)
+    assert bool(chassis["circuit"]) is ("inside" in looks)
     corners = sum(len(lane["corners"]) for lane in recording["ground"]["lanes"])
     # Nothing rolls on the belly's.
     assert corners == np.count_nonzero(run.edges["lane"] != c2d.Lane.MIDDLE)

@@ -13,15 +13,13 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from string import Template
 
-from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.parts import robot_drawn
 from crawler2d.drawings.svg import escaped
 from crawler2d.errors import Crawler2dError, ScenarioWarning
-from crawler2d.pictures.page import page_template, policy, read_part
+from crawler2d.pictures.page import fill_page, read_part
 from crawler2d.reading.reading import Reading, read_robot
 
 __all__ = ["Entry", "add_arguments", "main_files", "run"]
@@ -170,7 +168,6 @@ def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLE
     samples : int
         Of each audit.
     """
-    style = read_part("page.css") + read_part("atlas.css", _HERE)
     sections = []
     for name in dict.fromkeys(entry.path.parts[0] for entry in entries):
         own = [entry for entry in entries if entry.path.parts[0] == name]
@@ -178,16 +175,15 @@ def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLE
         cards = "".join(_card(entry) for entry in own if entry.reading is not None)
         cards += _refused([entry for entry in own if entry.reading is None])
         sections.append(f"<section><h2>{escaped(name)}</h2>{licence}{cards}</section>")
-    return Template(page_template("atlas.html", _HERE)).substitute(
+    return fill_page(
+        "atlas.html",
+        read_part("atlas.css", _HERE),
+        "",
+        _HERE,
         title="Atlas of tracked robots",
         conclusion=escaped(_conclusion(entries)),
         entries="\n".join(sections),
-        version=escaped(str(_core.build_info()["version"])),
-        how=f"each file read with default options, audited with {samples} samples of what is not"
-        " known of it",
-        style=style,
-        style_hashes=policy(style),
-        script_hashes="'none'",
+        how=f"each file read with default options, audited with {samples} samples of its unknowns",
     )
 
 

@@ -1,4 +1,4 @@
-"""The Axes that a drawing goes into, and dimensions in it as in a technical drawing."""
+"""Axes for a drawing to scale, with title and legend, and dimensions as in a technical drawing."""
 
 from __future__ import annotations
 
@@ -16,17 +16,35 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
     from numpy.typing import NDArray
 
-__all__ = ["Canvas", "checked_axes", "height", "radius", "set_title", "span"]
+    from crawler2d.drawings.scene import Extent
+
+__all__ = [
+    "Canvas",
+    "axes_or_new",
+    "below_axis",
+    "check_axes",
+    "draw_height",
+    "draw_length",
+    "draw_radius",
+    "set_title",
+]
 
 # [inch] Width of a new figure, what is left and right of its drawing, least and most height.
 _WIDTH, _LEFT, _RIGHT, _HEIGHTS = 9.0, 0.9, 0.15, (1.2, 6.0)
 # [inch] Height of ticks and label of the axis below it, and between what is above each other.
 _AXIS, _CLEAR = 0.45, 0.1
 
-# Mean width of a character, as a share of the font's size.
+# Mean width of a character, as a fraction of the font's size.
 _CHARACTER = 0.56
-# Narrower titles have room for one paragraph only.
+# [characters] Narrower titles have room for one paragraph only.
 _NARROW = 75
+
+_COLOR = "#555555"
+_TEXT: Any = {"color": _COLOR, "fontsize": "x-small", "zorder": 3, "textcoords": "offset points"}
+_THIN: Any = {"color": _COLOR, "linewidth": 0.4, "zorder": 1.8}
+_ARROW = {"color": _COLOR, "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 7}
+# [point] From a line to its label.
+_OFFSET = 3.0
 
 
 class Canvas:
@@ -51,12 +69,7 @@ class Canvas:
 
     title: Text
 
-    def __init__(
-        self,
-        ax: Axes | None,
-        extent: tuple[float, float, float, float],
-        figure: Figure | None = None,
-    ) -> None:
+    def __init__(self, ax: Axes | None, extent: Extent, figure: Figure | None = None) -> None:
         left, right, bottom, top = extent
         self._figure: Figure | None = None
         if ax is None:
@@ -66,13 +79,13 @@ class Canvas:
             height = min(max(width * (top - bottom) / (right - left), _HEIGHTS[0]), _HEIGHTS[1])
             figure.set_size_inches(_WIDTH, height)
             ax = figure.add_axes((0.0, 0.0, width / _WIDTH, 1.0))
-        self.ax = checked_axes(ax, "ax")
+        self.ax = check_axes(ax, "ax")
         self.ax.set(
             xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal"
         )
 
     def caption(self, *paragraphs: str) -> Axes:
-        """Write the title above the drawing and its legend below, where they hide nothing."""
+        """Write the title above the drawing and its legend below; return the Axes."""
         ax, legend = self.ax, self._legend()
         self.title = set_title(ax, *paragraphs)
         if self._figure is not None:
@@ -87,15 +100,12 @@ class Canvas:
 
     def _legend(self) -> Any:
         """Explain what is drawn, in as many columns as are no wider than the drawing."""
-        transforms = extra("matplotlib.transforms", "plot")
         ax = self.ax
-        # Ticks and label of the axis take the same height, however large the drawing is.
-        down = transforms.ScaledTranslation(0.0, -_AXIS, ax.figure.dpi_scale_trans)
         for columns in (4, 3, 2, 1):
             legend = ax.legend(
                 loc="upper center",
                 bbox_to_anchor=(0.5, 0.0),
-                bbox_transform=ax.transAxes + down,
+                bbox_transform=below_axis(ax, _AXIS),
                 fontsize="small",
                 ncols=columns,
                 columnspacing=1.2,
@@ -111,12 +121,25 @@ def _inches(artist: Any) -> float:
     return float(artist.get_window_extent().height / artist.figure.dpi)
 
 
-def checked_axes(ax: Any, name: str) -> Axes:
+def axes_or_new(ax: Axes | None, size: tuple[float, float]) -> Axes:
+    """Return the Axes of the caller, or those of a new figure of a size [inch]."""
+    if ax is None:
+        _, ax = extra("matplotlib.pyplot", "plot").subplots(figsize=size, layout="constrained")
+    return check_axes(ax, "ax")
+
+
+def check_axes(ax: Any, name: str) -> Axes:
     """Refuse what is no Axes, such as a time or an array of Axes."""
     if not isinstance(ax, extra("matplotlib.axes", "plot").Axes):
         raise ScenarioError(name, ax, "must be an Axes of matplotlib")
     checked: Axes = ax
     return checked
+
+
+def below_axis(ax: Axes, distance: float) -> Any:
+    """Measure [inch] from the lower edge of Axes, past ticks and label, which are never scaled."""
+    move = extra("matplotlib.transforms", "plot").ScaledTranslation
+    return ax.transAxes + move(0.0, -distance, ax.figure.dpi_scale_trans)
 
 
 def set_title(ax: Axes, *paragraphs: str) -> Text:
@@ -132,25 +155,13 @@ def set_title(ax: Axes, *paragraphs: str) -> Text:
     return title
 
 
-_COLOR = "#555555"
-_TEXT: Any = {"color": _COLOR, "fontsize": "x-small", "zorder": 3}
-_THIN: Any = {"color": _COLOR, "linewidth": 0.4, "zorder": 1.8}
-_ARROW = {"color": _COLOR, "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 7}
-# [point] From a line to its label.
-_OFFSET = 3.0
-
-
-def _point(place: NDArray[np.float64]) -> tuple[float, float]:
-    return float(place[0]), float(place[1])
-
-
-def span(
+def draw_length(
     ax: Axes,
     ends: tuple[NDArray[np.float64], NDArray[np.float64]],
-    beside: NDArray[np.float64],
+    start: NDArray[np.float64],
     text: str = "",
 ) -> None:
-    """Draw the distance of two points as an arrow beside them, with its label.
+    """Draw the distance of two points as an arrow next to them, with its label.
 
     Parameters
     ----------
@@ -158,28 +169,27 @@ def span(
         Where to draw.
     ends : tuple of 2 ndarrays
         [m] The points.
-    beside : ndarray
+    start : ndarray
         [m] Where the arrow starts, in place of the first point.
     text : str
         What it is, before its length.
     """
-    shift = beside - ends[0]
+    shift = start - ends[0]
     for point in ends:
         # A little beyond the arrow.
         ax.plot(*np.column_stack([point, point + 1.1 * shift]), **_THIN)
     arrow = {**_ARROW, "arrowstyle": "<|-|>"}
     ax.annotate("", _point(ends[0] + shift), _point(ends[1] + shift), arrowprops=arrow)
-    way = ends[1] - ends[0]
-    turn = float(np.degrees(np.arctan2(way[1], way[0])))
+    along = ends[1] - ends[0]
+    turn = float(np.degrees(np.arctan2(along[1], along[0])))
     # Read from below or from the right, on the side that is turned away.
     upright = (turn + 89.0) % 180.0 - 89.0
     up = np.array([-np.sin(np.radians(upright)), np.cos(np.radians(upright))])
     side = 1.0 if shift @ up > 0.0 else -1.0
     ax.annotate(
-        f"{text} {np.hypot(*way):.3g} m".strip(),
+        f"{text} {np.hypot(*along):.3g} m".strip(),
         _point(0.5 * (ends[0] + ends[1]) + shift),
         xytext=_point(_OFFSET * side * up),
-        textcoords="offset points",
         rotation=upright,
         rotation_mode="anchor",
         ha="center",
@@ -188,25 +198,26 @@ def span(
     )
 
 
-def radius(ax: Axes, center: NDArray[np.float64], length: float, foot: NDArray[np.float64]) -> None:
+def draw_radius(
+    ax: Axes, center: NDArray[np.float64], length: float, foot: NDArray[np.float64]
+) -> None:
     """Draw the radius [m] of a circle as an arrow towards a point outside, where its label is."""
-    way = foot - center
-    rim = center + length * way / np.hypot(*way)
+    outwards = foot - center
+    rim = center + length * outwards / np.hypot(*outwards)
     ax.plot(*np.column_stack([rim, foot]), **_THIN)
     ax.annotate("", _point(rim), _point(center), arrowprops={**_ARROW, "arrowstyle": "-|>"})
-    side = 1.0 if way[0] > 0.0 else -1.0
+    side = 1.0 if outwards[0] > 0.0 else -1.0
     ax.annotate(
         f"radius {length:.3g} m",
         _point(foot),
         xytext=(_OFFSET * side, 0.0),
-        textcoords="offset points",
         ha="left" if side > 0.0 else "right",
         va="center",
         **_TEXT,
     )
 
 
-def height(ax: Axes, x: float, levels: tuple[float, float]) -> None:
+def draw_height(ax: Axes, x: float, levels: tuple[float, float]) -> None:
     """Draw a rise or a fall from one level [m] to another at a place [m], its label in the air."""
     start, end = levels
     ax.annotate("", (x, start), (x, end), arrowprops={**_ARROW, "arrowstyle": "<|-|>"})
@@ -215,8 +226,11 @@ def height(ax: Axes, x: float, levels: tuple[float, float]) -> None:
         f"{abs(end - start):.3g} m",
         (x, end if rises else 0.5 * (start + end)),
         xytext=(0.0, _OFFSET) if rises else (_OFFSET, 0.0),
-        textcoords="offset points",
         ha="center" if rises else "left",
         va="bottom" if rises else "center",
         **_TEXT,
     )
+
+
+def _point(place: NDArray[np.float64]) -> tuple[float, float]:
+    return float(place[0]), float(place[1])

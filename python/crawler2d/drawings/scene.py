@@ -1,4 +1,4 @@
-"""What is drawn of a robot on its ground: outlines in order, poses, extents and colours."""
+"""What is drawn of a robot on its ground, in figures, SVG and pages: outlines, poses, looks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.bodies import POSE_COLUMNS, BodyKind, Lane, body_poses
+from crawler2d.common.bodies import TRACED, BodyKind, Lane, body_poses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,20 +26,18 @@ __all__ = [
     "PURPLE",
     "RED",
     "SKY",
-    "SLIVER",
+    "STYLES",
     "VIOLET",
     "Carrier",
     "Circuit",
+    "Extent",
     "Look",
     "Scene",
-    "at_start",
     "closed",
-    "course",
+    "extent_of",
     "inset",
-    "on_chassis",
     "placed",
     "relative",
-    "robot_box",
 ]
 
 BLACK, ORANGE, SKY, GREEN = "#222222", "#E69F00", "#56B4E9", "#009E73"
@@ -48,9 +46,51 @@ BLUE, RED, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 VIOLET = "#A3327B"
 GRAY, GROUND = "#AAAAAA", "#D9D2C5"
 
+Extent = tuple[float, float, float, float]
+"""[m] Left, right, bottom and top."""
 
-SLIVER = 2e-5
+_SLIVER = 2e-5
 """[m] Lines that coincide enclose slivers by rounding; anything shallower is not an intrusion."""
+
+_MARGIN = 0.05
+"""[m] Round the extent of a run."""
+
+_ROUND, _ABOVE = 0.03, 0.05
+"""[-] Room round a course, and above it, as a fraction of its width."""
+
+
+class Look(Enum):
+    """How a body looks, in the order of drawing."""
+
+    BELLY = "belly"
+    INSIDE = "inside"
+    """A wheel inside a belt or a chain, which nothing touches."""
+    GUIDE = "guide"
+    """What shoes slide on, hidden by them."""
+    CHAIN_WHEEL = "chain wheel"
+    """What shoes run round, hidden by them but for the teeth of the sprocket."""
+    HULL = "hull"
+    """A belt with its grousers, or a skid."""
+    WHEEL = "wheel"
+    SHOE = "shoe"
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """Colour of a body, opacity of its filling [-], and width of its line [pt]."""
+
+    color: str
+    fill: float = 0.0
+    width: float = 1.0
+
+
+STYLES = {
+    Look.BELLY: Style(GREEN, fill=0.25),
+    **dict.fromkeys((Look.INSIDE, Look.GUIDE, Look.CHAIN_WHEEL), Style(GRAY)),
+    **dict.fromkeys((Look.HULL, Look.WHEEL), Style(BLACK)),
+    Look.SHOE: Style(BLACK, fill=0.5, width=0.6),
+}
+"""Of figures and SVG; pages have the colours of their style sheet."""
 
 
 def placed(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -74,27 +114,22 @@ def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
     """[m] A closed convex line, counter-clockwise, offset inwards by a depth."""
-    way = np.roll(belt, -1, axis=0) - belt
-    belt = belt[np.hypot(*way.T) > 1e-9]  # drops coincident corners
-    way = np.roll(belt, -1, axis=0) - belt
-    inwards = np.column_stack([-way[:, 1], way[:, 0]])
-    inwards /= np.hypot(*way.T)[:, None]
+    side = np.roll(belt, -1, axis=0) - belt
+    belt = belt[np.hypot(*side.T) > 1e-9]  # drops coincident corners
+    side = np.roll(belt, -1, axis=0) - belt
+    inwards = np.column_stack([-side[:, 1], side[:, 0]])
+    inwards /= np.hypot(*side.T)[:, None]
     inwards = inwards + np.roll(inwards, 1, axis=0)
     line: NDArray[np.float64] = belt + depth * inwards / np.hypot(*inwards.T)[:, None]
     return line
 
 
-_MARGIN = 0.05  # [m] round the extent
-
-
-class Look(Enum):
-    """How a body is drawn."""
-
-    BELLY = "belly"
-    HINT = "hint"
-    """Faintly: shoes or a belt run over it, and hide it."""
-    LINE = "line"
-    SHOE = "shoe"
+def extent_of(*points: NDArray[np.float64], margin: float = 0.0) -> Extent:
+    """[m] The extent of arrays of points, with a margin round them as a fraction of their width."""
+    every = np.concatenate(points)
+    (left, bottom), (right, top) = every.min(axis=0).tolist(), every.max(axis=0).tolist()
+    room = margin * (right - left)
+    return left - room, right + room, bottom - room, top + room
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +171,8 @@ class Carrier:
         Whether nothing gets inside: it carries a belt, skids or a chain.
     envelope, root_envelope : ndarray, shape (k, 2)
         [m] Taut belts round the circumscribed circles and round the root circles.
+    inner : ndarray, shape (k, 2)
+        [m] The envelope, offset inwards by the depth from which ground in it is an intrusion.
     circuit : Circuit or None
         The path of its belt, if it has one.
     bodies : ndarray of int
@@ -149,6 +186,7 @@ class Carrier:
     closed: bool
     envelope: NDArray[np.float64]
     root_envelope: NDArray[np.float64]
+    inner: NDArray[np.float64]
     circuit: Circuit | None
     bodies: NDArray[np.int64]
     poses: NDArray[np.float64]
@@ -162,7 +200,7 @@ class Scene:
     text : str
         The scenario in JSON.
     columns : mapping of str to ndarray
-        Where the robot is at n samples: the columns of a run that `POSE_COLUMNS` names.
+        Where the robot is at n samples: the columns of a run that `TRACED` names.
 
     Attributes
     ----------
@@ -182,6 +220,8 @@ class Scene:
         [m] Centre of mass of the whole robot.
     carriers : list of Carrier
         The chassis, then the front flippers, then the rear ones.
+    looks : dict of int to Look
+        The bodies that may be seen, of the near track, in the order of drawing.
     """
 
     def __init__(self, text: str, columns: Mapping[str, NDArray[np.float64]]) -> None:
@@ -199,12 +239,30 @@ class Scene:
         self.kinds = [BodyKind(kind) for kind in self.bodies["kind"]]
         chassis = np.column_stack([columns["position"], columns["chassis_angle"]])
         frames = [chassis, *np.moveaxis(found["arms"], 1, 0)]
+        depth = max(json.loads(text)["criteria"]["intrusion_depth"], _SLIVER)
         self.carriers = [
-            self._carrier(each, poses)
+            self._carrier(each, poses, depth)
             for each, poses in zip(geometry["carriers"], frames, strict=True)
         ]
+        order = list(Look)
+        looks = {int(body): self._look(int(body)) for each in self.carriers for body in each.bodies}
+        self.looks = dict(sorted(looks.items(), key=lambda item: order.index(item[1])))
 
-    def _carrier(self, shapes: dict[str, Any], poses: NDArray[np.float64]) -> Carrier:
+    @classmethod
+    def at_start(cls, text: str) -> Scene:
+        """Stand the robot of a scenario in JSON where it is at time 0, the only sample."""
+        return cls(text, _first_sample(text))
+
+    @classmethod
+    def of_robot(cls, text: str) -> Scene:
+        """Do so in the frame of its chassis, for a drawing of the robot alone."""
+        columns = _first_sample(text)
+        frame = np.column_stack([columns["position"], columns["chassis_angle"]])
+        shoes = relative(columns["shoe_poses"][0], frame)[None]
+        still = {name: np.zeros_like(columns[name]) for name in ("position", "chassis_angle")}
+        return cls(text, {**columns, **still, "shoe_poses": shoes})
+
+    def _carrier(self, shapes: dict[str, Any], poses: NDArray[np.float64], depth: float) -> Carrier:
         near = self.lanes[-1][0]
         is_seen = [
             carrier == shapes["name"] and (lane == near or kind == BodyKind.BELLY)
@@ -215,52 +273,55 @@ class Scene:
         names = ("name", "circles", "closed", "envelope", "root_envelope")
         return Carrier(
             **{name: shapes[name] for name in names},
+            inner=inset(shapes["envelope"], depth),
             circuit=None if shapes["circuit"] is None else Circuit(**shapes["circuit"]),
             bodies=np.flatnonzero(is_seen),
             poses=poses,
-        )
-
-    def outline(self, body: int, sample: int) -> NDArray[np.float64]:
-        """[m] The closed outline of a body at a sample."""
-        return placed(closed(self.bodies["outline"][body]), self.poses[sample, body])
-
-    def parts(self, *, hidden: bool = False) -> list[tuple[int, Look]]:
-        """List the bodies that are seen with their looks, in the order of drawing.
-
-        With `hidden`, it has the wheels within belts, too, which meet nothing.
-        """
-        looks = {int(body): self._look(int(body)) for each in self.carriers for body in each.bodies}
-        order = list(Look)
-        return sorted(
-            ((body, look) for body, look in looks.items() if hidden or self._is_met(body)),
-            key=lambda part: order.index(part[1]),
         )
 
     def _look(self, body: int) -> Look:
         kind = self.kinds[body]
         if kind == BodyKind.BELLY:
             return Look.BELLY
-        if self.is_shoe(body):
+        if self.bodies["shoe"][body] >= 0:
             return Look.SHOE
-        # What shoes run on is hidden by them, except for the teeth of the sprocket.
-        is_hint = kind.is_in_chain and (kind != BodyKind.SPROCKET or not self._is_met(body))
-        return Look.HINT if is_hint else Look.LINE
+        if kind == BodyKind.GUIDE:
+            return Look.GUIDE
+        if self.bodies["body"][body] < 0:
+            return Look.INSIDE
+        if kind in (BodyKind.WHEEL, BodyKind.SPROCKET):
+            return Look.WHEEL
+        return Look.CHAIN_WHEEL if kind.is_in_chain else Look.HULL
 
-    def _is_met(self, body: int) -> bool:
-        """Tell whether something can touch a body: ground, or the shoes of a chain."""
-        return bool(self.bodies["body"][body] >= 0)
+    def outline(self, body: int, sample: int) -> NDArray[np.float64]:
+        """[m] The closed outline of a body at a sample."""
+        return placed(closed(self.bodies["outline"][body]), self.poses[sample, body])
+
+    def outlines(self, sample: int) -> list[NDArray[np.float64]]:
+        """[m] The closed outlines of all bodies that are seen at a sample."""
+        return [self.outline(body, sample) for body in self.seen]
+
+    @property
+    def seen(self) -> dict[int, Look]:
+        """The looks of the bodies that are seen: all but the wheels inside belts."""
+        return {body: look for body, look in self.looks.items() if look != Look.INSIDE}
 
     def carrier_of(self, body: int) -> int:
         """Find the index of the carrier of a body, of either track."""
         names = [carrier.name for carrier in self.carriers]
         return names.index(self.bodies["carrier"][body])
 
-    def is_shoe(self, body: int) -> bool:
-        """Tell whether a body is a piece of a shoe."""
-        return bool(self.bodies["shoe"][body] >= 0)
+    def surfaces(self, left: float, right: float) -> list[NDArray[np.float64]]:
+        """[m] The surfaces of the lanes between two places, the farthest from the viewer first."""
+        found = []
+        for _, profile in self.lanes:
+            inner = profile[(profile[:, 0] > left) & (profile[:, 0] < right)]
+            start, end = np.interp([left, right], *profile.T)
+            found.append(np.vstack([(left, start), inner, (right, end)]))
+        return found
 
-    def extent(self) -> tuple[float, float, float, float]:
-        """[m] Left, right, bottom and top of the stretch that the robot visits."""
+    def extent(self) -> Extent:
+        """[m] The stretch of ground that the robot visits."""
         chassis, *arms = self.carriers
         centers, radii = chassis.circles[:, :2], chassis.circles[:, 2]
         reach = float((np.hypot(*centers.T) + radii).max()) + _MARGIN
@@ -274,52 +335,27 @@ class Scene:
                 right = max(right, float(x.max()) + radius + _MARGIN)
                 low = min(low, float(y.min()) - radius)
                 high = max(high, float(y.max()) + radius + _MARGIN)
-        ground = self.heights(left, right)
-        bottom = min(float(ground.min()), low) - _MARGIN
-        return left, right, bottom, max(float(ground.max()), high)
+        _, _, lowest, highest = extent_of(*self.surfaces(left, right))
+        return left, right, min(lowest, low) - _MARGIN, max(highest, high)
 
-    def heights(self, left: float, right: float) -> NDArray[np.float64]:
-        """[m] Heights of the corners of all lanes between two places, and of the lanes there."""
-        found = []
-        for _, profile in self.lanes:
-            found.append(profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1])
-            found.append(np.interp([left, right], profile[:, 0], profile[:, 1]))
-        return np.concatenate(found)
+    def robot_extent(self) -> Extent:
+        """[m] What is seen of the robot at the first sample."""
+        return extent_of(*self.outlines(0))
+
+    def course(self) -> Extent:
+        """[m] The robot, and the ground that it has to cross to be past the goal, with room."""
+        left, right, bottom, top = self.robot_extent()
+        length = right - left
+        left, right = min(left, self.goal - length), max(right, self.goal + length)
+        _, _, lowest, highest = extent_of(*self.surfaces(left, right))
+        width = right - left
+        margin = _ROUND * width
+        bottom, top = min(bottom, lowest) - margin, max(top, highest) + _ABOVE * width
+        return left - margin, right + margin, bottom, top
 
 
-def at_start(text: str) -> dict[str, NDArray[np.float64]]:
-    """Find where the robot of a scenario in JSON stands at time 0: one sample for a `Scene`."""
+def _first_sample(text: str) -> dict[str, NDArray[np.float64]]:
+    """Find where the robot of a scenario in JSON stands at time 0."""
     start = json.dumps({**json.loads(text), "duration": 0.0})
     trace = _core.simulate(start, 1.0, "full", [])["trace"]
-    return {name: trace[name] for name in POSE_COLUMNS}
-
-
-def on_chassis(columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-    """Turn a sample so that the frame of the chassis is that of the drawing."""
-    frame = np.column_stack([columns["position"], columns["chassis_angle"]])
-    shoes = relative(columns["shoe_poses"][0], frame)[None]
-    still = {name: np.zeros_like(columns[name]) for name in ("position", "chassis_angle")}
-    return {**columns, **still, "shoe_poses": shoes}
-
-
-# Of the width of the view: room round what is shown, and above it.
-_ROUND, _ABOVE = 0.03, 0.05
-
-
-def robot_box(scene: Scene) -> tuple[float, float, float, float]:
-    """[m] Left, right, bottom and top of what is seen of the robot at the first sample."""
-    points = np.concatenate([scene.outline(body, 0) for body, _ in scene.parts()])
-    (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-    return left, right, bottom, top
-
-
-def course(scene: Scene) -> tuple[float, float, float, float]:
-    """[m] The same of the robot and of the ground that it has to cross to be past the goal."""
-    left, right, bottom, top = robot_box(scene)
-    length = right - left
-    left, right = min(left, scene.goal - length), max(right, scene.goal + length)
-    ground = scene.heights(left, right)
-    width = right - left
-    bottom, top = min(bottom, float(ground.min())), max(top, float(ground.max()))
-    margin = _ROUND * width
-    return left - margin, right + margin, bottom - margin, top + _ABOVE * width
+    return {name: trace[name] for name in TRACED}

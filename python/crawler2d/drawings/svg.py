@@ -4,20 +4,33 @@ from __future__ import annotations
 
 import html
 import json
-import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.bodies import discs_in, end_discs, is_centered_pair
-from crawler2d.drawings.scene import GRAY, GREEN, GROUND, Look, Scene, at_start, course, robot_box
-from crawler2d.drawings.views import robot_alone
+from crawler2d.common.bodies import discs_in, ends_of, is_short
+from crawler2d.drawings.scene import BLACK, GREEN, GROUND, STYLES, Extent, Look, Scene, extent_of
+from crawler2d.errors import ignore_doubts
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Sheet", "draw_robot_on", "escaped", "robot_card", "scenario_card", "svg", "table"]
+__all__ = [
+    "MARGIN",
+    "Sheet",
+    "draw_robot_on",
+    "escaped",
+    "robot_card",
+    "scenario_card",
+    "table",
+]
+
+MARGIN = 0.02
+"""[-] Round a drawing, as a fraction of its width."""
+
+_WIDTH, _HEIGHT = 360.0, 220.0
+"""[px] Largest drawing of a card."""
 
 
 def escaped(text: str) -> str:
@@ -27,10 +40,10 @@ def escaped(text: str) -> str:
 
 def table(rows: Iterable[tuple[str, str]]) -> str:
     """Write names with their values, one below the other; nothing if there are none."""
-    written = "".join(
+    body = "".join(
         f"<tr><th>{escaped(name)}</th><td>{escaped(value)}</td></tr>" for name, value in rows
     )
-    return f"<table><tbody>{written}</tbody></table>" if written else ""
+    return f"<table><tbody>{body}</tbody></table>" if body else ""
 
 
 class Sheet:
@@ -52,9 +65,7 @@ class Sheet:
  role="img"><path d="M0 25l50 0l0 -25" fill="none"/></svg>'
     """
 
-    def __init__(
-        self, extent: tuple[float, float, float, float], width: float, height: float
-    ) -> None:
+    def __init__(self, extent: Extent, width: float, height: float) -> None:
         left, right, bottom, top = extent
         self.extent = extent
         self.scale = min(width / (right - left), height / (top - bottom))
@@ -91,10 +102,10 @@ class Sheet:
     def svg(self, title: str = "") -> str:
         """Return one element; `title` says what it shows to those who cannot see it."""
         width, height = self._size
-        named = f' aria-label="{escaped(title)}"' if title else ""
+        label = f' aria-label="{escaped(title)}"' if title else ""
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}"'
-            f' viewBox="0 0 {width:.1f} {height:.1f}" role="img"{named}>'
+            f' viewBox="0 0 {width:.1f} {height:.1f}" role="img"{label}>'
             f"{''.join(self._drawn)}</svg>"
         )
 
@@ -107,63 +118,34 @@ def _steps(pixels: NDArray[np.float64]) -> str:
     return f"M{corners[0, 0]:g} {corners[0, 1]:g}{steps}"
 
 
-# [px] Largest drawing.
-_WIDTH, _HEIGHT = 360.0, 220.0
-# Lines take the colour of the text, so that they are seen on a dark page, too.
-_LOOKS = {
-    Look.BELLY: f'fill="{GREEN}" fill-opacity="0.25" stroke="{GREEN}"',
-    Look.HINT: f'fill="none" stroke="{GRAY}"',
-    Look.LINE: 'fill="none" stroke="currentColor"',
-    Look.SHOE: 'fill="currentColor" fill-opacity="0.5" stroke="currentColor" stroke-width="0.6"',
-}
-
-
-def svg(scene: Scene, extent: tuple[float, float, float, float], *, ground: bool) -> str:
-    """Draw the robot of a scene at its first sample.
-
-    Parameters
-    ----------
-    scene : Scene
-        What to draw.
-    extent : tuple of 4 floats
-        [m] Left, right, bottom and top of the drawing.
-    ground : bool
-        Whether to draw the ground and the goal.
-
-    Returns
-    -------
-    str
-        One element.
-    """
-    sheet = Sheet(extent, _WIDTH, _HEIGHT)
-    if ground:
-        _draw_ground_on(sheet, scene)
-    draw_robot_on(sheet, scene)
-    return sheet.svg()
+def draw_robot_on(sheet: Sheet, scene: Scene) -> None:
+    """Draw the robot of a scene at its first sample, with its centre of mass, on a sheet."""
+    for body, look in scene.seen.items():
+        radius = scene.bodies["radius"][body]
+        if np.isnan(radius):
+            sheet.line(scene.outline(body, 0)[:-1], _attributes(look))
+        else:
+            sheet.circle(scene.poses[0, body, :2], radius, _attributes(look))
+    sheet.cross(scene.center_of_mass[0], _attributes(Look.WHEEL))
 
 
 def _draw_ground_on(sheet: Sheet, scene: Scene) -> None:
     left, right, bottom, top = sheet.extent
-    for _, profile in scene.lanes:
-        inner = profile[(profile[:, 0] > left) & (profile[:, 0] < right)]
-        sides = np.interp([left, right], *profile.T)
-        line = np.vstack([(left, sides[0]), inner, (right, sides[1])])
-        below = np.vstack([line, (right, bottom), (left, bottom)])
+    for surface in scene.surfaces(left, right):
+        below = np.vstack([surface, (right, bottom), (left, bottom)])
         sheet.line(below, f'fill="{GROUND}" fill-opacity="0.6" stroke="none"')
-        sheet.line(line, _LOOKS[Look.LINE], is_closed=False)
+        sheet.line(surface, _attributes(Look.WHEEL), is_closed=False)
     goal = [(scene.goal, bottom), (scene.goal, top)]
     sheet.line(goal, f'stroke="{GREEN}" stroke-dasharray="2 3"', is_closed=False)
 
 
-def draw_robot_on(sheet: Sheet, scene: Scene) -> None:
-    """Draw the robot of a scene at its first sample, with its centre of mass, on a sheet."""
-    for body, look in scene.parts():
-        radius = scene.bodies["radius"][body]
-        if np.isnan(radius):
-            sheet.line(scene.outline(body, 0)[:-1], _LOOKS[look])
-        else:
-            sheet.circle(scene.poses[0, body, :2], radius, _LOOKS[look])
-    sheet.cross(scene.center_of_mass[0], _LOOKS[Look.LINE])
+def _attributes(look: Look) -> str:
+    """Write a look as attributes; black is the colour of the text, seen on a dark page, too."""
+    style = STYLES[look]
+    color = "currentColor" if style.color == BLACK else style.color
+    fill = f'fill="{color}" fill-opacity="{style.fill}"' if style.fill else 'fill="none"'
+    width = "" if style.width == 1.0 else f' stroke-width="{style.width:g}"'
+    return f'{fill} stroke="{color}"{width}'
 
 
 def robot_card(text: str, title: str) -> str:
@@ -186,13 +168,11 @@ def robot_card(text: str, title: str) -> str:
     ScenarioError
         If the robot breaks a rule.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a look at something is no call to be warned of
-        scene = robot_alone(text)
-    left, right, bottom, top = robot_box(scene)
-    margin = 0.02 * (right - left)
-    extent = (left - margin, right + margin, bottom - margin, top + margin)
-    return _card(title, svg(scene, extent, ground=False), _robot_rows(json.loads(text)["robot"]))
+    with ignore_doubts():  # showing an object must not warn
+        scene = Scene.of_robot(text)
+    sheet = Sheet(extent_of(*scene.outlines(0), margin=MARGIN), _WIDTH, _HEIGHT)
+    draw_robot_on(sheet, scene)
+    return _card(title, sheet, _robot_rows(json.loads(text)["robot"]))
 
 
 def scenario_card(text: str, title: str, terrain: str) -> str:
@@ -200,28 +180,31 @@ def scenario_card(text: str, title: str, terrain: str) -> str:
 
     The rest is as for `robot_card`.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        scene = Scene(text, at_start(text))
-    plain = json.loads(text)
-    gait = plain["drive"]["gait"]
+    with ignore_doubts():
+        scene = Scene.at_start(text)
+    sheet = Sheet(scene.course(), _WIDTH, _HEIGHT)
+    _draw_ground_on(sheet, scene)
+    draw_robot_on(sheet, scene)
+    scenario = json.loads(text)
+    gait, ground = scenario["drive"]["gait"], scenario["terrain"]
+    lanes = [lane for lane in map(ground.get, ("left", "right")) if lane] or [ground]
     rows = [
         ("terrain", terrain),
-        ("friction", _listed({lane["friction"] for lane in _grounds(plain["terrain"])})),
-        ("speed", f"{plain['drive']['speed']:.4g} m/s"),
+        ("friction", _listed({lane["friction"] for lane in lanes})),
+        ("speed", f"{scenario['drive']['speed']:.4g} m/s"),
         *([("gait", gait["kind"])] if gait else []),
         ("goal", f"x = {scene.goal:.4g} m"),
-        ("duration", f"at most {plain['duration']:.4g} s"),
-        ("mass", f"{plain['robot']['mass']:.4g} kg"),
+        ("duration", f"at most {scenario['duration']:.4g} s"),
+        ("mass", f"{scenario['robot']['mass']:.4g} kg"),
     ]
-    return _card(title, svg(scene, course(scene), ground=True), rows)
+    return _card(title, sheet, rows)
 
 
-def _card(title: str, drawing: str, rows: list[tuple[str, str]]) -> str:
+def _card(title: str, sheet: Sheet, rows: list[tuple[str, str]]) -> str:
     return (
         f"<div><p><strong>{escaped(title)}</strong></p>"
         '<div style="display: flex; flex-wrap: wrap; align-items: center; gap: 1.5em">'
-        f"{drawing}{table(rows)}</div></div>"
+        f"{sheet.svg()}{table(rows)}</div></div>"
     )
 
 
@@ -229,8 +212,8 @@ def _robot_rows(robot: dict[str, Any]) -> list[tuple[str, str]]:
     outline, drivetrain, flippers = robot["outline"], robot["drivetrain"], robot["flippers"]
     x, y = robot["center_of_mass"]
     discs = discs_in(outline)
-    (rear, _, _), (front, _, _) = end_discs(discs)
-    origin = "midway between the axles" if is_centered_pair(discs) else "the origin of the discs"
+    (rear, _, _), (front, _, _) = ends_of(discs)
+    origin = "midway between the axles" if is_short(discs) else "the origin of the discs"
     rows = [
         ("mass", f"{robot['mass']:.4g} kg, of which tracks {robot['track_mass']:.3g} kg"),
         ("centre of mass", f"({x:.3f}, {y:.3f}) m from {origin}"),
@@ -247,12 +230,6 @@ def _robot_rows(robot: dict[str, Any]) -> list[tuple[str, str]]:
     rows.append(("speed", f"up to {drivetrain['max_speed']:.3g} m/s"))
     rows.append(("torque", f"up to {drivetrain['max_torque']:.3g} N m a sprocket"))
     return rows
-
-
-def _grounds(terrain: dict[str, Any]) -> list[dict[str, Any]]:
-    """List what has a friction of its own: the terrain, or its lanes."""
-    lanes = [terrain.get(name) for name in ("left", "right")]
-    return [lane for lane in lanes if lane] or [terrain]
 
 
 def _listed(values: set[float]) -> str:

@@ -13,11 +13,10 @@ import numpy as np
 
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
-from crawler2d.drawings.canvas import Canvas
-from crawler2d.drawings.scene import RED, robot_box
-from crawler2d.drawings.views import Outlines, draw_goal, draw_ground
+from crawler2d.drawings.scene import RED
+from crawler2d.drawings.views import Outlines, draw_goal, scene_canvas
 from crawler2d.errors import ScenarioError
-from crawler2d.pictures.scenes import Envelopes, draw_forces, scene_of, usual_size
+from crawler2d.pictures.scenes import Envelopes, draw_forces, scene_of, usual_force
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from crawler2d.drawings.scene import Scene
+    from crawler2d.drawings.scene import Extent, Scene
     from crawler2d.results.record import Record
 
 __all__ = ["Film", "animate", "checked_path", "palette_of", "write_film"]
@@ -216,13 +215,11 @@ class Film:
         self._views = _views(scene, extent, follow=follow)
         self.figure = figures.Figure(dpi=width / _FIGURE_WIDTH)
         agg.FigureCanvasAgg(self.figure)
-        canvas = Canvas(None, tuple(self._views[0]), self.figure)
+        canvas = scene_canvas(scene, tuple(self._views[0]), None, self.figure)
         ax = self._ax = canvas.ax
-        draw_ground(scene.lanes, extent[2], ax)
         draw_goal(scene.goal, ax)
-        self._moving: list[Outlines | Envelopes] = [Outlines(scene, ax), Envelopes(run, scene, ax)]
-        forces = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])
-        self._most = usual_size(forces, run.scenario.robot.mass * run.scenario.gravity)
+        self._moving: list[Outlines | Envelopes] = [Outlines(scene, ax), Envelopes(scene, ax)]
+        self._most = usual_force(run)
         label = f"contact forces, the longest {self._most:.0f} N"
         ax.plot([], [], color=RED, linewidth=2.5, label=label)
         self._arrows: list[Any] = []
@@ -244,12 +241,10 @@ class Film:
         self._title.set_text(run.title if is_last else f"{run.subject}: {time:.2f} s{self._pace}")
 
 
-def _views(
-    scene: Scene, extent: tuple[float, float, float, float], *, follow: bool | None
-) -> NDArray[np.float64]:
+def _views(scene: Scene, extent: Extent, *, follow: bool | None) -> NDArray[np.float64]:
     """[m] Left, right, bottom and top of what each frame shows."""
     left, right, bottom, top = extent
-    start, end, _, _ = robot_box(scene)
+    start, end, _, _ = scene.robot_extent()
     length = end - start
     if follow is None:
         follow = right - left > _WIDEST * length

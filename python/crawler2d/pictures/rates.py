@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import textwrap
 from collections import Counter
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.common.extras import extra
-from crawler2d.drawings.canvas import checked_axes
+from crawler2d.drawings.canvas import axes_or_new, below_axis
 from crawler2d.drawings.scene import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, VIOLET
 from crawler2d.errors import ScenarioError
 
@@ -19,7 +20,15 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-__all__ = ["plot_map", "plot_measured", "plot_outcomes", "populations", "readable"]
+__all__ = [
+    "legend_below",
+    "one_model",
+    "plot_map",
+    "plot_measured",
+    "plot_outcomes",
+    "populations",
+    "readable",
+]
 
 _SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
 """Factor and unit in which people read a quantity."""
@@ -75,7 +84,7 @@ _LEGEND = 22.0
 
 
 def plot_outcomes(found: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw a bar for each ground and model: which share of its runs ended how, and the rate."""
+    """Draw a bar for each ground and model: how its runs ended, and its rate."""
     dims = ("terrain", "model")
     found = found.expand_dims([dim for dim in dims if dim not in found["rate"].dims])
     ended = sorted((str(name) for name in found if str(name).startswith("ended_")), key=_rank)
@@ -87,19 +96,14 @@ def plot_outcomes(found: xarray.Dataset, ax: Axes | None) -> Axes:
     runs = np.sum(parts, axis=0)
     grounds, models = (found[dim].to_numpy().tolist() for dim in dims)
     at = np.arange(runs.size) + _BETWEEN * np.repeat(np.arange(len(grounds)), len(models))
-    if ax is None:
-        height = _ROW * (at[-1] + 2.0) + _REST
-        pyplot = extra("matplotlib.pyplot", "plot")
-        _, ax = pyplot.subplots(figsize=(8.0, height), layout="constrained")
-    else:
-        checked_axes(ax, "ax")
+    ax = axes_or_new(ax, (8.0, _ROW * (at[-1] + 2.0) + _REST))
     left = np.zeros(runs.size)
     for name, part in zip(ended, parts, strict=True):
         outcome = name.removeprefix("ended_")
-        share = part / np.maximum(runs, 1)
+        fraction = part / np.maximum(runs, 1)
         label = outcome.replace("_", " ")
-        ax.barh(at, share, 0.8, left, color=_COLORS.get(outcome, GRAY), label=label)
-        left += share
+        ax.barh(at, fraction, 0.8, left, color=_COLORS.get(outcome, GRAY), label=label)
+        left += fraction
     for place, count, (rate, low, high) in zip(at, runs, rates, strict=True):
         text = f"{rate:.2f} ({low:.2f} to {high:.2f}), {count} runs"
         ax.text(1.01, place, text, fontsize="x-small", va="center")
@@ -134,26 +138,18 @@ _FAINT = 0.45
 _HATCH = "////"
 """Hatching of what is not certain."""
 
-_BELOW = -46.0
-"""[point] From the axes to the legend, past ticks and label."""
+_BELOW = 46.0 / 72.0
+"""[inch] From the axes to the legend, past ticks and label."""
 
 
 def plot_map(found: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw how most runs of every cell end: hatched if not certain, faint if not simulated."""
-    if found.sizes.get("model", 1) > 1:
-        models = ", ".join(map(str, found["model"].to_numpy()))
-        rule = "must have one model: found.sel(model=...).plot()"
-        raise ScenarioError("plot", models, rule)
-    found = found.squeeze("model") if "model" in found.dims else found
+    found = one_model(found)
     ending = found["ending"]
     if ending.ndim != 2:
         raise ScenarioError("plot", str(ending.dims), "must have both fields of the map")
     y, x = map(str, ending.dims)
-    if ax is None:
-        pyplot = extra("matplotlib.pyplot", "plot")
-        _, ax = pyplot.subplots(figsize=(8.0, 6.0), layout="constrained")
-    else:
-        checked_axes(ax, "ax")
+    ax = axes_or_new(ax, (8.0, 6.0))
     (scale_x, label_x), (scale_y, label_y) = readable(found[x]), readable(found[y])
     at = scale_x * found[x].to_numpy(), scale_y * found[y].to_numpy()
     colors = {_OTHERWISE: GRAY, found.attrs["outcome"]: RED, _CLEARED: GREEN}
@@ -167,15 +163,11 @@ def plot_map(found: xarray.Dataset, ax: Axes | None) -> Axes:
         "vmax": len(kinds) - 0.5,
         "shading": "nearest",
     }
-    hatched: dict[str, Any] = {"hatch": _HATCH, "edgecolor": BLACK, "linewidth": 0.0}
-    faint: dict[str, Any] = {"alpha": _FAINT}
-    for chosen, style in (
-        (~guessed & ~unsure, {}),
-        (guessed & ~unsure, faint),
-        (~guessed & unsure, hatched),
-        (guessed & unsure, faint | hatched),
-    ):
-        ax.pcolor(*at, np.ma.masked_array(numbers, ~chosen), **scale, **style)
+    for faint, hatched in itertools.product((False, True), repeat=2):
+        style: dict[str, Any] = {"alpha": _FAINT} if faint else {}
+        style |= {"hatch": _HATCH, "edgecolor": BLACK, "linewidth": 0.0} if hatched else {}
+        others = (guessed != faint) | (unsure != hatched)
+        ax.pcolor(*at, np.ma.masked_array(numbers, others), **scale, **style)
     ax.set(xlabel=label_x, ylabel=label_y)
     banded = "band_low" in found
     title = populations(found.attrs, banded=banded, what="how most runs end,")
@@ -200,11 +192,11 @@ def _known(found: xarray.Dataset, *, banded: bool) -> str:
 
 
 def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, banded: bool) -> None:
-    """Explain the colours and marks, below the axes."""
+    """Explain the colours and marks."""
     patch = extra("matplotlib.patches", "plot").Patch
-    said = {_CLEARED: "most runs clear", _OTHERWISE: "most runs fail otherwise"}
+    labels = {_CLEARED: "most runs clear", _OTHERWISE: "most runs fail otherwise"}
     handles = [
-        patch(facecolor=color, label=said.get(name, f"most runs end {name.replace('_', ' ')}"))
+        patch(facecolor=color, label=labels.get(name, f"most runs end {name.replace('_', ' ')}"))
         for name, color in colors.items()
     ]
     if unsure:
@@ -215,17 +207,34 @@ def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, ba
     if guessed:
         text = f"faint: not simulated, all around it {'' if banded else 'certainly '}end so"
         handles.append(patch(facecolor=GRAY, alpha=_FAINT, label=text))
-    # Ticks and label of the axis take the same height, however large the map is.
-    move = extra("matplotlib.transforms", "plot").ScaledTranslation
-    down = move(0.0, _BELOW / 72.0, ax.figure.dpi_scale_trans)
+    legend_below(ax, handles=handles)
+
+
+def legend_below(ax: Axes, **options: Any) -> None:
+    """Write the legend below the axes, past ticks and label."""
     ax.legend(
-        handles=handles,
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
-        bbox_transform=ax.transAxes + down,
+        bbox_transform=below_axis(ax, _BELOW),
         borderaxespad=0.0,
         fontsize="small",
+        **options,
     )
+
+
+def one_model(found: xarray.Dataset) -> xarray.Dataset:
+    """Return a data set of one model without that dimension.
+
+    Raises
+    ------
+    ScenarioError
+        If it has several.
+    """
+    if found.sizes.get("model", 1) > 1:
+        models = ", ".join(map(str, found["model"].to_numpy()))
+        rule = "must have one model: found.sel(model=...).plot()"
+        raise ScenarioError("plot", models, rule)
+    return found.squeeze("model") if "model" in found.dims else found
 
 
 _MEASURE_ROW, _MEASURE_REST = 0.5, 1.7
@@ -263,11 +272,7 @@ def plot_measured(found: xarray.Dataset, ax: Axes | None, *, of: str | None = No
     if "model" not in found.dims:
         found = found.expand_dims("model")
     models = [str(label) for label in found["model"].to_numpy()]
-    if ax is None:
-        size = (8.0, _MEASURE_ROW * len(models) + _MEASURE_REST)
-        _, ax = extra("matplotlib.pyplot", "plot").subplots(figsize=size, layout="constrained")
-    else:
-        checked_axes(ax, "ax")
+    ax = axes_or_new(ax, (8.0, _MEASURE_ROW * len(models) + _MEASURE_REST))
     factor, label = readable(found[name])
     banded, place = f"{name}_band_low" in found, ax.get_yaxis_transform()
     others = [d for d in found[name].dims if d not in ("model", "sample")]  # standing, driving
@@ -318,16 +323,8 @@ def _draw_evidence(ax: Axes, found: xarray.Dataset, name: str, factor: float) ->
     for index, (change, (color, marker)) in enumerate(zip(changes, _STYLES, strict=False)):
         values = factor * found[key].sel(change=change).to_numpy()
         rows = np.arange(values.size) + _DOWN + 0.07 * (index - 1)
-        ax.plot(
-            values,
-            rows,
-            color=color,
-            marker=marker,
-            markersize=4.5,
-            alpha=0.6,
-            linestyle="",
-            label=change,
-        )
+        look: dict[str, Any] = {"color": color, "marker": marker, "markersize": 4.5, "alpha": 0.6}
+        ax.plot(values, rows, linestyle="", label=change, **look)
 
 
 def _notes(own: xarray.Dataset, name: str) -> list[str]:
@@ -367,12 +364,13 @@ def _set_scale(ax: Axes, found: xarray.Dataset, name: str) -> None:
 
 def _title(found: xarray.Dataset, *, banded: bool) -> str:
     """Say what was varied, and what the lines are."""
-    told: dict[str, Any] = found.attrs
-    repeats = told["repeats"]
-    if told["figure"] == "real_time_factor":
+    attributes: dict[str, Any] = found.attrs
+    repeats = attributes["repeats"]
+    if attributes["figure"] == "real_time_factor":
         return (
-            f"{told['duration']:g} simulated seconds by processor time, {told['processor']};"
+            f"{attributes['duration']:g} simulated seconds by processor time,"
+            f" {attributes['processor']};"
             f"\nmedians of {repeats} measurements, lines from the lowest to the highest"
         )
-    text = populations(told, banded=banded, what=f"medians of {repeats} repeats")
+    text = populations(attributes, banded=banded, what=f"medians of {repeats} repeats")
     return text if banded else f"{text};\nlines from the lowest to the highest repeat"

@@ -10,17 +10,7 @@ import numpy as np
 
 from crawler2d.common.bodies import POSE_COLUMNS, body_poses
 from crawler2d.common.extras import extra
-from crawler2d.drawings.scene import (
-    BLUE,
-    RED,
-    SLIVER,
-    VIOLET,
-    Scene,
-    closed,
-    inset,
-    placed,
-    relative,
-)
+from crawler2d.drawings.scene import BLUE, RED, VIOLET, Look, Scene, closed, placed, relative
 from crawler2d.results.diagnosis import trial_text
 from crawler2d.results.outcome import TRIALS
 
@@ -41,8 +31,23 @@ __all__ = [
     "ghost_lines",
     "ghosts",
     "scene_of",
-    "usual_size",
+    "usual_force",
+    "usual_speed",
 ]
+
+# Arrow length of a contact force equal to the weight, as a fraction of the axle distance; larger
+# forces, as of a wedged robot, shrink the scale so that the largest gets this length.
+_FORCE_LENGTH = 0.6
+# The same for slip velocities, with the commanded speed in place of the weight.
+_SPEED_LENGTH = 0.22
+# These start this far below the surface, as a fraction of the axle distance, where they hide
+# nothing.
+_BELOW = 0.03
+# Arrows below this fraction of the longest would be mere dots, and are left out.
+_SHORTEST = 0.02
+# Percentile that sets the scale for a whole run: an impact lasts one sample, and at its scale all
+# other arrows would be unreadable.
+_USUAL = 98.0
 
 
 def scene_of(run: Record, times: NDArray[np.float64] | None = None) -> Scene:
@@ -57,38 +62,35 @@ def scene_of(run: Record, times: NDArray[np.float64] | None = None) -> Scene:
     """
     columns = {name: getattr(run, name) for name in POSE_COLUMNS}
     if times is not None:
-        columns = {name: _between(run.time, column, times) for name, column in columns.items()}
+        columns = {name: _interpolate(run.time, column, times) for name, column in columns.items()}
     return Scene(run.scenario.to_json(), columns)
 
 
-def _between(
+def _interpolate(
     time: NDArray[np.float64], column: NDArray[np.float64], times: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Interpolate a column of the history; its angles count full turns."""
-    values = column.reshape(time.size, -1)
-    found = np.empty((times.size, values.shape[1]))
-    for number, each in enumerate(values.T):
-        found[:, number] = np.interp(times, time, each)
-    return found.reshape(times.size, *column.shape[1:])
+    values = [np.interp(times, time, each) for each in column.reshape(time.size, -1).T]
+    return np.array(values).T.reshape(times.size, *column.shape[1:])
 
 
-# Arrow length of a contact force equal to the weight, as a share of the axle distance; larger
-# forces, as of a wedged robot, shrink the scale so that the largest gets this length.
-_FORCE_LENGTH = 0.6
-# The same for slip velocities, with the commanded speed in place of the weight.
-_SPEED_LENGTH = 0.22
-# These start this far below the surface, as a share of the axle distance, where they hide nothing.
-_BELOW = 0.03
-# Arrows below this share of the longest would be mere dots, and are left out.
-_SHORTEST = 0.02
-# Percentile that sets the scale for a whole run: an impact lasts one sample, and at its scale all
-# other arrows would be unreadable.
-_USUAL = 98.0
+def usual_force(run: Record) -> float:
+    """[N] The contact force that sets the scale of all arrows of a run, at least its weight."""
+    forces = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])
+    return _usual(forces, _weight(run))
 
 
-def usual_size(sizes: NDArray[np.float64], typical: float) -> float:
-    """Choose the size that all arrows of a run are scaled by, at least a typical one."""
+def usual_speed(run: Record) -> float:
+    """[m/s] The slip that sets the scale of all arrows of a run, at least the commanded speed."""
+    return _usual(np.abs(run.contacts["surface_speed"]), abs(run.scenario.drive.speed))
+
+
+def _usual(sizes: NDArray[np.float64], typical: float) -> float:
     return max(typical, float(np.percentile(sizes, _USUAL))) if sizes.size else typical
+
+
+def _weight(run: Record) -> float:
+    return run.scenario.robot.mass * run.scenario.gravity
 
 
 def draw_forces(
@@ -116,22 +118,22 @@ def draw_forces(
     color : str
         Of the arrows.
     where : str
-        What the legend adds to tell them from others.
+        What the legend adds, to distinguish them from others.
 
     Returns
     -------
     list of Artist
         The arrows, if there are any.
     """
-    robot, contacts = run.scenario.robot, run.contacts
+    contacts = run.contacts
     now, places, normal, tangent = _contacts(run, sample)
     force = contacts["normal_force"][now, None] * normal
     force = force + contacts["friction_force"][now, None] * tangent
     if most is None:
-        most = _largest(force, robot.mass * run.scenario.gravity)
-    length = _FORCE_LENGTH * robot.outline.axle_distance
+        most = _largest(force, _weight(run))
+    length = _FORCE_LENGTH * run.scenario.robot.outline.axle_distance
     label = f"contact force{where}, up to {{:.0f}} N"
-    return _draw(ax, places, force, (most, length), color=color, label=label)
+    return _draw_arrows(ax, places, force, (most, length), color=color, label=label)
 
 
 def draw_slip(run: Record, sample: int, ax: Axes) -> list[Any]:
@@ -141,7 +143,9 @@ def draw_slip(run: Record, sample: int, ax: Axes) -> list[Any]:
     below = places - _BELOW * distance * normal
     speed = run.contacts["surface_speed"][now, None] * tangent
     scale = (_largest(speed, abs(run.scenario.drive.speed)), _SPEED_LENGTH * distance)
-    return _draw(ax, below, speed, scale, color=BLUE, label="slip velocity, up to {:.2f} m/s")
+    return _draw_arrows(
+        ax, below, speed, scale, color=BLUE, label="slip velocity, up to {:.2f} m/s"
+    )
 
 
 def _contacts(run: Record, sample: int) -> tuple[NDArray[Any], ...]:
@@ -157,7 +161,7 @@ def _largest(vectors: NDArray[np.float64], typical: float) -> float:
     return max(typical, float(np.hypot(*vectors.T).max(initial=0.0)))
 
 
-def _draw(
+def _draw_arrows(
     ax: Axes,
     places: NDArray[np.float64],
     vectors: NDArray[np.float64],
@@ -192,40 +196,35 @@ class Envelopes:
 
     Parameters
     ----------
-    run : Run
-        Whose criteria say how deep ground has to be inside.
     scene : Scene
-        Its robot and where it is.
+        The robot and where it is.
     ax : Axes
         Where to draw.
     """
 
-    def __init__(self, run: Record, scene: Scene, ax: Axes) -> None:
+    def __init__(self, scene: Scene, ax: Axes) -> None:
         patches = extra("matplotlib.patches", "plot")
-        depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
         label: str | None = "envelope (taut belt round the wheels)"
         bottom = min(float(profile[:, 1].min()) for _, profile in scene.lanes) - 1.0
-        self._drawn: list[tuple[Carrier, NDArray[np.float64], Any, Any]] = []
+        self._drawn: list[tuple[Carrier, Any, Any]] = []
         for carrier in scene.carriers:
             if carrier.closed:
                 continue
             look: Any = {"color": VIOLET, "linestyle": "--", "linewidth": 0.9, "zorder": 2.5}
             (line,) = ax.plot([], [], label=label, **look)
             label = None  # once is enough
-            inner = inset(carrier.envelope, depth)
-            clip = patches.Polygon(inner, transform=ax.transData)
+            clip = patches.Polygon(carrier.inner, transform=ax.transData)
             fill: Any = {"color": VIOLET, "alpha": 0.5, "linewidth": 0.0, "zorder": 2.6}
             for _, profile in scene.lanes:
-                x, y = profile.T
-                ax.fill_between(x, y, bottom, **fill).set_clip_path(clip)
-            self._drawn.append((carrier, inner, line, clip))
+                ax.fill_between(*profile.T, bottom, **fill).set_clip_path(clip)
+            self._drawn.append((carrier, line, clip))
 
     def show(self, sample: int) -> None:
         """Move them to a sample."""
-        for carrier, inner, line, clip in self._drawn:
+        for carrier, line, clip in self._drawn:
             pose = carrier.poses[sample]
             line.set_data(*placed(closed(carrier.envelope), pose).T)
-            clip.set_xy(placed(inner, pose))
+            clip.set_xy(placed(carrier.inner, pose))
 
 
 def draw_edges(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
@@ -310,10 +309,11 @@ def ghosts(run: Record) -> list[Ghost]:
 def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
     """[m] Yield the closed outlines of a ghost: its bodies but shoes, and a belt round them."""
     for carrier, frame in zip(scene.carriers, ghost.frames, strict=True):
-        if (ghost.is_belt and not carrier.closed) or any(map(scene.is_shoe, carrier.bodies)):
+        shoes = {body for body in carrier.bodies if scene.looks[body] == Look.SHOE}
+        if shoes or (ghost.is_belt and not carrier.closed):
             yield placed(closed(carrier.envelope), frame)
         for row in carrier.bodies:
-            if not scene.is_shoe(row):
+            if row not in shoes:
                 (pose,) = relative(scene.poses[-1:, row], carrier.poses[-1:])
                 outline = placed(closed(scene.bodies["outline"][row]), pose)
                 yield placed(outline, frame)

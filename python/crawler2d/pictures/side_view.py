@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.common.extras import extra
-from crawler2d.drawings.canvas import Canvas, checked_axes, set_title
-from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from crawler2d.drawings.views import Outlines, draw_goal, draw_ground
+from crawler2d.drawings.canvas import check_axes, set_title
+from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, extent_of
+from crawler2d.drawings.views import Outlines, draw_goal, draw_lines, scene_canvas
 from crawler2d.errors import ScenarioError
 from crawler2d.pictures.scenes import (
     Envelopes,
@@ -27,16 +27,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
-    from crawler2d.drawings.scene import Scene
-    from crawler2d.pictures.scenes import Ghost
     from crawler2d.results.record import Record
 
 __all__ = ["plot_both", "plot_history", "plot_run"]
 
-# Of the ends of trials.
 _GHOSTS = (SKY, ORANGE, GREEN, PURPLE, "#7F7F7F")
-# Most poses of the robot in one side view.
-_MOST_DRAWINGS = 7
+"""Of the ends of trials."""
+
+_MOST_POSES = 7
+"""Of the robot in one side view."""
+
+_PATH: Any = {"linewidth": 1.2, "zorder": 3}
 
 
 def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bool) -> Axes:
@@ -57,38 +58,23 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
         ends = [float(ghost.frames[0, 0]) for ghost in freed]
         left = min([left, *(end - reach for end in ends)])
         right = max([right, *(end + reach for end in ends)])
-    canvas = Canvas(ax, (left, right, bottom, top))
+    canvas = scene_canvas(scene, (left, right, bottom, top), ax)
     ax = canvas.ax
-    draw_ground(scene.lanes, bottom, ax)
     for sample in samples:
         Outlines(scene, ax, alpha=1.0 if sample == shown else 0.3).show(int(sample))
-    path: Any = {"color": BLUE, "linewidth": 1.2, "zorder": 3}
-    ax.plot(*run.position.T, label="path of the chassis origin", **path)
-    _draw_ghosts(freed, scene, ax)
+    ax.plot(*run.position.T, label="path of the chassis origin", color=BLUE, **_PATH)
+    looks = itertools.cycle(itertools.product(("-", "--"), _GHOSTS))
+    for ghost, (dashes, color) in zip(freed, looks, strict=False):
+        look: Any = {"color": color, "linestyle": dashes, "linewidth": 0.8}
+        label = f"end of the trial: {ghost.change}"
+        draw_lines(ghost_lines(scene, ghost), ax, label, **look, alpha=0.8, zorder=1.5)
     draw_slip(run, shown, ax)
     draw_forces(run, shown, ax)
-    Envelopes(run, scene, ax).show(shown)
+    Envelopes(scene, ax).show(shown)
     draw_edges(run, scene, shown, ax)
     if left < scene.goal < right:
         draw_goal(scene.goal, ax)
     return canvas.caption(run.title, *filter(None, [run.reason]))
-
-
-def _draw_ghosts(freed: list[Ghost], scene: Scene, ax: Axes) -> None:
-    """Draw where trials that freed the robot ended."""
-    looks = itertools.cycle(itertools.product(("-", "--"), _GHOSTS))
-    for ghost, (dashes, color) in zip(freed, looks, strict=False):
-        label: str | None = f"end of the trial: {ghost.change}"
-        for line in ghost_lines(scene, ghost):
-            look: Any = {
-                "color": color,
-                "linestyle": dashes,
-                "linewidth": 0.8,
-                "alpha": 0.8,
-                "zorder": 1.5,
-            }
-            ax.plot(*line.T, label=label, **look)
-            label = None  # once is enough
 
 
 def _drawing_times(run: Record) -> NDArray[np.float64]:
@@ -96,7 +82,7 @@ def _drawing_times(run: Record) -> NDArray[np.float64]:
     travelled = np.hypot(*np.diff(run.position, axis=0, prepend=run.position[:1]).T).cumsum()
     outline = run.scenario.robot.outline
     length = outline.axle_distance + outline.front_radius + outline.rear_radius
-    count = int(np.clip(round(travelled[-1] / length), 1, _MOST_DRAWINGS - 1)) + 1
+    count = int(np.clip(round(travelled[-1] / length), 1, _MOST_POSES - 1)) + 1
     samples = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
     samples[-1] = run.time.size - 1
     return run.time[samples]
@@ -114,23 +100,16 @@ def plot_both(
     The first is drawn in full, the second by its outlines in a colour; of stops the forces, too.
     """
     first, second = (scene_of(run) for run in runs)
-    extents = np.array([scene.extent() for scene in (first, second)])
-    left, bottom = extents[:, [0, 2]].min(axis=0)
-    right, top = extents[:, [1, 3]].max(axis=0)
-    canvas = Canvas(ax, (left, right, bottom, top))
+    corners = np.reshape([scene.extent() for scene in (first, second)], (-1, 2, 2))
+    left, right, bottom, top = extent_of(*np.swapaxes(corners, 1, 2))
+    canvas = scene_canvas(first, (left, right, bottom, top), ax)
     ax = canvas.ax
-    draw_ground(first.lanes, bottom, ax)
     Outlines(first, ax).show(runs[0].time.size - 1)
-    label: str | None = f"robot in {names[1]}"
-    for body, _ in second.parts(hidden=False):
-        line = second.outline(body, runs[1].time.size - 1)
-        look: Any = {"color": ORANGE, "linewidth": 1.0, "linestyle": "--", "zorder": 2.5}
-        ax.plot(*line.T, label=label, **look)
-        label = None  # once is enough
+    look: Any = {"color": ORANGE, "linewidth": 1.0, "linestyle": "--", "zorder": 2.5}
+    draw_lines(second.outlines(runs[1].time.size - 1), ax, f"robot in {names[1]}", **look)
     looks = ((BLUE, RED, "-"), (ORANGE, PURPLE, "--"))
     for run, name, (color, arrows, style) in zip(runs, names, looks, strict=True):
-        look = {"color": color, "linestyle": style, "linewidth": 1.2, "zorder": 3}
-        ax.plot(*run.position.T, label=f"path in {name}", **look)
+        ax.plot(*run.position.T, label=f"path in {name}", color=color, linestyle=style, **_PATH)
         if run.diagnosis is not None:
             draw_forces(run, run.time.size - 1, ax, color=arrows, where=f" in {name}")
     if parted_at is not None:
@@ -148,7 +127,9 @@ def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, 
     if axes is None:
         pyplot = extra("matplotlib.pyplot", "plot")
         _, axes = pyplot.subplots(3, sharex=True, figsize=(8.0, 5.6), layout="constrained")
-    angle, speed, force = _three(axes)
+    if not isinstance(axes, (tuple, list, np.ndarray)) or len(axes) != 3:
+        raise ScenarioError("axes", axes, "must be three Axes")
+    angle, speed, force = (check_axes(ax, f"axes[{row}]") for row, ax in enumerate(axes))
     angle.plot(time, np.degrees(run.chassis_angle), color=BLUE)
     angle.set_ylabel("chassis\nangle [deg]")
     speed.plot(time, run.commanded_speed, color=BLACK, linestyle="--", label="commanded")
@@ -168,11 +149,4 @@ def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, 
     speed.margins(y=0.25)  # room for the legend
     speed.legend(loc="best", fontsize="small", ncols=4)
     set_title(angle, run.title)
-    return angle, speed, force
-
-
-def _three(axes: Sequence[Axes]) -> tuple[Axes, Axes, Axes]:
-    if not isinstance(axes, (tuple, list, np.ndarray)) or len(axes) != 3:
-        raise ScenarioError("axes", axes, "must be three Axes")
-    angle, speed, force = (checked_axes(ax, f"axes[{row}]") for row, ax in enumerate(axes))
     return angle, speed, force

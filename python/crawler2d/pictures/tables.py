@@ -7,18 +7,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.extras import extra
-from crawler2d.drawings.canvas import checked_axes, set_title
+from crawler2d.drawings.canvas import axes_or_new, set_title
 from crawler2d.drawings.scene import BLACK, BLUE, GRAY, GREEN, ORANGE, RED, SKY, VIOLET
 from crawler2d.errors import ScenarioError
-from crawler2d.pictures.rates import plot_map, plot_measured, plot_outcomes, populations, readable
+from crawler2d.pictures.rates import (
+    legend_below,
+    one_model,
+    plot_map,
+    plot_measured,
+    plot_outcomes,
+    populations,
+    readable,
+)
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-__all__ = ["FIGURES", "plot_decides", "plot_search"]
+__all__ = ["FIGURES"]
 
 _FAINT = 0.35
 """[-] Opacity of candidates that were left behind."""
@@ -29,17 +36,10 @@ _GAP = 2.0
 _LABELS = 16
 """So many costs have room at the axis."""
 
-_BELOW = -46.0
-"""[point] From the axes to the legend, past ticks and label."""
-
 
 def plot_search(found: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw every candidate at its cost and lowest rate; diamonds are the fresh runs of two."""
-    if ax is None:
-        pyplot = extra("matplotlib.pyplot", "plot")
-        _, ax = pyplot.subplots(figsize=(8.0, 6.0), layout="constrained")
-    else:
-        checked_axes(ax, "ax")
+    ax = axes_or_new(ax, (8.0, 6.0))
     two = [found.attrs["winner"], found.attrs["runner_up"]]
     names = found["candidate"].to_numpy().tolist()
     costs = found["cost"].to_numpy()
@@ -77,15 +77,7 @@ def plot_search(found: xarray.Dataset, ax: Axes | None) -> Axes:
     drawn = {**found.attrs, "vary": found.attrs["population"]}
     title = f"{populations(drawn, banded=False)}; of fresh runs Wilson's"
     ax.set_title(title, loc="left", fontsize="small")
-    move = extra("matplotlib.transforms", "plot").ScaledTranslation
-    ax.legend(
-        loc="upper left",
-        bbox_to_anchor=(0.0, 0.0),
-        # Ticks and label of the axis take the same height, however large the figure is.
-        bbox_transform=ax.transAxes + move(0.0, _BELOW / 72.0, ax.figure.dpi_scale_trans),
-        borderaxespad=0.0,
-        fontsize="small",
-    )
+    legend_below(ax)
     return ax
 
 
@@ -97,7 +89,7 @@ def _lowest(found: xarray.Dataset, *names: str) -> list[NDArray[np.float64]]:
 
 
 def _places(costs: NDArray[np.float64], chosen: Sequence[bool]) -> NDArray[np.float64]:
-    """Place candidates side by side by their cost, with room beside those that were confirmed."""
+    """Place candidates side by side by their cost, with room next to those that were confirmed."""
     at = np.empty(costs.size)
     x, last = 0.0, costs.min()
     for k in np.argsort(costs, kind="stable"):
@@ -119,26 +111,17 @@ def plot_decides(found: xarray.Dataset, ax: Axes | None, show: str = "indices") 
     drawings = {"indices": _indices, "boundary": _boundary}
     if show not in drawings:
         raise ScenarioError("show", show, f"must be one of {', '.join(drawings)}")
-    if found.sizes.get("model", 1) > 1:
-        models = ", ".join(map(str, found["model"].to_numpy()))
-        rule = "must have one model: found.sel(model=...).plot()"
-        raise ScenarioError("plot", models, rule)
-    found = found.squeeze("model") if "model" in found.dims else found
+    found = one_model(found)
     if show == "boundary":
         found = found.isel(unknown=np.flatnonzero(found["path"].to_numpy() != ""))
-    if ax is None:
-        height = _ROW * found.sizes["unknown"] + _REST
-        pyplot = extra("matplotlib.pyplot", "plot")
-        _, ax = pyplot.subplots(figsize=(8.0, height), layout="constrained")
-    else:
-        checked_axes(ax, "ax")
+    ax = axes_or_new(ax, (8.0, _ROW * found.sizes["unknown"] + _REST))
     drawings[show](found, ax)
     ax.spines[["top", "right"]].set_visible(False)
     return ax
 
 
 def _indices(found: xarray.Dataset, ax: Axes) -> None:
-    """Draw two bars for each factor with their intervals, the largest on top."""
+    """Draw two bars for each unknown with their intervals, the largest on top."""
     order = np.argsort(-found["total"].to_numpy(), kind="stable")
     found = found.isel(unknown=order)
     at = np.arange(order.size)
@@ -187,7 +170,7 @@ def _boundary(found: xarray.Dataset, ax: Axes) -> None:
             ax.plot(ends, [k, k], zorder=2, solid_capstyle="butt", **styles["outcome"])
         own = (row["own"].item() - low) / span
         ax.plot(own, k, "D", zorder=4, **styles["own"])
-        ax.annotate(f"{factor * row['own'].item():.3g}", (own, k), **_beside(above=False))
+        ax.annotate(f"{factor * row['own'].item():.3g}", (own, k), **_label(above=False))
         crossing = 0.5 * (row["bracket_low"].item() + row["bracket_high"].item())
         if np.isfinite(crossing):
             x = (crossing - low) / span
@@ -195,7 +178,7 @@ def _boundary(found: xarray.Dataset, ax: Axes) -> None:
             bounds = [factor * row[f"bracket_{end}"].item() for end in ("low", "high")]
             again = "" if row["monotone"].item() else ", and again"
             text = f"{_between(*bounds)} {unit}".rstrip() + again
-            ax.annotate(text, (x, k - 0.22), color=BLUE, **_beside(above=True))
+            ax.annotate(text, (x, k - 0.22), color=BLUE, **_label(above=True))
         for x, value, side in ((0.0, low, "right"), (1.0, high, "left")):
             step = -6.0 if side == "right" else 6.0
             text = f"{factor * value:.3g}"
@@ -241,12 +224,12 @@ def _readable(row: xarray.Dataset) -> tuple[float, str]:
 
 
 def _between(low: float, high: float) -> str:
-    """Write a bracket with as many digits as tell its ends apart."""
+    """Write a bracket with as many digits as its ends differ in."""
     digits = max(0, -int(np.floor(np.log10(high - low))))
     return f"{low:.{digits}f} to {high:.{digits}f}"
 
 
-def _beside(*, above: bool) -> dict[str, Any]:
+def _label(*, above: bool) -> dict[str, Any]:
     return {
         "xytext": (0.0, 2.0 if above else -7.0),
         "textcoords": "offset points",
@@ -265,7 +248,7 @@ def _entitle(found: xarray.Dataset, ax: Axes, *paragraphs: str) -> None:
 _COLORS = (BLUE, ORANGE, GREEN, RED, SKY, VIOLET, BLACK)
 _MARKERS = "osD^vPX"
 _APART = 0.06
-"""[-] Share of the figure's width that the points of all lines at one place take."""
+"""[-] Fraction of the figure's width that the points of all lines at one place take."""
 
 
 def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
@@ -274,14 +257,10 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
     Bars are intervals; thick ones are the bands of the rates over the unknowns.
     """
     rates = found["rate"]
-    banded_too = "band_low" in found
-    shown = found["band_median"] if banded_too else rates
+    banded = "band_low" in found
+    shown = found["band_median"] if banded else rates
     along = _along(shown)
-    pyplot = extra("matplotlib.pyplot", "plot")
-    if ax is None:
-        _, ax = pyplot.subplots(figsize=(8.0, 5.0), layout="constrained")
-    else:
-        checked_axes(ax, "ax")
+    ax = axes_or_new(ax, (8.0, 5.0))
     factor, label = readable(shown[along])
     x = factor * shown[along].to_numpy().astype(float)
     lines = list(_lines(shown, along))
@@ -291,15 +270,15 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
         color, marker = _COLORS[index % len(_COLORS)], _MARKERS[index % len(_MARKERS)]
         own = shown.sel(place).to_numpy()
         at = x + apart * (index - 0.5 * (len(lines) - 1))
-        low, high = ("band_low", "band_high") if banded_too else ("low", "high")
+        low, high = ("band_low", "band_high") if banded else ("low", "high")
         lower, upper = (found[name].sel(place).to_numpy() for name in (low, high))
         known = np.isfinite(own)  # not every value is tried with every model
         at, own, lower, upper = at[known], own[known], lower[known], upper[known]
         ax.plot(at, own, color=color, marker=marker, markersize=5.0, label=name, zorder=3)
-        ax.vlines(at, lower, upper, color=color, alpha=0.5, linewidth=4.0 if banded_too else 1.5)
+        ax.vlines(at, lower, upper, color=color, alpha=0.5, linewidth=4.0 if banded else 1.5)
     ax.set(xlabel=label, ylabel=str(rates.attrs.get("long_name", "rate")), ylim=(-0.03, 1.03))
     ax.grid(alpha=0.3)
-    ax.set_title(populations(found.attrs, banded=banded_too), loc="left", fontsize="small")
+    ax.set_title(populations(found.attrs, banded=banded), loc="left", fontsize="small")
     if len(ax.get_lines()) > 1:
         ax.legend(fontsize="small", loc="best")
     return ax

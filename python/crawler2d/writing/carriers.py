@@ -12,7 +12,7 @@ import numpy as np
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.bodies import BodyKind
-from crawler2d.drawings.scene import Scene, at_start, on_chassis, placed
+from crawler2d.drawings.scene import Scene, placed
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array
 
@@ -224,7 +224,7 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
     text : str
         That scenario, with the robot on level ground.
     """
-    scene = Scene(text, on_chassis(at_start(text)))
+    scene = Scene.of_robot(text)
     columns = _core.wheels(text)
     rows = [
         {name: columns[name][row] for name in columns}

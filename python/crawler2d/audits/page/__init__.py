@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from string import Template
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.page.parts import (
     answer_section,
@@ -35,14 +33,7 @@ from crawler2d.common.units import unit_of
 from crawler2d.drawings.svg import escaped
 from crawler2d.errors import ScenarioWarning
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.pictures.page import (
-    as_json,
-    page_template,
-    policy,
-    read_part,
-    replay_style,
-    scene_script,
-)
+from crawler2d.pictures.page import as_json, fill_page, read_part, scene_script
 from crawler2d.pictures.page.recording import recording
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import simulate_many
@@ -235,10 +226,11 @@ def audit_page(
 ) -> str:
     """Write the page of an audit, with `diffs` by `Repair.what`; see `Audit.to_html`."""
     runs = replayed(audit, threads=threads)
-    style = replay_style() + read_part("audit.css", _HERE)
-    script = scene_script(read_part("audit.js", _HERE))
-    # One pass, so that a name of the file stays text even if it looks like a placeholder.
-    return Template(page_template("audit.html", _HERE)).substitute(
+    return fill_page(
+        "audit.html",
+        read_part("replay.css") + read_part("audit.css", _HERE),
+        scene_script(read_part("audit.js", _HERE)),
+        _HERE,
         title=escaped(f"{audit.robot.name}: audit"),
         name=escaped(audit.robot.name),
         subject=escaped(words.subject(audit).removeprefix(f"{audit.robot.name}: ")),
@@ -256,11 +248,6 @@ def audit_page(
         robot=_robot(audit),
         command=escaped(command(audit)),
         made=made(audit),
-        version=escaped(str(_core.build_info()["version"])),
-        style=style,
-        script=script,
-        style_hashes=policy(style),
-        script_hashes=policy(script),
         data="\n".join(_data(each, number) for number, each in enumerate(runs)),
     )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -15,9 +14,9 @@ from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.audited import command_of, names_of
 from crawler2d.common.units import unit_of
-from crawler2d.drawings.scene import robot_box
-from crawler2d.drawings.svg import Sheet, draw_robot_on, escaped
-from crawler2d.drawings.views import robot_alone
+from crawler2d.drawings.scene import Scene, extent_of
+from crawler2d.drawings.svg import MARGIN, Sheet, draw_robot_on, escaped
+from crawler2d.errors import ignore_doubts
 from crawler2d.parameters.fields import read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat
@@ -52,7 +51,6 @@ __all__ = [
     "wheels",
 ]
 
-_MARGIN = 0.02  # of the width
 _LARGEST, _SMALLEST = 13.0, 5.0  # [px] of numbers; smaller ones cannot be read and are left out
 _LETTER = 0.7  # of the size: how wide a letter is
 _TOGETHER = 1e-6  # [m] Wheels nearer than this are in one place.
@@ -81,15 +79,10 @@ def robot_drawn(
 
     `title` is for those who cannot see it, `width` and `height` [px] are the most that it may have.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a look at something is no call to be warned of
-        scene = robot_alone(Scenario(robot, Flat()).to_json())
+    with ignore_doubts():  # showing an object must not warn
+        scene = Scene.of_robot(Scenario(robot, Flat()).to_json())
     seen = [each.outline for each in shapes if len(each.outline) > 2]
-    left, right, bottom, top = robot_box(scene)
-    corners = np.concatenate([[(left, bottom), (right, top)], *seen])
-    (left, bottom), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
-    margin = _MARGIN * (right - left)
-    extent = (left - margin, right + margin, bottom - margin, top + margin)
+    extent = extent_of(*scene.outlines(0), *seen, margin=MARGIN)
     sheet = Sheet(extent, width, height)
     for outline in _different(seen):
         sheet.line(outline, 'class="collision"')

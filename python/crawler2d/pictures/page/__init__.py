@@ -18,23 +18,9 @@ from crawler2d.pictures.page.recording import recording
 from crawler2d.pictures.scenes import ghosts
 
 if TYPE_CHECKING:
-    from crawler2d.results.findings import Mechanism
     from crawler2d.results.record import Record
 
-__all__ = [
-    "all_figures",
-    "as_json",
-    "embedded",
-    "figures",
-    "page_template",
-    "policy",
-    "read_part",
-    "replay_page",
-    "replay_style",
-    "scene_script",
-    "sentence",
-    "verdict",
-]
+__all__ = ["as_json", "embedded", "fill_page", "read_part", "replay_page", "scene_script"]
 
 _HERE = "crawler2d.pictures.page"
 
@@ -51,39 +37,11 @@ _SCENE = (
     "player.js",
 )
 
+# [px] Fits header, picture, controls and time strip; the metrics below need scrolling.
+_FRAME_HEIGHT = 820
+
 # Escaped as \u sequences, these mean the same in JSON and nothing in HTML.
 _MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
-
-
-def read_part(name: str, package: str = _HERE) -> str:
-    """Read a file that stands beside the modules of a package."""
-    return (files(package) / name).read_text(encoding="utf-8")
-
-
-def replay_style() -> str:
-    """Return the style of a replay."""
-    return read_part("page.css") + read_part("replay.css")
-
-
-def scene_script(*parts: str) -> str:
-    """Join what draws a run from the side and what a page does with that into one script."""
-    return '"use strict";\n(() => {\n' + "\n".join([*map(read_part, _SCENE), *parts]) + "})();\n"
-
-
-def page_template(name: str, package: str = _HERE) -> str:
-    """Read the body of a page, and put the head that all pages have before it."""
-    return read_part("head.html") + read_part(name, package)
-
-
-def policy(text: str) -> str:
-    """Name a script, or a style, for the security policy of a page."""
-    digest = hashlib.sha256(text.encode()).digest()
-    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
-
-
-def as_json(data: Any) -> str:
-    """Write data as JSON in which nothing means anything in HTML."""
-    return json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP)
 
 
 # metric, label, factor from the metric's unit, unit shown, decimals
@@ -103,17 +61,58 @@ _FIGURES = (
 _RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
 
 
-def sentence(run: Record) -> str:
-    """Say why the robot did not clear, or why there is no result; see `Run.reason`."""
-    return run.reason
+def read_part(name: str, package: str = _HERE) -> str:
+    """Read a file that stands beside the modules of a package."""
+    return (files(package) / name).read_text(encoding="utf-8")
 
 
-def verdict(run: Record) -> str:
-    """Name the outcome; empty if there is none."""
-    return "" if run.outcome is None else str(run.outcome).replace("_", " ")
+def scene_script(*parts: str) -> str:
+    """Join what draws a run from the side and what a page does with that into one script."""
+    return '"use strict";\n(() => {\n' + "\n".join([*map(read_part, _SCENE), *parts]) + "})();\n"
 
 
-def figures(run: Record) -> list[tuple[str, str]]:
+def fill_page(
+    file: str, style: str, script: str = "", package: str = _HERE, /, **values: object
+) -> str:
+    """Fill the body of a page, below the head that all pages have.
+
+    Parameters
+    ----------
+    file : str
+        The body, in `package`.
+    style : str
+        What the page has besides the style of all pages.
+    script : str
+        What it runs; "" allows none.
+    package : str
+        Where the body is.
+    **values : object
+        For its placeholders, as HTML; `title` is that of the head.
+    """
+    style = read_part("page.css") + style
+    # One pass, so that a robot's name stays text even if it looks like a placeholder.
+    return Template(read_part("head.html") + read_part(file, package)).substitute(
+        values,
+        version=escaped(str(_core.build_info()["version"])),
+        style=style,
+        script=script,
+        style_hashes=_policy(style),
+        script_hashes=_policy(script) if script else "'none'",
+    )
+
+
+def _policy(text: str) -> str:
+    """Name a script, or a style, for the security policy of a page."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def as_json(data: Any) -> str:
+    """Write data as JSON in which nothing means anything in HTML."""
+    return json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP)
+
+
+def _figures(run: Record) -> list[tuple[str, str]]:
     """Choose the metrics of most interest: label, and value with unit."""
     chosen = []
     for name, label, scale, unit, digits in _FIGURES:
@@ -125,42 +124,39 @@ def figures(run: Record) -> list[tuple[str, str]]:
     return chosen
 
 
-def all_figures(run: Record) -> list[tuple[str, str]]:
+def _all_figures(run: Record) -> list[tuple[str, str]]:
     """List every metric by its own name, in its own unit."""
     return [(name, f"{value:.6g} {METRICS.get(name, '')}") for name, value in run.metrics.items()]
 
 
 def replay_page(run: Record, time: float | None = None) -> str:
     """Write the page of a run; see `Run.to_html`."""
-    style, script = replay_style(), scene_script(read_part("strip.js"), read_part("replay.js"))
     data = recording(run, time)
-    title = run.title
-    subject, _, ending = title.rpartition(": ")
-    outcome = verdict(run)
-    mechanism = [] if run.mechanism is None else [run.mechanism]
-    why = sentence(run)
-    values = {
-        "title": escaped(title),
-        "subject": escaped(subject),
-        "ending": escaped(ending.replace("_", " ")),
-        "outcome_class": html.escape(outcome.replace(" ", "-")),
-        "outcome_meaning": "" if run.outcome is None else _tooltip(run.outcome.meaning),
-        "mechanism": "".join(_mechanism(each) for each in mechanism),
-        "trials": _trials(run),
-        "sentence": f'<p class="sentence">{escaped(why)}</p>' if why else "",
-        "thinned": _thinned(data["every"], data["samples"]),
-        "figures": _listed(figures(run)),
-        "all_figures": _listed(all_figures(run)),
-        "version": escaped(str(_core.build_info()["version"])),
-        "identity": run.scenario.identity[:16],
-        "style": style,
-        "script": script,
-        "style_hashes": policy(style),
-        "script_hashes": policy(script),
-        "data": as_json(data),
-    }
-    # One pass, so that a robot's name stays text even if it looks like a placeholder.
-    return Template(page_template("page.html")).substitute(values)
+    subject, _, ending = run.title.rpartition(": ")
+    outcome = "" if run.outcome is None else str(run.outcome).replace("_", "-")
+    mechanism = ""
+    if run.mechanism is not None:
+        meaning = f"how the ground inside is held: {run.mechanism.meaning}"
+        name = escaped(str(run.mechanism))
+        mechanism = f'<li class="mechanism"{_tooltip(meaning)}>{name}</li>'
+    return fill_page(
+        "page.html",
+        read_part("replay.css"),
+        scene_script(read_part("strip.js"), read_part("replay.js")),
+        title=escaped(run.title),
+        subject=escaped(subject),
+        ending=escaped(ending.replace("_", " ")),
+        outcome_class=escaped(outcome),
+        outcome_meaning="" if run.outcome is None else _tooltip(run.outcome.meaning),
+        mechanism=mechanism,
+        trials=_trials(run),
+        sentence=f'<p class="sentence">{escaped(run.reason)}</p>' if run.reason else "",
+        thinned=_thinned(data["every"], data["samples"]),
+        figures=_listed(_figures(run)),
+        all_figures=_listed(_all_figures(run)),
+        identity=run.scenario.identity[:16],
+        data=as_json(data),
+    )
 
 
 def _thinned(every: int, samples: int) -> str:
@@ -172,11 +168,6 @@ def _thinned(every: int, samples: int) -> str:
 
 def _tooltip(meaning: str) -> str:
     return f' title="{escaped(meaning)}"'
-
-
-def _mechanism(mechanism: Mechanism) -> str:
-    meaning = f"how the ground inside is held: {mechanism.meaning}"
-    return f'<li class="mechanism"{_tooltip(meaning)}>{escaped(str(mechanism))}</li>'
 
 
 def _trials(run: Record) -> str:
@@ -197,10 +188,6 @@ def _listed(rows: list[tuple[str, str]]) -> str:
     return "".join(
         f"<div><dt>{escaped(name)}</dt><dd>{escaped(value)}</dd></div>" for name, value in rows
     )
-
-
-# [px] Fits header, picture, controls and time strip; the metrics below need scrolling.
-_FRAME_HEIGHT = 820
 
 
 def embedded(run: Record) -> str:
@@ -225,8 +212,10 @@ def embedded(run: Record) -> str:
 
 def _summary(run: Record) -> str:
     try:
-        why = sentence(run)
+        why = run.reason
     except Exception:
         why = ""
     note = f"<p>{escaped(why)}</p>" if why else ""
-    return f"<div><p><strong>{escaped(run.title)}</strong></p>{note}{table(all_figures(run))}</div>"
+    return (
+        f"<div><p><strong>{escaped(run.title)}</strong></p>{note}{table(_all_figures(run))}</div>"
+    )

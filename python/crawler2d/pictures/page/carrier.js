@@ -1,20 +1,15 @@
 // The chassis, or the flippers at one end, with the bodies that it carries, in metres in its own frame.
 
-const HULLS = ["belt", "skid", "guide"];
-const SHOE = "shoe";
-const BELLY = "belly";
-
 class Carrier {
   constructor(data, outlines) {
     Object.assign(this, data);
     const bodies = data.bodies.map((body) => new Body(body, outlines));
-    const are = (test) => bodies.filter(test);
-    this.bellies = are((body) => body.kind === BELLY);
-    this.hulls = are((body) => HULLS.includes(body.kind));
-    this.shoes = are((body) => body.kind === SHOE);
-    const round = are((body) => ![...HULLS, SHOE, BELLY].includes(body.kind));
-    this.wheels = round.filter((wheel) => wheel.body >= 0);
-    this.within = round.filter((wheel) => wheel.body < 0); // inside a belt
+    const of = (...looks) => bodies.filter((body) => looks.includes(body.look));
+    this.bellies = of("belly");
+    this.hulls = of("hull", "guide");
+    this.shoes = of("shoe");
+    this.wheels = of("wheel", "chain wheel");
+    this.inside = of("inside");
     this.circuit = data.circuit && new Circuit(data.circuit, outlines);
     for (const name of ["envelope", "inner", "root"]) {
       if (!data[name]) continue;
@@ -38,15 +33,15 @@ class Carrier {
       ctx.fillStyle = colors.trackFill;
       ctx.fill(path);
     });
-    each(this.within, (wheel) => {
-      ctx.scale(WITHIN, WITHIN);
-      wheel.drawRound(ctx, colors.track, colors.chassisFill, pixel / WITHIN);
+    each(this.inside, (wheel) => {
+      ctx.scale(INSIDE, INSIDE);
+      wheel.drawRound(ctx, colors.track, colors.chassisFill, pixel / INSIDE);
     });
     const travel = this.circuit && moment.value(this.circuit.travel);
-    if (this.circuit) this.circuit.drawMarks(ctx, colors, pixel, travel, this.within[0].reach);
-    each(this.hulls, ({ kind, path }) => {
+    if (this.circuit) this.circuit.drawMarks(ctx, colors, pixel, travel, this.inside[0].reach);
+    each(this.hulls, ({ look, path }) => {
       // What shoes slide on is drawn faintly behind them.
-      const isHint = kind === "guide";
+      const isHint = look === "guide";
       ctx.strokeStyle = isHint ? colors.chassis : colors.track;
       ctx.lineWidth = (isHint ? 1 : 2) * pixel;
       ctx.stroke(path);
@@ -92,7 +87,7 @@ class Carrier {
 }
 
 // Wheels inside a belt are drawn smaller, so that the belt stays visible.
-const WITHIN = 0.8;
+const INSIDE = 0.8;
 
 class Body {
   constructor(data, outlines) {
