@@ -51,7 +51,7 @@ def test_ten_times_too_large() -> None:
     outline = replace(ROBOT.outline, axle_distance=3.65, front_radius=0.64, rear_radius=0.64)
     (found,) = of_robot(replace(ROBOT, outline=outline), "size")
     assert found.severity == "error"
-    assert found.what.endswith("is it ten times too large? scale=0.1 reads it so")
+    assert found.what.endswith("if it is ten times too large, pass scale=0.1")
     assert of_robot(ROBOT, "size") == []
 
 

@@ -117,7 +117,7 @@ def test_a_film_draws_each_body_once_and_moves_it(seized: c2d.Run) -> None:
         film.show(number)
         drawn = [np.array(line.get_xydata()) for line in ax.get_lines()]
         assert len(drawn) == count
-        for body, _ in scene.parts():
+        for body in scene.seen:
             outline = scene.outline(body, number)
             assert any(np.array_equal(outline, line) for line in drawn)
 

@@ -273,7 +273,7 @@ _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _RULES = {
     SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.",
     UNREAD: "The file can be read, and its robot simulated.",
-    **RULES,
+    **{rule.name: rule.text for rule in RULES},
 }
 _ROOT = "%SRCROOT%"
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Literal, NamedTuple, TypedDict
 
-from crawler2d.audits.lint import robot_findings
+from crawler2d.audits.lint import lint
 from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.parameters.outline import TrackOutline
 from crawler2d.parameters.robot import Robot
@@ -333,7 +333,7 @@ def check_size(read: Reading) -> None:
     ScenarioError
         If it has a size that no tracked robot has, and was read without a `scale`.
     """
-    found = next((each for each in robot_findings(read.robot) if each.rule == "size"), None)
+    found = next((each for each in lint(read.robot) if each.rule == "size"), None)
     if found is None or "scale" in read.how.given:
         return
     where = read.sources["robot.outline.axle_distance"]
