@@ -30,7 +30,7 @@ def told(found: c2d.Audit) -> Any:
     """An audit that takes no time, and tells what it found."""
 
     def audit(*_: Any, progress: Any, **__: Any) -> c2d.Audit:
-        progress.tell(found.in_words)
+        progress.print(found.in_words)
         return found
 
     return audit

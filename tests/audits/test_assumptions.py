@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.sampling import Assumed, assumptions
+from crawler2d.audits.sampling import Assumption, assumptions_of
 from crawler2d.audits.words import conclusion
 from crawler2d.variation.distributions import Ranges
 
@@ -15,9 +15,9 @@ STEP = {"step of 75 mm": c2d.terrains.step(0.075)}
 
 def test_a_rotor_that_is_stated_is_assumed_no_other() -> None:
     stated = c2d.Robot.simple(20.0, axle_distance=0.4, radius=0.06)
-    assert list(assumptions(stated, {})) == ["rotor", "restitution"]
+    assert list(assumptions_of(stated, {})) == ["rotor", "restitution"]
     drivetrain = replace(stated.drivetrain, rotor_inertia=0.05)
-    assert list(assumptions(replace(stated, drivetrain=drivetrain), {})) == ["restitution"]
+    assert list(assumptions_of(replace(stated, drivetrain=drivetrain), {})) == ["restitution"]
 
 
 def test_chains_give_back_nothing_of_a_blow() -> None:
@@ -29,7 +29,9 @@ def test_chains_give_back_nothing_of_a_blow() -> None:
 def test_a_seizure_holds_if_the_lower_bound_of_its_rate_is_above_5_percent(
     seized: int, *, holds: bool
 ) -> None:
-    found = Assumed(obstacle="step", assumption="rotor", drawn=Ranges({}), seized=seized, made=18)
+    found = Assumption(
+        obstacle="step", assumption="rotor", drawn=Ranges({}), seized=seized, made=18
+    )
     assert found.holds == holds
 
 

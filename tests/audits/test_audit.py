@@ -12,13 +12,13 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.audits import words
-from crawler2d.audits.audited import names_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
-from crawler2d.audits.runs import Live, belt_of, raised, scenario_of
+from crawler2d.audits.record import names_of
+from crawler2d.audits.runs import LivePrinter, belt_of, raise_flippers, scenario_of
 from crawler2d.audits.subject import standard_obstacles, unknown_of_file
 from crawler2d.audits.text import plain_of
-from crawler2d.audits.verdicts import least_samples, share_of
-from crawler2d.audits.words import repair_sentence, wheels_a_side, worst
+from crawler2d.audits.verdicts import least_samples, proportion_of
+from crawler2d.audits.words import repair_sentence, wheels_per_side, worst_rates
 from crawler2d.errors import LimitError
 from crawler2d.sweeps.statistics import wilson
 from tests.audits.seizing import QUIET, SEIZING, STEP
@@ -104,8 +104,8 @@ def test_the_belt_does_not_drive_where_the_robot_clears() -> None:
 def test_what_is_known_before_the_runs_is_told_before_them() -> None:
     told: list[str] = []
 
-    class Recorder(Live):
-        def tell(self, text: str) -> None:
+    class Recorder(LivePrinter):
+        def print(self, text: str) -> None:
             told.append(text)
 
         def __call__(self, done: int, total: int) -> None:
@@ -367,7 +367,7 @@ def test_a_floor_that_is_given_is_known(tmp_path: Path) -> None:
     assert unknown_of_file(reading, None)["terrain.friction"] == c2d.scaled(0.9, 1.1)
 
 
-# The belt beside it
+# The belt for comparison
 
 
 def test_the_belt_follows_the_outlines_where_these_are_the_models_own() -> None:
@@ -457,7 +457,7 @@ def test_flippers_are_raised_before_the_obstacle() -> None:
     assert scenario.robot.flippers is not None
     assert scenario.robot.flippers.angle == c2d.Climb().reach_angle
     held = c2d.Drive(gait=c2d.Hold(0.1))
-    assert raised(robot, held) == robot
+    assert raise_flippers(robot, held) == robot
 
 
 def test_the_speed_goes_with_the_size_and_the_limit() -> None:
@@ -526,15 +526,15 @@ def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
     assert "0 wheels a side" not in found.in_words
     for each in found.repairs:
         expected = "belt" if each.kind == "belt" else f"{each.wheels} wheels a side"
-        assert wheels_a_side(each) == expected
+        assert wheels_per_side(each) == expected
     assert any(each.kind == "belt" for each in found.repairs)
 
 
 def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit) -> None:
     repair = found.repairs[0]
-    none = share_of(np.zeros((20, 1), bool), np.zeros((20, 1), bool))
+    none = proportion_of(np.zeros((20, 1), bool), np.zeros((20, 1), bool))
     alone = replace(repair, cleared_beside={**repair.cleared_beside, "gap 90 mm": none})
-    assert worst(alone)[0] == none
+    assert worst_rates(alone)[0] == none
     text = repair_sentence(alone)
     assert "the belt clears none of the fresh runs on gap 90 mm (0 to compare with)" in text
     assert "nan" not in text

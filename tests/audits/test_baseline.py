@@ -9,20 +9,20 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.baseline import against, entry_of, read_baseline, write_baseline
-from crawler2d.audits.issues import Check, checked
+from crawler2d.audits.baseline import compare, entry_of, read_baseline, write_baseline
+from crawler2d.audits.issues import Check, check_of
 from crawler2d.audits.lint import Finding
-from crawler2d.audits.verdicts import Share, Verdict
+from crawler2d.audits.verdicts import Proportion, Verdict
 from crawler2d.sweeps.statistics import wilson
 from tests.shared import refused
 
 Made = Callable[..., Check]
 
 
-def share(hits: int, runs: int = 80) -> Share:
+def share(hits: int, runs: int = 80) -> Proportion:
     _, low, high = wilson(hits, runs)
     rate = hits / runs
-    return Share(
+    return Proportion(
         rate=rate,
         low=low,
         high=high,
@@ -54,7 +54,7 @@ def made(of_file: c2d.Audit) -> Made:
         found = dataclasses.replace(
             of_file, robot=robot, lint=lint, verdicts=tuple(verdict(*each) for each in verdicts)
         )
-        return checked(of_file.reading.path, found)
+        return check_of(of_file.reading.path, found)
 
     return make
 
@@ -63,7 +63,7 @@ def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
     """What is new, by rule and obstacle, and what is told."""
     path = folder / "audit.json"
     write_baseline(path, [before], None)
-    check, told = against(now, read_baseline(path), path)
+    check, told = compare(now, read_baseline(path), path)
     return [issue.obstacle or issue.rule for issue in check.failing], "\n".join(told)
 
 
@@ -113,7 +113,7 @@ def test_after_a_change_of_build_a_rate_near_a_bound_may_flip_its_word(
     check = made(("step 30 mm", *now))
     name = check.path.name
     baseline = {"baseline": 1, "models": {name: kept}}
-    check, told = against(check, baseline, check.path.with_name("audit.json"))
+    check, told = compare(check, baseline, check.path.with_name("audit.json"))
     assert [issue.obstacle for issue in check.failing] == ["step 30 mm"] * is_new
     assert any("the build is another" in line for line in told) is not is_new
     assert any("(another) is now" in line for line in told)
@@ -189,7 +189,7 @@ def test_what_is_gone_is_told(made: Made, tmp_path: Path) -> None:
     new, told = compared(before, made(("step 30 mm", "does not seize", 0)), tmp_path)
     assert new == []
     assert "step 30 mm: seizes is now does not seize: seizes in 0 of 80 runs, was 10 of 80" in told
-    assert "not driven over any more: gap 9 mm" in told
+    assert "no longer driven over: gap 9 mm" in told
     assert "warning of lint that is gone, effort" in told
 
 
@@ -221,11 +221,11 @@ def test_another_version_is_told_where_a_verdict_moved(made: Made, tmp_path: Pat
     (entry,) = kept["models"].values()
     entry["crawler2d"] = "0.0.9"
     path.write_text(json.dumps(kept), encoding="utf-8")
-    _, told = against(now, read_baseline(path), path)
+    _, told = compare(now, read_baseline(path), path)
     assert told[-1].startswith("crawler2d 0.0.9 (")
     assert f"is now {c2d.__version__} (" in told[-1]
     assert "CHANGELOG.md" in told[-1]
-    assert against(before, read_baseline(path), path)[1] == []
+    assert compare(before, read_baseline(path), path)[1] == []
 
 
 def test_everything_is_new_in_a_file_that_the_baseline_lacks(made: Made, tmp_path: Path) -> None:
@@ -233,7 +233,7 @@ def test_everything_is_new_in_a_file_that_the_baseline_lacks(made: Made, tmp_pat
     path = tmp_path / "audit.json"
     write_baseline(path, [check], None)
     other = dataclasses.replace(check, path=check.path.with_name("other.urdf"))
-    new, told = against(other, read_baseline(path), path)
+    new, told = compare(other, read_baseline(path), path)
     assert new.failing == check.issues
     assert told == ["not in the baseline: all of it is new"]
 
@@ -249,7 +249,7 @@ def test_a_baseline_names_files_from_its_own_folder(
     monkeypatch.chdir(tmp_path / "models")
     path = Path("../audit.json")
     assert (
-        against(dataclasses.replace(check, path=Path("a.urdf")), read_baseline(path), path)[1] == []
+        compare(dataclasses.replace(check, path=Path("a.urdf")), read_baseline(path), path)[1] == []
     )
 
 

@@ -10,9 +10,9 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.issues import Check, checked, junit_of, sarif_of
+from crawler2d.audits.issues import Check, check_of, junit_of, sarif_of
 from crawler2d.audits.lint import RULES, Finding
-from crawler2d.audits.text import linted
+from crawler2d.audits.text import lint_only
 from tests.audits.seizing import seizing_file
 from tests.reading.carts import FILES
 from tests.walls.rooms import ROOT
@@ -29,7 +29,7 @@ def check(of_file: c2d.Audit) -> Check:
     """A cart that seizes on the first of two steps, and breaks two rules of lint."""
     assert of_file.reading is not None
     assert [each.word for each in of_file.verdicts] == ["seizes", "not certain"]
-    return checked(of_file.reading.path, dataclasses.replace(of_file, lint=ODD))
+    return check_of(of_file.reading.path, dataclasses.replace(of_file, lint=ODD))
 
 
 def cases(text: str) -> dict[str, ElementTree.Element]:
@@ -190,7 +190,7 @@ def test_what_a_xacro_file_expands_to_has_no_lines_of_the_file(tmp_path: Path) -
     path = tmp_path / "cart.xacro"
     text = (FILES / "cart.xacro").read_text(encoding="utf-8")
     path.write_text(text.replace('mass value="', 'mass value="9'), encoding="utf-8")
-    check = checked(path, linted(path))
+    check = check_of(path, lint_only(path))
     assert check.found is not None
     if check.found.reading is not None and check.found.reading.tree.file == path.name:
         pytest.skip("its lines are its own")
@@ -208,7 +208,7 @@ def test_every_rule_of_lint_has_a_check_and_is_documented() -> None:
 
 def test_an_audit_without_runs_finds_the_same_lint(of_file: c2d.Audit) -> None:
     assert of_file.reading is not None
-    alone = linted(of_file.reading.path)
+    alone = lint_only(of_file.reading.path)
     doubts = [each for each in of_file.lint if each.rule == "doubt"]
     assert [each for each in of_file.lint if each not in doubts] == list(alone.lint)
     assert alone.pockets == of_file.pockets

@@ -20,7 +20,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.__main__ import main
-from crawler2d.audits.audited import OPTIONS, Call, as_options, command_of
+from crawler2d.audits.record import OPTIONS, Call, as_options, command_of
 from crawler2d.audits.text import plain_of
 from crawler2d.commands import audit as command
 from tests.audits.seizing import told
@@ -88,7 +88,7 @@ def test_after_ctrl_c_the_command_says_what_is_kept(
     assert err.strip().startswith("interrupted: a.sqlite keeps every finished run")
     status, _, err = run(capsys, "any.sdf")
     assert status == 130
-    assert err.strip() == "interrupted: nothing is kept; with --store FILE every finished run is"
+    assert err.strip() == "interrupted: no run is kept; --store FILE keeps every finished run"
 
 
 @pytest.fixture

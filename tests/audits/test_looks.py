@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crawler2d.audits.sampling import looks
-from crawler2d.audits.verdicts import BELT, OWN, Verdict, is_certain, verdicts_of
+from crawler2d.audits.sampling import look_counts
+from crawler2d.audits.verdicts import BELT, OWN, Verdict, is_certain, verdict_of
 from crawler2d.sweeps.statistics import wilson
 
 
@@ -33,7 +33,7 @@ def seen(seized: int, made: int, samples: int) -> tuple[Verdict, bool]:
     """Judge runs of which some seized while the belt cleared all."""
     own = ["seized"] * seized + ["cleared"] * (made - seized)
     table = part_of(own, ["cleared"] * made, samples)
-    (verdict,) = verdicts_of(table, ["step"])
+    verdict = verdict_of(table, "step")
     return verdict, is_certain(table, verdict)
 
 
@@ -43,7 +43,9 @@ def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> 
 
     And it is found to seize exactly as often as if all runs were made.
     """
-    ends = {made: [seen(k, made, samples) for k in range(made + 1)] for made in looks(samples)}
+    ends = {
+        made: [seen(k, made, samples) for k in range(made + 1)] for made in look_counts(samples)
+    }
     for rate in (0.01, 0.03, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.9):
         going, before, held, seizes = {0: 1.0}, 0, 0.0, 0.0
         for made, judged in ends.items():
@@ -77,10 +79,10 @@ def test_a_verdict_on_a_part_that_seizes_is_that_on_all_runs() -> None:
         chances = rng.dirichlet([1.0, 1.0, 1.0])
         own = rng.choice(["seized", "cleared", "hung_up"], size=36, p=chances).tolist()
         belt = rng.choice(["cleared", "slipping"], size=36, p=[0.8, 0.2]).tolist()
-        (whole,) = verdicts_of(part_of(own, belt, 36, levels=3), ["step"])
-        for made in looks(36):
+        whole = verdict_of(part_of(own, belt, 36, levels=3), "step")
+        for made in look_counts(36):
             table = part_of(own[:made], belt[:made], 36, levels=3)
-            (verdict,) = verdicts_of(table, ["step"])
+            verdict = verdict_of(table, "step")
             if made < 36 and verdict.word == "seizes" and is_certain(table, verdict):
                 assert whole.word == "seizes"
                 left += 1
@@ -103,20 +105,20 @@ def test_the_belt_fails_for_certain_once_neither_can_reach_95_percent(
 ) -> None:
     """Of 36 samples, two that fail are too many; and none may have seized in place of the belt."""
     table = part_of(own, belt, 36)
-    (verdict,) = verdicts_of(table, ["step"])
+    verdict = verdict_of(table, "step")
     assert verdict.word == "belt fails, too"
     assert is_certain(table, verdict) is certain
 
 
 def test_fewer_runs_than_a_quarter_of_the_samples_are_not_enough() -> None:
     table = part_of(["hung_up"] * 9, ["hung_up"] * 9, 80)
-    (verdict,) = verdicts_of(table, ["step"])
+    verdict = verdict_of(table, "step")
     assert verdict.word == "belt fails, too"
     assert not is_certain(table, verdict)
 
 
 def test_what_never_seizes_is_never_left_early() -> None:
-    for made in looks(36):
+    for made in look_counts(36):
         verdict, certain = seen(0, made, 36)
         assert not certain
     assert verdict.word == "does not seize"

@@ -18,8 +18,8 @@ import pytest
 import crawler2d as c2d
 from crawler2d.audits import words
 from crawler2d.audits.candidates import pockets
-from crawler2d.audits.page import audit_page, replayed
-from crawler2d.audits.page.parts import pockets_drawn, robot_drawn
+from crawler2d.audits.page import audit_page, simulate_replays
+from crawler2d.audits.page.drawings import draw_pockets, draw_robot
 from crawler2d.audits.repairs import Repair
 from crawler2d.pictures.page.recording import recording
 from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
@@ -216,7 +216,7 @@ def test_every_figure_of_a_file_has_its_value_and_its_source(
 
 
 def test_what_is_not_known_is_there_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
-    rows = file_page.rows("not known, and drawn for every sample")
+    rows = file_page.rows("unknown, and drawn for every sample")
     assert [row[1] for row in rows] == [
         words.range_of(path, each) for path, each in of_file.unknown.items()
     ]
@@ -247,7 +247,7 @@ def test_verdicts_are_those_of_the_audit(of_file: c2d.Audit, file_page: Page) ->
     rows = file_page.rows("verdicts")
     assert len(rows) == len(of_file.verdicts) == 2
     for row, each in zip(rows, of_file.verdicts, strict=True):
-        assert tuple(row[: len(words.VERDICT_HEAD)]) == words.verdict(each)
+        assert tuple(row[: len(words.VERDICT_HEAD)]) == words.verdict_row(each)
     shown = [text for found, text in file_page.all("a")]
     assert shown == [each.obstacle for each in of_file.verdicts if each.where]
     assert rows[0][len(words.VERDICT_HEAD)] == f"{of_file.verdicts[0].where} of the chassis"
@@ -258,7 +258,7 @@ def test_verdicts_are_those_of_the_audit(of_file: c2d.Audit, file_page: Page) ->
 def test_repairs_are_those_of_the_audit(found: c2d.Audit, page: Page) -> None:
     rows = page.rows("repairs")
     assert [row[0] for row in rows] == [each.what for each in found.repairs]
-    assert [row[1] for row in rows] == [words.confirmed(each) for each in found.repairs]
+    assert [row[1] for row in rows] == [words.confirmation(each) for each in found.repairs]
     assert [row[5] for row in rows] == [str(each.wheels or "belt") for each in found.repairs]
     pictures = [each["aria-label"] for each, _ in page.all("svg", role="img")]
     assert pictures[:3] == [f"the robot: {each.what}" for each in found.repairs]
@@ -301,7 +301,7 @@ def test_every_obstacle_that_seized_has_a_replay_of_one_of_its_runs(
     assert [text for _, text in file_page.all("option") if "seized" in text] == [
         f"step of 75 mm: {words.percent(seized[0].seized.rate)} seized"
     ]
-    ((place, (own, belt), beside),) = replayed(of_file)
+    ((place, (own, belt), beside),) = simulate_replays(of_file)
     assert beside == "the belt"
     assert own.outcome == c2d.Outcome.SEIZED
     assert belt.outcome == c2d.Outcome.CLEARED
@@ -319,7 +319,7 @@ def test_every_obstacle_that_seized_has_a_replay_of_one_of_its_runs(
 def test_beside_the_robot_is_the_repaired_one_with_the_same_draws(
     found: c2d.Audit, page: Page
 ) -> None:
-    ((_, (own, repaired), beside),) = replayed(found)
+    ((_, (own, repaired), beside),) = simulate_replays(found)
     assert beside == "chassis: 5 wheels in place of 4 (confirmed)"
     assert repaired.scenario.robot.track == found.repairs[0].robot.track
     assert repaired.scenario == own.scenario.replace({"robot.track": found.repairs[0].robot.track})
@@ -337,7 +337,7 @@ def test_a_repair_by_wheels_is_shown_before_belts_and_a_confirmed_one_before_oth
     def shown(*repairs: Repair) -> str:
         assert found.repaired is not None
         repaired = found.repaired._replace(repairs=repairs)
-        return replayed(dataclasses.replace(found, repaired=repaired))[0].beside
+        return simulate_replays(dataclasses.replace(found, repaired=repaired))[0].other
 
     doubted = dataclasses.replace(wheels, confirmed=False)
     assert shown(belt, gears) == f"{gears.what} (confirmed)"
@@ -351,7 +351,7 @@ def test_a_repair_that_seizes_in_the_very_run_is_said_to(found: c2d.Audit) -> No
     repaired = found.repaired._replace(repairs=(same,))
     page = Page(dataclasses.replace(found, repaired=repaired).to_html())
     ((_, told),) = page.all("p", **{"class": "diagnosis"})
-    assert told.endswith("In this very run the robot beside it seizes, too.")
+    assert told.endswith("In this run the other robot seizes, too.")
     assert answer(page).endswith("No repair was confirmed.")
 
 
@@ -363,7 +363,7 @@ def test_a_repair_that_breaks_a_rule_with_the_draws_leaves_the_robot_alone(
     repair = dataclasses.replace(found.repairs[0], robot=broken)
     repaired = found.repaired._replace(repairs=(repair,))
     # It breaks the rule without the draws, too, and cannot be drawn.
-    monkeypatch.setattr("crawler2d.audits.page.parts.robot_drawn", lambda *_, **__: "")
+    monkeypatch.setattr("crawler2d.audits.page.sections.draw_robot", lambda *_, **__: "")
     page = Page(dataclasses.replace(found, repaired=repaired).to_html())
     assert any("no result: " in text and "track.count" in text for _, text in page.all("p"))
     assert len(list(page.all("canvas"))) == len(page.data("runs-0")) == 1
@@ -372,7 +372,7 @@ def test_a_repair_that_breaks_a_rule_with_the_draws_leaves_the_robot_alone(
 def test_the_page_has_the_records_of_its_runs_thinned(
     of_file: c2d.Audit, file_page: Page, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ((_, runs, _),) = replayed(of_file)
+    ((_, runs, _),) = simulate_replays(of_file)
     assert file_page.data("runs-0") == [json.loads(json.dumps(recording(run))) for run in runs]
     monkeypatch.setattr("crawler2d.audits.page._MOST", 30)
     for thinned, run in zip(Page(of_file.to_html()).data("runs-0"), runs, strict=True):
@@ -386,7 +386,7 @@ def test_without_a_seizure_the_run_that_came_closest_is_shown() -> None:
     found = c2d.audit(good, steps, unknown={}, repeats=4, repair=False, **QUIET)
     page = Page(found.to_html())
     assert answer(page).startswith("It seized in no run over 2 obstacles")
-    ((place, (_, belt), _),) = replayed(found)
+    ((place, (_, belt), _),) = simulate_replays(found)
     ways = found.table["time"].sel(model="model").transpose("terrain", "sample", "repeat")
     longest = (ways * found.table["speed"]).values
     of = [each.obstacle for each in found.verdicts].index(place.verdict.obstacle)
@@ -437,7 +437,7 @@ def circles(svg: str) -> list[tuple[float, ...]]:
 def test_the_robot_is_drawn_over_the_shapes_of_its_file(of_file: c2d.Audit) -> None:
     assert of_file.reading is not None
     shapes = of_file.reading.silhouettes
-    svg = robot_drawn(of_file.robot, "a cart", shapes)
+    svg = draw_robot(of_file.robot, "a cart", shapes)
     wheels, outlines = circles(svg), re.findall(r'<path d="([^"]*)" class="collision"', svg)
     assert len(wheels) == 4
     assert len(outlines) == 5  # the two sides are one
@@ -451,7 +451,7 @@ def test_wheels_are_numbered_where_they_are() -> None:
     robot = c2d.robots.absolem(track="public")
     table = robot.wheels()
     left = table["side"] == "left"
-    svg = robot_drawn(robot, "Absolem")
+    svg = draw_robot(robot, "Absolem")
     numbers = re.findall(r'<text x="([^"]*)" y="([^"]*)"[^>]*>([^<]*)</text>', svg)
     named = sorted(int(each) for *_, text in numbers for each in text.split(", "))
     assert named == sorted(table["body"][left].tolist())
@@ -463,7 +463,7 @@ def test_equal_pockets_are_drawn_once_and_all_to_one_scale() -> None:
     robot = c2d.robots.absolem(track="public")
     found = pockets(robot)
     radii = dict(zip(robot.wheels()["body"].tolist(), robot.wheels()["radius"], strict=True))
-    figures = pockets_drawn(robot, found).split("<figure>")[1:]
+    figures = draw_pockets(robot, found).split("<figure>")[1:]
     assert 2 < len(figures) < len(found)
     scales = []
     for figure in figures:
@@ -481,5 +481,5 @@ def test_equal_pockets_are_drawn_once_and_all_to_one_scale() -> None:
 def test_wheels_that_touch_hold_at_any_friction() -> None:
     """Their walls are upright at the bottom, but for rounding."""
     robot = c2d.robots.engineer(flippers=None, track=c2d.CircumferentialWheels(24))
-    drawn = pockets_drawn(robot, pockets(robot))
+    drawn = draw_pockets(robot, pockets(robot))
     assert set(re.findall(r"alone it holds ([^<]*)<", drawn)) == {"at any friction"}

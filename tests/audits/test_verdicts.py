@@ -8,18 +8,18 @@ import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.audits.candidates import Candidate
-from crawler2d.audits.repairs import LEVEL, judged
+from crawler2d.audits.repairs import LEVEL, assess
 from crawler2d.audits.verdicts import (
     BELT,
     OWN,
-    Share,
+    ObstacleRuns,
+    Proportion,
     Verdict,
-    cleared_beside,
-    share_of,
+    proportion_of,
+    verdict_of,
     verdict_word,
-    verdicts_of,
 )
-from crawler2d.audits.words import repair_sentence, worst
+from crawler2d.audits.words import repair_sentence, worst_rates
 from crawler2d.sweeps.statistics import wilson
 
 SAMPLES, REPEATS = 40, 2
@@ -54,7 +54,7 @@ def ends(**counts: int) -> list[str]:
 
 
 def verdict(own: list[str], belt: list[str]) -> Verdict:
-    return verdicts_of(table(own, belt), ["step"])[0]
+    return verdict_of(table(own, belt), "step")
 
 
 CLEARED = ["cleared"] * SAMPLES
@@ -89,9 +89,10 @@ def test_elsewhere_seized_runs_count_that_the_belt_clears(of_belt: int, word: st
 def test_a_repair_is_held_against_the_belt() -> None:
     """It clears ten floors, of thirty that the belt clears."""
     pair = table(ends(cleared=10, slipping=30), ends(cleared=30, slipping=10))
-    share = cleared_beside(pair, OWN, BELT, "step")
-    assert share.rate == pytest.approx(1 / 3)
-    assert share.samples == 30
+    own, belt = (ObstacleRuns(pair, model, "step") for model in (OWN, BELT))
+    both = own.proportion(own.cleared, among=belt.cleared)
+    assert both.rate == pytest.approx(1 / 3)
+    assert both.samples == 30
 
 
 def test_where_the_model_clears_the_belt_may_fail() -> None:
@@ -136,7 +137,7 @@ def test_a_verdict_tells_on_which_floors() -> None:
     dims = ("model", "terrain", "sample", "repeat")
     friction = np.broadcast_to(np.linspace(0.5, 1.0, SAMPLES)[:, None], (2, 1, SAMPLES, REPEATS))
     rows = table(ends(seized=10, cleared=30), CLEARED, unknown_friction=(dims, friction))
-    low, high = verdicts_of(rows, ["step"])[0].friction
+    low, high = verdict_of(rows, "step").friction
     assert low == 0.5
     assert high == pytest.approx(0.5 + 0.5 * 9 / 39)
 
@@ -155,7 +156,7 @@ def test_a_model_that_seizes_at_one_of_the_speeds_seizes(clears: int, word: str)
     rows = table(own, ends(slipping=SAMPLES - clears, cleared=clears))
     slow = np.repeat(np.arange(SAMPLES)[:, None] < 20, REPEATS, axis=1)
     rows = rows.assign_coords(speed=(("sample", "repeat"), np.where(slow, 0.04, 0.4)))
-    (found,) = verdicts_of(rows, ["step"])
+    found = verdict_of(rows, "step")
     assert found.seized.low < 0.05 < found.seized_at[0.04].low
     assert found.word == word
 
@@ -180,12 +181,11 @@ def test_a_repair_that_seizes_in_more_than_5_percent_of_the_runs_is_not_confirme
     )
     robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5))
     five = Candidate(what="five", kind="wheels", robot=robot, change=1)
-    seizing = [verdict(ends(seized=20, cleared=20), CLEARED)]
-    repair = judged(fresh, five, ["step", "gap"], seizing, OWN)
+    repair = assess(fresh, five, ["step", "gap"], ["step"], OWN)
     assert repair.confirmed is confirmed
     assert repair.seized["gap"].low < 0.05
     assert repair.seized_at["gap"][0.04].rate == slow / 13
-    assert worst(repair)[2] == "gap at 0.04 m/s"
+    assert worst_rates(repair)[2] == "gap at 0.04 m/s"
     assert "most on gap at 0.04 m/s" in repair_sentence(repair)
 
 
@@ -199,7 +199,7 @@ def test_repeats_of_a_sample_count_once() -> None:
     """Ten robots that always seize of twenty are no more certain for being run a hundred times."""
     made = np.ones((20, 100), dtype=bool)
     happened = np.arange(20)[:, None] < 10
-    share = share_of(np.broadcast_to(happened, made.shape), made)
+    share = proportion_of(np.broadcast_to(happened, made.shape), made)
     assert (share.low, share.high) == wilson(10, 20)[1:]
     assert (share.runs, share.samples, share.rate) == (2000, 20, 0.5)
     assert (share.band_low, share.band_median, share.band_high) == (0.0, 0.5, 1.0)
@@ -212,22 +212,22 @@ def test_the_interval_holds_the_rate_when_samples_differ_in_part() -> None:
     for _ in range(400):
         chances = rng.beta(0.3, 2.0, size=40)  # mean 0.3 / 2.3
         happened = rng.random((40, 2)) < chances[:, None]
-        share = share_of(happened, np.ones((40, 2), dtype=bool))
+        share = proportion_of(happened, np.ones((40, 2), dtype=bool))
         inside += share.low <= 0.3 / 2.3 <= share.high
     assert inside >= 0.95 * 400
 
 
 def test_runs_without_a_result_are_not_counted() -> None:
     made = np.array([[True, False], [False, False], [True, True]])
-    share = share_of(np.array([[True, True], [True, True], [False, False]]), made)
+    share = proportion_of(np.array([[True, True], [True, True], [False, False]]), made)
     assert (share.runs, share.samples) == (3, 2)
     assert share.rate == pytest.approx(1 / 3)
 
 
 def test_the_rule_asks_in_the_order_of_its_words() -> None:
-    def of(rate: float, low: float, high: float) -> Share:
+    def of(rate: float, low: float, high: float) -> Proportion:
         band = {"band_low": 0.0, "band_median": rate, "band_high": 1.0}
-        return Share(rate=rate, low=low, high=high, runs=80, samples=40, **band)
+        return Proportion(rate=rate, low=low, high=high, runs=80, samples=40, **band)
 
     often, never = of(0.5, 0.3, 0.7), of(0.0, 0.0, 0.09)
     always = of(1.0, 0.9, 1.0)

@@ -194,7 +194,7 @@ def test_without_scripts_everything_but_the_replay_is_there(
 ) -> None:
     page = browser.new_page(java_script_enabled=False)
     page.set_content(repaired)
-    assert page.locator("noscript").inner_text().startswith("The replay needs JavaScript")
+    assert page.locator("noscript").inner_text().startswith("Only the replay needs JavaScript")
     assert not page.locator("canvas, #play").first.is_visible()
     assert page.locator(".diagnosis").is_visible()
     assert page.locator("tbody tr").count() > 10

@@ -1,4 +1,4 @@
-"""Audit a model of a robot: what it lacks, where it seizes, and what smallest change ends that."""
+"""Audit a model of a robot: what is wrong with it, where it seizes, and the smallest repair."""
 
 from __future__ import annotations
 
@@ -10,15 +10,21 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
-from crawler2d.audits.audited import Audited, Begun, Call
 from crawler2d.audits.candidates import pockets
 from crawler2d.audits.lint import lint
 from crawler2d.audits.patches import best_change, change_of, diffs_of
-from crawler2d.audits.repairs import Repair, repaired
-from crawler2d.audits.runs import TRIED, Counted, Runs, belt_of, live_of, scenario_of
-from crawler2d.audits.sampling import Assumed, assumptions, likely_first, seizure_under, verdict_on
+from crawler2d.audits.record import AuditRecord, AuditSetup, Call
+from crawler2d.audits.repairs import Repair, search_repairs
+from crawler2d.audits.runs import TRIED, RunCounter, Runs, belt_of, read_progress, scenario_of
+from crawler2d.audits.sampling import (
+    Assumption,
+    assumptions_of,
+    check_assumptions,
+    order_by_risk,
+    verdict_on,
+)
 from crawler2d.audits.subject import (
-    HowToRead,
+    ReadKeywords,
     check_size,
     read_obstacles,
     standard_obstacles,
@@ -47,13 +53,13 @@ if TYPE_CHECKING:
 __all__ = ["Audit", "audit"]
 
 QUICK, SAMPLES, REPEATS = 36, 80, 1
-"""Of the unknowns, if it is to be quick and if not, and runs of each: of 80 robots that never seize
-at most 4.6 % do, of 80 of which 8 do so at least 5.2 %. A run of another robot tells more than one
-more of the same."""
+"""Samples of the unknowns in a quick audit and in a full one, and runs of each: of 80 robots that
+never seize at most 4.6 % do, of 80 of which 8 do so at least 5.2 %. A run of another robot is worth
+more than another run of the same."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Audit(Audited):
+class Audit(AuditRecord):
     """What an audit found; printing it shows the short form.
 
     Attributes
@@ -61,21 +67,21 @@ class Audit(Audited):
     robot, reading : Robot, and Reading or None
         What was audited, and what was read if it was a file.
     lint, pockets : tuple of Finding, tuple of Pocket
-        What is hardly meant in the model, and a screen of its geometry.
+        Probable mistakes in the model, and a screen of its geometry.
     belt : Belt
         The robot on belts that it was compared with; its `reason` says which belts, and why.
     obstacles, verdicts : mapping of str to terrain, tuple of Verdict
-        What it drove over, and what came of it.
+        What it drove over, and the result on each.
     seizes : bool
         Whether it seizes on an obstacle that the belt clears.
-    assumed : tuple of Assumed
-        Whether seizures hang on rotors of the motors, or on what blows give back.
-    repairs, repaired : tuple of Repair, and Repaired or None
+    assumed : tuple of Assumption
+        Whether seizures depend on rotors of the motors, or on restitution.
+    repairs, repaired : tuple of Repair, and RepairSearch or None
         Changes that end the seizures, and all of the search for them.
     table : xarray.Dataset
         The runs behind the verdicts.
     vary, unknown, drive, call
-        Over what the rates are rates, how it was driven, and what was asked for.
+        Over what the rates are taken, how the robot was driven, and the arguments.
     """
 
     @property
@@ -87,37 +93,37 @@ class Audit(Audited):
     def patch(
         self, path: str | os.PathLike[str] | None = None, repair: Repair | None = None
     ) -> str:
-        """Write the file that was audited with a repair: the best there is, with its label.
+        """Write the file that was audited with a repair, by default the best.
 
-        Wheels are changed in the file, and nothing else. All wheels of a carrier together keep
-        their mass, and torque and rotors of their motors; a new one is a copy of its neighbour,
-        with all that drives it. What was made is read again, and refused if that is not the
-        repaired robot. Settings of plugins that may no longer be right for so many wheels are left
-        as they are, with a `ScenarioWarning` each. Belts are written anew, as `Robot.to_sdf` and
-        `to_mjcf` do. The first comment of the file says what it has, and how well that does.
+        Only wheels are changed in the file. All wheels of a carrier together keep their mass, and
+        torque and rotors of their motors; a new one is a copy of its neighbour, with all that
+        drives it. The result is read again, and refused if it is not the repaired robot. Settings
+        of plugins that may no longer be right for so many wheels are left as they are, with a
+        `ScenarioWarning` each. With belts the robot is written as a new file, as by `Robot.to_sdf`
+        and `to_mjcf`. The first comment of the file says what was changed, and with what result.
 
         Parameters
         ----------
         path : path-like, optional
-            Where to write the file; meshes keep their relative names, so the folder of the file
-            that was read is the place for it. URDF holds no belts: they are written beside it, with
-            the ending .sdf, and a `ScenarioWarning`.
+            Where to write the file; meshes keep their relative names, so it belongs into the folder
+            of the file that was read. URDF holds no belts: for these an .sdf is written instead,
+            with a `ScenarioWarning`.
         repair : Repair, optional
-            One of `repairs`. None takes the wheels of the first that is confirmed; or of the one
-            that is not, but seizes least often, if that is less often than the file does; or else
-            belts. Where the file does not seize, nothing is written.
+            One of `repairs`. None takes the wheels of the first that is confirmed, else of the one
+            that seizes least often if that is less often than the file does, else belts. If the
+            file does not seize, nothing is written.
 
         Returns
         -------
         str
-            What differs from the file that was read, as a unified diff. Of a xacro file it is what
-            that expands to which is changed. "" if nothing was written, or written anew.
+            What differs from the file that was read, as a unified diff; of a xacro file from what
+            it expands to. "" if nothing was written, or a new file.
 
         Raises
         ------
         ScenarioError
-            If no file was audited, or the file has its wheels in a form that cannot be changed in
-            place, such as meshes of another size, and no format holds the belts.
+            If no file was audited, or the wheels cannot be changed in the file, such as meshes of
+            another size, and no format holds the belts.
         OSError
             If it cannot be written.
         """
@@ -146,11 +152,11 @@ class Audit(Audited):
     def to_html(
         self, path: str | os.PathLike[str] | None = None, *, threads: int | None = None
     ) -> str | Path:
-        """Write one self-contained HTML page with all that was found.
+        """Write one self-contained HTML page with all results.
 
-        For each obstacle on which it seized one run is simulated again, and beside it, with the
-        same draws, that of the repaired robot, or without a repair that of the belt; if it seized
-        nowhere, the run that came closest. They can be replayed in the page.
+        For each obstacle on which the robot seized one run is simulated again, with the same draws
+        also with the repaired robot, or without a repair with the belt; if it seized nowhere, the
+        run that came closest. The page replays them side by side.
 
         Parameters
         ----------
@@ -207,12 +213,12 @@ def audit(
     executor: Executor | None = None,
     threads: int | None = None,
     progress: bool | Progress | None = True,
-    **reading: Unpack[HowToRead],
+    **reading: Unpack[ReadKeywords],
 ) -> Audit:
     """Find out whether a model of a robot seizes where a belt would not, and what ends that.
 
-    The robot drives over the standard obstacles, beside the same robot on belts, again and again
-    with what is not known of it drawn anew. The rules of lint, verdicts and repairs are in
+    The robot and the same robot on belts drive over the standard obstacles again and again,
+    resampling its unknown parameters. The rules of lint, verdicts and repairs are in
     ``docs/conventions.md``, "Audit".
 
     Parameters
@@ -230,9 +236,9 @@ def audit(
         and wide ones for estimates; of a preset and of another robot those of `unknowns`; and the
         friction of the floor. ``{}`` takes everything as known.
     samples : int, optional
-        Of the unknowns: at most so many robots on floors, 1 to 100,000; an obstacle is left as soon
-        as its verdict is certain. Fewer than 35 cannot show that it does not seize. None takes 80,
-        or 36 if it is to be `quick`.
+        Most samples of the unknowns, each a robot on a floor, 1 to 100,000; an obstacle is left as
+        soon as its verdict is certain. Fewer than 35 cannot show that it does not seize. None takes
+        80, or 36 if it is to be `quick`.
     repeats : int
         Runs of each of them over every obstacle, 1 to 1,000,000.
     seed : int
@@ -250,12 +256,12 @@ def audit(
         [s] Longest simulated time at that speed; at a third of it runs have 5/3 of that, at a tenth
         4 times. None takes that in which the robot would drive fifteen times its own length.
     store : str or path-like, optional
-        A file that keeps every run: the same call goes on where it was; see `sweep`.
+        A file that keeps every run: the same call continues where it was; see `sweep`.
     executor, threads
         See `sweep`.
     progress : bool or callable
-        True prints to the standard error what the audit knows before the first run, each verdict
-        as it comes, and what follows; a callable is given the number of finished runs and of all
+        True prints to the standard error what is known before the first run, each verdict as soon
+        as it is certain, and the rest; a callable is given the number of finished runs and of all
         that may be needed.
     **reading
         For a path: the keywords of `read_robot`, such as `engine` and `trusted`.
@@ -304,7 +310,7 @@ def audit(
         "drive": drive,
         "duration": duration,
     }
-    tell, show = live_of(progress)
+    write, show = read_progress(progress)
     own, read, floors = subject_of(robot, reading)
     if read is not None:
         check_size(read)
@@ -313,7 +319,7 @@ def audit(
     if obstacles is not None:
         grounds = read_obstacles(obstacles)
     found = pockets(own)
-    grounds = {name: grounds[name] for name in likely_first(grounds, found)}
+    grounds = {name: grounds[name] for name in order_by_risk(grounds, found)}
     if unknown is None:
         if read is None:
             unknown = unknown_of(own, with_friction=obstacles is None)
@@ -336,7 +342,7 @@ def audit(
         warnings.simplefilter("always", ScenarioWarning)
         for ground in grounds.values():
             runs.scenario.replace({"terrain": ground}).validate()
-        begun = Begun(
+        setup = AuditSetup(
             robot=own,
             reading=read,
             lint=lint(own, read, _doubts(caught)),
@@ -356,14 +362,14 @@ def audit(
                 reading={} if read is None else read.how.given,
             ),
         )
-        tell(head_of(begun))
-        assumed = {} if "unknown" in begun.call.own else assumptions(own, unknown)
-        verdicts, others, table = _driven(begun, runs, assumed, tell, show)
+        write(head_of(setup))
+        assumed = {} if "unknown" in setup.call.own else assumptions_of(own, unknown)
+        verdicts, others, table = _drive(setup, runs, assumed, write, show)
         repairs = None
         if repair and any(each.word == "seizes" for each in verdicts):
-            repairs = repaired(
+            repairs = search_repairs(
                 own,
-                begun.belt,
+                setup.belt,
                 grounds=grounds,
                 verdicts=verdicts,
                 table=table,
@@ -374,40 +380,40 @@ def audit(
     for each in caught:
         if not issubclass(each.category, ScenarioWarning):
             warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
-    parts = {each.name: getattr(begun, each.name) for each in fields(begun)}
+    parts = {each.name: getattr(setup, each.name) for each in fields(setup)}
     parts["lint"] = lint(own, read, _doubts(caught))
     audit = Audit(**parts, verdicts=verdicts, assumed=others, repaired=repairs, table=table)
-    late = [each for each in audit.lint if each not in begun.lint]
+    late = [each for each in audit.lint if each not in setup.lint]
     if late:
-        tell("\n".join(lint_of(late, "Lint, doubted in runs")))
-    tell(rest_of(audit))
+        write("\n".join(lint_of(late, "Lint, doubted in runs")))
+    write(rest_of(audit))
     return audit
 
 
-def _driven(
-    begun: Begun,
+def _drive(
+    setup: AuditSetup,
     runs: Runs,
     assumed: Mapping[str, Ranges],
-    tell: Callable[[str], None],
+    write: Callable[[str], None],
     show: Progress | None,
-) -> tuple[tuple[Verdict, ...], tuple[Assumed, ...], xarray.Dataset]:
-    """Drive over the obstacles one after another; tell each verdict as it comes."""
+) -> tuple[tuple[Verdict, ...], tuple[Assumption, ...], xarray.Dataset]:
+    """Drive over the obstacles one after another; write each verdict as soon as it is certain."""
     xr = extra("xarray", "analysis")
-    models = {OWN: begun.robot, BELT: begun.belt.robot}
+    models = {OWN: setup.robot, BELT: setup.belt.robot}
     verdicts, tables = [], []
-    others: list[Assumed] = []
-    count = Counted(show, len(begun.obstacles) * begun.call.samples * begun.call.repeats)
-    for name, ground in begun.obstacles.items():
+    others: list[Assumption] = []
+    count = RunCounter(show, len(setup.obstacles) * setup.call.samples * setup.call.repeats)
+    for name, ground in setup.obstacles.items():
         verdict, table = verdict_on(runs.course(models, name, ground), name, count)
-        tell(row_of(begun, verdict))
+        write(row_of(setup, verdict))
         verdicts.append(verdict)
         tables.append(table)
         if verdict.word == "seizes":
-            others += seizure_under(assumed, runs, begun.robot, (name, ground), count)
+            others += check_assumptions(assumed, runs, setup.robot, (name, ground), count)
     return tuple(verdicts), tuple(others), xr.concat(tables, "terrain")
 
 
 def _doubts(caught: list[warnings.WarningMessage]) -> list[str]:
-    """Return what the core doubts, each once."""
-    doubts = [str(each.message) for each in caught if issubclass(each.category, ScenarioWarning)]
-    return list(dict.fromkeys(doubts))
+    """List what the core doubts, each once."""
+    messages = [str(each.message) for each in caught if issubclass(each.category, ScenarioWarning)]
+    return list(dict.fromkeys(messages))

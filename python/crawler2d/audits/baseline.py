@@ -1,12 +1,12 @@
-"""What audits of some files said before, and what of it is new: for a check that must not drift.
+"""A baseline: earlier audits of some files, so that a check fails only on what is new.
 
 A baseline keeps words, counts and intervals, not bits. A seizure is new
 
 - on an obstacle on which the robot was not said to seize, or that the baseline does not have;
 - or if the interval of its rate is above the one it had, over all speeds or at one of them.
 
-Equal builds of crawler2d give equal runs. After a change of build a rate near a bound may flip its
-word: then of the words other than "does not seize" only the interval tells whether it is new.
+Equal builds of crawler2d give equal runs. With another build a rate near a bound may change its
+word: then, unless the word was "does not seize", only the interval decides whether it is new.
 
 Lint is new if no finding of its rule had the same words, numbers apart, at this severity or above.
 """
@@ -25,15 +25,15 @@ from typing import Any
 from crawler2d import _core
 from crawler2d.audits.issues import SEIZES, Check, Issue, repository_of
 from crawler2d.audits.lint import SEVERITIES
-from crawler2d.audits.verdicts import Share, Verdict
+from crawler2d.audits.verdicts import Proportion, Verdict
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import to_dict
 from crawler2d.reading.log import list_names
 
-__all__ = ["against", "entry_of", "read_baseline", "write_baseline"]
+__all__ = ["compare", "entry_of", "read_baseline", "write_baseline"]
 
 VERSION = 1
-"""Of the form of the file."""
+"""Of the format of the file."""
 
 Plain = dict[str, Any]
 
@@ -51,7 +51,7 @@ def read_baseline(path: Path) -> Plain:
     Raises
     ------
     ScenarioError
-        If it is none, or of a version of the form that is not known here.
+        If it is none, or of another version of the format.
     OSError
         If it cannot be read.
     """
@@ -63,19 +63,19 @@ def read_baseline(path: Path) -> Plain:
         rule = f"must be a file that --update-baseline wrote ({type(error).__name__}: {error})"
         raise ScenarioError("baseline", str(path), rule) from None
     if version != VERSION or not isinstance(models, dict):
-        rule = f"must have the form {VERSION}: write it anew with --update-baseline"
+        rule = f"must have format {VERSION}: write it again with --update-baseline"
         raise ScenarioError("baseline", version, rule)
     return dict(kept)
 
 
 def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) -> None:
-    """Write what was found in some files; what a baseline has of other files stays.
+    """Write what was found in some files; entries of other files are kept.
 
-    Lint alone leaves the verdicts that it has.
+    Lint alone keeps the verdicts of before.
     """
     models: Plain = {} if before is None else dict(before["models"])
     for check in checks:
-        if check.found is None:  # what it was before it could not be read stays
+        if check.found is None:  # unreadable: its entry is kept
             continue
         name = _name(check.path, path)
         models[name] = {**models.get(name, {}), **entry_of(check)}
@@ -88,7 +88,7 @@ def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) ->
 
 
 def entry_of(check: Check) -> Plain:
-    """Return what is kept of a file that was read."""
+    """Return the entry of a file that was read."""
     assert check.found is not None
     build = _core.build_info()
     kept: Plain = {
@@ -96,7 +96,8 @@ def entry_of(check: Check) -> Plain:
         "build": build["build_id"],
         "robot": to_dict(check.found.robot),
         "lint": [
-            [each.severity, each.rule, _told(each.what, check.path)] for each in check.found.lint
+            [each.severity, each.rule, _portable(each.what, check.path)]
+            for each in check.found.lint
         ],
     }
     if check.found.verdicts:
@@ -104,7 +105,7 @@ def entry_of(check: Check) -> Plain:
     return kept
 
 
-def against(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]]:
+def compare(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]]:
     """Compare what was found in a file with a baseline.
 
     Parameters
@@ -119,23 +120,25 @@ def against(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]
     Returns
     -------
     Check and list of str
-        With the issues that are known, and what is new, gone or moved, in words.
+        With the issues that are known, and what is new, gone or changed, in words.
     """
     before: Plain | None = baseline["models"].get(_name(check.path, path))
     if check.found is None:
         return replace(check, known=frozenset()), [issue.text for issue in check.issues]
     if before is None:
-        return replace(check, known=frozenset()), ["not in the baseline: all of it is new"]
+        return replace(check, known=frozenset()), ["not in the baseline: everything is new"]
     now = entry_of(check)
     is_known = (issue for issue in check.issues if not _is_new(issue, check.path, now, before))
     known = frozenset(is_known)
     check = replace(check, known=known)
-    told = [*_robot_moved(before["robot"], now["robot"]), *_verdicts_moved(check, now, before)]
-    told += _lint_moved(check, now, before)
-    if told and not _are_of_one_build(now, before):
+    changes = [*_robot_moved(before["robot"], now["robot"]), *_verdicts_moved(check, now, before)]
+    changes += _lint_moved(check, now, before)
+    if changes and not _are_of_one_build(now, before):
         was, is_now = (f"{each['crawler2d']} ({each['build']})" for each in (before, now))
-        told.append(f"crawler2d {was} is now {is_now}: CHANGELOG.md says what moved, under Physics")
-    return check, told
+        changes.append(
+            f"crawler2d {was} is now {is_now}: CHANGELOG.md says what moved, under Physics"
+        )
+    return check, changes
 
 
 def _name(path: Path, baseline: Path) -> str:
@@ -150,16 +153,16 @@ def _verdict(verdict: Verdict) -> Plain:
     rates = [verdict.seized, *verdict.seized_at.values()]
     return {
         **kept,
-        "cleared": _share(verdict.cleared),
-        "belt_cleared": _share(verdict.belt_cleared),
-        "seized": [_share(each) for each in rates],
+        "cleared": _counts(verdict.cleared),
+        "belt_cleared": _counts(verdict.belt_cleared),
+        "seized": [_counts(each) for each in rates],
     }
 
 
-def _share(share: Share) -> list[float]:
+def _counts(of: Proportion) -> list[float]:
     """Return how often, of how many, and the interval."""
-    hits = round(share.rate * share.runs) if share.runs else 0
-    return [hits, share.runs, round(share.low, 4), round(share.high, 4)]
+    hits = round(of.rate * of.runs) if of.runs else 0
+    return [hits, of.runs, round(of.low, 4), round(of.high, 4)]
 
 
 def _are_of_one_build(now: Plain, before: Plain) -> bool:
@@ -168,7 +171,7 @@ def _are_of_one_build(now: Plain, before: Plain) -> bool:
 
 def _is_new(issue: Issue, path: Path, now: Plain, before: Plain) -> bool:
     if issue.rule != SEIZES:
-        was = _lint(before).get(_key(issue.rule, _told(issue.text, path)))
+        was = _lint(before).get(_key(issue.rule, _portable(issue.text, path)))
         return was is None or SEVERITIES.index(issue.severity) < SEVERITIES.index(was)
     label, then = _matched(before, issue.obstacle, now)
     if label is None or then["word"] == "does not seize":
@@ -275,13 +278,13 @@ def _verdicts_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
             kept = (
                 ""
                 if here["word"] != SEIZES
-                else "; the build is another, and the intervals overlap: not counted as new"
+                else "; another build, and the intervals overlap: not counted as new"
             )
             yield f"{label}: {then['word']} is now {here['word']}: {counts}{kept}"
     if sizes:
         yield f"obstacles of other sizes: {', '.join(sizes)}"
     if gone:
-        yield f"not driven over any more: {', '.join(gone)}"
+        yield f"no longer driven over: {', '.join(gone)}"
 
 
 def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
@@ -291,10 +294,10 @@ def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
     found = _lint(now)
     for severity, rule, what in before["lint"]:
         if _key(rule, what) not in found:
-            yield f"{severity} of lint that is gone, {rule}: {what}"
+            yield f"{severity} of lint is gone, {rule}: {what}"
 
 
-def _told(what: str, path: Path) -> str:
-    """Return what lint says without lines, and with places told from the root of the repository."""
+def _portable(what: str, path: Path) -> str:
+    """Remove lines from a text of lint, and name places from the root of the repository."""
     root = repository_of(path) or path.resolve().parent
     return _LINE.sub("", what.replace(f"{root}{os.sep}", "").replace(str(root), "."))

@@ -7,54 +7,51 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 from xml.etree import ElementTree
 
 from crawler2d import _core
 from crawler2d.audits import words
-from crawler2d.audits.audited import names_of
 from crawler2d.audits.lint import RULES
+from crawler2d.audits.record import names_of
 from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
     from crawler2d.audits.lint import Finding
-    from crawler2d.audits.verdicts import Verdict
-    from crawler2d.parameters.robot import Robot
+    from crawler2d.audits.record import AuditRecord
+    from crawler2d.audits.text import LintResult
     from crawler2d.reading.reading import Reading
 
 __all__ = [
     "SEIZES",
-    "UNREAD",
     "Check",
-    "Found",
     "Issue",
-    "checked",
+    "check_of",
     "junit_of",
     "repository_of",
     "sarif_of",
-    "unread",
+    "unreadable",
 ]
 
 SEIZES = "seizes"
-"""The rule that an obstacle breaks on which a robot seizes; the others are those of lint."""
+"""The rule that an obstacle breaks on which a robot seizes."""
 
-
-UNREAD = "unread"
+_UNREAD = "unread"
 """The rule that a file breaks which cannot be read, or whose robot cannot be simulated."""
 
+_RULES = {
+    SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.",
+    _UNREAD: "The file can be read, and its robot simulated.",
+    **{rule.name: rule.text for rule in RULES},
+}
 
-class Found(Protocol):
-    """What reports need of an `Audit` or of `Linted`."""
+_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+_ROOT = "%SRCROOT%"
 
-    @property
-    def robot(self) -> Robot: ...  # noqa: D102
-    @property
-    def reading(self) -> Reading | None: ...  # noqa: D102
-    @property
-    def lint(self) -> tuple[Finding, ...]: ...  # noqa: D102
-    @property
-    def verdicts(self) -> tuple[Verdict, ...]: ...  # noqa: D102
+_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+XML = ElementTree.Element
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,8 +87,8 @@ class Check:
     ----------
     path : Path
         The file.
-    found : Found, optional
-        The audit, or lint alone; None for a file that cannot be read.
+    found : AuditRecord or LintResult, optional
+        What was found; None for a file that cannot be read.
     issues : tuple of Issue
         Seizures, then lint.
     known : frozenset of Issue, optional
@@ -99,15 +96,12 @@ class Check:
     """
 
     path: Path
-    found: Found | None
+    found: AuditRecord | LintResult | None
     issues: tuple[Issue, ...]
     known: frozenset[Issue] | None = None
 
     def fails(self, issue: Issue) -> bool:
-        """Whether an issue fails: a seizure or an error, or with a baseline what is new of them.
-
-        With a baseline a new warning fails, too: the model had none of it.
-        """
+        """Whether an issue fails: an error, or with a baseline a new error or warning."""
         if self.known is None:
             return issue.severity == "error"
         return issue not in self.known and issue.severity != "note"
@@ -123,42 +117,45 @@ def repository_of(path: Path) -> Path | None:
     return next((up for up in path.resolve().parents if (up / ".git").exists()), None)
 
 
-def checked(path: Path, found: Found) -> Check:
+def check_of(path: Path, found: AuditRecord | LintResult) -> Check:
     """List what is wrong with a model, with no baseline."""
-    issues = (*_seizures(found), *(_of_lint(each, found.reading) for each in found.lint))
+    issues = (*_seizures(found), *(_issue(each, found.reading) for each in found.lint))
     return Check(path=path, found=found, issues=issues)
 
 
-def unread(path: Path, error: ScenarioError) -> Check:
-    """Return the check of a file that cannot be read: the error, at its line, is all of it."""
-    place = re.match(re.escape(path.name) + r":(\d+)", error.path)
-    lines = (int(place[1]),) if place else ()
-    issue = Issue(rule=UNREAD, severity="error", text=str(error), lines=lines)
+def unreadable(path: Path, error: ScenarioError) -> Check:
+    """Return the check of a file that cannot be read: only the error, at its line."""
+    lines = _lines_in(path.name, error.path)
+    issue = Issue(rule=_UNREAD, severity="error", text=str(error), lines=lines)
     return Check(path=path, found=None, issues=(issue,))
 
 
-def _seizures(found: Found) -> Iterator[Issue]:
-    names = {} if found.reading is None else names_of(found.robot, found.reading)
+def _seizures(found: AuditRecord | LintResult) -> Iterator[Issue]:
+    read = found.reading
+    names = {} if read is None else names_of(found.robot, read)
     for verdict in found.verdicts:
-        if verdict.word != SEIZES:
-            continue
-        bodies = [int(body) for body in verdict.where.split("-") if body]
-        called = [names[body] for body in bodies if body in names]
-        yield Issue(
-            rule=SEIZES,
-            severity="error",
-            text=words.seizure(verdict, called),
-            lines=_lines_of(called, found.reading),
-            obstacle=verdict.obstacle,
-        )
+        if verdict.word == SEIZES:
+            bodies = [int(body) for body in verdict.where.split("-") if body]
+            wheels = [names[body] for body in bodies if body in names]
+            yield Issue(
+                rule=SEIZES,
+                severity="error",
+                text=words.seizure(verdict, wheels),
+                lines=_lines_of(wheels, read),
+                obstacle=verdict.obstacle,
+            )
 
 
-def _of_lint(finding: Finding, reading: Reading | None) -> Issue:
-    lines: tuple[int, ...] = ()
-    if reading is not None and _has_own_lines(reading):
-        place = re.match(re.escape(reading.tree.file) + r":(\d+(?:, \d+)*)", finding.where)
-        lines = tuple(map(int, place[1].split(", "))) if place else ()
+def _issue(finding: Finding, reading: Reading | None) -> Issue:
+    is_own = reading is not None and _has_own_lines(reading)
+    lines = _lines_in(reading.tree.file, finding.where) if reading and is_own else ()
     return Issue(rule=finding.rule, severity=finding.severity, text=finding.what, lines=lines)
+
+
+def _lines_in(file: str, where: str) -> tuple[int, ...]:
+    """Read the lines of a file from a text such as "cart.sdf:3, 7"."""
+    place = re.match(re.escape(file) + r":(\d+(?:, \d+)*)", where)
+    return tuple(map(int, place[1].split(", "))) if place else ()
 
 
 def _lines_of(names: list[str], reading: Reading | None) -> tuple[int, ...]:
@@ -174,17 +171,12 @@ def _has_own_lines(reading: Reading) -> bool:
     return reading.tree.file == reading.path.name
 
 
-XML = ElementTree.Element
-
-_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-
-
 def junit_of(checks: Sequence[Check]) -> str:
     """Write a test suite for each file: a test case for each obstacle, and for each broken rule.
 
-    An obstacle fails if the robot seizes on it, a rule if it is broken with an error; what else is
-    found is in the ``system-out`` of its case. With a baseline only what is new fails, and what is
-    not is skipped.
+    An obstacle fails if the robot seizes on it, a rule if it is broken with an error; other
+    findings are in the ``system-out`` of the case. With a baseline only what is new fails, and what
+    is known is skipped.
 
     Parameters
     ----------
@@ -198,7 +190,7 @@ def junit_of(checks: Sequence[Check]) -> str:
     """
     root = _element("testsuites", name="crawler2d audit")
     root.extend(_suite(check) for check in checks)
-    _count(root, root.iter("testcase"), "tests", "failures", "errors")
+    _set_counts(root, "tests", "failures", "errors")
     ElementTree.indent(root)
     body = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="utf-8"?>\n{body}\n'
@@ -209,73 +201,64 @@ def _suite(check: Check) -> XML:
     suite = _element("testsuite", name=name)
     for verdict in () if check.found is None else check.found.verdicts:
         issues = [issue for issue in check.issues if issue.obstacle == verdict.obstacle]
-        said = ": ".join(filter(None, [verdict.obstacle, verdict.word]))
-        clears = f"clears {words.share(verdict.cleared)}, seizes {words.share(verdict.seized)}"
-        belt = f"belt clears {words.percent(verdict.belt_cleared.rate)}"
-        suite.append(
-            _case(check, f"{SEIZES}: {verdict.obstacle}", issues, f"{said}; {clears}, {belt}")
+        out = (
+            f"{verdict.obstacle}: {verdict.word}; clears {words.rate(verdict.cleared)}, seizes"
+            f" {words.rate(verdict.seized)}, belt clears"
+            f" {words.percent(verdict.belt_cleared.rate)}"
         )
+        suite.append(_case(check, f"{SEIZES}: {verdict.obstacle}", issues, out))
     of_lint = [issue for issue in check.issues if not issue.obstacle]
     for rule in dict.fromkeys(issue.rule for issue in of_lint):
         broken = [issue for issue in of_lint if issue.rule == rule]
-        said = "\n".join(f"{issue.severity}: {_placed(issue, name)}" for issue in broken)
-        suite.append(_case(check, f"lint: {rule}", broken, said))
-    _count(suite, suite.iter("testcase"), "tests", "failures", "errors", "skipped")
+        out = "\n".join(f"{issue.severity}: {_with_line(issue, name)}" for issue in broken)
+        suite.append(_case(check, f"lint: {rule}", broken, out))
+    _set_counts(suite, "tests", "failures", "errors", "skipped")
     return suite
 
 
-def _case(check: Check, name: str, issues: Iterable[Issue], said: str) -> XML:
+def _case(check: Check, name: str, issues: Iterable[Issue], out: str) -> XML:
     """Return a test case, which fails or is skipped if one of its issues is severe."""
     case = _element("testcase", name=name, classname=check.path.as_posix())
     severe = [issue for issue in issues if issue.severity != "note"]
     failing = [issue for issue in severe if check.fails(issue)]
     known = [issue for issue in severe if check.known and issue in check.known]
     if failing:
-        failure = _element("failure", type=failing[0].rule, message=failing[0].text)
-        failure.text = _legal("\n".join(_placed(each, check.path.as_posix()) for each in failing))
-        case.append(failure)
+        texts = "\n".join(_with_line(each, check.path.as_posix()) for each in failing)
+        message = {"type": failing[0].rule, "message": failing[0].text}
+        case.append(_element("failure", texts, **message))
     elif known:
         case.append(_element("skipped", message=f"in the baseline: {known[0].text}"))
-    out = _element("system-out")
-    out.text = _legal(said)
-    case.append(out)
+    case.append(_element("system-out", out))
     return case
 
 
-def _placed(issue: Issue, name: str) -> str:
+def _with_line(issue: Issue, name: str) -> str:
     """Write an issue after file and line, as compilers do."""
     line = f":{issue.lines[0]}" if issue.lines else ""
     return f"{name}{line}: {issue.text}"
 
 
-def _count(element: XML, cases: Iterator[XML], *names: str) -> None:
-    each = list(cases)
+def _set_counts(element: XML, *names: str) -> None:
+    cases = list(element.iter("testcase"))
     counts = {
-        "tests": len(each),
-        "failures": sum(case.find("failure") is not None for case in each),
+        "tests": len(cases),
+        "failures": len(list(element.iter("failure"))),
         "errors": 0,  # a file that cannot be read is a failure, too
-        "skipped": sum(case.find("skipped") is not None for case in each),
+        "skipped": len(list(element.iter("skipped"))),
     }
     for name in names:
         element.set(name, str(counts[name]))
 
 
-def _element(tag: str, **attributes: str) -> XML:
-    return ElementTree.Element(tag, {name: _legal(text) for name, text in attributes.items()})
+def _element(tag: str, text: str | None = None, **attributes: str) -> XML:
+    element = ElementTree.Element(tag, {name: _legal(each) for name, each in attributes.items()})
+    element.text = None if text is None else _legal(text)
+    return element
 
 
 def _legal(text: str) -> str:
     """Replace what XML cannot hold, as names of files may have it."""
     return _NOT_IN_XML.sub("\ufffd", text)
-
-
-_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
-_RULES = {
-    SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.",
-    UNREAD: "The file can be read, and its robot simulated.",
-    **{rule.name: rule.text for rule in RULES},
-}
-_ROOT = "%SRCROOT%"
 
 
 def sarif_of(checks: Sequence[Check]) -> str:
@@ -295,14 +278,13 @@ def sarif_of(checks: Sequence[Check]) -> str:
     str
         The text of the file.
     """
-    names = list(_RULES)
     rules = [
         {"id": _id(name), "name": name, "shortDescription": {"text": text}}
         for name, text in _RULES.items()
     ]
     version = str(_core.build_info()["version"])
     driver = {"name": "crawler2d", "semanticVersion": version, "rules": rules}
-    results = [_result(issue, check, names) for check in checks for issue in check.issues]
+    results = [_result(issue, check) for check in checks for issue in check.issues]
     run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
     text = json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2)
     return f"{text}\n"
@@ -312,11 +294,11 @@ def _id(rule: str) -> str:
     return rule.replace(" ", "-")
 
 
-def _result(issue: Issue, check: Check, rules: list[str]) -> dict[str, Any]:
+def _result(issue: Issue, check: Check) -> dict[str, Any]:
     first, *others = issue.lines or (0,)
     result: dict[str, Any] = {
         "ruleId": _id(issue.rule),
-        "ruleIndex": rules.index(issue.rule),
+        "ruleIndex": list(_RULES).index(issue.rule),
         "level": issue.severity,
         "message": {"text": issue.text},
         "locations": [_location(check.path, first)],
@@ -329,16 +311,13 @@ def _result(issue: Issue, check: Check, rules: list[str]) -> dict[str, Any]:
 
 
 def _location(path: Path, line: int) -> dict[str, Any]:
-    place: dict[str, Any] = {"artifactLocation": _artifact(path)}
+    """Name a file by its path from the root of its repository, which is what scanners resolve."""
+    whole = path.resolve()
+    root = repository_of(path) or Path.cwd()
+    file = {"uri": whole.as_uri()}
+    if whole.is_relative_to(root):
+        file = {"uri": quote(whole.relative_to(root).as_posix()), "uriBaseId": _ROOT}
+    place: dict[str, Any] = {"artifactLocation": file}
     if line:
         place["region"] = {"startLine": line}
     return {"physicalLocation": place}
-
-
-def _artifact(path: Path) -> dict[str, str]:
-    """Name a file by its way from the root of its repository, which is what scanners resolve."""
-    whole = path.resolve()
-    root = repository_of(path) or Path.cwd()
-    if not whole.is_relative_to(root):
-        return {"uri": whole.as_uri()}
-    return {"uri": quote(whole.relative_to(root).as_posix()), "uriBaseId": _ROOT}

@@ -1,10 +1,7 @@
-"""The audited file with what ends the seizures, or helps: the best there is, with its label."""
+"""The audited file with a repair: what was changed, with a label that says the result."""
 
 from __future__ import annotations
 
-import contextlib
-import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,34 +10,34 @@ import numpy as np
 
 from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
-from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.robot import Robot
-from crawler2d.patching.patch import add_label, patch_file
+from crawler2d.patching.patch import labelled, patched
 
 if TYPE_CHECKING:
-    from crawler2d.audits.audited import Audited
+    from crawler2d.audits.record import AuditRecord
 
 __all__ = ["Change", "best_change", "change_of", "diffs_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A file that was changed, or written anew.
+    """A changed model file, or a new one in its place.
 
     Parameters
     ----------
     text : str
         All of it.
     label : str
-        What it has, and how well that does; it is the first comment of the text, too.
+        The change and its result; it is the first comment of the text, too.
     diff : str
-        What differs from the file that was read; "" if it was written anew.
+        What differs from the file that was read; "" for a new one.
     summary : str
         How much differs.
     left : tuple of str
-        Settings of plugins that are left to be set by hand.
-    ending : str
-        That of a file of another format; "" if it is the same.
+        Settings of plugins that remain to be set by hand.
+    suffix : str
+        Of a file of another format; "" if it is the same.
     """
 
     text: str
@@ -48,20 +45,20 @@ class Change:
     diff: str = ""
     summary: str
     left: tuple[str, ...] = ()
-    ending: str = ""
+    suffix: str = ""
 
     def write(self, path: Path) -> Path:
-        """Write it, under another ending if it has one; return where it is."""
-        path = path.with_suffix(self.ending) if self.ending else path
+        """Write it, with its own suffix if it has one; return the path."""
+        path = path.with_suffix(self.suffix) if self.suffix else path
         path.write_text(self.text, encoding="utf-8")
         return path
 
 
-def best_change(audit: Audited) -> Change | None:
-    """Change the file in the best way that was found; None if it does not seize.
+def best_change(audit: AuditRecord) -> Change | None:
+    """Change the file by the best repair; None if it does not seize.
 
-    These are the wheels of the first repair that is confirmed; or those of another with which it
-    seizes less often; or else belts.
+    That is the first confirmed one with wheels, else one with wheels that seizes less often than
+    the file, else belts.
 
     Raises
     ------
@@ -84,14 +81,14 @@ def best_change(audit: Audited) -> Change | None:
         change = _on_belts(audit, audit.belt.robot, belts)
     except ScenarioError as error:
         refused.append(f"belts: {error}")
-        rule = f"must be one that can be written ({'; '.join(refused)})"
+        rule = f"cannot be written to a file ({'; '.join(refused)})"
         raise ScenarioError("repair", "none", rule) from None
     if refused:
         change = replace(change, summary=f"{change.summary}; no wheels, for {'; '.join(refused)}")
     return change
 
 
-def change_of(audit: Audited, repair: Repair) -> Change:
+def change_of(audit: AuditRecord, repair: Repair) -> Change:
     """Put a repair into the file that was audited.
 
     Raises
@@ -104,14 +101,14 @@ def change_of(audit: Audited, repair: Repair) -> Change:
         return _on_belts(audit, repair.robot, repair)
     assert audit.reading is not None
     label = words.repair_sentence(repair)
-    with _quietly():
-        patch = patch_file(audit.reading, repair.robot, f"crawler2d, {label}")
+    with ignore_doubts():  # they are in the lint
+        patch = patched(audit.reading, repair.robot, f"crawler2d, {label}")
     return Change(
         text=patch.text, label=label, diff=patch.diff, summary=patch.summary, left=patch.left
     )
 
 
-def diffs_of(audit: Audited) -> dict[str, str]:
+def diffs_of(audit: AuditRecord) -> dict[str, str]:
     """Say what each repair by wheels changes in the file, or why it cannot, by `Repair.what`."""
     found = {}
     for repair in audit.repairs if audit.reading is not None else ():
@@ -124,22 +121,14 @@ def diffs_of(audit: Audited) -> dict[str, str]:
     return found
 
 
-@contextlib.contextmanager
-def _quietly() -> Iterator[None]:
-    """Pass over what the core doubts: it is in the lint."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ScenarioWarning)
-        yield
-
-
-def _check(audit: Audited) -> None:
+def _check(audit: AuditRecord) -> None:
     if audit.reading is None:
         rule = "must be the audit of a file; Robot.to_sdf, to_urdf and to_mjcf write other robots"
         raise ScenarioError("patch", "a Robot", rule)
 
 
-def _on_belts(audit: Audited, robot: Robot, repair: Repair | None) -> Change:
-    """Write the robot anew, on belts that a plugin of the simulator moves."""
+def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change:
+    """Write a new file of the robot, on belts that a plugin of the simulator moves."""
     read = audit.reading
     assert read is not None
     if repair is None:
@@ -149,23 +138,23 @@ def _on_belts(audit: Audited, robot: Robot, repair: Repair | None) -> Change:
     else:
         label = words.repair_sentence(repair)
     is_mjcf = read.tree.format == "MJCF"
-    with _quietly():
+    with ignore_doubts():  # they are in the lint
         text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
-    held = "" if is_mjcf or read.tree.format.startswith("SDF") else ", as URDF holds no belts"
+    note = "" if is_mjcf or read.tree.format.startswith("SDF") else ", as URDF holds no belts"
     return Change(
-        text=add_label(text, f"crawler2d, {label}"),
+        text=labelled(text, f"crawler2d, {label}"),
         label=label,
-        summary=f"written anew as {'MJCF' if is_mjcf else 'SDF'}{held}",
-        ending=".sdf" if held else "",
+        summary=f"a new file of {'MJCF' if is_mjcf else 'SDF'}{note}",
+        suffix=".sdf" if note else "",
     )
 
 
-def _after(audit: Audited, repair: Repair) -> float:
+def _after(audit: AuditRecord, repair: Repair) -> float:
     """[-] Return how often a repair seizes in fresh runs, over the obstacles that seized."""
     names = [each.obstacle for each in audit.verdicts if each.word == "seizes"]
     return float(np.nanmean([repair.seized[name].rate for name in names]))
 
 
-def _before(audit: Audited) -> float:
+def _before(audit: AuditRecord) -> float:
     """[-] Return how often the robot as it is seizes there."""
     return float(np.mean([v.seized.rate for v in audit.verdicts if v.word == "seizes"]))

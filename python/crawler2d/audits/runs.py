@@ -37,20 +37,19 @@ if TYPE_CHECKING:
 __all__ = [
     "TRIED",
     "Belt",
-    "Counted",
     "Course",
-    "Live",
+    "LivePrinter",
+    "RunCounter",
     "Runs",
     "belt_of",
-    "column",
-    "live_of",
-    "raised",
+    "raise_flippers",
+    "read_progress",
     "scenario_of",
 ]
 
 
-class Live:
-    """Prints the parts of an audit as they come, and on a terminal counts runs in a line below.
+class LivePrinter:
+    """Prints the parts of an audit when they are ready, and on a terminal counts runs below.
 
     Parameters
     ----------
@@ -64,7 +63,7 @@ class Live:
         self._out, self._spell = out, spell
         self._begin = time.monotonic()
 
-    def tell(self, text: str) -> None:
+    def print(self, text: str) -> None:
         """Print a part."""
         self._write("\r\x1b[K")
         print(self._spell(text), file=self._out, flush=True)
@@ -80,7 +79,7 @@ class Live:
             sys.stderr.flush()
 
 
-class Counted:
+class RunCounter:
     """Counts the runs of an audit over all of its batches.
 
     Parameters
@@ -94,7 +93,7 @@ class Counted:
     def __init__(self, show: Progress | None, total: int) -> None:
         self._show, self._total, self._done = show, total, 0
 
-    def part(self) -> Progress | None:
+    def next_batch(self) -> Progress | None:
         """Return what counts the next batch."""
         before = self._done
 
@@ -107,8 +106,8 @@ class Counted:
         return show
 
 
-def live_of(progress: object) -> tuple[Callable[[str], None], Progress | None]:
-    """Read the argument `progress` of `audit`: what tells the parts, and what counts the runs.
+def read_progress(progress: object) -> tuple[Callable[[str], None], Progress | None]:
+    """Read the argument `progress` of `audit`: what prints the parts, and what counts the runs.
 
     Raises
     ------
@@ -116,9 +115,9 @@ def live_of(progress: object) -> tuple[Callable[[str], None], Progress | None]:
         If it is neither True, False, None nor a callable.
     """
     if progress is True:
-        progress = Live(sys.stderr)
-    if isinstance(progress, Live):
-        return progress.tell, progress
+        progress = LivePrinter(sys.stderr)
+    if isinstance(progress, LivePrinter):
+        return progress.print, progress
     if progress is None or progress is False:
         return lambda _: None, None
     if not callable(progress):
@@ -145,7 +144,7 @@ def belt_of(robot: Robot) -> Belt:
     """Put belts in the place of a robot's tracks.
 
     They follow the outlines of chassis and flippers, `BeltTrack`, wherever these are the model's
-    own. Where wheels are placed one by one, or stand for no track, no outline tells where a belt
+    own. Where wheels are placed one by one, or stand for no track, no outline shows where a belt
     would run; then it is taut round the model's own wheels, `ClosedTrack`.
 
     Parameters
@@ -213,11 +212,11 @@ def scenario_of(
     if duration is None:
         duration = round(max(_LENGTHS * length / max(abs(drive.speed), 1e-3), 1.0), 1)
     start = Start(approach=0.2 * outline.axle_distance)
-    ready = raised(robot, drive)
+    ready = raise_flippers(robot, drive)
     return Scenario(ready, ground, drive=drive, start=start, duration=duration)
 
 
-def raised(robot: Robot, drive: Drive) -> Robot:
+def raise_flippers(robot: Robot, drive: Drive) -> Robot:
     """Raise the flippers of a robot that climbs, as its driver does before the obstacle."""
     if robot.flippers is None or not isinstance(drive.gait, Climb):
         return robot
@@ -255,13 +254,13 @@ class Runs:
         if is_confirming:
             samples, seed = -(-samples // 2), (seed + _FRESH) % 2**64
             repeats = 1 if self.unknown else repeats
-        drive = self.scenario.drive
-        for robot in robots.values():
-            # A broken rule is an error here; a run that only its draws break is recorded.
-            self.scenario.replace({"robot": raised(robot, drive), "terrain": ground}).validate()
         models: dict[Label, Mapping[str, Any]] = {
-            label: {"robot": raised(robot, drive)} for label, robot in robots.items()
+            label: {"robot": raise_flippers(robot, self.scenario.drive)}
+            for label, robot in robots.items()
         }
+        for model in models.values():
+            # A broken rule is an error here; a run that only its draws break is recorded.
+            self.scenario.replace({**model, "terrain": ground}).validate()
         planned = Tabulation(
             self.scenario,
             [
@@ -333,9 +332,3 @@ class Course:
         turn = np.add.outer(np.arange(self.samples), np.arange(table.sizes["repeat"]))
         speeds = self._speeds[turn % self._speeds.size]
         return table.assign_coords(speed=(("sample", "repeat"), speeds))
-
-
-def column(table: xarray.Dataset, name: str, **at: str) -> NDArray[Any]:
-    """Return a column of one cell, shape (samples, repeats)."""
-    cell = table[name].sel(at).transpose("sample", "repeat")
-    return np.asarray(cell.values)

@@ -1,4 +1,4 @@
-"""More runs until a verdict is certain, and again where motors or blows are assumed otherwise."""
+"""Runs until a verdict is certain, and again under other assumptions on motors and impacts."""
 
 from __future__ import annotations
 
@@ -6,49 +6,53 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from crawler2d.audits.candidates import Pocket
-from crawler2d.audits.runs import Counted, Course, Runs, column
+from crawler2d.audits.runs import Course, RunCounter, Runs
 from crawler2d.audits.verdicts import (
     BELT,
     CLEARS,
     OWN,
-    RESULTS,
     SEIZES,
+    ObstacleRuns,
     Verdict,
     is_certain,
-    verdicts_of,
+    verdict_of,
 )
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.terrain import Gap, Ridge, Terrain
 from crawler2d.presets.unknowns import of_blows, of_robot
-from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.statistics import wilson
 from crawler2d.variation.distributions import Ranges
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Assumed", "assumptions", "likely_first", "looks", "seizure_under", "verdict_on"]
+__all__ = [
+    "Assumption",
+    "assumptions_of",
+    "check_assumptions",
+    "look_counts",
+    "order_by_risk",
+    "verdict_on",
+]
 
 _LOOK = 9
 """Samples between two looks: as many at each of the three speeds."""
 
 
-def looks(samples: int) -> Iterator[int]:
+def look_counts(samples: int) -> Iterator[int]:
     """Count the samples that are made at each look.
 
     Examples
     --------
-    >>> list(looks(40))
+    >>> list(look_counts(40))
     [9, 18, 27, 36, 40]
     """
     yield from range(_LOOK, samples, _LOOK)
     yield samples
 
 
-def verdict_on(course: Course, obstacle: str, count: Counted) -> tuple[Verdict, xarray.Dataset]:
+def verdict_on(course: Course, obstacle: str, count: RunCounter) -> tuple[Verdict, xarray.Dataset]:
     """Drive over an obstacle until the verdict on it is certain, or all samples are made.
 
     The belt drives the same samples, as soon as the robot seizes or clears less than 95 % of them.
@@ -59,7 +63,7 @@ def verdict_on(course: Course, obstacle: str, count: Counted) -> tuple[Verdict, 
         Of the models "model" and "belt".
     obstacle : str
         Its label.
-    count : Counted
+    count : RunCounter
         Of the runs.
 
     Returns
@@ -67,20 +71,20 @@ def verdict_on(course: Course, obstacle: str, count: Counted) -> tuple[Verdict, 
     Verdict, xarray.Dataset
         And the runs behind it.
     """
-    for made in looks(course.samples):
-        course.drive(OWN, made, count.part())
+    for made in look_counts(course.samples):
+        course.drive(OWN, made, count.next_batch())
         table = course.table()
-        (verdict,) = verdicts_of(table, [obstacle])
+        verdict = verdict_of(table, obstacle)
         if verdict.seized.rate > 0.0 or not verdict.cleared.rate >= CLEARS:
-            course.drive(BELT, made, count.part())
+            course.drive(BELT, made, count.next_batch())
             table = course.table()
-            (verdict,) = verdicts_of(table, [obstacle])
+            verdict = verdict_of(table, obstacle)
         if is_certain(table, verdict):
             break
     return verdict, table
 
 
-def likely_first(grounds: Mapping[str, Terrain], pockets: Sequence[Pocket]) -> list[str]:
+def order_by_risk(grounds: Mapping[str, Terrain], pockets: Sequence[Pocket]) -> list[str]:
     """Order obstacles: first those with sharp edges, and of these the ones that reach deepest.
 
     An edge seizes in a pocket that it fills. What is rounded, blunt or open below seldom does;
@@ -101,7 +105,7 @@ def likely_first(grounds: Mapping[str, Terrain], pockets: Sequence[Pocket]) -> l
     >>> low, high = c2d.terrains.step(0.002), c2d.terrains.step(0.05)
     >>> kerb = c2d.terrains.step(0.05, edge_radius=0.02)
     >>> from crawler2d.audits.candidates import pockets
-    >>> likely_first({"kerb": kerb, "low": low, "high": high}, pockets(robot))
+    >>> order_by_risk({"kerb": kerb, "low": low, "high": high}, pockets(robot))
     ['high', 'low', 'kerb']
     """
     deepest = max((each.depth for each in pockets), default=0.0)
@@ -123,7 +127,7 @@ _ROTOR = "rotor_inertia"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Assumed:
+class Assumption:
     """How often a robot that seizes on an obstacle does so under another assumption.
 
     Parameters
@@ -131,7 +135,7 @@ class Assumed:
     obstacle : str
         Its label.
     assumption : {"rotor", "restitution"}
-        What is drawn besides what is not known anyway: rotors of motors, or what blows give back.
+        What is drawn besides the unknowns: rotors of motors, or restitution.
     drawn : Ranges
         From which ranges.
     seized, made : int
@@ -150,17 +154,17 @@ class Assumed:
         return wilson(self.seized, self.made).low > SEIZES
 
 
-def assumptions(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges]:
-    """Return what verdicts may hang on, and is not drawn in all runs anyway.
+def assumptions_of(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges]:
+    """Return what verdicts may depend on, and is not drawn in all runs anyway.
 
     Rotors are those of a real drive, of which a file for a simulator says nothing; with them
-    motors hold their speed. Chains are left out of blows: they give nothing back.
+    motors hold their speed. Chains have no restitution.
 
     Examples
     --------
     >>> import crawler2d as c2d
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
-    >>> list(assumptions(robot, {})), list(assumptions(robot, c2d.unknowns.of_robot(robot)))
+    >>> list(assumptions_of(robot, {})), list(assumptions_of(robot, c2d.unknowns.of_robot(robot)))
     (['rotor', 'restitution'], ['restitution'])
     """
     own = of_robot(robot)
@@ -169,18 +173,13 @@ def assumptions(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges
     return {name: ranges for name, ranges in found.items() if ranges}
 
 
-def _held(robot: Robot) -> Robot:
-    """Have motors hold their speed, as real drives do: a servo's gain is a simulator's setting."""
-    return replace(robot, drivetrain=replace(robot.drivetrain, controller=None))
-
-
-def seizure_under(
+def check_assumptions(
     assumed: Mapping[str, Ranges],
     runs: Runs,
     robot: Robot,
     at: tuple[str, Terrain],
-    count: Counted,
-) -> tuple[Assumed, ...]:
+    count: RunCounter,
+) -> tuple[Assumption, ...]:
     """Drive over an obstacle on which the robot seizes, under one assumption after another.
 
     Parameters
@@ -193,7 +192,7 @@ def seizure_under(
         The robot.
     at : tuple of str, Terrain
         The label of the obstacle, and the obstacle.
-    count : Counted
+    count : RunCounter
         Of the runs.
     """
     obstacle, ground = at
@@ -201,13 +200,20 @@ def seizure_under(
     for name, ranges in assumed.items():
         unknown = Ranges(runs.unknown) | ranges
         others = replace(runs, unknown=unknown, repeats=1, trials=())
-        driven = _held(robot) if name == "rotor" else robot
+        driven = robot
+        if name == "rotor":
+            # Real drives hold their speed: a servo's gain is a simulator's setting.
+            driven = replace(robot, drivetrain=replace(robot.drivetrain, controller=None))
         course = others.course({OWN: driven}, obstacle, ground)
-        course.drive(OWN, min(_SAMPLES, course.samples), count.part())
-        ends = column(course.table(), "outcome", model=OWN, terrain=obstacle)
-        made = int(np.isin(ends, RESULTS).sum())
-        seized = int((ends == Outcome.SEIZED).sum())
+        course.drive(OWN, min(_SAMPLES, course.samples), count.next_batch())
+        results = ObstacleRuns(course.table(), OWN, obstacle)
         found.append(
-            Assumed(obstacle=obstacle, assumption=name, drawn=ranges, seized=seized, made=made)
+            Assumption(
+                obstacle=obstacle,
+                assumption=name,
+                drawn=ranges,
+                seized=int(results.seized.sum()),
+                made=int(results.has_result.sum()),
+            )
         )
     return tuple(found)

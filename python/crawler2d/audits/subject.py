@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import Literal, NamedTuple, TypedDict
+from typing import Any, Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import lint
-from crawler2d.errors import ScenarioError, ScenarioWarning
-from crawler2d.parameters.outline import TrackOutline
-from crawler2d.parameters.robot import Robot
+from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import (
     Barrier,
@@ -26,16 +24,16 @@ from crawler2d.parameters.terrain import (
     Terrain,
 )
 from crawler2d.presets.unknowns import of_ground, of_robot
-from crawler2d.reading.engines import Engine
-from crawler2d.reading.meshes import MeshRule
+from crawler2d.reading.options import Engine
 from crawler2d.reading.reading import Reading, read_robot
+from crawler2d.reading.shapes import MeshRule
 from crawler2d.variation.distributions import Distribution, Levels, Ranges, scaled, shifted, uniform
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
 __all__ = [
     "FLOORS",
     "SPEEDS",
-    "HowToRead",
+    "ReadKeywords",
     "Subject",
     "check_size",
     "read_obstacles",
@@ -69,7 +67,7 @@ def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
     The highest are about as high as a closed track of these proportions climbs (a rigid belt with
     its centre of mass in the middle, at axle height, climbs 1.3 to 1.7 R), so that where wheels
     stop, a belt has a chance. The clearance of the belly sets none of them: the lower run of a belt
-    covers the belly, and over a thin obstacle it is the belt that bears.
+    covers the belly, and over a thin obstacle the belt carries the robot.
 
     Parameters
     ----------
@@ -143,25 +141,25 @@ def _mm(length: float) -> str:
 
 
 FLOORS = (0.5, 1.0)
-"""[-] Coefficients of the floor's own surface between which a floor that nobody named may lie."""
+"""[-] Range of the coefficient of the floor's own surface, if no floor is given."""
 
 _FRICTION = "terrain.friction"
 _MOST_FROM_FLOORS = 0.05
-"""[-] Floors that move the friction by less than that share do not decide it."""
+"""[-] Floors that change the friction by less than this fraction do not determine it."""
 
 _ROUNDED = 0.1
-"""[-] By which share a friction or a torque that is written down may be off."""
+"""[-] Relative error of a friction or a torque that a file states."""
 
 
 SPEEDS = (0.1, 1.0 / 3.0, 1.0)
-"""[-] Shares of the speed of an audit: what a fast robot jumps over, a slow one may not."""
+"""[-] Fractions of the speed of an audit: what a fast robot jumps over, a slow one may not."""
 
 _TIMES = tuple((1.0 / part + 2.0) / 3.0 for part in SPEEDS)
-"""[-] Times the longest time: at the slowest speed enough to drive six lengths of the robot. It is
-less than the speed asks for, because what rattles until the end costs most."""
+"""[-] Factors of the longest time: at the slowest speed enough to drive six lengths of the robot.
+They grow less than the speed falls, because runs that rattle until the end cost most."""
 
 _SIZE = 0.05
-"""[-] By which share an obstacle may be larger or smaller than its measures say."""
+"""[-] Relative error of the size of an obstacle."""
 
 
 def vary_of(drive: Drive | None = None) -> Ranges:
@@ -190,12 +188,12 @@ def _of_speed() -> Ranges:
 def _of_size() -> Ranges:
     sizes = [f"terrain.{name}" for name in ("height", "rise", "radius", "width")]
     within = scaled(1.0 - _SIZE, 1.0 + _SIZE)
-    source = "whether a robot gets over must not hang on a millimetre"
+    source = "whether a robot gets over must not depend on a millimetre"
     return Ranges(dict.fromkeys(sizes, within), dict.fromkeys(sizes, source), sizes)
 
 
 def unknown_of(robot: Robot, *, with_friction: bool) -> Ranges:
-    """Return what is not known of a robot that was not read from a file.
+    """Return the unknowns of a robot that was not read from a file.
 
     Parameters
     ----------
@@ -209,13 +207,13 @@ def unknown_of(robot: Robot, *, with_friction: bool) -> Ranges:
 
 
 def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> Ranges:
-    """Return what is not known of a robot that was read from a file.
+    """Return the unknowns of a robot that was read from a file.
 
     What the file states has a narrow range: a tenth of torque and friction, 2 % of the axle
     distance for the centre of mass, a twentieth of the radius for the belly. An estimate has a wide
-    one, that of `unknowns.of_robot` for robots that are no presets. Of the floor a model of a robot
-    says nothing: unless it is given, it has a coefficient of its own between 0.5 and 1, which the
-    rule of the engine combines with that of the tracks.
+    one, that of `unknowns.of_robot` for robots that are no presets. A model of a robot says nothing
+    of the floor: unless it is given, its own coefficient is between 0.5 and 1, and the rule of the
+    engine combines it with that of the tracks.
 
     Parameters
     ----------
@@ -250,19 +248,23 @@ def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> R
             f" by the rule of {reading.engine} with {reading.sources['friction']}"
         )
         ranges[_FRICTION] = uniform(low, high), source
-    return Ranges.with_sources(ranges)
+    return Ranges(
+        {path: distribution for path, (distribution, _) in ranges.items()},
+        {path: source for path, (_, source) in ranges.items()},
+    )
 
 
 def without_friction(ranges: Ranges) -> Ranges:
-    """Leave the friction of the floor out: terrains of a user's own keep theirs."""
-    return ranges.without([_FRICTION])
+    """Leave out the friction of the floor: terrains of the user keep their own."""
+    kept: dict[str, Any] = {path: each for path, each in ranges.items() if path != _FRICTION}
+    return Ranges(kept, {path: ranges.sources[path] for path in kept if path in ranges.sources})
 
 
 def _spread(floors: Mapping[float, float]) -> float:
     return max(floors.values()) - min(floors.values())
 
 
-class HowToRead(TypedDict, total=False):
+class ReadKeywords(TypedDict, total=False):
     """The keywords of `read_robot`, for the audit of a file."""
 
     engine: Engine | None
@@ -297,17 +299,17 @@ class Subject(NamedTuple):
     floors: Mapping[float, float] | None = None
 
 
-def subject_of(robot: object, how: HowToRead) -> Subject:
-    """Take a robot or what was read, or read a file; what reading doubts is left to the lint.
+def subject_of(robot: object, how: ReadKeywords) -> Subject:
+    """Take a robot or a reading, or read a file; doubts of the reader are left to the lint.
 
     Raises
     ------
     ScenarioError
-        If it is none of them, a keyword is given with no file, or the file cannot be read.
+        If it is none of them, a keyword is given without a file, or the file cannot be read.
     """
     if isinstance(robot, (Robot, Reading)):
         for name, value in how.items():
-            raise ScenarioError(name, value, "must be left out: no file is read")
+            raise ScenarioError(name, value, "must be left out, because no file is read")
     if isinstance(robot, Robot):
         return Subject(robot)
     read = robot if isinstance(robot, Reading) else _read(robot, how)
@@ -316,22 +318,21 @@ def subject_of(robot: object, how: HowToRead) -> Subject:
     return Subject(read.robot, read, {floor: read.friction_on(floor) for floor in FLOORS})
 
 
-def _read(path: object, how: HowToRead) -> Reading:
+def _read(path: object, how: ReadKeywords) -> Reading:
     if not isinstance(path, (str, os.PathLike)):
         rule = "must be a Robot, a Reading, or the name of a file"
         raise ScenarioError("robot", path, rule)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ScenarioWarning)
+    with ignore_doubts():
         return read_robot(path, **how)
 
 
 def check_size(read: Reading) -> None:
-    """Refuse what would be the audit of another robot, unless somebody said that it is meant.
+    """Refuse a file in other units than metres, which would be the audit of another robot.
 
     Raises
     ------
     ScenarioError
-        If it has a size that no tracked robot has, and was read without a `scale`.
+        If the robot has a size that no tracked robot has, and was read without a `scale`.
     """
     found = next((each for each in lint(read.robot) if each.rule == "size"), None)
     if found is None or "scale" in read.how.given:

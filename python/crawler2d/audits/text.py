@@ -13,76 +13,70 @@ from typing import TYPE_CHECKING, Any, Unpack
 from crawler2d.audits import words
 from crawler2d.audits.candidates import Pocket, pockets
 from crawler2d.audits.lint import Finding, lint
-from crawler2d.audits.subject import HowToRead, subject_of
+from crawler2d.audits.subject import ReadKeywords, subject_of
 from crawler2d.audits.verdicts import Verdict
-from crawler2d.audits.words import made
-from crawler2d.parameters.fields import to_dict
+from crawler2d.parameters.fields import to_plain
 from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading
 from crawler2d.variation.distributions import Ranges
 
 if TYPE_CHECKING:
-    from crawler2d.audits.audited import Audited, Begun
-    from crawler2d.audits.repairs import Repaired
+    from crawler2d.audits.record import AuditRecord, AuditSetup
+    from crawler2d.audits.repairs import RepairSearch
 
 __all__ = [
-    "Linted",
+    "LintResult",
     "head_of",
     "lint_of",
-    "linted",
+    "lint_only",
     "plain_of",
     "rest_of",
     "row_of",
     "text_of",
-    "text_of_lint",
 ]
 
 _WIDTH = 100
 
 
 _WIDEST = ("runs", "100 % (95-100)", "100 % (95-100)", "belt clears", "left terrain", "")
-"""Of the columns after the first, so that rows may be written before all are known."""
+"""Cells of the columns after the first, so that rows may be written before all are known."""
 
 
-def text_of(audit: Audited) -> str:
-    """Write an audit for a terminal: robot, lint, pockets, verdicts, repairs, and what follows."""
+def text_of(audit: AuditRecord) -> str:
+    """Write an audit for a terminal: robot, lint, pockets, verdicts, jams, conclusion, repairs."""
     rows = [row_of(audit, each) for each in audit.verdicts]
     return "\n".join([head_of(audit), *rows, rest_of(audit)])
 
 
-def head_of(audit: Begun) -> str:
+def head_of(audit: AuditSetup) -> str:
     """Write what is known before the first run, and the head of the table of verdicts."""
     parts = (_robot(audit), lint_of(audit.lint), _pockets(audit.pockets), _verdicts(audit))
     return "\n\n".join("\n".join(part) for part in parts)
 
 
-def row_of(audit: Begun, verdict: Verdict) -> str:
+def row_of(audit: AuditSetup, verdict: Verdict) -> str:
     """Write a verdict as a row of their table."""
-    return _row(audit, words.verdict(verdict))
+    return _row(audit, words.verdict_row(verdict))
 
 
-def rest_of(audit: Audited) -> str:
+def rest_of(audit: AuditRecord) -> str:
     """Write what stands below the verdicts: jams, conclusion and repairs."""
     parts = ["\n".join(_jams(audit)), "\n".join(_conclusion(audit))]
     return "\n\n".join(filter(None, parts))
 
 
-def text_of_lint(title: str, lint: Sequence[Finding], pockets: Sequence[Pocket]) -> str:
-    """Write what is found without runs, below a title."""
-    return "\n\n".join("\n".join(part) for part in ([title], lint_of(lint), _pockets(pockets)))
-
-
-def _robot(audit: Begun) -> Iterator[str]:
+def _robot(audit: AuditSetup) -> Iterator[str]:
     read = audit.reading
     yield words.subject(audit)
     yield from _wrapped(words.reservation(audit), 0)
     yield from _wrapped(words.robot_sentence(audit))
     if read is not None:
         names = ", ".join(path.removeprefix("robot.") for path in read.sources.estimates)
-        yield from _wrapped(f"estimates, for the file does not say: {names or 'none'}")
+        yield from _wrapped(f"estimates, not stated in the file: {names or 'none'}")
         for note in read.notes:
             yield from _wrapped(f"note: {note}")
-    yield "  not known, and drawn for every sample:" if audit.unknown else "  nothing is unknown"
+    yield "  unknown, and drawn for every sample:" if audit.unknown else "  nothing is unknown"
     sources = audit.unknown.sources if isinstance(audit.unknown, Ranges) else {}
     for path, distribution in audit.unknown.items():
         source = f" [{sources[path]}]" if path in sources else ""
@@ -100,7 +94,7 @@ def lint_of(lint: Sequence[Finding], title: str = "Lint") -> Iterator[str]:
 
 def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
     if not pockets:
-        yield "Pockets: none, for there are no neighbouring wheels"
+        yield "Pockets: none, because there are no neighbouring wheels"
         return
     yield "Pockets and slots between wheels: a screen of geometry, no verdict"
     groups: dict[tuple[str, bool], list[Pocket]] = {}
@@ -113,13 +107,13 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
                 f"{words.span([1e3 * p.gap for p in alike], '.1f')} mm open, an edge gets through"
             )
         else:
-            held = [p.friction for p in alike]
+            holds = words.holding_friction([p.friction for p in alike])
             deep = words.span([1e3 * p.depth for p in alike], ".1f")
-            text = f"{deep} mm deep, by their walls alone they hold {words.held(held)}"
+            text = f"{deep} mm deep, by their walls alone they hold {holds}"
         yield from _wrapped(f"{carrier}: {what}, {text}")
 
 
-def _verdicts(audit: Begun) -> Iterator[str]:
+def _verdicts(audit: AuditSetup) -> Iterator[str]:
     yield from _wrapped(f"Verdicts: {words.population(audit)}", 0)
     yield from _wrapped("runs over an obstacle stop as soon as its verdict is certain")
     belt = f"belt: {audit.belt.reason}; not simulated (-) where the robot clears"
@@ -127,30 +121,30 @@ def _verdicts(audit: Begun) -> Iterator[str]:
     yield _row(audit, words.VERDICT_HEAD)
 
 
-def _row(audit: Begun, cells: Sequence[str]) -> str:
+def _row(audit: AuditSetup, cells: Sequence[str]) -> str:
     widths = (max(map(len, (*audit.obstacles, cells[0]))), *map(len, _WIDEST))
     padded = (cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
     return f"  {'  '.join(padded)}".rstrip()
 
 
-def _jams(audit: Audited) -> Iterator[str]:
-    yield from _wrapped(words.lost(audit))
+def _jams(audit: AuditRecord) -> Iterator[str]:
+    yield from _wrapped(words.missing_results(audit))
     jammed = [each for each in audit.verdicts if each.where]
     if jammed:
         yield "  where it is jammed, how often at each speed, and how many a change frees there:"
-        yield from _columns([words.JAM_HEAD, *map(words.jam, jammed)])
-        yield from _wrapped(words.calls(audit))
+        yield from _columns([words.JAM_HEAD, *map(words.jam_row, jammed)])
+        yield from _wrapped(words.wheel_names(audit))
 
 
-def _conclusion(audit: Audited) -> Iterator[str]:
+def _conclusion(audit: AuditRecord) -> Iterator[str]:
     for sentence in words.conclusion(audit):
         yield from _wrapped(sentence, 0)
     if audit.repaired is not None:
         yield from _repairs(audit.repaired, audit.vary)
 
 
-def _repairs(found: Repaired, vary: Mapping[str, Any]) -> Iterator[str]:
-    yield from _wrapped(f"Repairs: {words.repairs_found(found, vary)}", 0)
+def _repairs(found: RepairSearch, vary: Mapping[str, Any]) -> Iterator[str]:
+    yield from _wrapped(f"Repairs: {words.search_sentence(found, vary)}", 0)
     for each in found.repairs:
         yield from _wrapped(words.repair_sentence(each))
 
@@ -173,78 +167,66 @@ def _wrapped(text: str, indent: int = 2) -> list[str]:
     )
 
 
-def plain_of(audit: Audited) -> dict[str, Any]:
+def plain_of(audit: AuditRecord) -> dict[str, Any]:
     """Return lint, pockets, verdicts and repairs; what is infinite or unknown is None."""
     read = audit.reading
-    plain: dict[str, Any] = _finite(
+    plain: dict[str, Any] = _plain(
         {
-            "robot": to_dict(audit.robot),
+            "robot": audit.robot,
             "file": None if read is None else read.tree.file,
             "engine": None if read is None else read.engine,
             "friction": None if read is None else read.friction,
             "sources": None if read is None else dict(read.sources),
             "vary": audit.table.attrs["vary"],
             "unknown": audit.table.attrs["unknown"],
-            "runs": made(audit.table),
+            "runs": words.run_count(audit.table),
             "belt": audit.belt.reason,
-            "lint": [dataclasses.asdict(each) for each in audit.lint],
-            "pockets": [dataclasses.asdict(each) for each in audit.pockets],
-            "obstacles": {name: to_dict(each) for name, each in audit.obstacles.items()},
-            "verdicts": [dataclasses.asdict(each) for each in audit.verdicts],
-            "assumed": [
-                {
-                    **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},
-                    "drawn": {path: str(range_) for path, range_ in each.drawn.items()},
-                    "holds": each.holds,
-                }
-                for each in audit.assumed
-            ],
-            "repairs": [
-                {
-                    **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},
-                    "robot": to_dict(each.robot),
-                    "cleared": {k: dataclasses.asdict(v) for k, v in each.cleared.items()},
-                    "seized": {k: dataclasses.asdict(v) for k, v in each.seized.items()},
-                    "seized_at": {
-                        k: {speed: dataclasses.asdict(v) for speed, v in own.items()}
-                        for k, own in each.seized_at.items()
-                    },
-                    "cleared_beside": {
-                        k: dataclasses.asdict(v) for k, v in each.cleared_beside.items()
-                    },
-                }
-                for each in audit.repairs
-            ],
+            "lint": audit.lint,
+            "pockets": audit.pockets,
+            "obstacles": audit.obstacles,
+            "verdicts": audit.verdicts,
+            "assumed": [{**_fields(each), "holds": each.holds} for each in audit.assumed],
+            "repairs": audit.repairs,
             "seizes": audit.seizes,
         }
     )
     return plain
 
 
-def _finite(value: Any) -> Any:
+def _plain(value: Any) -> Any:
+    if isinstance(value, (Robot, Terrain)):
+        return to_plain(value)
+    if isinstance(value, Ranges):
+        return {path: str(distribution) for path, distribution in value.items()}
+    if dataclasses.is_dataclass(value):
+        value = _fields(value)
     if isinstance(value, Mapping):
-        return {str(key): _finite(each) for key, each in value.items()}
+        return {str(key): _plain(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(each) for each in value]
+        return [_plain(each) for each in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
 
 
+def _fields(value: Any) -> dict[str, Any]:
+    return {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Linted:
-    """What lint found; the fields are those of `Audit`.
+class LintResult:
+    """What lint found without runs; the fields are those of `Audit`.
 
     Parameters
     ----------
     robot : Robot
-        What was looked at.
+        What was checked.
     reading : Reading, optional
         What was read, if it was a file.
     lint : tuple of Finding
-        What is hardly meant in the model, errors first.
+        Probable mistakes in the model, errors first.
     pockets : tuple of Pocket
-        What is open between its wheels: a screen, no verdict.
+        The spaces between its wheels: a screen, no verdict.
     verdicts : tuple of Verdict
         None: nothing was simulated.
     """
@@ -259,17 +241,20 @@ class Linted:
     def in_words(self) -> str:
         """The short form, as ``python -m crawler2d audit --lint`` prints it."""
         title = self.robot.in_words if self.reading is None else self.reading.in_words
-        return text_of_lint(title, self.lint, self.pockets)
+        parts = ([title], lint_of(self.lint), _pockets(self.pockets))
+        return "\n\n".join("\n".join(part) for part in parts)
 
     def __repr__(self) -> str:
         """Write the short form."""
         return self.in_words
 
 
-def linted(robot: Robot | Reading | str | os.PathLike[str], **reading: Unpack[HowToRead]) -> Linted:
-    """Look for what is hardly meant in a model, and measure its pockets, without a run.
+def lint_only(
+    robot: Robot | Reading | str | os.PathLike[str], **reading: Unpack[ReadKeywords]
+) -> LintResult:
+    """Look for probable mistakes in a model, and measure its pockets, without a run.
 
-    What only the simulator doubts is not found.
+    It cannot find what only the simulator doubts.
 
     Parameters
     ----------
@@ -286,9 +271,9 @@ def linted(robot: Robot | Reading | str | os.PathLike[str], **reading: Unpack[Ho
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> found = linted(c2d.robots.marv(track="public"))
+    >>> found = lint_only(c2d.robots.marv(track="public"))
     >>> [each.rule for each in found.lint], len(found.pockets)
     (['no track'], 15)
     """
     own, read, _ = subject_of(robot, reading)
-    return Linted(robot=own, reading=read, lint=lint(own, read), pockets=pockets(own))
+    return LintResult(robot=own, reading=read, lint=lint(own, read), pockets=pockets(own))

@@ -1,17 +1,17 @@
-"""What an audit says of each obstacle, by one written rule, from shares of the runs on it."""
+"""What an audit says of each obstacle, by one written rule, from proportions of the runs on it."""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.audits.runs import TRIED, column
+from crawler2d.audits.runs import TRIED
 from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.axes import short_name
 from crawler2d.sweeps.sequential import sequential
@@ -25,34 +25,39 @@ __all__ = [
     "BELT",
     "CLEARS",
     "OWN",
-    "RESULTS",
     "SEIZES",
-    "WORDS",
-    "Freed",
-    "Share",
+    "ObstacleRuns",
+    "Proportion",
     "Verdict",
-    "cleared_beside",
     "is_certain",
     "least_samples",
-    "seized_at",
-    "share_of",
-    "surely",
+    "proportion_of",
+    "verdict_of",
     "verdict_word",
-    "verdicts_of",
 ]
+
+OWN, BELT = "model", "belt"
+"""Names of the two in the table."""
+
+SEIZES, _SELDOM, CLEARS, _QUARTER = 0.05, 0.10, 0.95, 0.25
+
+_RESULTS = tuple(str(each) for each in Outcome)
+"""Outcomes of runs that have a result."""
+
+_TRIED = ("closed track", "closed track, clear of the ground", *TRIED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Share:
-    """How often something happened over one obstacle.
+class Proportion:
+    """How often something happened over one obstacle; by default in no runs.
 
     Parameters
     ----------
     rate : float
-        [-] Of all runs with a result; nan without one.
+        [-] Of all runs with a result; NaN without one.
     low, high : float
         [-] 95 % interval of that, with the samples of the unknowns as its clusters: see
-        `sweeps.statistics.clustered`; of fewer runs than were planned, see `share_of`. Without
+        `sweeps.statistics.clustered`; of fewer runs than were planned, see `proportion_of`. Without
         unknowns every repeat counts.
     band_low, band_median, band_high : float
         [-] Of the rates of single samples, each a robot on a floor, 5, 50 and 95 %; without
@@ -61,19 +66,19 @@ class Share:
         Runs with a result, and samples that have some.
     """
 
-    rate: float
-    low: float
-    high: float
-    band_low: float
-    band_median: float
-    band_high: float
-    runs: int
-    samples: int
+    rate: float = math.nan
+    low: float = 0.0
+    high: float = 1.0
+    band_low: float = math.nan
+    band_median: float = math.nan
+    band_high: float = math.nan
+    runs: int = 0
+    samples: int = 0
 
 
-def share_of(
+def proportion_of(
     happened: NDArray[np.bool_], made: NDArray[np.bool_], *, is_stopped: bool = False
-) -> Share:
+) -> Proportion:
     """Count how often something happened.
 
     Parameters
@@ -81,7 +86,7 @@ def share_of(
     happened, made : ndarray of bool, shape (samples, repeats)
         Whether it happened in a run, and whether the run has a result.
     is_stopped : bool
-        Whether what came decided that no more runs were made: then the interval is that of
+        Whether these results decided that no more runs were made: then the interval is that of
         `sweeps.sequential`, which holds however often one looks.
 
     Examples
@@ -90,57 +95,92 @@ def share_of(
 
     >>> happened = np.zeros((20, 4), dtype=bool)
     >>> happened[:5], happened[5, :2] = True, True
-    >>> share = share_of(happened, np.ones((20, 4), dtype=bool))
-    >>> share.rate, share.band_median, share.band_high
+    >>> seized = proportion_of(happened, np.ones((20, 4), dtype=bool))
+    >>> seized.rate, seized.band_median, seized.band_high
     (0.275, 0.0, 1.0)
-    >>> round(share.low, 3), round(share.high, 3)  # about as 5 or 6 robots in 20
+    >>> round(seized.low, 3), round(seized.high, 3)  # about as 5 or 6 robots in 20
     (0.131, 0.488)
     """
     hits, counts = (happened & made).sum(axis=1), made.sum(axis=1)
     rates = hits[counts > 0] / counts[counts > 0]
     if not rates.size:
-        return Share(
-            rate=math.nan,
-            low=0.0,
-            high=1.0,
-            band_low=math.nan,
-            band_median=math.nan,
-            band_high=math.nan,
-            runs=0,
-            samples=0,
-        )
+        return Proportion()
     rate, low, high = clustered(hits, counts)
     if is_stopped:
         _, low, high = sequential(int(hits.sum()), int(counts.sum()))
-    band = np.quantile(rates, (0.05, 0.5, 0.95))
-    return Share(
+    band_low, band_median, band_high = np.quantile(rates, (0.05, 0.5, 0.95)).tolist()
+    return Proportion(
         rate=rate,
         low=low,
         high=high,
-        band_low=float(band[0]),
-        band_median=float(band[1]),
-        band_high=float(band[2]),
+        band_low=band_low,
+        band_median=band_median,
+        band_high=band_high,
         runs=int(counts.sum()),
         samples=int(rates.size),
     )
 
 
-OWN, BELT = "model", "belt"
-"""Names of the two in the table."""
+class ObstacleRuns:
+    """The runs of one model over one obstacle; all arrays have the shape (samples, repeats).
 
-WORDS = ("seizes", "belt fails, too", "does not seize", "not certain")
-"""The words of a verdict, in the order in which they are asked."""
+    Parameters
+    ----------
+    table : xarray.Dataset
+        The runs of an audit: by `model`, `terrain`, `sample` and `repeat`.
+    model, obstacle : str
+        Which of them.
 
-SEIZES, _SELDOM, CLEARS, _QUARTER = 0.05, 0.10, 0.95, 0.25
+    Attributes
+    ----------
+    ends : ndarray of str
+        Their outcomes; "" of runs that were not made.
+    cleared, seized, has_result : ndarray of bool
+        Whether a run ended so, and whether it has a result.
+    speeds : ndarray
+        [m/s] How fast each drives, without its scatter.
+    """
 
-RESULTS = tuple(str(each) for each in Outcome)
-"""Outcomes of runs that have a result."""
+    def __init__(self, table: xarray.Dataset, model: str, obstacle: str) -> None:
+        self._table = table.sel(model=model, terrain=obstacle)
+        self.ends, self.speeds = self.column("outcome"), self.column("speed")
+        self.cleared: NDArray[np.bool_] = self.ends == Outcome.CLEARED
+        self.seized: NDArray[np.bool_] = self.ends == Outcome.SEIZED
+        self.has_result: NDArray[np.bool_] = np.isin(self.ends, _RESULTS)
 
-_TRIED = ("closed track", "closed track, clear of the ground", *TRIED)
+    def __contains__(self, name: str) -> bool:
+        """Whether the table has a column."""
+        return name in self._table
+
+    def column(self, name: str) -> NDArray[Any]:
+        """Return a column of the table."""
+        return np.asarray(self._table[name].transpose("sample", "repeat").values)
+
+    def proportion(
+        self, happened: NDArray[np.bool_], among: NDArray[np.bool_] | None = None
+    ) -> Proportion:
+        """Count how often something happened in the runs with a result, or in some of them."""
+        made = self.has_result if among is None else self.has_result & among
+        return proportion_of(happened, made, is_stopped=bool((self.ends == "").any()))
+
+    def by_speed(self, happened: NDArray[np.bool_]) -> dict[float, Proportion]:
+        """Count how often something happened at each speed [m/s], the slowest first."""
+        return {
+            speed: self.proportion(happened, self.speeds == speed)
+            for speed in np.unique(self.speeds).tolist()
+        }
+
+    def least_rate(self, happened: NDArray[np.bool_]) -> float:
+        """[-] Return the lower bound of a rate if it happens in no run that was not made yet.
+
+        At all speeds together or at one of them, whichever is higher; with one repeat each.
+        """
+        among = [np.ones_like(happened), *(self.speeds == v for v in np.unique(self.speeds))]
+        return max(wilson(int((happened & own).sum()), int(own.sum())).low for own in among)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Freed:
+class TrialCount:
     """What a trial came to, over all seized runs.
 
     Parameters
@@ -165,10 +205,10 @@ class Verdict:
     obstacle : str
         Its label.
     word : {"seizes", "belt fails, too", "does not seize", "not certain"}
-        By the rule of `verdict_word`.
-    cleared, seized : Share
+        By the rule in ``docs/conventions.md``, "Audit".
+    cleared, seized : Proportion
         Of the model's runs.
-    belt_cleared, belt_seized : Share
+    belt_cleared, belt_seized : Proportion
         Of those of the same robot on belts, which do not drive where the robot clears 95 % or more
         and never seizes.
     outcome, belt_outcome : str
@@ -181,55 +221,91 @@ class Verdict:
         How many seized runs are jammed there, of how many.
     instead : int
         In how many seized runs the belt, with the same draws, clears.
-    seized_alone : Share
+    seized_alone : Proportion
         How often the model seizes while the belt, with the same draws, clears.
-    freed : tuple of Freed
+    freed : tuple of TrialCount
         What trials came to in the seized runs.
     friction : tuple of float, shape (2,)
-        [-] Between which frictions of the drawn floors the runs seized; nan without any.
-    seized_at : mapping of float to Share
+        [-] Between which frictions of the drawn floors the runs seized; NaN without any.
+    seized_at : mapping of float to Proportion
         How often it seizes at each speed [m/s].
     """
 
     obstacle: str
     word: str
-    cleared: Share
-    seized: Share
-    belt_cleared: Share
-    belt_seized: Share
+    cleared: Proportion
+    seized: Proportion
+    belt_cleared: Proportion
+    belt_seized: Proportion
     outcome: str
     belt_outcome: str
     where: str
     carrier: str
     there: tuple[int, int]
     instead: int
-    seized_alone: Share
-    freed: tuple[Freed, ...]
+    seized_alone: Proportion
+    freed: tuple[TrialCount, ...]
     friction: tuple[float, float]
-    seized_at: Mapping[float, Share]
+    seized_at: Mapping[float, Proportion]
+
+
+def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
+    """Judge an obstacle of a table with the models "model" and "belt"."""
+    own, belt = (ObstacleRuns(table, model, obstacle) for model in (OWN, BELT))
+    cleared, seized, seized_at = (
+        own.proportion(own.cleared),
+        own.proportion(own.seized),
+        own.by_speed(own.seized),
+    )
+    belt_cleared = belt.proportion(belt.cleared)
+    alone = own.seized & belt.cleared
+    seized_alone = own.proportion(alone)
+    where, carrier, there = _commonest_jam(own)
+    return Verdict(
+        obstacle=obstacle,
+        word=verdict_word(
+            cleared,
+            [seized, *seized_at.values()],
+            belt_cleared,
+            [seized_alone, *own.by_speed(alone).values()],
+        ),
+        cleared=cleared,
+        seized=seized,
+        belt_cleared=belt_cleared,
+        belt_seized=belt.proportion(belt.seized),
+        outcome=_commonest(own),
+        belt_outcome=_commonest(belt),
+        where=where,
+        carrier=carrier,
+        there=there,
+        instead=int(alone.sum()),
+        seized_alone=seized_alone,
+        freed=tuple(_trial_counts(own)),
+        friction=_friction(own),
+        seized_at=seized_at,
+    )
 
 
 def verdict_word(
-    cleared: Share, seized: Sequence[Share], belt: Share, alone: Sequence[Share]
+    cleared: Proportion, seized: Sequence[Proportion], belt: Proportion, alone: Sequence[Proportion]
 ) -> str:
-    """Judge an obstacle.
+    """Find the word of a verdict.
 
     "seizes": the lower bound of the rate of seizing, at all speeds together or at one of them, is
     above 5 %, and the belt clears in 95 % of its runs or more; or, where it clears in fewer, as on
     floors that may be slippery, the lower bound of the rate of seizing while the belt clears with
-    the same draws is. "belt fails, too":
-    the belt clears in fewer, and so does the model. "does not seize": the upper bound of the rate
-    of seizing is below 10 %. "not certain": anything else.
+    the same draws is. "belt fails, too": the belt clears in fewer, and so does the model. "does not
+    seize": the upper bound of the rate of seizing is below 10 %. "not certain": anything else.
 
     Parameters
     ----------
-    cleared : Share
+    cleared : Proportion
         How often the model clears.
-    seized : sequence of Share
+    seized : sequence of Proportion
         How often it seizes: at all speeds together, then at each.
-    belt : Share
+    belt : Proportion
         How often the belt clears.
-    alone : sequence of Share
+    alone : sequence of Proportion
         How often the model seizes while the belt clears, likewise.
     """
     counted = [*alone, *(seized if belt.rate >= CLEARS else ())]
@@ -240,77 +316,44 @@ def verdict_word(
     return "does not seize" if seized[0].high < _SELDOM else "not certain"
 
 
-def least_samples() -> int:
-    """Return the fewest samples that can show that a model does not seize: none of them does.
-
-    Examples
-    --------
-    >>> least_samples()
-    35
-    """
-    return next(n for n in itertools.count(1) if wilson(0, n).high < _SELDOM)
+def _commonest(runs: ObstacleRuns) -> str:
+    made = runs.ends[runs.ends != ""].tolist()
+    return str(Counter(made).most_common(1)[0][0]) if made else ""
 
 
-def verdicts_of(table: xarray.Dataset, obstacles: Sequence[str]) -> tuple[Verdict, ...]:
-    """Judge every obstacle of a table with the models "model" and "belt"."""
-    return tuple(_verdict(table, each) for each in obstacles)
+def _commonest_jam(runs: ObstacleRuns) -> tuple[str, str, tuple[int, int]]:
+    """Find between which wheels of which carrier most seized runs are jammed, and how many."""
+    if not runs.seized.any():
+        return "", "", (0, 0)
+    columns = (runs.column(name)[runs.seized].tolist() for name in ("stop_bodies", "stop_carrier"))
+    counts = Counter(zip(*columns, strict=True))
+    (pair, carrier), count = counts.most_common(1)[0]
+    return str(pair), str(carrier), (count, counts.total())
 
 
-def shares(table: xarray.Dataset, model: str, obstacle: str) -> tuple[Share, Share]:
-    """Return how often a model clears an obstacle, and how often it seizes there."""
-    ends = column(table, "outcome", model=model, terrain=obstacle)
-    made, stopped = _has_result(ends), _is_stopped(ends)
-    return (
-        share_of(ends == Outcome.CLEARED, made, is_stopped=stopped),
-        share_of(ends == Outcome.SEIZED, made, is_stopped=stopped),
-    )
+def _trial_counts(runs: ObstacleRuns) -> Iterator[TrialCount]:
+    for trial in _TRIED:
+        name = short_name(trial)
+        if f"tried_{name}" in runs:  # a quick audit tries less
+            made = runs.column(f"tried_{name}") & runs.seized
+            freed = runs.column(f"freed_by_{name}") & made
+            if made.any():
+                yield TrialCount(trial=trial, freed=int(freed.sum()), made=int(made.sum()))
 
 
-def seized_at(table: xarray.Dataset, model: str, obstacle: str) -> dict[float, Share]:
-    """Return how often a model seizes on an obstacle at each speed [m/s], the slowest first."""
-    ends = column(table, "outcome", model=model, terrain=obstacle)
-    return _by_speed(table, ends == Outcome.SEIZED, ends)
-
-
-def _by_speed(
-    table: xarray.Dataset,
-    happened: np.ndarray[tuple[int, int]],
-    ends: np.ndarray[tuple[int, int]],
-) -> dict[float, Share]:
-    speeds = table["speed"].transpose("sample", "repeat").values
-    levels = {speed: speeds == speed for speed in np.unique(speeds).tolist()}
-    made, stopped = _has_result(ends), _is_stopped(ends)
-    return {
-        speed: share_of(happened & own, made & own, is_stopped=stopped)
-        for speed, own in levels.items()
-    }
-
-
-def cleared_beside(table: xarray.Dataset, model: str, belt: str, obstacle: str) -> Share:
-    """Return how often a model clears an obstacle of the runs in which a belt does so.
-
-    Parameters
-    ----------
-    table : xarray.Dataset
-        With both models, over the same draws.
-    model, belt : str
-        Their names.
-    obstacle : str
-        Its label.
-    """
-    ends, of_belt = (
-        column(table, "outcome", model=name, terrain=obstacle) for name in (model, belt)
-    )
-    both = _has_result(ends) & (of_belt == Outcome.CLEARED)
-    return share_of(ends == Outcome.CLEARED, both, is_stopped=_is_stopped(ends))
+def _friction(runs: ObstacleRuns) -> tuple[float, float]:
+    if "unknown_friction" not in runs or not runs.seized.any():
+        return math.nan, math.nan
+    drawn = runs.column("unknown_friction")[runs.seized]
+    return float(drawn.min()), float(drawn.max())
 
 
 def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
     """Whether a verdict on a part of the runs needs no more of them.
 
-    One on "seizes" does not, once so many runs have seized while the belt cleared that it is this
-    word whatever the others come to: so it is wrong no more often than that of all runs. "Belt
-    fails, too" stays, once a quarter of the samples is made and none of them seized while the belt
+    "seizes" needs none, once so many runs have seized while the belt cleared that it is this word
+    whatever the others come to: so it is wrong no more often than that of all runs. "belt fails,
+    too" stays, once a quarter of the samples is made and none of them seized while the belt
     cleared, if both have failed so often that neither can reach 95 % of all. Repeats of one robot
     may be alike: with them, all runs are made.
 
@@ -323,105 +366,20 @@ def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
     """
     if table.sizes["repeat"] > 1:
         return False
-    ends, of_belt = (
-        column(table, "outcome", model=model, terrain=verdict.obstacle) for model in (OWN, BELT)
-    )
+    own, belt = (ObstacleRuns(table, model, verdict.obstacle) for model in (OWN, BELT))
     if verdict.word == "belt fails, too":
-        is_quarter = (ends != "").sum() >= _QUARTER * ends.size
-        fails = min(
-            int((_has_result(each) & (each != Outcome.CLEARED)).sum()) for each in (ends, of_belt)
-        )
-        return bool(is_quarter and verdict.instead == 0 and fails > (1.0 - CLEARS) * ends.size)
-    alone = (ends == Outcome.SEIZED) & (of_belt == Outcome.CLEARED)
-    return verdict.word == "seizes" and surely(table, alone) > SEIZES
+        is_quarter = (own.ends != "").sum() >= _QUARTER * own.ends.size
+        fails = min(int((each.has_result & ~each.cleared).sum()) for each in (own, belt))
+        return bool(is_quarter and verdict.instead == 0 and fails > (1.0 - CLEARS) * own.ends.size)
+    return verdict.word == "seizes" and own.least_rate(own.seized & belt.cleared) > SEIZES
 
 
-def surely(table: xarray.Dataset, happened: np.ndarray[tuple[int, int]]) -> float:
-    """[-] Return the lower bound of a rate if it happens in no run that was not made yet.
+def least_samples() -> int:
+    """Return the fewest samples that can show that a model does not seize: none of them does.
 
-    At all speeds together or at one of them, whichever is higher; with one repeat each.
+    Examples
+    --------
+    >>> least_samples()
+    35
     """
-    speeds = table["speed"].transpose("sample", "repeat").values
-    among = [np.ones_like(happened), *(speeds == speed for speed in np.unique(speeds))]
-    return max(wilson(int((happened & own).sum()), int(own.sum())).low for own in among)
-
-
-def _is_stopped(ends: np.ndarray[tuple[int, int]]) -> bool:
-    return bool((ends == "").any())
-
-
-def _has_result(ends: np.ndarray[tuple[int, int]]) -> np.ndarray[tuple[int, int]]:
-    return np.isin(ends, RESULTS)
-
-
-def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
-    cleared, seized = shares(table, OWN, obstacle)
-    belt_cleared, belt_seized = shares(table, BELT, obstacle)
-    own = {"model": OWN, "terrain": obstacle}
-    jammed = column(table, "outcome", **own) == Outcome.SEIZED
-    belt_ends = column(table, "outcome", model=BELT, terrain=obstacle)
-    where, carrier, there = _where(table, own, jammed)
-    instead = jammed & (belt_ends == Outcome.CLEARED)
-    ends = column(table, "outcome", **own)
-    alone = share_of(instead, _has_result(ends), is_stopped=_is_stopped(ends))
-    at, alone_at = seized_at(table, OWN, obstacle), _by_speed(table, instead, ends)
-    return Verdict(
-        obstacle=obstacle,
-        word=verdict_word(
-            cleared, [seized, *at.values()], belt_cleared, [alone, *alone_at.values()]
-        ),
-        cleared=cleared,
-        seized=seized,
-        belt_cleared=belt_cleared,
-        belt_seized=belt_seized,
-        outcome=_commonest(ends),
-        belt_outcome=_commonest(belt_ends),
-        where=where,
-        carrier=carrier,
-        there=there,
-        instead=int(instead.sum()),
-        seized_alone=alone,
-        freed=_freed(table, own, jammed),
-        friction=_friction(table, own, jammed),
-        seized_at=at,
-    )
-
-
-def _commonest(ends: np.ndarray[tuple[int, int]]) -> str:
-    made = ends[ends != ""].tolist()
-    return str(Counter(made).most_common(1)[0][0]) if made else ""
-
-
-def _where(
-    table: xarray.Dataset, own: dict[str, str], jammed: np.ndarray[tuple[int, int]]
-) -> tuple[str, str, tuple[int, int]]:
-    if not jammed.any():
-        return "", "", (0, 0)
-    carriers = column(table, "stop_carrier", **own)[jammed].tolist()
-    bodies = column(table, "stop_bodies", **own)[jammed].tolist()
-    (carrier, pair), count = Counter(zip(carriers, bodies, strict=True)).most_common(1)[0]
-    return str(pair), str(carrier), (count, len(bodies))
-
-
-def _freed(
-    table: xarray.Dataset, own: dict[str, str], jammed: np.ndarray[tuple[int, int]]
-) -> tuple[Freed, ...]:
-    found = []
-    for trial in _TRIED:
-        name = short_name(trial)
-        if f"tried_{name}" not in table:  # a quick audit tries less
-            continue
-        made = column(table, f"tried_{name}", **own) & jammed
-        if made.any():
-            freed = column(table, f"freed_by_{name}", **own) & made
-            found.append(Freed(trial=trial, freed=int(freed.sum()), made=int(made.sum())))
-    return tuple(found)
-
-
-def _friction(
-    table: xarray.Dataset, own: dict[str, str], jammed: np.ndarray[tuple[int, int]]
-) -> tuple[float, float]:
-    if "unknown_friction" not in table or not jammed.any():
-        return math.nan, math.nan
-    drawn = column(table, "unknown_friction", **own)[jammed]
-    return float(drawn.min()), float(drawn.max())
+    return next(n for n in itertools.count(1) if wilson(0, n).high < _SELDOM)

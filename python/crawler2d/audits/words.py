@@ -1,4 +1,4 @@
-"""What is said of an audit, wherever it is said: sentences, rows and figures as text."""
+"""The words of an audit, for terminal, page and reports: sentences, rows and figures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.audits.audited import names_of
+from crawler2d.audits.record import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.parameters.robot import Robot
@@ -28,44 +28,43 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from crawler2d.audits.audited import Audited, Begun
-    from crawler2d.audits.repairs import Repair, Repaired
-    from crawler2d.audits.sampling import Assumed
-    from crawler2d.audits.verdicts import Share, Verdict
+    from crawler2d.audits.record import AuditRecord, AuditSetup
+    from crawler2d.audits.repairs import Repair, RepairSearch
+    from crawler2d.audits.sampling import Assumption
+    from crawler2d.audits.verdicts import Proportion, Verdict
     from crawler2d.results.record import Record
 
 __all__ = [
     "JAM_HEAD",
     "VERDICT_HEAD",
-    "beside",
-    "calls",
+    "comparison",
     "conclusion",
-    "confirmed",
-    "driven",
-    "end",
-    "held",
-    "jam",
-    "lost",
-    "made",
+    "confirmation",
+    "ending",
+    "holding_friction",
+    "jam_row",
+    "missing_results",
     "percent",
     "population",
     "range_of",
+    "rate",
     "repair_sentence",
-    "repairs_found",
     "reservation",
     "robot_sentence",
+    "run_count",
+    "search_sentence",
     "seizure",
-    "share",
     "span",
     "subject",
-    "verdict",
-    "wheels_a_side",
-    "worst",
+    "verdict_row",
+    "wheel_names",
+    "wheels_per_side",
+    "worst_rates",
 ]
 
 VERDICT_HEAD = ("obstacle", "runs", "clears", "seizes", "belt clears", "most often", "verdict")
 NOT_DRIVEN = "-"
-"""In place of a rate: the belt did not drive, for the robot clears the obstacle."""
+"""In place of a rate: the belt did not drive, because the robot clears the obstacle."""
 
 _UPRIGHT = 100.0
 """[-] Friction above which a wall is upright but for rounding: no surface has it."""
@@ -73,12 +72,12 @@ _UPRIGHT = 100.0
 JAM_HEAD = ("obstacle", "between wheels", "runs", "slow to fast", "friction", "freed there by")
 
 
-def subject(audit: Begun) -> str:
+def subject(audit: AuditSetup) -> str:
     """Say what was audited."""
     return audit.robot.in_words if audit.reading is None else audit.reading.in_words
 
 
-def robot_sentence(audit: Begun) -> str:
+def robot_sentence(audit: AuditSetup) -> str:
     """Say how heavy and how large the robot is, and where its centre of mass is."""
     robot = audit.robot
     outline = robot.outline
@@ -90,7 +89,7 @@ def robot_sentence(audit: Begun) -> str:
     )
 
 
-def population(audit: Begun) -> str:
+def population(audit: AuditSetup) -> str:
     """Say over how many runs the rates are rates, and how fast it drove."""
     samples, repeats = audit.call.samples, audit.call.repeats
     each = "1 run" if repeats == 1 else f"{repeats} runs"
@@ -98,22 +97,22 @@ def population(audit: Begun) -> str:
     levels = audit.vary.get("drive.speed")
     factors = levels.factors if isinstance(levels, Levels) else (1.0,)
     speeds = audit.drive.speed * np.array(factors)
-    said = f"at most {many}, {_driven(speeds, audit.vary)}; intervals of 95 %"
+    text = f"at most {many}, {_driven(speeds, audit.vary)}; intervals of 95 %"
     least = least_samples()
     if (samples if audit.unknown else repeats) < least:
-        said += f'; "does not seize" takes {least} or more'
-    return said
+        text += f'; "does not seize" takes {least} or more'
+    return text
 
 
-def _drawn(audit: Begun) -> str:
-    """Name what is another one in each sample: robots, floors, or both."""
+def _drawn(audit: AuditSetup) -> str:
+    """Name what differs from sample to sample: robots, floors, or both."""
     on_floors = {path.startswith("terrain.") for path in audit.unknown}
     if on_floors == {True}:
         return "floors"
     return "robots on floors" if True in on_floors else "robots"
 
 
-def driven(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
+def speeds_and_sizes(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
     """Say at which speeds the runs of a table drove, and over which sizes of the obstacles."""
     return _driven(table["speed"].values, vary)
 
@@ -127,30 +126,30 @@ def _driven(levels: NDArray[np.float64], vary: Mapping[str, Any]) -> str:
     return f"at {speeds}, obstacles times {sizes.low:g} to {sizes.high:g}"
 
 
-def lost(audit: Audited) -> str:
+def missing_results(audit: AuditRecord) -> str:
     """Say how many runs have no result; "" if all have one."""
     count = int(np.isin(audit.table["outcome"].values, NO_RESULT).sum())
     return (
-        f"{count} of {made(audit.table)} runs have no result: see `error` in the table"
+        f"{count} of {run_count(audit.table)} runs have no result: see `error` in the table"
         if count
         else ""
     )
 
 
-def verdict(each: Verdict) -> tuple[str, ...]:
+def verdict_row(each: Verdict) -> tuple[str, ...]:
     """Write a verdict, as `VERDICT_HEAD` says."""
     return (
         each.obstacle,
         str(each.cleared.runs),
-        share(each.cleared),
-        share(each.seized),
+        rate(each.cleared),
+        rate(each.seized),
         percent(each.belt_cleared.rate) if each.belt_outcome else NOT_DRIVEN,
         each.outcome.replace("_", " "),
         each.word,
     )
 
 
-def made(table: xarray.Dataset) -> int:
+def run_count(table: xarray.Dataset) -> int:
     """Count the runs of a table that were made."""
     return int((table["outcome"] != "").sum())
 
@@ -158,7 +157,7 @@ def made(table: xarray.Dataset) -> int:
 _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
 
 
-def jam(each: Verdict) -> tuple[str, ...]:
+def jam_row(each: Verdict) -> tuple[str, ...]:
     """Say where it is jammed, and what frees it, as `JAM_HEAD` says."""
     at = "" if math.isnan(each.friction[0]) else span(each.friction, ".2f").replace(" to ", "-")
     freed = [
@@ -171,12 +170,12 @@ def jam(each: Verdict) -> tuple[str, ...]:
     return each.obstacle, place, "/".join(map(str, each.there)), speeds, at, ", ".join(freed)
 
 
-def end(run: Record) -> str:
+def ending(run: Record) -> str:
     """Say how a run ended."""
     return "no result" if run.outcome is None else str(run.outcome).replace("_", " ")
 
 
-def calls(audit: Audited) -> str:
+def wheel_names(audit: AuditRecord) -> str:
     """Say what the file calls the wheels between which it is jammed; "" if there are none."""
     if audit.reading is None:
         return ""
@@ -186,19 +185,19 @@ def calls(audit: Audited) -> str:
     return f"on the left, wheel {', '.join(called)}" if called else ""
 
 
-def reservation(audit: Begun) -> str:
-    """Say that the verdict is about another robot than is meant; "" without an error of lint."""
+def reservation(audit: AuditSetup) -> str:
+    """Warn that the verdict is about another robot than intended; "" without an error of lint."""
     rules = list(dict.fromkeys(each.rule for each in audit.lint if each.severity == "error"))
     if not rules:
         return ""
     source = "robot as it is given" if audit.reading is None else "file as it is read"
     return (
-        f"Lint has errors ({', '.join(rules)}): the verdict holds for the {source}, which is hardly"
-        " the robot that is meant."
+        f"Lint has errors ({', '.join(rules)}): the verdict holds for the {source}, which is"
+        " probably not the robot that is meant."
     )
 
 
-def conclusion(audit: Audited) -> list[str]:
+def conclusion(audit: AuditRecord) -> list[str]:
     """Say in sentences whether the verdict is void, where it seizes, and what is not certain."""
     found = [reservation(audit)] if reservation(audit) else []
     seized = [each for each in audit.verdicts if each.word == "seizes"]
@@ -210,8 +209,8 @@ def conclusion(audit: Audited) -> list[str]:
     count = len(audit.verdicts)
     if not _has_wheels_for_tracks(audit.robot):
         found.append(
-            "It has no wheels in the place of a track, so no edge can jam between them: where it"
-            " fails, it fails for another reason."
+            "It has no wheels in place of a track, so no edge can jam between them: where it fails,"
+            " it fails for another reason."
         )
     if seized:
         text = f"It seizes on {len(seized)} of {count} obstacles where the belt clears"
@@ -236,11 +235,11 @@ def conclusion(audit: Audited) -> list[str]:
     return found
 
 
-def _under(assumed: Sequence[Assumed]) -> Iterator[str]:
-    """Say of each assumption how often the seizures hold under it, and which hang on it."""
+def _under(assumed: Sequence[Assumption]) -> Iterator[str]:
+    """Say how often the robot seizes under each assumption, and which verdicts depend on it."""
     heads = {
         "rotor": "With a real drive, which holds its speed and has rotors",
-        "restitution": "With blows that give some or all of it back",
+        "restitution": "With restitution",
     }
     for name, head in heads.items():
         own = [each for each in assumed if each.assumption == name]
@@ -248,7 +247,9 @@ def _under(assumed: Sequence[Assumed]) -> Iterator[str]:
             runs = ", ".join(f"{each.obstacle} {each.seized} of {each.made}" for each in own)
             loose = ", ".join(each.obstacle for each in own if not each.holds)
             hang = (
-                f"the verdicts on {loose} may hang on that" if loose else "no verdict hangs on that"
+                f"the verdicts on {loose} may depend on that"
+                if loose
+                else "no verdict depends on that"
             )
             drawn = ", ".join(
                 f"{_named(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
@@ -290,28 +291,28 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
     """Say in a sentence that it seizes on an obstacle, where, and what the belt does there."""
     called = f" ({', '.join(names)})" if names else ""
     return (
-        f"seizes on {verdict.obstacle} in {share(verdict.seized)} of the runs, most often between"
+        f"seizes on {verdict.obstacle} in {rate(verdict.seized)} of the runs, most often between"
         f" wheels {verdict.where} of the {verdict.carrier}{called}; the belt clears"
         f" {verdict.instead} of {verdict.there[1]} seized runs, and"
         f" {percent(verdict.belt_cleared.rate)} of all"
     )
 
 
-def repairs_found(found: Repaired, vary: Mapping[str, Any]) -> str:
-    """Say what the search for repairs came to, and in which runs."""
-    runs = f"in fresh runs {driven(found.table, vary)}"
+def search_sentence(found: RepairSearch, vary: Mapping[str, Any]) -> str:
+    """Say what the search for repairs found, and in which runs."""
+    runs = f"in fresh runs {speeds_and_sizes(found.table, vary)}"
     if any(each.confirmed for each in found.repairs):
         return f"the best of {found.tried} candidates, {runs}"
     return f"none of {found.tried} candidates was confirmed {runs}"
 
 
-def worst(repair: Repair) -> tuple[Share, Share, str]:
+def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:
     """Return how often a repair clears at worst where the belt does, seizes at worst, and where.
 
-    Worst of all is to have nothing to be held against: the belt clears none of the fresh runs.
+    Worst of all is that there is nothing to compare with: the belt clears none of the fresh runs.
     It seizes at worst over all speeds, or at one of them.
     """
-    cleared = min(repair.cleared_beside.values(), key=lambda share: (share.runs > 0, share.rate))
+    cleared = min(repair.cleared_beside.values(), key=lambda each: (each.runs > 0, each.rate))
     rates = list(repair.seized.items())
     for obstacle, at in repair.seized_at.items():
         rates += [(f"{obstacle} at {speed:g} m/s", each) for speed, each in at.items()]
@@ -321,36 +322,37 @@ def worst(repair: Repair) -> tuple[Share, Share, str]:
 
 
 def repair_sentence(repair: Repair) -> str:
-    """Say what a repair changes, and what came of it."""
-    _, seized, name = worst(repair)
+    """Say what a repair changes, and with what result."""
+    _, seized, name = worst_rates(repair)
     where = f", most on {name}" if name else ""
     return (
-        f"{confirmed(repair)}: {repair.what}; {beside(repair)}; seizes at most {share(seized)}"
-        f"{where}; {wheels_a_side(repair)}; simulated {repair.speed:.2g} times as fast"
+        f"{confirmation(repair)}: {repair.what}; {comparison(repair)}; seizes at most"
+        f" {rate(seized)}{where}; {wheels_per_side(repair)}; simulated {repair.speed:.2g} times as"
+        " fast"
     )
 
 
-def beside(repair: Repair) -> str:
-    """Say how a repair compares with the belt where it seized, also where there is no telling."""
-    cleared, _, _ = worst(repair)
+def comparison(repair: Repair) -> str:
+    """Say how a repair compares with the belt where the robot seized, if the belt clears there."""
+    cleared, _, _ = worst_rates(repair)
     if cleared.runs:
-        return f"clears at least {share(cleared)} of the runs that the belt clears where it seized"
+        return f"clears at least {rate(cleared)} of the runs that the belt clears where it seized"
     alone = [name for name, each in repair.cleared_beside.items() if not each.runs]
     return f"the belt clears none of the fresh runs on {', '.join(alone)} (0 to compare with)"
 
 
-def wheels_a_side(repair: Repair) -> str:
+def wheels_per_side(repair: Repair) -> str:
     """Say how many wheels carry a side, or that a belt does."""
     return f"{repair.wheels} wheels a side" if repair.wheels else "belt"
 
 
-def confirmed(repair: Repair) -> str:
-    """Say whether fresh runs bear a repair out."""
+def confirmation(repair: Repair) -> str:
+    """Say whether fresh runs confirm a repair."""
     return "confirmed" if repair.confirmed else "not confirmed"
 
 
 def range_of(path: str, distribution: Distribution) -> str:
-    """Write the range of a field in words, as far as its kind is known, with its unit."""
+    """Write the range of a distribution in words, with the unit of its field."""
     unit = unit_of(path)
     own = "" if unit in (None, "1") else f" {unit}"
     match distribution:
@@ -369,14 +371,14 @@ def range_of(path: str, distribution: Distribution) -> str:
     return str(distribution)
 
 
-def held(frictions: Sequence[float]) -> str:
+def holding_friction(frictions: Sequence[float]) -> str:
     """Say at which frictions pockets hold by their walls alone.
 
     Examples
     --------
-    >>> held([0.84, 1.535]), held([0.84, 0.84])
+    >>> holding_friction([0.84, 1.535]), holding_friction([0.84, 0.84])
     ('at a friction below 0.84 to 1.53', 'at a friction below 0.84')
-    >>> held([1.0, math.inf]), held([3e7])
+    >>> holding_friction([1.0, math.inf]), holding_friction([3e7])
     ('at a friction below 1.00 or at any friction', 'at any friction')
     """
     steep = [each for each in frictions if each >= _UPRIGHT]
@@ -400,6 +402,6 @@ def percent(rate: float) -> str:
     return "no result" if math.isnan(rate) else f"{100 * rate:.0f} %"
 
 
-def share(share: Share) -> str:
+def rate(of: Proportion) -> str:
     """Write a rate with its interval, in percent."""
-    return f"{percent(share.rate)} ({100 * share.low:.0f}-{100 * share.high:.0f})"
+    return f"{percent(of.rate)} ({100 * of.low:.0f}-{100 * of.high:.0f})"

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
-from crawler2d.audits.page.parts import robot_drawn
+from crawler2d.audits.page.drawings import draw_robot
 from crawler2d.drawings.svg import escaped
 from crawler2d.errors import Crawler2dError, ScenarioWarning
 from crawler2d.pictures.page import fill_page, read_part
@@ -212,7 +212,7 @@ def _card(entry: Entry) -> str:
     name = f"<h3>{escaped(entry.path.as_posix())}</h3>"
     reading, found = entry.reading, entry.audit
     assert reading is not None  # others are listed
-    drawing = robot_drawn(reading.robot, "side view", reading.silhouettes, width=300, height=200)
+    drawing = draw_robot(reading.robot, "side view", reading.silhouettes, width=300, height=200)
     parts = [drawing, name, f"<p>{escaped(reading.in_words)}</p>"]
     if found is None:
         parts.append(f'<p class="bad">{escaped(entry.refusal)}</p>')

@@ -113,7 +113,7 @@ def scene_canvas(
     bottom = min(extent[2], *(float(profile[:, 1].min()) for _, profile in scene.lanes)) - 1.0
     for _, profile in scene.lanes:
         fill: Any = {"color": GROUND, "alpha": alpha, "linewidth": 0.0, "zorder": 0}
-        canvas.ax.fill_between(*profile.T, bottom, **fill)
+        canvas.ax.fill_between(profile[:, 0], profile[:, 1], bottom, **fill)
         look: Any = {"linestyle": "-", "linewidth": 1.2}
         if is_far:
             look = {"linestyle": "--", "linewidth": 0.8, "label": "left lane"}

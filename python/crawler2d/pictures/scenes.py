@@ -216,7 +216,7 @@ class Envelopes:
             clip = patches.Polygon(carrier.inner, transform=ax.transData)
             fill: Any = {"color": VIOLET, "alpha": 0.5, "linewidth": 0.0, "zorder": 2.6}
             for _, profile in scene.lanes:
-                ax.fill_between(*profile.T, bottom, **fill).set_clip_path(clip)
+                ax.fill_between(profile[:, 0], profile[:, 1], bottom, **fill).set_clip_path(clip)
             self._drawn.append((carrier, line, clip))
 
     def show(self, sample: int) -> None:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from crawler2d.audits.candidates import Pocket
 from crawler2d.audits.lint import Finding
-from crawler2d.audits.repairs import Repair, Repaired
+from crawler2d.audits.repairs import Repair, RepairSearch
 from crawler2d.audits.runs import Belt
-from crawler2d.audits.sampling import Assumed
+from crawler2d.audits.sampling import Assumption
 from crawler2d.audits.verdicts import Verdict
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
@@ -22,7 +22,16 @@ from crawler2d.reading.reading import Reading
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OPTIONS", "Audited", "Begun", "Call", "as_options", "command_of", "names_of"]
+__all__ = [
+    "OPTIONS",
+    "READING",
+    "AuditRecord",
+    "AuditSetup",
+    "Call",
+    "as_options",
+    "command_of",
+    "names_of",
+]
 
 
 def names_of(robot: Robot, reading: Reading) -> dict[int, str]:
@@ -44,29 +53,27 @@ def names_of(robot: Robot, reading: Reading) -> dict[int, str]:
     return names
 
 
-_FLAGS = {"trusted": "--trusted", "quick": "--quick"}
-_VALUES = {
-    "samples": "--samples",
-    "repeats": "--repeats",
-    "seed": "--seed",
-    "store": "--store",
-    "threads": "--threads",
-    "engine": "--engine",
-    "forward": "--forward",
-    "model": "--model",
-    "mesh": "--mesh",
-    "missing": "--missing",
-    "ground_friction": "--ground-friction",
-    "tolerance": "--tolerance",
-    "scale": "--scale",
-}
-_LISTS = {"tracks": "--track"}
-_PAIRS = {"packages": "--package", "arguments": "--argument"}
-_FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
-_FILES = {"path": "FILE", "html": "--html", "patch": "--patch"}
+READING = (
+    "engine",
+    "forward",
+    "model",
+    "mesh",
+    "missing",
+    "ground_friction",
+    "tolerance",
+    "scale",
+)
+"""Keywords of `read_robot` that take one value, and so do the options of the command."""
 
-OPTIONS = {**_FLAGS, **_VALUES, **_LISTS, **_PAIRS, **_FILES}
+_ALIKE = ("samples", "repeats", "seed", "store", "threads", "quick", "trusted", "html", "patch")
+OPTIONS = {
+    **{name: f"--{name.replace('_', '-')}" for name in (*_ALIKE, *READING)},
+    **{f"{name}s": f"--{name}" for name in ("track", "package", "argument")},
+    "path": "FILE",
+}
 """How the command spells the keywords of `audit`, and of what it writes."""
+
+_FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,7 +100,7 @@ class Call:
 
 
 def command_of(call: Call, file: str) -> str | None:
-    """Write the command that makes an audit of a file again; None if no command does.
+    """Write the command that repeats the audit of a file; None if no command does.
 
     Examples
     --------
@@ -103,7 +110,7 @@ def command_of(call: Call, file: str) -> str | None:
     """
     if call.own:
         return None
-    # A name that looks like an option is none with its folder.
+    # With its folder, a name cannot be taken for an option.
     words = ["crawler2d", "audit", f"./{file}" if file.startswith("-") else file]
     words += ["--samples", str(call.samples), "--repeats", str(call.repeats)]
     words += ["--seed", str(call.seed)]
@@ -112,19 +119,20 @@ def command_of(call: Call, file: str) -> str | None:
     if call.quick:
         words.append("--quick")
     for name, value in call.reading.items():
-        if name in _FLAGS:
-            words.append(_FLAGS[name])
-        elif name in _VALUES:
-            words.append(f"{_VALUES[name]}={value}")
-        elif name in _LISTS:
-            words += [f"{_LISTS[name]}={each}" for each in value]
+        option = OPTIONS[name]
+        if value is True:
+            words.append(option)
+        elif isinstance(value, Mapping):
+            words += [f"{option}={key}={each}" for key, each in value.items()]
+        elif name in READING:
+            words.append(f"{option}={value}")
         else:
-            words += [f"{_PAIRS[name]}={key}={each}" for key, each in value.items()]
+            words += [f"{option}={each}" for each in value]
     return shlex.join(words)
 
 
 def as_options(error: str) -> str:
-    """Write the keywords that an error names as options of the command.
+    """Write the keywords in an error as options of the command.
 
     Examples
     --------
@@ -150,7 +158,7 @@ def as_options(error: str) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Begun:
+class AuditSetup:
     """What an audit knows before the first run.
 
     Parameters
@@ -160,15 +168,15 @@ class Begun:
     reading : Reading, optional
         What was read, if it was a file.
     lint : tuple of Finding
-        What is hardly meant in the model, errors first.
+        Probable mistakes in the model, errors first.
     pockets : tuple of Pocket
-        What is open between its wheels: a screen, no verdict.
+        The spaces between its wheels: a screen, no verdict.
     belt : Belt
-        The robot on belts that it was compared with, and which belts these are, and why.
+        The robot on belts for comparison, and the reason for the kind of belt.
     obstacles : mapping of str to terrain
-        What it drives over, in this order: where it is likely to seize comes first.
+        What it drives over, in this order: those first where it is likely to seize.
     vary, unknown : mapping of str to distribution
-        What differs from run to run, and what is not known.
+        What differs from run to run, and what is unknown.
     drive : Drive
         How it is driven.
     call : Call
@@ -188,17 +196,17 @@ class Begun:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Audited(Begun):
+class AuditRecord(AuditSetup):
     """What an audit found, as data.
 
     Parameters
     ----------
     verdicts : tuple of Verdict
         One for each obstacle, in their order.
-    assumed : tuple of Assumed
-        What becomes of each seizure under other assumptions; none if `unknown` was given.
-    repaired : Repaired, optional
-        What the search for repairs came to; None if there was none.
+    assumed : tuple of Assumption
+        How often each seizure occurs under other assumptions; none if `unknown` was given.
+    repaired : RepairSearch, optional
+        What the search for repairs found; None if there was none.
     table : xarray.Dataset
         The runs behind the verdicts, as from `sweep`: dimensions `model` ("model", "belt"),
         `terrain`, `sample` and `repeat`. Without unknowns the repeats stand in `sample`. The
@@ -208,19 +216,19 @@ class Audited(Begun):
     """
 
     verdicts: tuple[Verdict, ...]
-    assumed: tuple[Assumed, ...]
-    repaired: Repaired | None
+    assumed: tuple[Assumption, ...]
+    repaired: RepairSearch | None
     table: xarray.Dataset
 
     @property
     def seizes(self) -> bool:
-        """Whether it seizes on an obstacle by the rule of `Verdict.word`: the belt clears that."""
+        """Whether it seizes, by the rule of `Verdict.word`, on an obstacle that the belt clears."""
         return any(each.word == "seizes" for each in self.verdicts)
 
     @property
     def repairs(self) -> tuple[Repair, ...]:
-        """The best of each kind that was tried: those that are confirmed, the least changed first.
+        """The best of each kind that was tried: the confirmed ones first, then the least changed.
 
-        Each says in `confirmed` whether fresh runs bear it out; empty without a search.
+        `Repair.confirmed` says whether fresh runs confirm it; empty without a search.
         """
         return () if self.repaired is None else self.repaired.repairs
