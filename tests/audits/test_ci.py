@@ -199,7 +199,7 @@ def test_what_a_xacro_file_expands_to_has_no_lines_of_the_file(tmp_path: Path) -
 
 
 def test_every_rule_of_lint_has_a_check_and_is_documented() -> None:
-    assert all(rule.of_robot or rule.of_file for rule in RULES)
+    assert all(rule.robot or rule.file for rule in RULES)
     assert len({rule.name for rule in RULES}) == len(RULES)
     table = (ROOT / "docs/conventions.md").read_text("utf-8").partition("| rule | fires on |")[2]
     rows = table.partition("\n\n")[0].splitlines()[2:]

@@ -301,25 +301,26 @@ def test_every_obstacle_that_seized_has_a_replay_of_one_of_its_runs(
     assert [text for _, text in file_page.all("option") if "seized" in text] == [
         f"step of 75 mm: {words.percent(seized[0].seized.rate)} seized"
     ]
-    ((place, (own, belt), beside),) = simulate_replays(of_file)
+    (replay,) = simulate_replays(of_file)
+    (own, belt), beside = replay.runs, replay.other
     assert beside == "the belt"
     assert own.outcome == c2d.Outcome.SEIZED
     assert belt.outcome == c2d.Outcome.CLEARED
     cell = of_file.table.sel(terrain="step of 75 mm")
-    cell = cell.isel(sample=place.sample, repeat=place.repeat)
+    cell = cell.isel(sample=replay.sample, repeat=replay.repeat)
     for name, run in (("model", own), ("belt", belt)):
         there = cell.sel(model=name)
         assert there["identity"].item() == run.scenario.identity
         assert there["final_x"].item() == run.metrics["final_x"]
     assert "Seized between wheels 1 and 2: the ground at" in shown
-    assert f"Sample {place.sample}, repeat {place.repeat}" in shown
+    assert f"Sample {replay.sample}, repeat {replay.repeat}" in shown
     assert f"drive: speed {cell.sel(model='model')['drawn_speed'].item():.4g} m/s" in shown
 
 
 def test_beside_the_robot_is_the_repaired_one_with_the_same_draws(
     found: c2d.Audit, page: Page
 ) -> None:
-    ((_, (own, repaired), beside),) = simulate_replays(found)
+    ((*_, (own, repaired), beside),) = simulate_replays(found)
     assert beside == "chassis: 5 wheels in place of 4 (confirmed)"
     assert repaired.scenario.robot.track == found.repairs[0].robot.track
     assert repaired.scenario == own.scenario.replace({"robot.track": found.repairs[0].robot.track})
@@ -372,7 +373,7 @@ def test_a_repair_that_breaks_a_rule_with_the_draws_leaves_the_robot_alone(
 def test_the_page_has_the_records_of_its_runs_thinned(
     of_file: c2d.Audit, file_page: Page, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ((_, runs, _),) = simulate_replays(of_file)
+    ((*_, runs, _),) = simulate_replays(of_file)
     assert file_page.data("runs-0") == [json.loads(json.dumps(recording(run))) for run in runs]
     monkeypatch.setattr("crawler2d.audits.page._MOST", 30)
     for thinned, run in zip(Page(of_file.to_html()).data("runs-0"), runs, strict=True):
@@ -386,11 +387,12 @@ def test_without_a_seizure_the_run_that_came_closest_is_shown() -> None:
     found = c2d.audit(good, steps, unknown={}, repeats=4, repair=False, **QUIET)
     page = Page(found.to_html())
     assert answer(page).startswith("It seized in no run over 2 obstacles")
-    ((place, (_, belt), _),) = simulate_replays(found)
+    (replay,) = simulate_replays(found)
+    _, belt = replay.runs
     ways = found.table["time"].sel(model="model").transpose("terrain", "sample", "repeat")
     longest = (ways * found.table["speed"]).values
-    of = [each.obstacle for each in found.verdicts].index(place.verdict.obstacle)
-    assert longest[of, place.sample, place.repeat] == longest.max()
+    of = [each.obstacle for each in found.verdicts].index(replay.verdict.obstacle)
+    assert longest[of, replay.sample, replay.repeat] == longest.max()
     assert belt.scenario.robot == found.belt.robot
     ((_, told),) = page.all("p", **{"class": "diagnosis"})
     assert told == "It seized in no run; this is the one that came closest. It clears."

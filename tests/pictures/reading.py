@@ -18,7 +18,7 @@ def page_of(run: c2d.Run) -> Any:
 
 
 def unpacked(column: dict[str, Any]) -> Any:
-    """As `unpacked` of data.js."""
+    """As `unpack` of data.js."""
     data = base64.b64decode(column["data"])
     if column["bits"] == 32:
         return np.frombuffer(data, "<f4").astype(float)

@@ -39,7 +39,7 @@ def test_a_ghost_stands_where_the_run_of_its_trial_ends(run: c2d.Run) -> None:
     for ghost, trial in zip(shown, trials, strict=True):
         ends = [carrier.poses[-1] for carrier in scene_of(trial.run).carriers]
         assert ghost.frames == pytest.approx(np.array(ends), abs=1e-9), trial.name
-        assert ghost.said.startswith(f"{ghost.change}: ")
+        assert ghost.result.startswith(f"{ghost.change}: ")
         assert ghost.freed == trial.freed
 
 
@@ -75,7 +75,7 @@ def test_a_page_lists_every_trial_with_its_ghost(run: c2d.Run) -> None:
     page = run.to_html()
     shown = ghosts(run)
     buttons = re.findall(r'data-trial="(\d+)"[^>]*>([^<]*)</button>', page)
-    assert buttons == [(str(n), ghost.said) for n, ghost in enumerate(shown)]
+    assert buttons == [(str(n), ghost.result) for n, ghost in enumerate(shown)]
     text = re.search(r'id="recording">(.*?)</script>', page, re.DOTALL)
     assert text is not None
     data = json.loads(text[1])["ghosts"]

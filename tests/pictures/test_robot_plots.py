@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt
 from matplotlib.text import Text
 
 import crawler2d as c2d
-from crawler2d.drawings.scene import closed, placed, relative
+from crawler2d.drawings.scene import close_line, place, relative
 from crawler2d.parameters.track import Track
 from tests.shared import GEAR, ROBOT, TRAPEZOID, VARIANTS, refused
 
@@ -81,10 +81,10 @@ def test_the_outlines_of_a_robot_lie_where_its_run_says(name: str) -> None:
     in_chassis, on_ground = lines(scenario.robot.plot()), lines(scenario.plot())
     near = [row for row, number in enumerate(run.bodies["body"]) if number >= 0]
     for row in near:
-        outline, pose = closed(run.bodies["outline"][row]), run.poses[0, row]
+        outline, pose = close_line(run.bodies["outline"][row]), run.poses[0, row]
         (own,) = relative(pose[None], frame)
-        assert any(same(line, placed(outline, pose)) for line in on_ground)
-        assert any(same(line, placed(outline, own)) for line in in_chassis)
+        assert any(same(line, place(outline, pose)) for line in on_ground)
+        assert any(same(line, place(outline, own)) for line in in_chassis)
 
 
 def same(one: Any, other: Any) -> bool:

@@ -16,7 +16,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d import _core
 from crawler2d.drawings.scene import inset
-from crawler2d.pictures.page.recording import MOST_FRAMES, packed
+from crawler2d.pictures.page.recording import MOST_FRAMES, pack
 from tests.pictures.reading import unpacked
 from tests.shared import GEAR, ROBOT, VARIANTS
 
@@ -288,8 +288,8 @@ def test_a_notebook_shows_a_run_that_failed() -> None:
 
 def test_packed_numbers_come_back() -> None:
     for values in ([], [1.0], [0.5, 0.5], [-3.0, 0.0, 2.0], [1e9, 1e9 + 1.0]):
-        assert np.allclose(unpacked(packed(values, 1e-3)), values, atol=1e-3)
-    broken = unpacked(packed([np.nan, np.inf, -np.inf, 1.0], 1e-3))
+        assert np.allclose(unpacked(pack(values, 1e-3)), values, atol=1e-3)
+    broken = unpacked(pack([np.nan, np.inf, -np.inf, 1.0], 1e-3))
     assert np.array_equal(broken, [np.nan, np.inf, -np.inf, 1.0], equal_nan=True)
 
 

@@ -30,9 +30,7 @@ from crawler2d.audits.subject import (
     standard_obstacles,
     subject_of,
     unknown_of,
-    unknown_of_file,
     vary_of,
-    without_friction,
 )
 from crawler2d.audits.text import head_of, lint_of, rest_of, row_of, text_of
 from crawler2d.audits.verdicts import BELT, OWN, Verdict
@@ -311,7 +309,8 @@ def audit(
         "duration": duration,
     }
     write, show = read_progress(progress)
-    own, read, floors = subject_of(robot, reading)
+    subject = subject_of(robot, reading)
+    own, read = subject.robot, subject.reading
     if read is not None:
         check_size(read)
     friction = 0.9 if read is None else read.friction
@@ -321,11 +320,7 @@ def audit(
     found = pockets(own)
     grounds = {name: grounds[name] for name in order_by_risk(grounds, found)}
     if unknown is None:
-        if read is None:
-            unknown = unknown_of(own, with_friction=obstacles is None)
-        else:
-            unknown = unknown_of_file(read, floors)
-            unknown = unknown if obstacles is None else without_friction(unknown)
+        unknown = unknown_of(subject, with_friction=obstacles is None)
     runs = Runs(
         scenario=scenario_of(own, next(iter(grounds.values())), drive, duration),
         vary=vary_of(drive) if vary is None else vary,

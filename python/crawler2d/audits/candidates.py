@@ -30,18 +30,32 @@ __all__ = [
     "wheel_count",
 ]
 
-_SAMPLES = 181  # points of the lower half of a wheel that are looked at from below
+CARRIERS = ("chassis", "flippers")
+"""What carries wheels."""
+
+_HEIGHT = 3.0 / 16.0  # of the smallest radius: the Engineer's grousers
+_THICKNESS = 1.0 / 8.0  # of the distance of two grousers, likewise
+_GROUSERS = (12, 8, 16)
+_MORE = 8
+"""Most numbers of wheels to try, from one more to one more between every two."""
+
+Wheeled = LineOfWheels | CircumferentialWheels | HybridWheels
+
+_Variants = Callable[[Robot, str, Wheeled], Iterator[tuple[str, Track]]]
+
+_SAMPLES = 181  # points of the lower half of a wheel that are viewed from below
 _TOUCHING = 1e-9  # [m] Wheels nearer than this touch.
 
 Circle = tuple[float, float, float]
+"""[m] x, y and radius of a wheel."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pocket:
-    """What is open between two neighbouring wheels below the belt that would run under them.
+    """The space between two neighbouring wheels, above the belt that would run under them.
 
-    It is a screen, no verdict: whether ground stays in a pocket depends on the whole robot. In a
-    pocket that this figure calls harmless robots have seized all the same.
+    It is a screen, no verdict: whether ground stays in a pocket depends on the whole robot, and
+    robots have seized in pockets that these figures call harmless.
 
     Parameters
     ----------
@@ -53,12 +67,13 @@ class Pocket:
         [m] Of its mouth: along the belt, from where that leaves one wheel to where it meets the
         next.
     gap : float
-        [m] What is open between the wheels at the narrowest: of a slot > 0, of a pocket 0.
+        [m] Least distance of the wheels: of a slot > 0, of a pocket 0.
     depth : float
-        [m] From the belt to its bottom; of a slot infinite.
+        [m] From the belt to its bottom; infinite for a slot.
     friction : float
-        [-] Tangent of the angle at which the rear wheel meets an edge at the bottom: with less,
-        this wheel alone does not roll over it, and the pocket holds it. Infinite for a slot.
+        [-] Tangent of the angle at which the rear wheel meets an edge at the bottom: with less
+        friction this wheel alone does not roll over it, and the pocket holds it. Infinite for a
+        slot.
     """
 
     carrier: str
@@ -74,8 +89,31 @@ class Pocket:
         return self.gap > 0.0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """A robot that may not seize.
+
+    Parameters
+    ----------
+    what : str
+        What is changed, in words.
+    kind : {"wheels", "gears", "belt"}
+        Other numbers, sizes or places of round wheels; gear wheels in their place; or belts.
+    robot : Robot
+        With the change.
+    change : int
+        Wheels and belts of one side that are new, gone, or of another size or shape; those that
+        only move do not count.
+    """
+
+    what: str
+    kind: str
+    robot: Robot
+    change: int
+
+
 def pocket_between(rear: Circle, front: Circle) -> tuple[float, float, float, float]:
-    """Measure what is open between two wheels below their common tangent.
+    """Measure the space between two wheels and their common tangent below.
 
     Parameters
     ----------
@@ -113,15 +151,15 @@ def pocket_between(rear: Circle, front: Circle) -> tuple[float, float, float, fl
 
 
 def pockets(robot: Robot) -> tuple[Pocket, ...]:
-    """Measure what is open between the wheels of one side, chassis and flippers together.
+    """Measure the spaces between the wheels of one side, chassis and flippers together.
 
-    Neighbours are wheels that are seen from below next to each other, with the flippers at their
-    `angle`. Wheels are measured to the tips of their grousers.
+    Neighbours are next to each other as seen from below, with the flippers at their `angle`. Wheels
+    are measured to the tips of their grousers.
 
     Parameters
     ----------
     robot : Robot
-        Any robot; one of belts has no wheels, and no pockets.
+        Any robot; one on belts has no wheels, and no pockets.
 
     Returns
     -------
@@ -146,7 +184,7 @@ def pockets(robot: Robot) -> tuple[Pocket, ...]:
     )
     wheels = [(carrier, body, (x, y, radius)) for carrier, body, x, y, radius in rows]
     circles = [circle for _, _, circle in wheels]
-    order = sorted(_seen(circles), key=lambda seen: seen[1])
+    order = sorted(_seen_from_below(circles), key=lambda seen: seen[1])
     found = []
     for (first, _), (second, _) in itertools.pairwise(order):
         (carrier, body, rear), (other, its_body, front) = wheels[first], wheels[second]
@@ -164,8 +202,8 @@ def pockets(robot: Robot) -> tuple[Pocket, ...]:
     return tuple(found)
 
 
-def _seen(circles: list[Circle]) -> list[tuple[int, float]]:
-    """Return which wheels are seen from below, and at which x in the middle."""
+def _seen_from_below(circles: list[Circle]) -> list[tuple[int, float]]:
+    """Find which wheels are seen from below, and the mean x of what is seen of each."""
     found = []
     for index, (x, y, radius) in enumerate(circles):
         offsets = radius * np.sin(np.linspace(-0.5 * math.pi, 0.5 * math.pi, _SAMPLES)[1:-1])
@@ -180,44 +218,6 @@ def _seen(circles: list[Circle]) -> list[tuple[int, float]]:
         if is_seen.any():
             found.append((index, float(np.mean(x + offsets[is_seen]))))
     return found
-
-
-CARRIERS = ("chassis", "flippers")
-"""What carries wheels."""
-
-KINDS = ("wheels", "gears", "belt")
-"""Kinds of repairs, in the order in which they are looked for."""
-
-_HEIGHT = 3.0 / 16.0  # of the smallest radius: the Engineer's grousers
-_THICKNESS = 1.0 / 8.0  # of the distance of two grousers, likewise
-_GROUSERS = (12, 8, 16)
-_MORE = 8
-"""At most so many numbers of wheels from one more to one more between every two."""
-
-Wheeled = LineOfWheels | CircumferentialWheels | HybridWheels
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Candidate:
-    """A robot that may not seize.
-
-    Parameters
-    ----------
-    what : str
-        What is changed, in words.
-    kind : {"wheels", "gears", "belt"}
-        Other numbers, sizes or places of round wheels; gear wheels in their place; or belts.
-    robot : Robot
-        With the change.
-    change : int
-        Wheels and belts of one side that are new, gone, or of another size or shape; those that
-        only move do not count.
-    """
-
-    what: str
-    kind: str
-    robot: Robot
-    change: int
 
 
 def candidates_of(robot: Robot, carriers: Collection[str]) -> list[Candidate]:
@@ -264,22 +264,17 @@ def _fits(robot: Robot) -> bool:
     return True
 
 
-Variants = Callable[[Robot, str, Wheeled], Iterator[tuple[str, Track]]]
-
-
 def _of_kind(
-    robot: Robot, carriers: Collection[str], kind: str, variants: Variants
+    robot: Robot, carriers: Collection[str], kind: str, variants: _Variants
 ) -> Iterator[Candidate]:
-    """Change every carrier in the first way, then every one in the second, and so on."""
-    chosen = [each for each in CARRIERS if each in carriers and _track_of(robot, each) is not None]
-    ways = []
-    for carrier in chosen:
-        track = _track_of(robot, carrier)
-        assert track is not None
-        ways.append(
-            [(f"{carrier}: {what}", carrier, new) for what, new in variants(robot, carrier, track)]
-        )
-    for changes in zip(*ways, strict=False):
+    """Change every carrier by its first variant, then every one by its second, and so on."""
+    tracks = {each: _track_of(robot, each) for each in CARRIERS if each in carriers}
+    options = [
+        [(f"{carrier}: {what}", carrier, new) for what, new in variants(robot, carrier, track)]
+        for carrier, track in tracks.items()
+        if track is not None
+    ]
+    for changes in zip(*options, strict=False):
         changed = robot
         for _, carrier, track in changes:
             changed = _with(changed, carrier, track)

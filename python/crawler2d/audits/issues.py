@@ -132,7 +132,7 @@ def unreadable(path: Path, error: ScenarioError) -> Check:
 
 def _seizures(found: AuditRecord | LintResult) -> Iterator[Issue]:
     read = found.reading
-    names = {} if read is None else names_of(found.robot, read)
+    names = names_of(found.robot, read)
     for verdict in found.verdicts:
         if verdict.word == SEIZES:
             bodies = [int(body) for body in verdict.where.split("-") if body]

@@ -97,26 +97,26 @@ class Rule:
         Of a break that has none of its own.
     text : str
         What a model that keeps the rule is like.
-    of_robot, of_file : callable, optional
+    robot, file : callable, optional
         Find the breaks of a robot, and those that only a file shows.
     stated : tuple of str
-        Where a file may say what `of_robot` finds: the first of these that it states.
+        Where a file may say what `robot` finds: the first of these that it states.
     """
 
     name: str
     severity: str
     text: str
-    of_robot: Callable[[Robot], Iterator[_Break]] | None = None
-    of_file: Callable[[Reading], Iterator[_Break]] | None = None
+    robot: Callable[[Robot], Iterator[_Break]] | None = None
+    file: Callable[[Reading], Iterator[_Break]] | None = None
     stated: tuple[str, ...] = ()
 
     def findings(self, robot: Robot, reading: Reading | None) -> Iterator[Finding]:
         """Yield the breaks of this rule."""
         sources = {} if reading is None else reading.sources
         where = next((sources[path] for path in self.stated if path in sources), "")
-        for each in self.of_robot(robot) if self.of_robot else ():
+        for each in self.robot(robot) if self.robot else ():
             yield self._finding(each._replace(where=where))
-        yield from map(self._finding, self.of_file(reading) if self.of_file and reading else ())
+        yield from map(self._finding, self.file(reading) if self.file and reading else ())
 
     def _finding(self, broken: _Break) -> Finding:
         severity = broken.severity or self.severity
@@ -449,60 +449,55 @@ RULES = (
         "size",
         "error",
         "The robot is as long as tracked robots are.",
-        of_robot=_size,
+        robot=_size,
         stated=("robot.outline.axle_distance", "robot.outline.discs"),
     ),
     Rule(
         "mass",
         "warning",
         "The robot is neither as light as a balloon nor as heavy as steel.",
-        of_robot=_mass,
+        robot=_mass,
         stated=("robot.mass",),
     ),
     Rule(
         "inertia",
         "error",
         "Bodies have moments of inertia that a body of their size can have.",
-        of_robot=_gyration_of_robot,
-        of_file=_impossible_inertia,
+        robot=_gyration_of_robot,
+        file=_impossible_inertia,
         stated=("robot.moment_of_inertia",),
     ),
     Rule(
         "placeholder",
         "warning",
         "Three equal moments of inertia belong to balls and cubes.",
-        of_file=_placeholder,
+        file=_placeholder,
     ),
     Rule(
         "no track",
         "error",
         "A round shape stands wherever a track should be.",
-        of_robot=_bare_stretches,
+        robot=_bare_stretches,
         stated=("robot.track",),
     ),
     Rule(
         "effort",
         "warning",
         "Motors have a limit of effort, and the tracks push with no more than floors take.",
-        of_robot=_torque,
-        of_file=_no_effort_limit,
+        robot=_torque,
+        file=_no_effort_limit,
         stated=("robot.drivetrain.max_torque",),
     ),
-    Rule("not driven", "error", "Every wheel has a motor.", of_robot=_pushed, of_file=_no_motor),
+    Rule("not driven", "error", "Every wheel has a motor.", robot=_pushed, file=_no_motor),
     Rule(
         "friction",
         "warning",
         "Wheels and tracks have a friction that surfaces have.",
-        of_file=_friction,
+        file=_friction,
     ),
-    Rule("balance", "warning", "The centre of mass of a wheel is on its axle.", of_file=_balance),
-    Rule("sides", "note", "Left and right are alike.", of_file=_sides),
-    Rule("overlap", "note", "Wheels of one side do not push each other apart.", of_file=_overlaps),
-    Rule(
-        "doubt",
-        "warning",
-        "Nothing is doubted by the reader or by the simulator.",
-        of_file=_doubts,
-    ),
+    Rule("balance", "warning", "The centre of mass of a wheel is on its axle.", file=_balance),
+    Rule("sides", "note", "Left and right are alike.", file=_sides),
+    Rule("overlap", "note", "Wheels of one side do not push each other apart.", file=_overlaps),
+    Rule("doubt", "warning", "Nothing is doubted by the reader or by the simulator.", file=_doubts),
 )
 """Every rule, in the order in which they are asked."""

@@ -33,13 +33,29 @@ __all__ = [
     "names_of",
 ]
 
+READING = ("engine", "forward", "model", "mesh", "missing", "ground_friction", "tolerance", "scale")
+"""Keywords of `read_robot` that take one value, and so do the options of the command."""
 
-def names_of(robot: Robot, reading: Reading) -> dict[int, str]:
-    """Return the left wheel of the file that each body stands for, by its number.
+_ALIKE = ("samples", "repeats", "seed", "store", "threads", "quick", "trusted", "html", "patch")
+
+OPTIONS = {
+    **{name: f"--{name.replace('_', '-')}" for name in (*_ALIKE, *READING)},
+    **{f"{name}s": f"--{name}" for name in ("track", "package", "argument")},
+    "path": "FILE",
+}
+"""How the command spells the keywords of `audit`, and of what it writes."""
+
+_FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
+
+
+def names_of(robot: Robot, reading: Reading | None) -> dict[int, str]:
+    """Return the name in the file of each left wheel, by the number of its body.
 
     Where a carrier has another number of wheels than the file, as one that stands on the roots of
-    its flippers, its bodies have no names.
+    its flippers, its bodies have no names; without a file none has.
     """
+    if reading is None:
+        return {}
     bodies, links = robot.wheels(), reading.wheels
     names: dict[int, str] = {}
     for carrier in ("chassis", "front flipper", "rear flipper"):
@@ -51,29 +67,6 @@ def names_of(robot: Robot, reading: Reading) -> dict[int, str]:
             named = sorted(zip(links["x"][there], links["name"][there], strict=True))
             names |= {int(body): str(name) for (_, body), (_, name) in zip(own, named, strict=True)}
     return names
-
-
-READING = (
-    "engine",
-    "forward",
-    "model",
-    "mesh",
-    "missing",
-    "ground_friction",
-    "tolerance",
-    "scale",
-)
-"""Keywords of `read_robot` that take one value, and so do the options of the command."""
-
-_ALIKE = ("samples", "repeats", "seed", "store", "threads", "quick", "trusted", "html", "patch")
-OPTIONS = {
-    **{name: f"--{name.replace('_', '-')}" for name in (*_ALIKE, *READING)},
-    **{f"{name}s": f"--{name}" for name in ("track", "package", "argument")},
-    "path": "FILE",
-}
-"""How the command spells the keywords of `audit`, and of what it writes."""
-
-_FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -47,6 +47,17 @@ __all__ = [
     "scenario_of",
 ]
 
+TRIED = ("torque x 2", "friction x 2")
+"""What is tried at every stop, besides the closed track of jammed robots."""
+
+_GRAVITY = 9.81
+
+_FROUDE = 0.2
+
+_LENGTHS = 15.0
+
+_FRESH = 2**63  # added to a seed
+
 
 class LivePrinter:
     """Prints the parts of an audit when they are ready, and on a terminal counts runs below.
@@ -184,15 +195,6 @@ def belt_of(robot: Robot) -> Belt:
     )
 
 
-TRIED = ("torque x 2", "friction x 2")
-"""What is tried at every stop, besides the closed track of jammed robots."""
-
-_GRAVITY = 9.81
-_FROUDE = 0.2
-_LENGTHS = 15.0
-_FRESH = 2**63  # added to a seed
-
-
 def scenario_of(
     robot: Robot, ground: Terrain, drive: Drive | None, duration: float | None
 ) -> Scenario:
@@ -310,14 +312,13 @@ class Course:
         self._planned, self._speeds = planned, speeds
         self._made = dict.fromkeys(robots, 0)
 
-    def drive(self, robot: str, samples: int, progress: Progress | None = None) -> int:
-        """Make the runs of a robot up to a number of samples; return how many these are."""
+    def drive(self, robot: str, samples: int, progress: Progress | None = None) -> None:
+        """Make the runs of a robot up to a number of samples."""
         each = len(self._planned.checked) // len(self._made) // self.samples
         begin = list(self._made).index(robot) * self.samples
         places = range((begin + self._made[robot]) * each, (begin + samples) * each)
         self._planned.simulate(places, progress)
         self._made[robot] = samples
-        return len(places)
 
     def table(self) -> xarray.Dataset:
         """Return what was made: by `model`, `terrain`, `sample`, `repeat`.

@@ -39,6 +39,12 @@ __all__ = [
 _LOOK = 9
 """Samples between two looks: as many at each of the three speeds."""
 
+_SAMPLES = 18
+"""As many at each of the three speeds: of a seizure that holds in a sixth of them, the lower bound
+is above the 5 % from which it is one."""
+
+_ROTOR = "rotor_inertia"
+
 
 def look_counts(samples: int) -> Iterator[int]:
     """Count the samples that are made at each look.
@@ -117,13 +123,6 @@ def order_by_risk(grounds: Mapping[str, Terrain], pockets: Sequence[Pocket]) -> 
         return is_blunt, -min(height, deepest)
 
     return sorted(grounds, key=rank)
-
-
-_SAMPLES = 18
-"""As many at each of the three speeds: of a seizure that holds in a sixth of them, the lower bound
-is above the 5 % from which it is one."""
-
-_ROTOR = "rotor_inertia"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple, TypedDict
+from typing import Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import lint
 from crawler2d.errors import ScenarioError, ignore_doubts
@@ -31,21 +31,73 @@ from crawler2d.variation.distributions import Distribution, Levels, Ranges, scal
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
 __all__ = [
-    "FLOORS",
-    "SPEEDS",
     "ReadKeywords",
-    "Subject",
     "check_size",
     "read_obstacles",
     "standard_obstacles",
     "subject_of",
     "unknown_of",
+    "unknown_of_file",
     "vary_of",
 ]
+
+FLOORS = (0.5, 1.0)
+"""[-] Range of the coefficient of the floor's own surface, if no floor is given."""
+
+_MOST_FROM_FLOORS = 0.05
+"""[-] Floors that change the friction by less than this fraction do not determine it."""
+
+_ROUNDED = 0.1
+"""[-] Relative error of a friction or a torque that a file states."""
+
+SPEEDS = (0.1, 1.0 / 3.0, 1.0)
+"""[-] Fractions of the speed of an audit: what a fast robot jumps over, a slow one may not."""
+
+_TIMES = tuple((1.0 / part + 2.0) / 3.0 for part in SPEEDS)
+"""[-] Factors of the longest time: at the slowest speed enough to drive six lengths of the robot.
+They grow less than the speed falls, because runs that rattle until the end cost most."""
+
+_SIZE = 0.05
+"""[-] Relative error of the size of an obstacle."""
 
 _STEPS = (0.5, 0.8, 1.1)  # radii
 _HIGH = 1.5  # radii: too high for a belt without flippers whose centre of mass is not low
 _KNIVES = (0.4, 0.8)
+
+
+class ReadKeywords(TypedDict, total=False):
+    """The keywords of `read_robot`, for the audit of a file."""
+
+    engine: Engine | None
+    forward: Literal["+x", "-x", "+y", "-y"] | None
+    model: str | None
+    mesh: MeshRule
+    missing: Literal["leave_out", "refuse"]
+    tracks: Collection[str]
+    ground_friction: float | None
+    tolerance: float
+    scale: float | None
+    trusted: bool
+    packages: Mapping[str, str | os.PathLike[str]] | None
+    arguments: Mapping[str, str] | None
+
+
+class Subject(NamedTuple):
+    """What is audited.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    reading : Reading, optional
+        What was read, if it is of a file.
+    floors : mapping of float to float, optional
+        [-] The friction with the floor of each of `FLOORS`; None if that of the floor is given.
+    """
+
+    robot: Robot
+    reading: Reading | None = None
+    floors: Mapping[float, float] | None = None
 
 
 def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
@@ -140,28 +192,6 @@ def _mm(length: float) -> str:
     return f"{1e3 * length:.0f} mm"
 
 
-FLOORS = (0.5, 1.0)
-"""[-] Range of the coefficient of the floor's own surface, if no floor is given."""
-
-_FRICTION = "terrain.friction"
-_MOST_FROM_FLOORS = 0.05
-"""[-] Floors that change the friction by less than this fraction do not determine it."""
-
-_ROUNDED = 0.1
-"""[-] Relative error of a friction or a torque that a file states."""
-
-
-SPEEDS = (0.1, 1.0 / 3.0, 1.0)
-"""[-] Fractions of the speed of an audit: what a fast robot jumps over, a slow one may not."""
-
-_TIMES = tuple((1.0 / part + 2.0) / 3.0 for part in SPEEDS)
-"""[-] Factors of the longest time: at the slowest speed enough to drive six lengths of the robot.
-They grow less than the speed falls, because runs that rattle until the end cost most."""
-
-_SIZE = 0.05
-"""[-] Relative error of the size of an obstacle."""
-
-
 def vary_of(drive: Drive | None = None) -> Ranges:
     """Return what differs from run to run by default.
 
@@ -169,44 +199,43 @@ def vary_of(drive: Drive | None = None) -> Ranges:
     a tenth, a third and all of it in turn, with the longer time the slower, unless a schedule says
     how fast to drive.
     """
-    found = of_start() | of_contact() | of_field() | _of_size()
-    return found if drive is not None and drive.schedule else found | _of_speed()
-
-
-def _of_speed() -> Ranges:
+    sizes = [f"terrain.{name}" for name in ("height", "rise", "radius", "width")]
+    source = "whether a robot gets over must not depend on a millimetre"
+    within = scaled(1.0 - _SIZE, 1.0 + _SIZE)
+    found = of_start() | of_contact() | of_field()
+    found |= Ranges(dict.fromkeys(sizes, within), dict.fromkeys(sizes, source), sizes)
+    if drive is not None and drive.schedule:
+        return found
     speeds = {
         "drive.speed": Levels(SPEEDS, spread=0.02),
         "duration": Levels(_TIMES, along="drive.speed"),
     }
-    said = {
+    sources = {
         "drive.speed": "a tenth, a third and all of it in turn, each within 2 %",
         "duration": "4, 5/3 and 1 times: the slowest has time for six of its lengths",
     }
-    return Ranges(speeds, said, speeds)
+    return found | Ranges(speeds, sources, speeds)
 
 
-def _of_size() -> Ranges:
-    sizes = [f"terrain.{name}" for name in ("height", "rise", "radius", "width")]
-    within = scaled(1.0 - _SIZE, 1.0 + _SIZE)
-    source = "whether a robot gets over must not depend on a millimetre"
-    return Ranges(dict.fromkeys(sizes, within), dict.fromkeys(sizes, source), sizes)
-
-
-def unknown_of(robot: Robot, *, with_friction: bool) -> Ranges:
-    """Return the unknowns of a robot that was not read from a file.
+def unknown_of(subject: Subject, *, with_friction: bool) -> Ranges:
+    """Return the unknowns of a subject.
 
     Parameters
     ----------
-    robot : Robot
-        A preset, whose ranges rest on its sources, or any other robot.
+    subject : Subject
+        A preset, whose ranges rest on its sources; any other robot; or what was read of a file.
     with_friction : bool
-        Whether the floor is not known either.
+        Whether the floor is unknown, too: terrains of the user keep their own friction.
     """
-    found = of_robot(robot)
+    if subject.reading is not None:
+        return unknown_of_file(subject.reading, subject.floors, with_friction=with_friction)
+    found = of_robot(subject.robot)
     return found | of_ground() if with_friction else found
 
 
-def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> Ranges:
+def unknown_of_file(
+    reading: Reading, floors: Mapping[float, float] | None, *, with_friction: bool = True
+) -> Ranges:
     """Return the unknowns of a robot that was read from a file.
 
     What the file states has a narrow range: a tenth of torque and friction, 2 % of the axle
@@ -221,82 +250,41 @@ def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> R
         What was read.
     floors : mapping of float to float, optional
         The friction with the floor of each of `FLOORS`; None: that of the floor is given.
+    with_friction : bool
+        See `unknown_of`.
     """
-    ranges: dict[str, tuple[Distribution, str]] = {}
-    at = reading.sources["robot.center_of_mass"]
+    ranges: dict[str, Distribution] = {}
+    sources: dict[str, str] = {}
+
+    def add(path: str, distribution: Distribution, source: str) -> None:
+        ranges[path], sources[path] = distribution, source
+
+    stated, about = reading.sources, scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
     slack = "2 % of the axle distance for what is mounted or left off"
     for axis in (0, 1):
         place = shifted(-0.02, 0.02, of="robot.outline.axle_distance")
-        ranges[f"robot.center_of_mass[{axis}]"] = place, f"{at}; {slack}"
-    torque = reading.sources["robot.drivetrain.max_torque"]
+        source = f"{stated['robot.center_of_mass']}; {slack}"
+        add(f"robot.center_of_mass[{axis}]", place, source)
+    torque = stated["robot.drivetrain.max_torque"]
     if torque.startswith("estimate"):
-        ranges["robot.drivetrain.max_torque"] = scaled(0.5, 2.0), f"{torque}; half to twice"
+        add("robot.drivetrain.max_torque", scaled(0.5, 2.0), f"{torque}; half to twice")
     else:
-        part = scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
-        ranges["robot.drivetrain.max_torque"] = part, f"{torque}; a tenth"
+        add("robot.drivetrain.max_torque", about, f"{torque}; a tenth")
     if reading.robot.belly is not None:
-        source = f"{reading.sources['robot.belly']}; a twentieth of the radius"
         height = shifted(-0.05, 0.05, of="robot.outline.front_radius")
-        ranges["robot.belly[*][1]"] = height, source
-    if floors is None or _spread(floors) <= _MOST_FROM_FLOORS * reading.friction:
-        part = scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
-        ranges[_FRICTION] = part, f"{reading.sources['friction']}; a tenth"
-    else:
-        low, high = min(floors.values()), max(floors.values())
-        source = (
-            f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no file of a robot states, combined"
-            f" by the rule of {reading.engine} with {reading.sources['friction']}"
-        )
-        ranges[_FRICTION] = uniform(low, high), source
-    return Ranges(
-        {path: distribution for path, (distribution, _) in ranges.items()},
-        {path: source for path, (_, source) in ranges.items()},
-    )
-
-
-def without_friction(ranges: Ranges) -> Ranges:
-    """Leave out the friction of the floor: terrains of the user keep their own."""
-    kept: dict[str, Any] = {path: each for path, each in ranges.items() if path != _FRICTION}
-    return Ranges(kept, {path: ranges.sources[path] for path in kept if path in ranges.sources})
-
-
-def _spread(floors: Mapping[float, float]) -> float:
-    return max(floors.values()) - min(floors.values())
-
-
-class ReadKeywords(TypedDict, total=False):
-    """The keywords of `read_robot`, for the audit of a file."""
-
-    engine: Engine | None
-    forward: Literal["+x", "-x", "+y", "-y"] | None
-    model: str | None
-    mesh: MeshRule
-    missing: Literal["leave_out", "refuse"]
-    tracks: Collection[str]
-    ground_friction: float | None
-    tolerance: float
-    scale: float | None
-    trusted: bool
-    packages: Mapping[str, str | os.PathLike[str]] | None
-    arguments: Mapping[str, str] | None
-
-
-class Subject(NamedTuple):
-    """What is audited.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    reading : Reading, optional
-        What was read, if it is of a file.
-    floors : mapping of float to float, optional
-        [-] The friction with the floor of each of `FLOORS`; None if that of the floor is given.
-    """
-
-    robot: Robot
-    reading: Reading | None = None
-    floors: Mapping[float, float] | None = None
+        source = f"{stated['robot.belly']}; a twentieth of the radius"
+        add("robot.belly[*][1]", height, source)
+    if with_friction:
+        low, high = (0.0, 0.0) if floors is None else (min(floors.values()), max(floors.values()))
+        if high - low <= _MOST_FROM_FLOORS * reading.friction:
+            add("terrain.friction", about, f"{stated['friction']}; a tenth")
+        else:
+            source = (
+                f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no file of a robot states,"
+                f" combined by the rule of {reading.engine} with {stated['friction']}"
+            )
+            add("terrain.friction", uniform(low, high), source)
+    return Ranges(ranges, sources)
 
 
 def subject_of(robot: object, how: ReadKeywords) -> Subject:

@@ -69,19 +69,19 @@ def rest_of(audit: AuditRecord) -> str:
 def _robot(audit: AuditSetup) -> Iterator[str]:
     read = audit.reading
     yield words.subject(audit)
-    yield from _wrapped(words.reservation(audit), 0)
-    yield from _wrapped(words.robot_sentence(audit))
+    yield from _wrap(words.reservation(audit), 0)
+    yield from _wrap(words.robot_sentence(audit))
     if read is not None:
         names = ", ".join(path.removeprefix("robot.") for path in read.sources.estimates)
-        yield from _wrapped(f"estimates, not stated in the file: {names or 'none'}")
+        yield from _wrap(f"estimates, not stated in the file: {names or 'none'}")
         for note in read.notes:
-            yield from _wrapped(f"note: {note}")
+            yield from _wrap(f"note: {note}")
     yield "  unknown, and drawn for every sample:" if audit.unknown else "  nothing is unknown"
     sources = audit.unknown.sources if isinstance(audit.unknown, Ranges) else {}
     for path, distribution in audit.unknown.items():
         source = f" [{sources[path]}]" if path in sources else ""
         text = f"{path.removeprefix('robot.')}: {words.range_of(path, distribution)}{source}"
-        yield from _wrapped(text, 4)
+        yield from _wrap(text, 4)
 
 
 def lint_of(lint: Sequence[Finding], title: str = "Lint") -> Iterator[str]:
@@ -89,7 +89,7 @@ def lint_of(lint: Sequence[Finding], title: str = "Lint") -> Iterator[str]:
     yield title if lint else "Lint: nothing found"
     for each in lint:
         where = f" [{each.where}]" if each.where else ""
-        yield from _wrapped(f"{each.severity}, {each.rule}: {each.what}{where}")
+        yield from _wrap(f"{each.severity}, {each.rule}: {each.what}{where}")
 
 
 def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
@@ -110,14 +110,14 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
             holds = words.holding_friction([p.friction for p in alike])
             deep = words.span([1e3 * p.depth for p in alike], ".1f")
             text = f"{deep} mm deep, by their walls alone they hold {holds}"
-        yield from _wrapped(f"{carrier}: {what}, {text}")
+        yield from _wrap(f"{carrier}: {what}, {text}")
 
 
 def _verdicts(audit: AuditSetup) -> Iterator[str]:
-    yield from _wrapped(f"Verdicts: {words.population(audit)}", 0)
-    yield from _wrapped("runs over an obstacle stop as soon as its verdict is certain")
+    yield from _wrap(f"Verdicts: {words.population(audit)}", 0)
+    yield from _wrap("runs over an obstacle stop as soon as its verdict is certain")
     belt = f"belt: {audit.belt.reason}; not simulated (-) where the robot clears"
-    yield from _wrapped(belt)
+    yield from _wrap(belt)
     yield _row(audit, words.VERDICT_HEAD)
 
 
@@ -128,25 +128,25 @@ def _row(audit: AuditSetup, cells: Sequence[str]) -> str:
 
 
 def _jams(audit: AuditRecord) -> Iterator[str]:
-    yield from _wrapped(words.missing_results(audit))
+    yield from _wrap(words.missing_results(audit))
     jammed = [each for each in audit.verdicts if each.where]
     if jammed:
         yield "  where it is jammed, how often at each speed, and how many a change frees there:"
         yield from _columns([words.JAM_HEAD, *map(words.jam_row, jammed)])
-        yield from _wrapped(words.wheel_names(audit))
+        yield from _wrap(words.wheel_names(audit))
 
 
 def _conclusion(audit: AuditRecord) -> Iterator[str]:
     for sentence in words.conclusion(audit):
-        yield from _wrapped(sentence, 0)
+        yield from _wrap(sentence, 0)
     if audit.repaired is not None:
         yield from _repairs(audit.repaired, audit.vary)
 
 
 def _repairs(found: RepairSearch, vary: Mapping[str, Any]) -> Iterator[str]:
-    yield from _wrapped(f"Repairs: {words.search_sentence(found, vary)}", 0)
+    yield from _wrap(f"Repairs: {words.search_sentence(found, vary)}", 0)
     for each in found.repairs:
-        yield from _wrapped(words.repair_sentence(each))
+        yield from _wrap(words.repair_sentence(each))
 
 
 def _columns(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
@@ -156,7 +156,7 @@ def _columns(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
         yield f"  {'  '.join(cells)}".rstrip()
 
 
-def _wrapped(text: str, indent: int = 2) -> list[str]:
+def _wrap(text: str, indent: int = 2) -> list[str]:
     return textwrap.wrap(
         text,
         _WIDTH,

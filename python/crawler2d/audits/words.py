@@ -56,6 +56,7 @@ __all__ = [
     "seizure",
     "span",
     "subject",
+    "unit_after",
     "verdict_row",
     "wheel_names",
     "wheels_per_side",
@@ -70,6 +71,8 @@ _UPRIGHT = 100.0
 """[-] Friction above which a wall is upright but for rounding: no surface has it."""
 
 JAM_HEAD = ("obstacle", "between wheels", "runs", "slow to fast", "friction", "freed there by")
+
+_SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
 
 
 def subject(audit: AuditSetup) -> str:
@@ -154,9 +157,6 @@ def run_count(table: xarray.Dataset) -> int:
     return int((table["outcome"] != "").sum())
 
 
-_SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
-
-
 def jam_row(each: Verdict) -> tuple[str, ...]:
     """Say where it is jammed, and what frees it, as `JAM_HEAD` says."""
     at = "" if math.isnan(each.friction[0]) else span(each.friction, ".2f").replace(" to ", "-")
@@ -177,8 +177,6 @@ def ending(run: Record) -> str:
 
 def wheel_names(audit: AuditRecord) -> str:
     """Say what the file calls the wheels between which it is jammed; "" if there are none."""
-    if audit.reading is None:
-        return ""
     names = names_of(audit.robot, audit.reading)
     bodies = {int(body) for each in audit.verdicts if each.where for body in each.where.split("-")}
     called = [f"{body} is {names[body]}" for body in sorted(bodies) if body in names]
@@ -239,7 +237,7 @@ def _under(assumed: Sequence[Assumption]) -> Iterator[str]:
     """Say how often the robot seizes under each assumption, and which verdicts depend on it."""
     heads = {
         "rotor": "With a real drive, which holds its speed and has rotors",
-        "restitution": "With restitution",
+        "restitution": "With rebound",
     }
     for name, head in heads.items():
         own = [each for each in assumed if each.assumption == name]
@@ -353,8 +351,7 @@ def confirmation(repair: Repair) -> str:
 
 def range_of(path: str, distribution: Distribution) -> str:
     """Write the range of a distribution in words, with the unit of its field."""
-    unit = unit_of(path)
-    own = "" if unit in (None, "1") else f" {unit}"
+    own = unit_after(path)
     match distribution:
         case Uniform(low, high) | LogUniform(low, high):
             return f"{low:g} to {high:g}{own}"
@@ -369,6 +366,12 @@ def range_of(path: str, distribution: Distribution) -> str:
             unit = f" of the {of}" if of else own
             return f"{distribution.low:+g} to {distribution.high:+g}{unit}"
     return str(distribution)
+
+
+def unit_after(path: str) -> str:
+    """Return the unit of a field with a space before it; "" if it has none."""
+    unit = unit_of(path)
+    return "" if unit in (None, "1") else f" {unit}"
 
 
 def holding_friction(frictions: Sequence[float]) -> str:

@@ -17,7 +17,7 @@ from pathlib import Path
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.drawings import draw_robot
-from crawler2d.drawings.svg import escaped
+from crawler2d.drawings.svg import escape
 from crawler2d.errors import Crawler2dError, ScenarioWarning
 from crawler2d.pictures.page import fill_page, read_part
 from crawler2d.reading.reading import Reading, read_robot
@@ -171,17 +171,17 @@ def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLE
     sections = []
     for name in dict.fromkeys(entry.path.parts[0] for entry in entries):
         own = [entry for entry in entries if entry.path.parts[0] == name]
-        licence = f'<p class="origin">{escaped(licence_of(folder / name))}</p>'
+        licence = f'<p class="origin">{escape(licence_of(folder / name))}</p>'
         cards = "".join(_card(entry) for entry in own if entry.reading is not None)
         cards += _refused([entry for entry in own if entry.reading is None])
-        sections.append(f"<section><h2>{escaped(name)}</h2>{licence}{cards}</section>")
+        sections.append(f"<section><h2>{escape(name)}</h2>{licence}{cards}</section>")
     return fill_page(
         "atlas.html",
         read_part("atlas.css", _HERE),
         "",
         _HERE,
         title="Atlas of tracked robots",
-        conclusion=escaped(_conclusion(entries)),
+        conclusion=escape(_conclusion(entries)),
         entries="\n".join(sections),
         how=f"each file read with default options, audited with {samples} samples of its unknowns",
     )
@@ -201,7 +201,7 @@ def _conclusion(entries: Sequence[Entry]) -> str:
 
 def _refused(entries: Sequence[Entry]) -> str:
     rows = "".join(
-        f"<li>{escaped(e.path.as_posix())}: <span>{escaped(e.refusal)}</span></li>" for e in entries
+        f"<li>{escape(e.path.as_posix())}: <span>{escape(e.refusal)}</span></li>" for e in entries
     )
     if not rows:
         return ""
@@ -209,20 +209,20 @@ def _refused(entries: Sequence[Entry]) -> str:
 
 
 def _card(entry: Entry) -> str:
-    name = f"<h3>{escaped(entry.path.as_posix())}</h3>"
+    name = f"<h3>{escape(entry.path.as_posix())}</h3>"
     reading, found = entry.reading, entry.audit
     assert reading is not None  # others are listed
     drawing = draw_robot(reading.robot, "side view", reading.silhouettes, width=300, height=200)
-    parts = [drawing, name, f"<p>{escaped(reading.in_words)}</p>"]
+    parts = [drawing, name, f"<p>{escape(reading.in_words)}</p>"]
     if found is None:
-        parts.append(f'<p class="bad">{escaped(entry.refusal)}</p>')
+        parts.append(f'<p class="bad">{escape(entry.refusal)}</p>')
         return f"<article>{''.join(parts)}</article>"
     look = "bad" if found.seizes else "good"
-    parts.append(f'<p class="{look}">{escaped(_verdict(entry))}</p>')
+    parts.append(f'<p class="{look}">{escape(_verdict(entry))}</p>')
     if found.repairs:
-        parts.append(f"<p>{escaped(words.repair_sentence(found.repairs[0]))}</p>")
+        parts.append(f"<p>{escape(words.repair_sentence(found.repairs[0]))}</p>")
     lint = "".join(
-        f"<li>{escaped(each.severity)}: {escaped(each.what)} {escaped(each.where)}</li>"
+        f"<li>{escape(each.severity)}: {escape(each.what)} {escape(each.where)}</li>"
         for each in found.lint
     )
     if lint:

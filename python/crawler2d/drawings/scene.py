@@ -33,10 +33,10 @@ __all__ = [
     "Extent",
     "Look",
     "Scene",
-    "closed",
+    "close_line",
     "extent_of",
     "inset",
-    "placed",
+    "place",
     "relative",
 ]
 
@@ -93,7 +93,7 @@ STYLES = {
 """Of figures and SVG; pages have the colours of their style sheet."""
 
 
-def placed(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+def place(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
     """[m] Points of a frame, shape (..., 2), moved by the poses of that frame, shape (..., 3)."""
     (x, y), (left, up, angle) = np.moveaxis(points, -1, 0), np.moveaxis(poses, -1, 0)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -107,7 +107,7 @@ def relative(poses: NDArray[np.float64], frames: NDArray[np.float64]) -> NDArray
     return np.column_stack([cosine * x + sine * y, cosine * y - sine * x, poses[:, 2] - angle])
 
 
-def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
+def close_line(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
     """[m] A polygon as a line that ends where it began."""
     return np.vstack([polygon, polygon[:1]])
 
@@ -295,7 +295,7 @@ class Scene:
 
     def outline(self, body: int, sample: int) -> NDArray[np.float64]:
         """[m] The closed outline of a body at a sample."""
-        return placed(closed(self.bodies["outline"][body]), self.poses[sample, body])
+        return place(close_line(self.bodies["outline"][body]), self.poses[sample, body])
 
     def outlines(self, sample: int) -> list[NDArray[np.float64]]:
         """[m] The closed outlines of all bodies that are seen at a sample."""
@@ -330,7 +330,7 @@ class Scene:
         low, high = float(y.min()) - float(radii.max()), float(y.max()) + reach
         for arm in arms:
             for *center, radius in arm.circles:
-                x, y = placed(np.array(center), arm.poses).T
+                x, y = place(np.array(center), arm.poses).T
                 left = min(left, float(x.min()) - radius - _MARGIN)
                 right = max(right, float(x.max()) + radius + _MARGIN)
                 low = min(low, float(y.min()) - radius)

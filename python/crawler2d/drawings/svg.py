@@ -20,7 +20,7 @@ __all__ = [
     "MARGIN",
     "Sheet",
     "draw_robot_on",
-    "escaped",
+    "escape",
     "robot_card",
     "scenario_card",
     "table",
@@ -33,7 +33,7 @@ _WIDTH, _HEIGHT = 360.0, 220.0
 """[px] Largest drawing of a card."""
 
 
-def escaped(text: str) -> str:
+def escape(text: str) -> str:
     """Make any text harmless in HTML and valid in UTF-8."""
     return html.escape(text.encode("utf-8", "replace").decode())
 
@@ -41,7 +41,7 @@ def escaped(text: str) -> str:
 def table(rows: Iterable[tuple[str, str]]) -> str:
     """Write names with their values, one below the other; nothing if there are none."""
     body = "".join(
-        f"<tr><th>{escaped(name)}</th><td>{escaped(value)}</td></tr>" for name, value in rows
+        f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows
     )
     return f"<table><tbody>{body}</tbody></table>" if body else ""
 
@@ -97,12 +97,12 @@ class Sheet:
     def label(self, place: ArrayLike, text: str, look: str) -> None:
         """Write a text, its baseline at a point [m]."""
         x, y = self.pixels(place)
-        self._drawn.append(f'<text x="{x:.1f}" y="{y:.1f}" {look}>{escaped(text)}</text>')
+        self._drawn.append(f'<text x="{x:.1f}" y="{y:.1f}" {look}>{escape(text)}</text>')
 
     def svg(self, title: str = "") -> str:
         """Return one element; `title` says what it shows to those who cannot see it."""
         width, height = self._size
-        label = f' aria-label="{escaped(title)}"' if title else ""
+        label = f' aria-label="{escape(title)}"' if title else ""
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}"'
             f' viewBox="0 0 {width:.1f} {height:.1f}" role="img"{label}>'
@@ -202,7 +202,7 @@ def scenario_card(text: str, title: str, terrain: str) -> str:
 
 def _card(title: str, sheet: Sheet, rows: list[tuple[str, str]]) -> str:
     return (
-        f"<div><p><strong>{escaped(title)}</strong></p>"
+        f"<div><p><strong>{escape(title)}</strong></p>"
         '<div style="display: flex; flex-wrap: wrap; align-items: center; gap: 1.5em">'
         f"{sheet.svg()}{table(rows)}</div></div>"
     )

@@ -20,7 +20,7 @@ from crawler2d.drawings.scene import (
     Extent,
     Look,
     Scene,
-    closed,
+    close_line,
     extent_of,
 )
 
@@ -229,7 +229,7 @@ def _outline(scenario: dict[str, Any]) -> NDArray[np.float64]:
     """[m] The closed outline of the track as built: that of a belt."""
     robot = {**scenario["robot"], "track": {"kind": "belt"}, "flippers": None}
     geometry = _core.geometry(json.dumps({**scenario, "robot": robot}))
-    return closed(geometry["carriers"][0]["envelope"])
+    return close_line(geometry["carriers"][0]["envelope"])
 
 
 def _is_same(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:

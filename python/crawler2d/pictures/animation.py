@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,56 +26,75 @@ if TYPE_CHECKING:
     from crawler2d.drawings.scene import Extent, Scene
     from crawler2d.results.record import Record
 
-__all__ = ["Film", "animate", "checked_path", "palette_of", "write_film"]
+__all__ = ["Film", "animate", "palette_of"]
 
 # [s] How much longer the last frame is shown.
 _HOLD = 1.5
 # Few enough for small files, and enough for smooth lines in all colours.
 _COLORS = 63
-_SUFFIXES = (".gif", ".mp4")
+# In a wider view than this many lengths of the robot it would be too small.
+_WIDEST = 5.0
+# In the same lengths: size of a view that follows the robot.
+_WINDOW = (3.0, 1.6)
+# A longer film is a mistake.
+_MOST_FRAMES = 10_000
+# [inch] Width of the figure, which becomes `width` pixels wide.
+_FIGURE_WIDTH = 9.0
 
 
-def checked_path(path: str | os.PathLike[str]) -> Path:
-    """Refuse a path that does not say what to write."""
-    checked = Path(path)
-    if checked.suffix.lower() not in _SUFFIXES:
-        raise ScenarioError("path", str(path), f"must end in {' or '.join(_SUFFIXES)}")
-    return checked
+def animate(
+    run: Record,
+    path: str | os.PathLike[str],
+    *,
+    fps: float,
+    speed: float,
+    follow: bool | None,
+    width: int,
+    counted: Callable[[int], AbstractContextManager[Callable[[int], None]]],
+) -> Path:
+    """Write a run as a film; see `Run.animate`.
 
-
-def write_film(
-    path: Path, figure: Figure, show: Callable[[int], None], *, count: int, fps: float
-) -> None:
-    """Write a film; the file appears once it is complete.
-
-    Parameters
-    ----------
-    path : Path
-        Where to write it; its suffix says what.
-    figure : Figure
-        What is filmed, on a canvas of Agg.
-    show : callable
-        Draws a frame, by its number.
-    count : int
-        Number of frames.
-    fps : float
-        [1/s] Frames per second.
+    Given the number of frames, `counted` opens what is called with the number of frames drawn
+    since its last call. The file appears once it is complete.
     """
-    write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
-    with _completed(path) as partial:
-        write(partial, figure, show, count, fps)
-
-
-@contextmanager
-def _completed(path: Path) -> Iterator[Path]:
-    """Give a path beside another one, and put what was written there in its place in the end."""
+    path = Path(path)
+    write = {".gif": _write_gif, ".mp4": _write_mp4}.get(path.suffix.lower())
+    if write is None:
+        raise ScenarioError("path", str(path), "must end in .gif or .mp4")
+    fps = _in_range(fps, "fps", (1.0, 50.0))
+    speed = _in_range(speed, "speed", (1e-3, 1e3))
+    width = round(_in_range(width, "width", (200.0, 4000.0)))
+    start, end = float(run.time[0]), float(run.time[-1])
+    count = math.ceil((end - start) * fps / speed - 1e-9) + 1
+    if count > _MOST_FRAMES:
+        raise ScenarioError("speed", speed, f"must give at most {_MOST_FRAMES} frames, not {count}")
+    times = np.minimum(start + np.arange(count) * speed / fps, end)
+    film = Film(run, times, pace=speed, follow=follow, width=width)
     partial = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
-    partial.touch()  # here it fails if nothing can be written
-    try:
-        yield partial
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    shown = 0
+    with counted(count) as report:
+
+        def show(number: int) -> None:
+            nonlocal shown
+            film.show(number)
+            if number == shown:  # some are drawn twice, for the palette or to be held
+                shown += 1
+                report(1)
+
+        partial.touch()  # here it fails if nothing can be written
+        try:
+            write(partial, film.figure, show, count, fps)
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+    return path
+
+
+def _in_range(value: float, name: str, bounds: tuple[float, float]) -> float:
+    number = real_number(value, name)
+    if not bounds[0] <= number <= bounds[1]:
+        raise ScenarioError(name, value, f"must be from {bounds[0]:g} to {bounds[1]:g}")
+    return number
 
 
 def _write_gif(
@@ -91,8 +109,8 @@ def _write_gif(
         return images.fromarray(np.asarray(figure.canvas.buffer_rgba())[..., :3])
 
     probes = [np.asarray(shot(number)) for number in {0, count // 2, count - 1}]
-    plain = {"palette": palette_of(images, np.concatenate(probes)), "dither": images.Dither.NONE}
-    frames = (shot(number).quantize(**plain) for number in range(count))
+    options = {"palette": palette_of(images, np.concatenate(probes)), "dither": images.Dither.NONE}
+    frames = (shot(number).quantize(**options) for number in range(count))
     # A GIF counts in hundredths of a second; rounded like this they add up to the right time.
     ends = np.round(100.0 * np.arange(1, count + 1) / fps).astype(int)
     durations = 10 * np.diff(ends, prepend=0)
@@ -122,8 +140,8 @@ def _write_mp4(
     writers = extra("matplotlib.animation", "animation")
     options = {"savefig.bbox": "standard"}
     if not writers.FFMpegWriter.isAvailable():
-        brought = extra("imageio_ffmpeg", "animation")
-        options["animation.ffmpeg_path"] = brought.get_ffmpeg_exe()
+        ffmpeg = extra("imageio_ffmpeg", "animation")
+        options["animation.ffmpeg_path"] = ffmpeg.get_ffmpeg_exe()
     held = [count - 1] * round(fps * _HOLD)
     with matplotlib.rc_context(options):
         writer = writers.FFMpegWriter(fps=fps, codec="h264")
@@ -131,54 +149,6 @@ def _write_mp4(
             for number in [*range(count), *held]:
                 show(number)
                 writer.grab_frame()
-
-
-# In a wider view than this many lengths of the robot it would be too small.
-_WIDEST = 5.0
-# In the same lengths: size of a view that follows the robot.
-_WINDOW = (3.0, 1.6)
-# A longer film is a mistake.
-_MOST_FRAMES = 10_000
-# [inch] Width of the figure, which becomes `width` pixels wide.
-_FIGURE_WIDTH = 9.0
-
-
-def animate(
-    run: Record,
-    path: str | os.PathLike[str],
-    *,
-    fps: float,
-    speed: float,
-    follow: bool | None,
-    width: int,
-    counted: Callable[[int], AbstractContextManager[Callable[[int], None]]],
-) -> Path:
-    """Write a run as a film; see `Run.animate`.
-
-    Given the number of frames, `counted` opens what is told of each that has been drawn.
-    """
-    checked = checked_path(path)
-    fps = _in_range(fps, "fps", (1.0, 50.0))
-    speed = _in_range(speed, "speed", (1e-3, 1e3))
-    width = round(_in_range(width, "width", (200.0, 4000.0)))
-    start, end = float(run.time[0]), float(run.time[-1])
-    count = math.ceil((end - start) * fps / speed - 1e-9) + 1
-    if count > _MOST_FRAMES:
-        raise ScenarioError("speed", speed, f"must give at most {_MOST_FRAMES} frames, not {count}")
-    times = np.minimum(start + np.arange(count) * speed / fps, end)
-    film = Film(run, times, pace=speed, follow=follow, width=width)
-    shown = 0
-    with counted(count) as report:
-
-        def show(number: int) -> None:
-            nonlocal shown
-            film.show(number)
-            if number == shown:  # some are drawn twice, for the palette or to be held
-                shown += 1
-                report(1)
-
-        write_film(checked, film.figure, show, count=count, fps=fps)
-    return checked
 
 
 class Film:
@@ -266,10 +236,3 @@ def _window(
     size = min(size, most - least)
     starts = np.clip(middle - 0.5 * size, least, most - size)
     return np.column_stack([starts, starts + size])
-
-
-def _in_range(value: float, name: str, bounds: tuple[float, float]) -> float:
-    number = real_number(value, name)
-    if not bounds[0] <= number <= bounds[1]:
-        raise ScenarioError(name, value, f"must be from {bounds[0]:g} to {bounds[1]:g}")
-    return number

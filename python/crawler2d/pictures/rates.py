@@ -33,34 +33,6 @@ __all__ = [
 _SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
 """Factor and unit in which people read a quantity."""
 
-
-def readable(values: xarray.DataArray) -> tuple[float, str]:
-    """Return the factor to the unit in which people read an array, and its name with that unit."""
-    given = values.attrs.get("units", "")
-    factor, unit = _SCALES.get(given, (1.0, given))
-    name = str(values.attrs.get("long_name", values.name))
-    return factor, name if unit in ("", "1") else f"{name} [{unit}]"
-
-
-def populations(attributes: Mapping[str, Any], *, banded: bool, what: str = "rates") -> str:
-    """Say what rates are rates of, in the words of a figure's title."""
-    varied = _named(attributes.get("vary", attributes.get("varied", "")))
-    text = f"{what} over {varied}" if varied else f"{what} of equal runs"
-    unknown = _named(attributes.get("unknown", ""))
-    if banded:
-        return f"{text};\nmedian and 5 to 95 % over {unknown}"
-    kind = attributes.get("interval", "")
-    level = attributes.get("confidence_level")
-    return f"{text}\n{kind} intervals, {100 * level:.0f} %" if level else text
-
-
-def _named(text: str) -> str:
-    """Name the fields of ``path: distribution; path: distribution``."""
-    paths = [part.partition(":")[0] for part in text.split("; ") if part]
-    names = [re.sub(r"\[[^\]]*\]", "", path.rpartition(".")[2]) for path in paths]
-    return ", ".join(dict.fromkeys(name.replace("_", " ") for name in names))
-
-
 _COLORS = {
     "cleared": GREEN,
     "seized": RED,
@@ -78,23 +50,74 @@ _ROW, _REST = 0.28, 1.5
 _BETWEEN = 1.5
 """[-] Bars that would fit between one ground and the next."""
 
-
 _LEGEND = 22.0
 """[point] Height of the legend, which stands between bars and title."""
 
+_CLEARED, _OTHERWISE = "cleared", "otherwise"
 
-def plot_outcomes(found: xarray.Dataset, ax: Axes | None) -> Axes:
+_FAINT = 0.45
+"""[-] Opacity of what was not simulated."""
+
+_HATCH = "////"
+"""Hatching of what is not certain."""
+
+_BELOW = 46.0 / 72.0
+"""[inch] From the axes to the legend, past ticks and label."""
+
+_MEASURE_ROW, _MEASURE_REST = 0.5, 1.7
+"""[inch] Height of the row of a model, and of what is above and below all of them."""
+
+_WIDE = 26
+"""Characters of a line of a label."""
+
+_UNCHANGED = "unchanged"
+
+_STYLES = ((ORANGE, "D"), (GREEN, "s"), (RED, "^"))
+"""Of the evidence: what was measured with each change."""
+
+_DOWN = 0.26
+"""[-] How far below its model the evidence is drawn, in rows."""
+
+
+def readable(values: xarray.DataArray) -> tuple[float, str]:
+    """Return the factor to the unit in which people read an array, and its name with that unit."""
+    given = values.attrs.get("units", "")
+    factor, unit = _SCALES.get(given, (1.0, given))
+    name = str(values.attrs.get("long_name", values.name))
+    return factor, name if unit in ("", "1") else f"{name} [{unit}]"
+
+
+def populations(attributes: Mapping[str, Any], *, banded: bool, what: str = "rates") -> str:
+    """Say in a title over what the rates are taken."""
+    varied = _field_names(attributes.get("vary", attributes.get("varied", "")))
+    text = f"{what} over {varied}" if varied else f"{what} of equal runs"
+    unknown = _field_names(attributes.get("unknown", ""))
+    if banded:
+        return f"{text};\nmedian and 5 to 95 % over {unknown}"
+    kind = attributes.get("interval", "")
+    level = attributes.get("confidence_level")
+    return f"{text}\n{kind} intervals, {100 * level:.0f} %" if level else text
+
+
+def _field_names(text: str) -> str:
+    """Name the fields of ``path: distribution; path: distribution``."""
+    paths = [part.partition(":")[0] for part in text.split("; ") if part]
+    names = [re.sub(r"\[[^\]]*\]", "", path.rpartition(".")[2]) for path in paths]
+    return ", ".join(dict.fromkeys(name.replace("_", " ") for name in names))
+
+
+def plot_outcomes(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw a bar for each ground and model: how its runs ended, and its rate."""
     dims = ("terrain", "model")
-    found = found.expand_dims([dim for dim in dims if dim not in found["rate"].dims])
-    ended = sorted((str(name) for name in found if str(name).startswith("ended_")), key=_rank)
-    banded = "band_low" in found
-    counts = [found[name].sum("sample") if banded else found[name] for name in ended]
+    data = data.expand_dims([dim for dim in dims if dim not in data["rate"].dims])
+    ended = sorted((str(name) for name in data if str(name).startswith("ended_")), key=_rank)
+    banded = "band_low" in data
+    counts = [data[name].sum("sample") if banded else data[name] for name in ended]
     parts = [count.transpose(*dims).to_numpy().ravel() for count in counts]
     figures = ("band_median", "band_low", "band_high") if banded else ("rate", "low", "high")
-    rates = zip(*(found[name].transpose(*dims).to_numpy().ravel() for name in figures), strict=True)
+    rates = zip(*(data[name].transpose(*dims).to_numpy().ravel() for name in figures), strict=True)
     runs = np.sum(parts, axis=0)
-    grounds, models = (found[dim].to_numpy().tolist() for dim in dims)
+    grounds, models = (data[dim].to_numpy().tolist() for dim in dims)
     at = np.arange(runs.size) + _BETWEEN * np.repeat(np.arange(len(grounds)), len(models))
     ax = axes_or_new(ax, (8.0, _ROW * (at[-1] + 2.0) + _REST))
     left = np.zeros(runs.size)
@@ -120,7 +143,7 @@ def plot_outcomes(found: xarray.Dataset, ax: Axes | None) -> Axes:
         bbox_to_anchor=(0.0, 1.0),
         frameon=False,
     )
-    title = populations(found.attrs, banded=banded)
+    title = populations(data.attrs, banded=banded)
     ax.set_title(title, loc="left", fontsize="small", pad=_LEGEND)
     return ax
 
@@ -131,32 +154,21 @@ def _rank(name: str) -> int:
     return outcomes.index(outcome) if outcome in outcomes else len(outcomes)
 
 
-_CLEARED, _OTHERWISE = "cleared", "otherwise"
-_FAINT = 0.45
-"""[-] Opacity of what was not simulated."""
-
-_HATCH = "////"
-"""Hatching of what is not certain."""
-
-_BELOW = 46.0 / 72.0
-"""[inch] From the axes to the legend, past ticks and label."""
-
-
-def plot_map(found: xarray.Dataset, ax: Axes | None) -> Axes:
+def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw how most runs of every cell end: hatched if not certain, faint if not simulated."""
-    found = one_model(found)
-    ending = found["ending"]
+    data = one_model(data)
+    ending = data["ending"]
     if ending.ndim != 2:
         raise ScenarioError("plot", str(ending.dims), "must have both fields of the map")
     y, x = map(str, ending.dims)
     ax = axes_or_new(ax, (8.0, 6.0))
-    (scale_x, label_x), (scale_y, label_y) = readable(found[x]), readable(found[y])
-    at = scale_x * found[x].to_numpy(), scale_y * found[y].to_numpy()
-    colors = {_OTHERWISE: GRAY, found.attrs["outcome"]: RED, _CLEARED: GREEN}
+    (scale_x, label_x), (scale_y, label_y) = readable(data[x]), readable(data[y])
+    at = scale_x * data[x].to_numpy(), scale_y * data[y].to_numpy()
+    colors = {_OTHERWISE: GRAY, data.attrs["outcome"]: RED, _CLEARED: GREEN}
     kinds = list(colors)
     numbers = np.vectorize(kinds.index)(ending.to_numpy())
-    guessed = np.isfinite(found["around"].to_numpy())
-    unsure = found["unsure"].to_numpy()
+    guessed = np.isfinite(data["around"].to_numpy())
+    unsure = data["unsure"].to_numpy()
     scale: dict[str, Any] = {
         "cmap": extra("matplotlib.colors", "plot").ListedColormap(list(colors.values())),
         "vmin": -0.5,
@@ -169,25 +181,25 @@ def plot_map(found: xarray.Dataset, ax: Axes | None) -> Axes:
         others = (guessed != faint) | (unsure != hatched)
         ax.pcolor(*at, np.ma.masked_array(numbers, others), **scale, **style)
     ax.set(xlabel=label_x, ylabel=label_y)
-    banded = "band_low" in found
-    title = populations(found.attrs, banded=banded, what="how most runs end,")
-    label = f"{found['model'].item()}\n" if "model" in found.coords else ""
-    text = f"{label}{title}\n{_known(found, banded=banded)}"
+    banded = "band_low" in data
+    title = populations(data.attrs, banded=banded, what="how most runs end,")
+    label = f"{data['model'].item()}\n" if "model" in data.coords else ""
+    text = f"{label}{title}\n{_certainty(data, banded=banded)}"
     ax.set_title(text, loc="left", fontsize="small", parse_math=False)
     own = {name: color for name, color in colors.items() if (ending == name).any()}
     _legend(ax, own, guessed=bool(guessed.any()), unsure=bool(unsure.any()), banded=banded)
     return ax
 
 
-def _known(found: xarray.Dataset, *, banded: bool) -> str:
+def _certainty(data: xarray.Dataset, *, banded: bool) -> str:
     """Say how many runs stand behind a cell, and how well its rate is known."""
-    counts = found["count"].to_numpy()
+    counts = data["count"].to_numpy()
     counts = counts[counts > 0]
     least, most = int(counts.min()), int(counts.max())
     each = "of each sample " if banded else ""
     runs = f"{least} runs" if least == most else f"{least} to {most} runs"
-    widths = (found["high"] - found["low"]).to_numpy()
-    widest = float(np.nanmax(np.where(found["count"].to_numpy() > 0, widths, np.nan)))
+    widths = (data["high"] - data["low"]).to_numpy()
+    widest = float(np.nanmax(np.where(data["count"].to_numpy() > 0, widths, np.nan)))
     return f"{runs} {each}a cell; intervals of a rate up to {widest:.2f} wide"
 
 
@@ -222,7 +234,7 @@ def legend_below(ax: Axes, **options: Any) -> None:
     )
 
 
-def one_model(found: xarray.Dataset) -> xarray.Dataset:
+def one_model(data: xarray.Dataset) -> xarray.Dataset:
     """Return a data set of one model without that dimension.
 
     Raises
@@ -230,30 +242,19 @@ def one_model(found: xarray.Dataset) -> xarray.Dataset:
     ScenarioError
         If it has several.
     """
-    if found.sizes.get("model", 1) > 1:
-        models = ", ".join(map(str, found["model"].to_numpy()))
+    if data.sizes.get("model", 1) > 1:
+        models = ", ".join(map(str, data["model"].to_numpy()))
         rule = "must have one model: found.sel(model=...).plot()"
         raise ScenarioError("plot", models, rule)
-    return found.squeeze("model") if "model" in found.dims else found
+    return data.squeeze("model") if "model" in data.dims else data
 
 
-_MEASURE_ROW, _MEASURE_REST = 0.5, 1.7
-"""[inch] Height of the row of a model, and of what is above and below all of them."""
-_WIDE = 26
-"""Characters of a line of a label."""
-_UNCHANGED = "unchanged"
-_STYLES = ((ORANGE, "D"), (GREEN, "s"), (RED, "^"))
-"""Of the evidence: what was measured with each change."""
-_DOWN = 0.26
-"""[-] How far below its model the evidence is drawn, in rows."""
-
-
-def plot_measured(found: xarray.Dataset, ax: Axes | None, *, of: str | None = None) -> Axes:
+def plot_measured(data: xarray.Dataset, ax: Axes | None, *, of: str | None = None) -> Axes:
     """Draw a row for each model: the median, how far the repeats lie apart, and the evidence.
 
     Parameters
     ----------
-    found : Dataset
+    data : Dataset
         What a study measured.
     ax : Axes or None
         Where to draw.
@@ -265,47 +266,47 @@ def plot_measured(found: xarray.Dataset, ax: Axes | None, *, of: str | None = No
     ScenarioError
         If there is no such measure.
     """
-    name = found.attrs["measure"] if of is None else of
-    if f"{name}_each" not in found:
-        known = [str(key)[:-5] for key in found if str(key).endswith("_each")]
+    name = data.attrs["measure"] if of is None else of
+    if f"{name}_each" not in data:
+        known = [str(key)[:-5] for key in data if str(key).endswith("_each")]
         raise ScenarioError("of", name, f"must be one of {', '.join(known)}")
-    if "model" not in found.dims:
-        found = found.expand_dims("model")
-    models = [str(label) for label in found["model"].to_numpy()]
+    if "model" not in data.dims:
+        data = data.expand_dims("model")
+    models = [str(label) for label in data["model"].to_numpy()]
     ax = axes_or_new(ax, (8.0, _MEASURE_ROW * len(models) + _MEASURE_REST))
-    factor, label = readable(found[name])
-    banded, place = f"{name}_band_low" in found, ax.get_yaxis_transform()
-    others = [d for d in found[name].dims if d not in ("model", "sample")]  # standing, driving
+    factor, label = readable(data[name])
+    banded, place = f"{name}_band_low" in data, ax.get_yaxis_transform()
+    others = [d for d in data[name].dims if d not in ("model", "sample")]  # standing, driving
     if others:
-        for part, (color, marker) in zip(found[others[0]].to_numpy(), _STYLES, strict=False):
-            own = found.sel({others[0]: part})
+        for part, (color, marker) in zip(data[others[0]].to_numpy(), _STYLES, strict=False):
+            own = data.sel({others[0]: part})
             _draw(ax, own, name, factor, (color, marker, str(part)))
     else:
-        _draw(ax, found, name, factor, (BLUE, "o", _UNCHANGED))
-        _draw_evidence(ax, found, name, factor)
+        _draw(ax, data, name, factor, (BLUE, "o", _UNCHANGED))
+        _draw_evidence(ax, data, name, factor)
     for row in range(len(models)):
-        text = "\n".join(_notes(found.isel(model=row), name))
+        text = "\n".join(_notes(data.isel(model=row), name))
         ax.text(1.01, row, text, transform=place, fontsize="x-small", va="center")
     ax.set_yticks(range(len(models)), [textwrap.fill(text, _WIDE) for text in models])
     ax.set(ylim=(len(models) - 0.5, -0.5), xlabel=label)
-    _set_scale(ax, found, name)
+    _set_scale(ax, data, name)
     ax.grid(axis="x", alpha=0.3)
     ax.spines[["top", "right"]].set_visible(False)
-    ax.set_title(_title(found, banded=banded), loc="left", fontsize="small")
+    ax.set_title(_title(data, banded=banded), loc="left", fontsize="small")
     if len(ax.get_legend_handles_labels()[1]) > 1:
         ax.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 0.0), frameon=False)
     return ax
 
 
 def _draw(
-    ax: Axes, found: xarray.Dataset, name: str, factor: float, style: tuple[str, str, str]
+    ax: Axes, data: xarray.Dataset, name: str, factor: float, style: tuple[str, str, str]
 ) -> None:
     """Draw medians and how far the repeats, or the samples of the unknowns, lie apart."""
     color, marker, label = style
-    banded = f"{name}_band_low" in found
+    banded = f"{name}_band_low" in data
     keys = [f"{name}_band_{part}" for part in ("median", "low", "high")]
     middle, low, high = (
-        factor * found[key].to_numpy()
+        factor * data[key].to_numpy()
         for key in (keys if banded else (name, f"{name}_low", f"{name}_high"))
     )
     rows = np.arange(middle.size)
@@ -313,15 +314,15 @@ def _draw(
     ax.plot(middle, rows, color=color, marker=marker, linestyle="", label=label, zorder=3)
 
 
-def _draw_evidence(ax: Axes, found: xarray.Dataset, name: str, factor: float) -> None:
+def _draw_evidence(ax: Axes, data: xarray.Dataset, name: str, factor: float) -> None:
     """Draw the medians with each change as fainter points, a little below."""
     evidence = f"{name}_with"
-    if evidence not in found:
+    if evidence not in data:
         return
-    key = f"{evidence}_band_median" if f"{evidence}_band_median" in found else evidence
-    changes = [str(each) for each in found["change"].to_numpy() if each != _UNCHANGED]
+    key = f"{evidence}_band_median" if f"{evidence}_band_median" in data else evidence
+    changes = [str(each) for each in data["change"].to_numpy() if each != _UNCHANGED]
     for index, (change, (color, marker)) in enumerate(zip(changes, _STYLES, strict=False)):
-        values = factor * found[key].sel(change=change).to_numpy()
+        values = factor * data[key].sel(change=change).to_numpy()
         rows = np.arange(values.size) + _DOWN + 0.07 * (index - 1)
         look: dict[str, Any] = {"color": color, "marker": marker, "markersize": 4.5, "alpha": 0.6}
         ax.plot(values, rows, linestyle="", label=change, **look)
@@ -333,14 +334,14 @@ def _notes(own: xarray.Dataset, name: str) -> list[str]:
         return [f"drove {own['moved'].sel(motion='driving').item():.2f} m"]
     ended = own["ended"].sel(change=_UNCHANGED) if "change" in own.dims else own["ended"]
     if "limit" not in own:
-        return [_counted("", ended)]
-    notes = [_counted("limit: ", own["limit"])]
+        return [_tally("", ended)]
+    notes = [_tally("limit: ", own["limit"])]
     if not np.isfinite(own[name].to_numpy()).all():
-        notes.append(_counted("no figure: ", ended))
+        notes.append(_tally("no figure: ", ended))
     return notes
 
 
-def _counted(before: str, words: xarray.DataArray) -> str:
+def _tally(before: str, words: xarray.DataArray) -> str:
     """Write a word, or the words of all samples with how many have each."""
     counts = Counter(str(word).replace("_", " ") for word in np.atleast_1d(words.to_numpy()))
     if len(counts) == 1:
@@ -349,22 +350,22 @@ def _counted(before: str, words: xarray.DataArray) -> str:
     return textwrap.fill(f"{before}{', '.join(listed)} of {counts.total()}", _WIDE)
 
 
-def _set_scale(ax: Axes, found: xarray.Dataset, name: str) -> None:
+def _set_scale(ax: Axes, data: xarray.Dataset, name: str) -> None:
     """Take logarithms of a real-time factor, with a line at real time; begin others at 0."""
-    if found.attrs["figure"] == "real_time_factor":
+    if data.attrs["figure"] == "real_time_factor":
         ax.set_xscale("log")
         ax.axvline(1.0, color=GRAY, linewidth=1.0, zorder=0)
         return
-    values = found[f"{name}_each"].to_numpy()
+    values = data[f"{name}_each"].to_numpy()
     if not (values < 0.0).any():
         ax.set_xlim(left=0.0)
     else:
         ax.axvline(0.0, color=BLACK, linewidth=0.8, zorder=0)
 
 
-def _title(found: xarray.Dataset, *, banded: bool) -> str:
+def _title(data: xarray.Dataset, *, banded: bool) -> str:
     """Say what was varied, and what the lines are."""
-    attributes: dict[str, Any] = found.attrs
+    attributes: dict[str, Any] = data.attrs
     repeats = attributes["repeats"]
     if attributes["figure"] == "real_time_factor":
         return (

@@ -10,7 +10,7 @@ import numpy as np
 
 from crawler2d.common.bodies import POSE_COLUMNS, body_poses
 from crawler2d.common.extras import extra
-from crawler2d.drawings.scene import BLUE, RED, VIOLET, Look, Scene, closed, placed, relative
+from crawler2d.drawings.scene import BLUE, RED, VIOLET, Look, Scene, close_line, place, relative
 from crawler2d.results.diagnosis import trial_text
 from crawler2d.results.outcome import TRIALS
 
@@ -223,8 +223,8 @@ class Envelopes:
         """Move them to a sample."""
         for carrier, line, clip in self._drawn:
             pose = carrier.poses[sample]
-            line.set_data(*placed(closed(carrier.envelope), pose).T)
-            clip.set_xy(placed(carrier.inner, pose))
+            line.set_data(*place(close_line(carrier.envelope), pose).T)
+            clip.set_xy(place(carrier.inner, pose))
 
 
 def draw_edges(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
@@ -265,8 +265,8 @@ class Ghost:
 
     Parameters
     ----------
-    change, said, meaning : str
-        What was changed; the same and what came of it; what that change is.
+    change, result, meaning : str
+        What was changed; the same with its result; what the change is.
     freed : bool
         Whether it freed the robot.
     from_the_start : bool
@@ -278,7 +278,7 @@ class Ghost:
     """
 
     change: str
-    said: str
+    result: str
     meaning: str
     freed: bool
     from_the_start: bool
@@ -291,18 +291,18 @@ def ghosts(run: Record) -> list[Ghost]:
     why = run.diagnosis
     if why is None:
         return []
-    said = {tried: text for tried in why.trials if (text := trial_text(why, tried))}
+    texts = {tried: text for tried in why.trials if (text := trial_text(why, tried))}
     return [
         Ghost(
             change=text.partition(":")[0],
-            said=text,
+            result=text,
             meaning=TRIALS[tried.name],
             freed=tried.freed,
             from_the_start=tried.is_from_the_start,
             is_belt=tried.name.startswith(("closed", "belt")),
             frames=frames,
         )
-        for (tried, text), frames in zip(said.items(), _frames(run, list(said)), strict=True)
+        for (tried, text), frames in zip(texts.items(), _frames(run, list(texts)), strict=True)
     ]
 
 
@@ -311,12 +311,12 @@ def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
     for carrier, frame in zip(scene.carriers, ghost.frames, strict=True):
         shoes = {body for body in carrier.bodies if scene.looks[body] == Look.SHOE}
         if shoes or (ghost.is_belt and not carrier.closed):
-            yield placed(closed(carrier.envelope), frame)
+            yield place(close_line(carrier.envelope), frame)
         for row in carrier.bodies:
             if row not in shoes:
                 (pose,) = relative(scene.poses[-1:, row], carrier.poses[-1:])
-                outline = placed(closed(scene.bodies["outline"][row]), pose)
-                yield placed(outline, frame)
+                outline = place(close_line(scene.bodies["outline"][row]), pose)
+                yield place(outline, frame)
 
 
 def _frames(run: Record, trials: list[TrialResult]) -> NDArray[np.float64]:

@@ -36,16 +36,29 @@ _GAP = 2.0
 _LABELS = 16
 """So many costs have room at the axis."""
 
+_ROW, _REST = 0.6, 1.6
+"""[inch] Height of an unknown, and of what is above and below all of them."""
 
-def plot_search(found: xarray.Dataset, ax: Axes | None) -> Axes:
+_BAR = 0.36
+"""[-] Of a row, the thickness of each of its two bars."""
+
+_COLORS = (BLUE, ORANGE, GREEN, RED, SKY, VIOLET, BLACK)
+
+_MARKERS = "osD^vPX"
+
+_APART = 0.06
+"""[-] Fraction of the figure's width that the points of all lines at one place take."""
+
+
+def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw every candidate at its cost and lowest rate; diamonds are the fresh runs of two."""
     ax = axes_or_new(ax, (8.0, 6.0))
-    two = [found.attrs["winner"], found.attrs["runner_up"]]
-    names = found["candidate"].to_numpy().tolist()
-    costs = found["cost"].to_numpy()
+    two = [data.attrs["winner"], data.attrs["runner_up"]]
+    names = data["candidate"].to_numpy().tolist()
+    costs = data["cost"].to_numpy()
     at = _places(costs, [name in two for name in names])
-    rounds = found["round"].to_numpy()
-    rate, low, high = _lowest(found, "rate", "low", "high")
+    rounds = data["round"].to_numpy()
+    rate, low, high = _lowest(data, "rate", "low", "high")
     for last, opacity, text in ((False, _FAINT, "left behind"), (True, 1.0, "in the last round")):
         chosen = (rounds == rounds.max()) == last
         label = f"{text}: {chosen.sum()}, rates of the search"
@@ -54,9 +67,9 @@ def plot_search(found: xarray.Dataset, ax: Axes | None) -> Axes:
         style: dict[str, Any] = {"color": BLUE, "alpha": opacity}
         ax.vlines(at[chosen], low[chosen], high[chosen], linewidth=1.2, **style)
         ax.plot(at[chosen], rate[chosen], "o", markersize=5.0, label=label, **style)
-    goal = found.attrs["at_least"]
+    goal = data.attrs["at_least"]
     ax.axhline(goal, color=BLACK, linestyle="--", linewidth=1.0, label=f"goal: {goal:g}")
-    again, lower, upper = _lowest(found, "confirmed_rate", "confirmed_low", "confirmed_high")
+    again, lower, upper = _lowest(data, "confirmed_rate", "confirmed_low", "confirmed_high")
     for role, name, color in zip(("winner", "runner-up"), two, (GREEN, ORANGE), strict=True):
         if name not in names:
             continue
@@ -65,25 +78,25 @@ def plot_search(found: xarray.Dataset, ax: Axes | None) -> Axes:
         text = f"{role}: {name}, fresh runs {again[k]:.3f} ({lower[k]:.3f} to {upper[k]:.3f})"
         ax.vlines(x, lower[k], upper[k], color=color, linewidth=2.5)
         ax.plot(x, again[k], "D", color=color, markersize=7.0, label=text, zorder=3)
-    several = found["terrain"].size > 1
+    several = data["terrain"].size > 1
     levels = np.unique(costs)[:: -(-np.unique(costs).size // _LABELS)]
     ax.set_xticks([at[costs == level].mean() for level in levels], [f"{v:g}" for v in levels])
     ax.set(
-        xlabel=found.attrs["objective"],
+        xlabel=data.attrs["objective"],
         ylabel="lowest rate of clearing over the terrains" if several else "rate of clearing",
         ylim=(-0.03, 1.03),
     )
     ax.grid(axis="y", alpha=0.3)
-    drawn = {**found.attrs, "vary": found.attrs["population"]}
+    drawn = {**data.attrs, "vary": data.attrs["population"]}
     title = f"{populations(drawn, banded=False)}; of fresh runs Wilson's"
     ax.set_title(title, loc="left", fontsize="small")
     legend_below(ax)
     return ax
 
 
-def _lowest(found: xarray.Dataset, *names: str) -> list[NDArray[np.float64]]:
+def _lowest(data: xarray.Dataset, *names: str) -> list[NDArray[np.float64]]:
     """Take a rate and its bounds on the terrain where each candidate's rate is lowest."""
-    columns = [found[name].to_numpy().reshape(found["candidate"].size, -1) for name in names]
+    columns = [data[name].to_numpy().reshape(data["candidate"].size, -1) for name in names]
     at = np.where(np.isnan(columns[0]), np.inf, columns[0]).argmin(axis=1)[:, None]
     return [np.take_along_axis(each, at, axis=1)[:, 0] for each in columns]
 
@@ -99,68 +112,61 @@ def _places(costs: NDArray[np.float64], chosen: Sequence[bool]) -> NDArray[np.fl
     return at
 
 
-_ROW, _REST = 0.6, 1.6
-"""[inch] Height of an unknown, and of what is above and below all of them."""
-
-_BAR = 0.36
-"""[-] Of a row, the thickness of each of its two bars."""
-
-
-def plot_decides(found: xarray.Dataset, ax: Axes | None, show: str = "indices") -> Axes:
+def plot_decides(data: xarray.Dataset, ax: Axes | None, show: str = "indices") -> Axes:
     """Draw one model: the indices of every unknown, or with ``show="boundary"`` their ranges."""
     drawings = {"indices": _indices, "boundary": _boundary}
     if show not in drawings:
         raise ScenarioError("show", show, f"must be one of {', '.join(drawings)}")
-    found = one_model(found)
+    data = one_model(data)
     if show == "boundary":
-        found = found.isel(unknown=np.flatnonzero(found["path"].to_numpy() != ""))
-    ax = axes_or_new(ax, (8.0, _ROW * found.sizes["unknown"] + _REST))
-    drawings[show](found, ax)
+        data = data.isel(unknown=np.flatnonzero(data["path"].to_numpy() != ""))
+    ax = axes_or_new(ax, (8.0, _ROW * data.sizes["unknown"] + _REST))
+    drawings[show](data, ax)
     ax.spines[["top", "right"]].set_visible(False)
     return ax
 
 
-def _indices(found: xarray.Dataset, ax: Axes) -> None:
+def _indices(data: xarray.Dataset, ax: Axes) -> None:
     """Draw two bars for each unknown with their intervals, the largest on top."""
-    order = np.argsort(-found["total"].to_numpy(), kind="stable")
-    found = found.isel(unknown=order)
+    order = np.argsort(-data["total"].to_numpy(), kind="stable")
+    data = data.isel(unknown=order)
     at = np.arange(order.size)
     for name, label, color, down in (
         ("total", "total: left if all others were known", ORANGE, _BAR / 2.0),
         ("first", "first order: gone if it were known", BLUE, -_BAR / 2.0),
     ):
-        own, low, high = (found[key].to_numpy() for key in (name, f"{name}_low", f"{name}_high"))
+        own, low, high = (data[key].to_numpy() for key in (name, f"{name}_low", f"{name}_high"))
         ax.barh(at + down, own, _BAR, color=color, label=label)
         ax.hlines(at + down, low, high, color=BLACK, linewidth=1.2)
-    ax.set_yticks(at, [name.replace("_", " ") for name in found["unknown"].to_numpy()])
-    bounds = found[["first_low", "first_high", "total_high"]].to_array().to_numpy()
+    ax.set_yticks(at, [name.replace("_", " ") for name in data["unknown"].to_numpy()])
+    bounds = data[["first_low", "first_high", "total_high"]].to_array().to_numpy()
     left, right = np.nanmin([0.0, *bounds.flat]), np.nanmax([1.0, *bounds.flat])
     ax.set(xlim=(left - 0.02, right + 0.02), ylim=(order.size - 0.4, -0.6))
-    outcome = found.attrs["outcome"].replace("_", " ")
+    outcome = data.attrs["outcome"].replace("_", " ")
     ax.set_xlabel(f"share of the variance of the outcome, {outcome} or not")
     ax.axvline(0.0, color=BLACK, linewidth=0.8)
-    caveat = str(found["caveat"].item())
+    caveat = str(data["caveat"].item())
     if caveat:
         ax.text(0.5, 0.5, caveat, transform=ax.transAxes, ha="center", va="center")
     else:
         handles, labels = ax.get_legend_handles_labels()
         ax.legend(handles[::-1], labels[::-1], loc="lower right", fontsize="small")
-    rate = f"{outcome} in {found['rate'].item():.2f} of {found['count'].item()} runs"
-    over = populations({**found.attrs, "vary": found.attrs["population"]}, banded=False)
-    _entitle(found, ax, rate, over)
+    rate = f"{outcome} in {data['rate'].item():.2f} of {data['count'].item()} runs"
+    over = populations({**data.attrs, "vary": data.attrs["population"]}, banded=False)
+    _entitle(data, ax, rate, over)
 
 
-def _boundary(found: xarray.Dataset, ax: Axes) -> None:
+def _boundary(data: xarray.Dataset, ax: Axes) -> None:
     """Draw the range of each unknown, with the part where most runs have the outcome."""
-    outcome = found.attrs["outcome"].replace("_", " ")
+    outcome = data.attrs["outcome"].replace("_", " ")
     styles: dict[str, Any] = {
         "outcome": {"color": GREEN, "linewidth": 7.0, "label": f"most runs: {outcome}"},
         "range": {"color": GRAY, "linewidth": 2.0, "label": "range of the unknown"},
         "own": {"color": BLACK, "markersize": 6.0, "label": "the scenario's own value"},
         "half": {"color": BLUE, "linewidth": 2.0, "label": "rate of one half"},
     }
-    for k in range(found.sizes["unknown"]):
-        row = found.isel(unknown=k)
+    for k in range(data.sizes["unknown"]):
+        row = data.isel(unknown=k)
         factor, unit = _readable(row)
         low, high = row["range_low"].item(), row["range_high"].item()
         span = high - low or 1.0
@@ -184,9 +190,9 @@ def _boundary(found: xarray.Dataset, ax: Axes) -> None:
             text = f"{factor * value:.3g}"
             style: dict[str, Any] = {"fontsize": "x-small", "va": "center", "ha": side}
             ax.annotate(text, (x, k), (step, 0.0), textcoords="offset points", **style)
-    count = found.sizes["unknown"]
-    names = [name.replace("_", " ") for name in found["unknown"].to_numpy()]
-    units = [_readable(found.isel(unknown=k))[1] for k in range(count)]
+    count = data.sizes["unknown"]
+    names = [name.replace("_", " ") for name in data["unknown"].to_numpy()]
+    units = [_readable(data.isel(unknown=k))[1] for k in range(count)]
     pairs = zip(names, units, strict=True)
     ax.set_yticks(range(count), [f"{name} [{unit}]" if unit else name for name, unit in pairs])
     ax.tick_params(axis="y", length=0.0)
@@ -204,8 +210,8 @@ def _boundary(found: xarray.Dataset, ax: Axes) -> None:
         fontsize="small",
         frameon=False,
     )
-    over = populations({"vary": found.attrs["vary"]}, banded=False)
-    _entitle(found, ax, "one unknown moved at a time, the others as in the scenario", over)
+    over = populations({"vary": data.attrs["vary"]}, banded=False)
+    _entitle(data, ax, "one unknown moved at a time, the others as in the scenario", over)
 
 
 def _parts(row: xarray.Dataset) -> list[tuple[float, float]]:
@@ -239,26 +245,20 @@ def _label(*, above: bool) -> dict[str, Any]:
     }
 
 
-def _entitle(found: xarray.Dataset, ax: Axes, *paragraphs: str) -> None:
-    label = [str(found["model"].item())] if "model" in found.coords else []
+def _entitle(data: xarray.Dataset, ax: Axes, *paragraphs: str) -> None:
+    label = [str(data["model"].item())] if "model" in data.coords else []
     lines = [line for text in paragraphs for line in text.split("\n")]
     set_title(ax, *label, *lines)
 
 
-_COLORS = (BLUE, ORANGE, GREEN, RED, SKY, VIOLET, BLACK)
-_MARKERS = "osD^vPX"
-_APART = 0.06
-"""[-] Fraction of the figure's width that the points of all lines at one place take."""
-
-
-def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
+def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw rates over the last dimension of numbers, one line for each of the others.
 
     Bars are intervals; thick ones are the bands of the rates over the unknowns.
     """
-    rates = found["rate"]
-    banded = "band_low" in found
-    shown = found["band_median"] if banded else rates
+    rates = data["rate"]
+    banded = "band_low" in data
+    shown = data["band_median"] if banded else rates
     along = _along(shown)
     ax = axes_or_new(ax, (8.0, 5.0))
     factor, label = readable(shown[along])
@@ -271,14 +271,14 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
         own = shown.sel(place).to_numpy()
         at = x + apart * (index - 0.5 * (len(lines) - 1))
         low, high = ("band_low", "band_high") if banded else ("low", "high")
-        lower, upper = (found[name].sel(place).to_numpy() for name in (low, high))
+        lower, upper = (data[name].sel(place).to_numpy() for name in (low, high))
         known = np.isfinite(own)  # not every value is tried with every model
         at, own, lower, upper = at[known], own[known], lower[known], upper[known]
         ax.plot(at, own, color=color, marker=marker, markersize=5.0, label=name, zorder=3)
         ax.vlines(at, lower, upper, color=color, alpha=0.5, linewidth=4.0 if banded else 1.5)
     ax.set(xlabel=label, ylabel=str(rates.attrs.get("long_name", "rate")), ylim=(-0.03, 1.03))
     ax.grid(alpha=0.3)
-    ax.set_title(populations(found.attrs, banded=banded), loc="left", fontsize="small")
+    ax.set_title(populations(data.attrs, banded=banded), loc="left", fontsize="small")
     if len(ax.get_lines()) > 1:
         ax.legend(fontsize="small", loc="best")
     return ax

@@ -608,9 +608,9 @@ class Run(Record):
 
     def _repr_html_(self) -> str:
         """Replay the run in a notebook, or show its metrics if there is no history."""
-        from crawler2d.pictures.page import embedded  # noqa: PLC0415 - costs nothing until used
+        from crawler2d.pictures.page import embed  # noqa: PLC0415 - costs nothing until used
 
-        return embedded(self)
+        return embed(self)
 
 
 Run.__doc__ = (Run.__doc__ or "").replace("    {metrics}", indent(table_of_metrics(), "    "))

@@ -12,7 +12,7 @@ import numpy as np
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.bodies import BodyKind
-from crawler2d.drawings.scene import Scene, placed
+from crawler2d.drawings.scene import Scene, place
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array
 
@@ -238,7 +238,7 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
         end = "" if each.name == "chassis" else each.name.split()[0]
         discs = np.zeros((0, 3))
         if not wheels:
-            discs = np.column_stack([placed(each.circles[:, :2], pose), each.circles[:, 2]])
+            discs = np.column_stack([place(each.circles[:, :2], pose), each.circles[:, 2]])
         found.append(
             Carrier(
                 end=end,
@@ -250,7 +250,7 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
                 direction=np.array([np.cos(pose[2]), np.sin(pose[2])]),
                 wheels=wheels,
                 discs=discs,
-                loop=None if wheels else _loop(placed(each.envelope, pose)),
+                loop=None if wheels else _loop(place(each.envelope, pose)),
             )
         )
     return found
@@ -335,7 +335,7 @@ def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
     if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
         # A flipper that is raised has turned the wheels on it, the farther ones more.
         turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
-        outline = placed(scene.bodies["outline"][body], turned)
+        outline = place(scene.bodies["outline"][body], turned)
     return Wheel(
         center=np.array([row["x"], row["y"]]),
         radius=float(row["radius"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,8 +13,7 @@ from crawler2d.audits import words
 from crawler2d.audits.page import sections
 from crawler2d.audits.runs import TRIED
 from crawler2d.audits.verdicts import BELT, OWN, ObstacleRuns
-from crawler2d.common.units import unit_of
-from crawler2d.drawings.svg import escaped
+from crawler2d.drawings.svg import escape
 from crawler2d.errors import ignore_doubts
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.pictures.page import as_json, fill_page, read_part, scene_script
@@ -37,25 +37,31 @@ _MOST = 300
 """Samples of a run in the page: those of slow and of long runs are farther apart."""
 
 
-class _Place(NamedTuple):
-    """Where a run stands in the table of an audit."""
+class Replay(NamedTuple):
+    """A run in the table of an audit, and how the robot, and perhaps the other one, drive it.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        On its obstacle.
+    sample, repeat : int
+        Which one.
+    runs : list of Run
+        Of the robot, and of the repaired robot or the belt if that is another robot.
+    other : str
+        What the other robot is.
+    """
 
     verdict: Verdict
     sample: int
     repeat: int
+    runs: list[Run]
+    other: str = "the belt"
 
     def value(self, audit: AuditRecord, name: str) -> Any:
         """Return what the table has of this run."""
         runs = ObstacleRuns(audit.table, OWN, self.verdict.obstacle)
         return runs.column(name)[self.sample, self.repeat]
-
-
-class Replay(NamedTuple):
-    """A run of the robot, and of `other`, the repaired robot or the belt, if that differs."""
-
-    place: _Place
-    runs: list[Run]
-    other: str
 
 
 def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[Replay]:
@@ -67,12 +73,12 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
     """
     seized = [each for each in audit.verdicts if each.where]
     worst_first = sorted(seized, key=lambda each: (each.word != "seizes", -each.seized.rate))
-    places = [_seizure(audit, each) for each in worst_first] or _closest(audit)
+    replays = [_seizure(audit, each) for each in worst_first] or _closest(audit)
     repair = sections.best_repair(audit)
-    name = "the belt"
     if repair is not None:
         name = f"{sections.change(audit, repair)} ({words.confirmation(repair)})"
-    scenarios = [_scenarios(audit, each) for each in places]
+        replays = [each._replace(other=name) for each in replays]
+    scenarios = [_scenarios(audit, each) for each in replays]
     with ignore_doubts():  # they are in the lint
         runs = simulate_many(
             [scenario for pair in scenarios for scenario in pair],
@@ -82,15 +88,14 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
             on_error="record",  # with these draws the other robot may break a rule
         )
     each_run = iter(runs)
-    return [
-        Replay(place, [next(each_run) for _ in pair], name)
-        for place, pair in zip(places, scenarios, strict=True)
-    ]
+    for replay, pair in zip(replays, scenarios, strict=True):
+        replay.runs.extend(itertools.islice(each_run, len(pair)))
+    return replays
 
 
-def _scenarios(audit: AuditRecord, place: _Place) -> list[Scenario]:
+def _scenarios(audit: AuditRecord, replay: Replay) -> list[Scenario]:
     """Return the run of the robot, and that of the other one, which need not have driven it."""
-    own = Scenario.from_json(str(place.value(audit, "scenario")))
+    own = Scenario.from_json(str(replay.value(audit, "scenario")))
     repair = sections.best_repair(audit)
     if repair is None and audit.belt.robot == audit.robot:
         return [own]
@@ -104,7 +109,7 @@ def _scenarios(audit: AuditRecord, place: _Place) -> list[Scenario]:
     return [own, own.replace(tracks)]
 
 
-def _seizure(audit: AuditRecord, verdict: Verdict) -> _Place:
+def _seizure(audit: AuditRecord, verdict: Verdict) -> Replay:
     """Choose the run that represents the seizures on an obstacle."""
     own, belt = (ObstacleRuns(audit.table, model, verdict.obstacle) for model in (OWN, BELT))
     there = own.seized & (own.column("stop_bodies") == verdict.where)
@@ -113,10 +118,10 @@ def _seizure(audit: AuditRecord, verdict: Verdict) -> _Place:
     chosen = alone if alone.any() else there
     fastest = np.where(chosen, np.abs(own.speeds), -1.0).argmax()
     sample, repeat = np.unravel_index(fastest, there.shape)
-    return _Place(verdict, int(sample), int(repeat))
+    return Replay(verdict, int(sample), int(repeat), [])
 
 
-def _closest(audit: AuditRecord) -> list[_Place]:
+def _closest(audit: AuditRecord) -> list[Replay]:
     """Choose the run that came closest to a seizure, if any has a result.
 
     It fails where the belt clears, if any does, and of those it took the longest for its speed.
@@ -128,7 +133,7 @@ def _closest(audit: AuditRecord) -> list[_Place]:
         lengths = np.abs(own.speeds) * own.column("time")
         for sample, repeat in np.argwhere(np.isfinite(lengths)).tolist():
             rank = bool(alone[sample, repeat]), float(lengths[sample, repeat])
-            found.append((rank, _Place(verdict, sample, repeat)))
+            found.append((rank, Replay(verdict, sample, repeat, [])))
     return [max(found, key=lambda each: each[0])[1]] if found else []
 
 
@@ -143,21 +148,21 @@ def _replay_section(audit: AuditRecord, each: Replay, number: int) -> str:
 
 def _figure(name: str, run: Run) -> str:
     if run.error is not None:
-        return f"<p><b>{escaped(name)}</b> no result: {escaped(str(run.error))}</p>"
+        return f"<p><b>{escape(name)}</b> no result: {escape(str(run.error))}</p>"
     end = f"{words.ending(run)} after {run.metrics['time']:.1f} s"
     look = {"seized": "bad", "cleared": "good"}.get(words.ending(run), "quiet")
     return (
-        f'<figure><figcaption><b>{escaped(name)}</b> <strong class="{look}">{end}</strong>'
-        f'</figcaption><canvas tabindex="0" role="img" aria-label="{escaped(name)}, side view:'
+        f'<figure><figcaption><b>{escape(name)}</b> <strong class="{look}">{end}</strong>'
+        f'</figcaption><canvas tabindex="0" role="img" aria-label="{escape(name)}, side view:'
         f' {end}" aria-describedby="keys"></canvas></figure>'
     )
 
 
 def _diagnosis(audit: AuditRecord, each: Replay) -> str:
     """Say why the robot stopped; what was tried there and drawn for the run is folded."""
-    place, (run, *others) = each.place, each.runs
+    run, *others = each.runs
     why, _, tried = run.reason.partition(". Tried: ")
-    there, seized = place.verdict.there
+    there, seized = each.verdict.there
     among = f"; {there} of {seized} seizures on this obstacle are there" if seized else ""
     why = why or "it clears"
     text = f"{why[0].upper()}{why[1:]}."
@@ -166,25 +171,23 @@ def _diagnosis(audit: AuditRecord, each: Replay) -> str:
     if any(other.outcome == Outcome.SEIZED for other in others):
         text += " In this run the other robot seizes, too."
     draws = (
-        f"Sample {place.sample}, repeat {place.repeat} of the runs, counted from 0{among}. Drawn"
-        f" for it: {', '.join(_drawn(audit, place)) or 'nothing'}."
+        f"Sample {each.sample}, repeat {each.repeat} of the runs, counted from 0{among}. Drawn"
+        f" for it: {', '.join(_drawn(audit, each)) or 'nothing'}."
     )
-    head = f"<p>Tried at the stop: {escaped(tried)}.</p>" if tried else ""
-    more = sections.fold("what was tried, and which run it is", f"{head}<p>{escaped(draws)}</p>")
-    return f'<p class="diagnosis">{escaped(text)}</p>{more}'
+    head = f"<p>Tried at the stop: {escape(tried)}.</p>" if tried else ""
+    more = sections.fold("what was tried, and which run it is", f"{head}<p>{escape(draws)}</p>")
+    return f'<p class="diagnosis">{escape(text)}</p>{more}'
 
 
-def _drawn(audit: AuditRecord, place: _Place) -> list[str]:
+def _drawn(audit: AuditRecord, replay: Replay) -> list[str]:
     """List what was drawn for a run: its unknowns, and what differs from run to run."""
     found = []
     for name, variable in audit.table.data_vars.items():
         if str(name).startswith(("unknown_", "drawn_")):
-            path, value = str(variable.attrs["path"]), float(place.value(audit, str(name)))
+            path, value = str(variable.attrs["path"]), float(replay.value(audit, str(name)))
             if not math.isnan(value):  # this obstacle has no such field
-                unit = unit_of(path)
                 number = f"{value:.0f}" if value.is_integer() else f"{value:.4g}"
-                after = "" if unit in (None, "1") else f" {unit}"
-                found.append(f"{sections.field_name(path)} {number}{after}")
+                found.append(f"{sections.field_name(path)} {number}{words.unit_after(path)}")
     return found
 
 
@@ -198,22 +201,22 @@ def audit_page(
         read_part("replay.css") + read_part("audit.css", _HERE),
         scene_script(read_part("audit.js", _HERE)),
         _HERE,
-        title=escaped(f"{audit.robot.name}: audit"),
-        name=escaped(audit.robot.name),
-        subject=escaped(words.subject(audit).removeprefix(f"{audit.robot.name}: ")),
-        reservation=escaped(words.reservation(audit)),
+        title=escape(f"{audit.robot.name}: audit"),
+        name=escape(audit.robot.name),
+        subject=escape(words.subject(audit).removeprefix(f"{audit.robot.name}: ")),
+        reservation=escape(words.reservation(audit)),
         answer=sections.answer_section(audit),
         options=_options(runs),
         replays="".join(_replay_section(audit, each, number) for number, each in enumerate(runs)),
         verdicts=sections.verdict_section(
-            audit, {each.place.verdict.obstacle: number for number, each in enumerate(runs)}
+            audit, {each.verdict.obstacle: number for number, each in enumerate(runs)}
         ),
-        population=escaped(words.population(audit)),
-        belt=escaped(audit.belt.reason),
+        population=escape(words.population(audit)),
+        belt=escape(audit.belt.reason),
         lint=sections.lint_section(audit),
         repairs=sections.repair_section(audit, diffs or {}),
         robot=sections.robot_section(audit),
-        command=escaped(sections.command(audit)),
+        command=escape(sections.command(audit)),
         made=sections.method_section(audit),
         data="\n".join(_data(each, number) for number, each in enumerate(runs)),
     )
@@ -222,9 +225,9 @@ def audit_page(
 def _options(runs: Sequence[Replay]) -> str:
     """List the obstacles that can be replayed."""
     return "".join(
-        f'<option value="{number}">{escaped(place.verdict.obstacle)}:'
-        f" {words.percent(place.verdict.seized.rate)} seized</option>"
-        for number, (place, *_) in enumerate(runs)
+        f'<option value="{number}">{escape(each.verdict.obstacle)}:'
+        f" {words.percent(each.verdict.seized.rate)} seized</option>"
+        for number, each in enumerate(runs)
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from crawler2d.audits import words
 from crawler2d.drawings.scene import Scene, extent_of
-from crawler2d.drawings.svg import MARGIN, Sheet, draw_robot_on, escaped
+from crawler2d.drawings.svg import MARGIN, Sheet, draw_robot_on, escape
 from crawler2d.errors import ignore_doubts
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat
@@ -121,8 +121,8 @@ def _figure(group: list[Pocket], rear: float, front: float, scale: float, top: f
     carriers = " or ".join(dict.fromkeys(each.carrier for each in group))
     title = f"{'slot' if pocket.is_slot else 'pocket'} between wheels {places} of the {carriers}"
     return (
-        f"<figure>{sheet.svg(title)}<figcaption><strong>{escaped(places)}</strong>"
-        f" {escaped(carriers)}<br>{escaped(_measures(group))}</figcaption></figure>"
+        f"<figure>{sheet.svg(title)}<figcaption><strong>{escape(places)}</strong>"
+        f" {escape(carriers)}<br>{escape(_measures(group))}</figcaption></figure>"
     )
 
 

@@ -11,8 +11,7 @@ from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.page.drawings import draw_pockets, draw_robot
 from crawler2d.audits.record import command_of, names_of
-from crawler2d.common.units import unit_of
-from crawler2d.drawings.svg import escaped
+from crawler2d.drawings.svg import escape
 from crawler2d.parameters.fields import read_path
 from crawler2d.variation.distributions import Ranges
 
@@ -94,14 +93,14 @@ def answer_section(audit: AuditRecord) -> str:
     wheels = " and ".join(worst.where.split("-"))
     text = (
         f'<strong class="{"bad" if certain else "warning"}">{said}</strong>'
-        f"{', most often on' if len(seized) > 1 else ':'} {escaped(worst.obstacle)}"
+        f"{', most often on' if len(seized) > 1 else ':'} {escape(worst.obstacle)}"
         f" ({words.percent(worst.seized.rate)} of the runs), between wheels {wheels} of the"
         f" {worst.carrier}."
     )
     if repair is None:
         return text
     if repair.confirmed:
-        what = escaped(change(audit, repair))
+        what = escape(change(audit, repair))
         return f"{text} What ends that, confirmed in fresh runs: <strong>{what}</strong>."
     return f"{text} No repair was confirmed."
 
@@ -124,19 +123,19 @@ def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
     head = (*words.VERDICT_HEAD, *(words.JAM_HEAD[1:] if jams else ()))
     rows = []
     for each in audit.verdicts:
-        name, *cells = (escaped(cell) for cell in words.verdict_row(each))
+        name, *cells = (escape(cell) for cell in words.verdict_row(each))
         if each.obstacle in replays:
             name = f'<a href="#replay-{replays[each.obstacle]}">{name}</a>'
         cells[-1] = f'<strong class="{_class(each.word)}">{cells[-1]}</strong>'
         if jams:
             jam = words.jam_row(each)[1:] if each.where else ("",) * len(words.JAM_HEAD[1:])
-            cells += map(escaped, jam)
+            cells += map(escape, jam)
         rows.append((name, *cells))
     notes = [each for each in words.conclusion(audit) if each != words.reservation(audit)]
     notes += map(
         _sentence, (words.wheel_names(audit), words.missing_results(audit), _JAMS if jams else "")
     )
-    below = "".join(f"<p>{escaped(note)}</p>" for note in notes if note)
+    below = "".join(f"<p>{escape(note)}</p>" for note in notes if note)
     table = _grid(head, rows, label="verdicts", look="wide")
     return table + fold("in words, and what the columns mean", below)
 
@@ -158,9 +157,9 @@ def lint_section(audit: AuditRecord) -> str:
 
 def _findings(found: Sequence[Finding]) -> str:
     rows = "".join(
-        f'<li><strong class="{escaped(each.severity)}">{escaped(each.severity)}</strong>'
-        f" <b>{escaped(each.rule)}</b>: {escaped(each.what)}"
-        f"{f' <code>{escaped(each.where)}</code>' if each.where else ''}</li>"
+        f'<li><strong class="{escape(each.severity)}">{escape(each.severity)}</strong>'
+        f" <b>{escape(each.rule)}</b>: {escape(each.what)}"
+        f"{f' <code>{escape(each.where)}</code>' if each.where else ''}</li>"
         for each in found
     )
     return f'<ul class="lint">{rows}</ul>' if rows else ""
@@ -170,7 +169,8 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
     """Write the result of each repair, the robot with it, and its text of `diffs`, by `what`."""
     found = audit.repaired
     if found is None:
-        return f"<p>{'' if audit.seizes else 'Nothing seizes. '}No repairs were searched for.</p>"
+        head = "No" if audit.seizes else "Nothing seizes, so no"
+        return f"<p>{head} repairs were searched for.</p>"
     head = (
         "repair",
         "in fresh runs",
@@ -186,16 +186,16 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
         kind = "good" if each.confirmed else "quiet"
         rows.append(
             (
-                escaped(each.what),
+                escape(each.what),
                 f'<strong class="{kind}">{words.confirmation(each)}</strong>',
-                words.rate(cleared) if cleared.runs else escaped(words.comparison(each)),
+                words.rate(cleared) if cleared.runs else escape(words.comparison(each)),
                 words.rate(seized),
-                escaped(where),
+                escape(where),
                 str(each.wheels or "belt"),
                 f"{each.speed:.2g} times",
             )
         )
-    text = f"<p>{escaped(_sentence(words.search_sentence(found, audit.vary)))}</p>"
+    text = f"<p>{escape(_sentence(words.search_sentence(found, audit.vary)))}</p>"
     drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
     return (
         f'{text}{_grid(head, rows, label="repairs", look="many")}<div class="repairs">{drawn}</div>'
@@ -206,9 +206,9 @@ def _picture(repair: Repair, diff: str | None) -> str:
     picture = draw_robot(repair.robot, f"the robot: {repair.what}", width=560.0, height=200.0)
     change = ""
     if diff is not None:
-        change = fold("what changes in the file", f'<pre tabindex="0">{escaped(diff)}</pre>')
+        change = fold("what changes in the file", f'<pre tabindex="0">{escape(diff)}</pre>')
     return (
-        f'<figure class="robot">{picture}<figcaption>{escaped(repair.what)}</figcaption>{change}'
+        f'<figure class="robot">{picture}<figcaption>{escape(repair.what)}</figcaption>{change}'
         "</figure>"
     )
 
@@ -235,16 +235,16 @@ def robot_section(audit: AuditRecord) -> str:
         _range_table(audit.unknown, "unknown, and drawn for every sample"),
     ]
     if read is not None and read.notes:
-        notes = "".join(f"<li>{escaped(note)}</li>" for note in read.notes)
+        notes = "".join(f"<li>{escape(note)}</li>" for note in read.notes)
         parts.append(fold("decisions of the reader", f"<ul>{notes}</ul>"))
-    return f"<p>{escaped(words.robot_sentence(audit))}</p>{''.join(parts)}"
+    return f"<p>{escape(words.robot_sentence(audit))}</p>{''.join(parts)}"
 
 
 def _wheel_table(audit: AuditRecord) -> str:
     """List the wheels of the left side by number, with their names and lines in the file."""
     read, table = audit.reading, audit.robot.wheels()
     left = table["side"] == "left"
-    names: dict[int, str] = {} if read is None else names_of(audit.robot, read)
+    names = names_of(audit.robot, read)
     lines: dict[str, int] = {}
     if read is not None:
         lines = dict(zip(read.wheels["name"].tolist(), read.wheels["line"].tolist(), strict=True))
@@ -268,8 +268,8 @@ def _figure_table(audit: AuditRecord) -> str:
         return _table(("figure", "value"), rows, "figures of the robot")
     sourced = [
         (
-            escaped(field_name(path)),
-            escaped(f"{read.friction:.4g}" if path == "friction" else _value(robot, path)),
+            escape(field_name(path)),
+            escape(f"{read.friction:.4g}" if path == "friction" else _value(robot, path)),
             _source(source),
         )
         for path, source in read.sources.items()
@@ -289,15 +289,14 @@ def _has(robot: Robot, path: str) -> bool:
 
 def _source(source: str) -> str:
     if source.startswith("estimate"):
-        return f'<strong class="estimate">estimate</strong>{escaped(source[len("estimate") :])}'
-    return escaped(source)
+        return f'<strong class="estimate">estimate</strong>{escape(source[len("estimate") :])}'
+    return escape(source)
 
 
 def _value(robot: Robot, path: str) -> str:
     """Write a figure with its unit."""
     value: Any = read_path(robot, path.removeprefix("robot."))
-    unit = unit_of(path)
-    after = "" if unit in (None, "1") else f" {unit}"
+    after = words.unit_after(path)
     if value is None:
         return "none"
     if hasattr(value, "in_words"):
@@ -373,12 +372,12 @@ def field_name(path: str) -> str:
 
 def fold(head: str, inside: str) -> str:
     """Fold something away below a line of text."""
-    return f"<details><summary>{escaped(head)}</summary>{inside}</details>"
+    return f"<details><summary>{escape(head)}</summary>{inside}</details>"
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> str:
     """Fold a table away below its name; cells are text."""
-    cells = [[escaped(cell) for cell in row] for row in rows]
+    cells = [[escape(cell) for cell in row] for row in rows]
     return fold(label, _grid(head, cells, label=label) if rows else "<p>None.</p>")
 
 
@@ -388,13 +387,13 @@ def _grid(head: Sequence[str], rows: Iterable[Sequence[str]], *, label: str, loo
     The titles are text and the cells HTML; `label` says what it is, `look` is a class for the style
     sheet.
     """
-    titles = "".join(f'<th scope="col">{escaped(title)}</th>' for title in head)
+    titles = "".join(f'<th scope="col">{escape(title)}</th>' for title in head)
     body = "".join(
         f'<tr><th scope="row">{first}</th>{"".join(f"<td>{cell}</td>" for cell in others)}</tr>'
         for first, *others in rows
     )
     return (
-        f'<div class="scroll {look}" role="group" aria-label="{escaped(label)}" tabindex="0">'
+        f'<div class="scroll {look}" role="group" aria-label="{escape(label)}" tabindex="0">'
         f"<table><thead><tr>{titles}</tr></thead><tbody>{body}</tbody></table></div>"
     )
 

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d.common.units import METRICS
-from crawler2d.drawings.svg import escaped, table
+from crawler2d.drawings.svg import escape, table
 from crawler2d.pictures.page.recording import recording
 from crawler2d.pictures.scenes import ghosts
 
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
-__all__ = ["as_json", "embedded", "fill_page", "read_part", "replay_page", "scene_script"]
+__all__ = ["as_json", "embed", "fill_page", "read_part", "replay_page", "scene_script"]
 
 _HERE = "crawler2d.pictures.page"
 
@@ -62,7 +62,7 @@ _RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", 
 
 
 def read_part(name: str, package: str = _HERE) -> str:
-    """Read a file that stands beside the modules of a package."""
+    """Read a file of a package."""
     return (files(package) / name).read_text(encoding="utf-8")
 
 
@@ -93,7 +93,7 @@ def fill_page(
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
     return Template(read_part("head.html") + read_part(file, package)).substitute(
         values,
-        version=escaped(str(_core.build_info()["version"])),
+        version=escape(str(_core.build_info()["version"])),
         style=style,
         script=script,
         style_hashes=_policy(style),
@@ -137,20 +137,20 @@ def replay_page(run: Record, time: float | None = None) -> str:
     mechanism = ""
     if run.mechanism is not None:
         meaning = f"how the ground inside is held: {run.mechanism.meaning}"
-        name = escaped(str(run.mechanism))
+        name = escape(str(run.mechanism))
         mechanism = f'<li class="mechanism"{_tooltip(meaning)}>{name}</li>'
     return fill_page(
         "page.html",
         read_part("replay.css"),
         scene_script(read_part("strip.js"), read_part("replay.js")),
-        title=escaped(run.title),
-        subject=escaped(subject),
-        ending=escaped(ending.replace("_", " ")),
-        outcome_class=escaped(outcome),
+        title=escape(run.title),
+        subject=escape(subject),
+        ending=escape(ending.replace("_", " ")),
+        outcome_class=escape(outcome),
         outcome_meaning="" if run.outcome is None else _tooltip(run.outcome.meaning),
         mechanism=mechanism,
         trials=_trials(run),
-        sentence=f'<p class="sentence">{escaped(run.reason)}</p>' if run.reason else "",
+        sentence=f'<p class="sentence">{escape(run.reason)}</p>' if run.reason else "",
         thinned=_thinned(data["every"], data["samples"]),
         figures=_listed(_figures(run)),
         all_figures=_listed(_all_figures(run)),
@@ -167,7 +167,7 @@ def _thinned(every: int, samples: int) -> str:
 
 
 def _tooltip(meaning: str) -> str:
-    return f' title="{escaped(meaning)}"'
+    return f' title="{escape(meaning)}"'
 
 
 def _trials(run: Record) -> str:
@@ -177,7 +177,7 @@ def _trials(run: Record) -> str:
         return ""
     buttons = "".join(
         f'<button type="button" class="trial{" freed" * each.freed}" data-trial="{number}"'
-        f' aria-pressed="false"{_tooltip(each.meaning)}>{escaped(each.said)}</button>'
+        f' aria-pressed="false"{_tooltip(each.meaning)}>{escape(each.result)}</button>'
         for number, each in enumerate(tried)
     )
     head = "tried at the stop; press one to see where the robot ended:"
@@ -186,11 +186,11 @@ def _trials(run: Record) -> str:
 
 def _listed(rows: list[tuple[str, str]]) -> str:
     return "".join(
-        f"<div><dt>{escaped(name)}</dt><dd>{escaped(value)}</dd></div>" for name, value in rows
+        f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in rows
     )
 
 
-def embedded(run: Record) -> str:
+def embed(run: Record) -> str:
     """Show a run in a notebook: the page in a frame, or else its metrics; never raises.
 
     Returns
@@ -205,7 +205,7 @@ def embedded(run: Record) -> str:
     # Only scripts are allowed: the page can reach neither the notebook nor the network.
     return (
         f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
-        f'title="{escaped(run.title)}" '
+        f'title="{escape(run.title)}" '
         f'style="width: 100%; height: {_FRAME_HEIGHT}px; border: 0"></iframe>'
     )
 
@@ -215,7 +215,5 @@ def _summary(run: Record) -> str:
         why = run.reason
     except Exception:
         why = ""
-    note = f"<p>{escaped(why)}</p>" if why else ""
-    return (
-        f"<div><p><strong>{escaped(run.title)}</strong></p>{note}{table(_all_figures(run))}</div>"
-    )
+    note = f"<p>{escape(why)}</p>" if why else ""
+    return f"<div><p><strong>{escape(run.title)}</strong></p>{note}{table(_all_figures(run))}</div>"

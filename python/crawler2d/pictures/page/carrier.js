@@ -13,7 +13,7 @@ class Carrier {
     this.circuit = data.circuit && new Circuit(data.circuit, outlines);
     for (const name of ["envelope", "inner", "root"]) {
       if (!data[name]) continue;
-      const points = unpacked(data[name]);
+      const points = unpack(data[name]);
       this[name] = { points, path: outlineOf(points) };
     }
     this.reach = this.envelope ? reachOf(this.envelope.points) : 0;
@@ -118,7 +118,7 @@ class Body {
 class Circuit {
   constructor(data, outlines) {
     Object.assign(this, data);
-    for (const name of ["ways", "x", "y", "angle"]) this[name] = unpacked(data[name]);
+    for (const name of ["ways", "x", "y", "angle"]) this[name] = unpack(data[name]);
     this.grousers = data.grousers.map((index) => outlines[index].path);
     this.marks = 6 * Math.max(2, Math.min(12, Math.round(data.length / data.pitch / 6)));
   }

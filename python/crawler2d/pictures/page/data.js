@@ -1,7 +1,7 @@
 // The recorded run: frames, contacts and events, and the state at an instant between two frames.
 
 // Little-endian, as Python wrote it; every machine that shows the page is little-endian, too.
-function unpacked(column) {
+function unpack(column) {
   const bytes = Uint8Array.from(atob(column.data), (letter) => letter.charCodeAt(0));
   if (column.bits === 32) return new Float32Array(bytes.buffer);
   const counts = column.bits === 16 ? new Uint16Array(bytes.buffer) : bytes;
@@ -31,15 +31,15 @@ class Recording {
     this.count = frames.count;
     this.events = data.events;
     for (const name of ["time", "x", "y", "angle", "speed", "commanded"]) {
-      this[name] = unpacked(frames[name]);
+      this[name] = unpack(frames[name]);
     }
-    this.columns = data.robot.columns.map(unpacked);
+    this.columns = data.robot.columns.map(unpack);
     this.contacts = {};
     for (const name of ["x", "y", "normal", "normal_force", "friction_force", "surface_speed"]) {
-      this.contacts[name] = unpacked(contacts[name]);
+      this.contacts[name] = unpack(contacts[name]);
     }
     this.firstContact = [0];
-    for (const many of unpacked(contacts.counts)) {
+    for (const many of unpack(contacts.counts)) {
       this.firstContact.push(this.firstContact.at(-1) + Math.round(many));
     }
     this.begin = this.time[0];

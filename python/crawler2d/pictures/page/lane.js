@@ -2,7 +2,7 @@
 
 class Lane {
   constructor(data) {
-    this.profile = unpacked(data.profile);
+    this.profile = unpack(data.profile);
     this.surface = outlineOf(this.profile, false);
     this.edges = data.corners.map((corner, i) => ({
       lane: data.lane, id: data.ids[i], corner, convex: data.convex[i],

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from crawler2d.parameters.robot import Robot
     from crawler2d.results.record import Record
 
-__all__ = ["MOST_FRAMES", "packed", "recording"]
+__all__ = ["MOST_FRAMES", "pack", "recording"]
 
 MOST_FRAMES = 3000
 """Samples in the page of a run, give or take the last one."""
@@ -54,7 +54,7 @@ def recording(run: Record, time: float | None = None, *, most: int = MOST_FRAMES
     Returns
     -------
     dict
-        Plain data without non-finite numbers; arrays in the form of `packed`.
+        Plain data without non-finite numbers; arrays in the form of `pack`.
     """
     count = run.time.size
     every = max(1, math.ceil(count / most))
@@ -85,12 +85,12 @@ def recording(run: Record, time: float | None = None, *, most: int = MOST_FRAMES
 def _frames(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
     return {
         "count": int(kept.size),
-        "time": packed(run.time[kept], _TIME),
-        "x": packed(run.position[kept, 0], _LENGTH),
-        "y": packed(run.position[kept, 1], _LENGTH),
-        "angle": packed(run.chassis_angle[kept], _ANGLE),
-        "speed": packed(run.track_speed[kept], _SPEED),
-        "commanded": packed(run.commanded_speed[kept], _SPEED),
+        "time": pack(run.time[kept], _TIME),
+        "x": pack(run.position[kept, 0], _LENGTH),
+        "y": pack(run.position[kept, 1], _LENGTH),
+        "angle": pack(run.chassis_angle[kept], _ANGLE),
+        "speed": pack(run.track_speed[kept], _SPEED),
+        "commanded": pack(run.commanded_speed[kept], _SPEED),
     }
 
 
@@ -102,13 +102,13 @@ def _contacts(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
     force, speed = usual_force(run), usual_speed(run)
     counts = np.bincount(frames[rows], minlength=run.time.size)
     return {
-        "counts": packed(counts[kept], 1.0),
-        "x": packed(table["x"][rows], _LENGTH),
-        "y": packed(table["y"][rows], _LENGTH),
-        "normal": packed(np.arctan2(table["normal_y"], table["normal_x"])[rows], _ANGLE),
-        "normal_force": packed(table["normal_force"][rows], _ARROW * force),
-        "friction_force": packed(table["friction_force"][rows], _ARROW * force),
-        "surface_speed": packed(table["surface_speed"][rows], _ARROW * speed),
+        "counts": pack(counts[kept], 1.0),
+        "x": pack(table["x"][rows], _LENGTH),
+        "y": pack(table["y"][rows], _LENGTH),
+        "normal": pack(np.arctan2(table["normal_y"], table["normal_x"])[rows], _ANGLE),
+        "normal_force": pack(table["normal_force"][rows], _ARROW * force),
+        "friction_force": pack(table["friction_force"][rows], _ARROW * force),
+        "surface_speed": pack(table["surface_speed"][rows], _ARROW * speed),
         "usual_force": force,
         "usual_speed": speed,
     }
@@ -139,7 +139,7 @@ def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dic
     ]
     return {
         "lane": int(lane),
-        "profile": packed(profile, _LENGTH / 100.0),
+        "profile": pack(profile, _LENGTH / 100.0),
         "ids": edges["id"][on_lane].tolist(),
         "corners": corners,
         "convex": [bool(angle > 0.0) for angle in edges["angle"][on_lane]],
@@ -238,11 +238,11 @@ class _Robot:
         travel = self.scene.travels[self.kept, circuit.belt]
         return {
             "travel": self.columns.number(travel, _RIM),
-            "ways": packed(circuit.ways, _PLACE),
+            "ways": pack(circuit.ways, _PLACE),
             "length": float(circuit.ways[-1]),
-            "x": packed(x, _SHAPE),
-            "y": packed(y, _SHAPE),
-            "angle": packed(angle, _TURN),
+            "x": pack(x, _SHAPE),
+            "y": pack(y, _SHAPE),
+            "angle": pack(angle, _TURN),
             "grousers": [self._outline(row) for row in circuit.grousers],
             "starts": circuit.starts.tolist(),
             "pitch": self.robot.outline.grouser_pitch,
@@ -254,9 +254,9 @@ class _Robot:
             return {"envelope": None, "inner": None, "root": None}
         envelope, root = carrier.envelope, carrier.root_envelope
         return {
-            "envelope": packed(envelope, _SHAPE),
-            "inner": packed(carrier.inner, _SHAPE),
-            "root": None if np.array_equal(root, envelope) else packed(root, _SHAPE),
+            "envelope": pack(envelope, _SHAPE),
+            "inner": pack(carrier.inner, _SHAPE),
+            "root": None if np.array_equal(root, envelope) else pack(root, _SHAPE),
         }
 
     def _pose(self, poses: NDArray[np.float64], carrier: Carrier, reach: float) -> dict[str, Any]:
@@ -281,7 +281,7 @@ class _UniqueArrays:
         self._indices: dict[str, int] = {}
 
     def index(self, values: NDArray[np.float64], resolution: float) -> int:
-        item = packed(values, resolution)
+        item = pack(values, resolution)
         index = self._indices.setdefault(repr(item), len(self.items))
         if index == len(self.items):
             self.items.append(item)
@@ -294,8 +294,8 @@ class _UniqueArrays:
         return {"column": self.index(values, resolution)}
 
 
-def packed(values: ArrayLike, resolution: float) -> dict[str, Any]:
-    """Pack numbers for the page, flattened row by row; `unpacked` in data.js reverses it.
+def pack(values: ArrayLike, resolution: float) -> dict[str, Any]:
+    """Pack numbers for the page, flattened row by row; `unpack` in data.js reverses it.
 
     Parameters
     ----------
@@ -311,9 +311,9 @@ def packed(values: ArrayLike, resolution: float) -> dict[str, Any]:
 
     Examples
     --------
-    >>> packed([0.0, 0.5, 1.0], resolution=0.1)
+    >>> pack([0.0, 0.5, 1.0], resolution=0.1)
     {'bits': 8, 'data': 'AID/', 'start': 0.0, 'step': 0.00392156862745098}
-    >>> packed([0.0, 1.0], resolution=1e-9)
+    >>> pack([0.0, 1.0], resolution=1e-9)
     {'bits': 32, 'data': 'AAAAAAAAgD8='}
     """
     numbers = np.asarray(values, dtype=np.float64).ravel()

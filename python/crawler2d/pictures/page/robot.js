@@ -2,7 +2,7 @@
 
 class Robot {
   constructor(data) {
-    const outlines = data.outlines.map(unpacked).map((points) => ({
+    const outlines = data.outlines.map(unpack).map((points) => ({
       path: outlineOf(points), reach: reachOf(points),
     }));
     this.carriers = data.carriers.map((carrier) => new Carrier(carrier, outlines));
