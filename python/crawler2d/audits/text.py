@@ -23,7 +23,6 @@ from crawler2d.variation.distributions import Ranges
 
 if TYPE_CHECKING:
     from crawler2d.audits.record import AuditRecord, AuditSetup
-    from crawler2d.audits.repairs import RepairSearch
 
 __all__ = [
     "LintResult",
@@ -140,13 +139,9 @@ def _conclusion(audit: AuditRecord) -> Iterator[str]:
     for sentence in words.conclusion(audit):
         yield from _wrap(sentence, 0)
     if audit.repaired is not None:
-        yield from _repairs(audit.repaired, audit.vary)
-
-
-def _repairs(found: RepairSearch, vary: Mapping[str, Any]) -> Iterator[str]:
-    yield from _wrap(f"Repairs: {words.search_sentence(found, vary)}", 0)
-    for each in found.repairs:
-        yield from _wrap(words.repair_sentence(each))
+        yield from _wrap(f"Repairs: {words.search_sentence(audit.repaired, audit.vary)}", 0)
+        for each in audit.repairs:
+            yield from _wrap(words.repair_sentence(each))
 
 
 def _columns(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:

@@ -96,18 +96,18 @@ def population(audit: AuditSetup) -> str:
     """Say over how many runs the rates are rates, and how fast it drove."""
     samples, repeats = audit.call.samples, audit.call.repeats
     each = "1 run" if repeats == 1 else f"{repeats} runs"
-    many = f"{samples} {_drawn(audit)}, {each} each" if audit.unknown else f"{repeats} runs"
+    many = f"{samples} {_what_differs(audit)}, {each} each" if audit.unknown else f"{repeats} runs"
     levels = audit.vary.get("drive.speed")
     factors = levels.factors if isinstance(levels, Levels) else (1.0,)
     speeds = audit.drive.speed * np.array(factors)
-    text = f"at most {many}, {_driven(speeds, audit.vary)}; intervals of 95 %"
+    text = f"at most {many}, {_speeds_and_sizes(speeds, audit.vary)}; intervals of 95 %"
     least = least_samples()
     if (samples if audit.unknown else repeats) < least:
         text += f'; "does not seize" takes {least} or more'
     return text
 
 
-def _drawn(audit: AuditSetup) -> str:
+def _what_differs(audit: AuditSetup) -> str:
     """Name what differs from sample to sample: robots, floors, or both."""
     on_floors = {path.startswith("terrain.") for path in audit.unknown}
     if on_floors == {True}:
@@ -115,12 +115,8 @@ def _drawn(audit: AuditSetup) -> str:
     return "robots on floors" if True in on_floors else "robots"
 
 
-def speeds_and_sizes(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
-    """Say at which speeds the runs of a table drove, and over which sizes of the obstacles."""
-    return _driven(table["speed"].values, vary)
-
-
-def _driven(levels: NDArray[np.float64], vary: Mapping[str, Any]) -> str:
+def _speeds_and_sizes(levels: NDArray[np.float64], vary: Mapping[str, Any]) -> str:
+    """Say at which speeds [m/s] runs drove, and over which sizes of the obstacles."""
     *slow, fast = (f"{speed:g}" for speed in np.unique(np.round(levels, 3)).tolist())
     speeds = f"{', '.join(slow)} and {fast} m/s in turn" if slow else f"{fast} m/s"
     sizes = vary.get("terrain.height")
@@ -132,11 +128,8 @@ def _driven(levels: NDArray[np.float64], vary: Mapping[str, Any]) -> str:
 def missing_results(audit: AuditRecord) -> str:
     """Say how many runs have no result; "" if all have one."""
     count = int(np.isin(audit.table["outcome"].values, NO_RESULT).sum())
-    return (
-        f"{count} of {run_count(audit.table)} runs have no result: see `error` in the table"
-        if count
-        else ""
-    )
+    text = f"{count} of {run_count(audit.table)} runs have no result: see `error` in the table"
+    return text if count else ""
 
 
 def verdict_row(each: Verdict) -> tuple[str, ...]:
@@ -197,7 +190,7 @@ def reservation(audit: AuditSetup) -> str:
 
 def conclusion(audit: AuditRecord) -> list[str]:
     """Say in sentences whether the verdict is void, where it seizes, and what is not certain."""
-    found = [reservation(audit)] if reservation(audit) else []
+    sentences = [reservation(audit)] if reservation(audit) else []
     seized = [each for each in audit.verdicts if each.word == "seizes"]
     others = [
         f"{each.obstacle} ({each.instead} of {each.there[1]})"
@@ -206,34 +199,34 @@ def conclusion(audit: AuditRecord) -> list[str]:
     ]
     count = len(audit.verdicts)
     if not _has_wheels_for_tracks(audit.robot):
-        found.append(
+        sentences.append(
             "It has no wheels in place of a track, so no edge can jam between them: where it fails,"
             " it fails for another reason."
         )
     if seized:
         text = f"It seizes on {len(seized)} of {count} obstacles where the belt clears"
-        found.append(f"{text}: {', '.join(map(_seizing, seized))}.")
+        sentences.append(f"{text}: {', '.join(map(_seizing, seized))}.")
     else:
         clears = sum(each.cleared.rate >= CLEARS for each in audit.verdicts)
         own = f"it clears {clears} of {count} obstacles itself in 95 % of its runs"
-        held = [each for each in audit.verdicts if each.cleared.rate < CLEARS]
-        also = sum(each.belt_cleared.rate >= CLEARS for each in held)
-        belt = f", and the belt {also} of the other {len(held)}" if held else ""
-        found.append(f"It was not found to seize where the belt clears; {own}{belt}.")
-    found += list(_under(audit.assumed))
+        failing = [each for each in audit.verdicts if each.cleared.rate < CLEARS]
+        also = sum(each.belt_cleared.rate >= CLEARS for each in failing)
+        belt = f", and the belt {also} of the other {len(failing)}" if failing else ""
+        sentences.append(f"It was not found to seize where the belt clears; {own}{belt}.")
+    sentences += list(_under_assumptions(audit.assumed))
     if others:
         text = (
             "It also seizes where the belt clears less than 95 % of its runs (in brackets, how many"
             " of the seized runs the belt clears with the same draws)"
         )
-        found.append(f"{text}: {', '.join(others)}.")
+        sentences.append(f"{text}: {', '.join(others)}.")
     unsure = [each.obstacle for each in audit.verdicts if each.word == "not certain"]
     if unsure:
-        found.append(f"Not certain, for want of runs: {', '.join(unsure)}.")
-    return found
+        sentences.append(f"Not certain, for want of runs: {', '.join(unsure)}.")
+    return sentences
 
 
-def _under(assumed: Sequence[Assumption]) -> Iterator[str]:
+def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
     """Say how often the robot seizes under each assumption, and which verdicts depend on it."""
     heads = {
         "rotor": "With a real drive, which holds its speed and has rotors",
@@ -244,23 +237,19 @@ def _under(assumed: Sequence[Assumption]) -> Iterator[str]:
         if own:
             runs = ", ".join(f"{each.obstacle} {each.seized} of {each.made}" for each in own)
             loose = ", ".join(each.obstacle for each in own if not each.holds)
-            hang = (
-                f"the verdicts on {loose} may depend on that"
-                if loose
-                else "no verdict depends on that"
-            )
+            effect = f"the verdicts on {loose} may depend" if loose else "no verdict depends"
             drawn = ", ".join(
-                f"{_named(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
+                f"{_in_words(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
             )
-            yield f"{head} ({drawn}), it seizes in: {runs}; {hang}."
+            yield f"{head} ({drawn}), it seizes in: {runs}; {effect} on that."
 
 
-def _named(path: str) -> str:
+def _in_words(path: str) -> str:
     """Write what a path is in words.
 
     Examples
     --------
-    >>> _named("robot.flippers.rotor_inertia"), _named("robot.drivetrain.rotor_inertia")
+    >>> _in_words("robot.flippers.rotor_inertia"), _in_words("robot.drivetrain.rotor_inertia")
     ('rotor inertia of a flipper', 'rotor inertia of a track')
     """
     place, _, field = path.rpartition(".")
@@ -296,12 +285,12 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
     )
 
 
-def search_sentence(found: RepairSearch, vary: Mapping[str, Any]) -> str:
+def search_sentence(search: RepairSearch, vary: Mapping[str, Any]) -> str:
     """Say what the search for repairs found, and in which runs."""
-    runs = f"in fresh runs {speeds_and_sizes(found.table, vary)}"
-    if any(each.confirmed for each in found.repairs):
-        return f"the best of {found.tried} candidates, {runs}"
-    return f"none of {found.tried} candidates was confirmed {runs}"
+    runs = f"in fresh runs {_speeds_and_sizes(search.table['speed'].values, vary)}"
+    if any(each.confirmed for each in search.repairs):
+        return f"the best of {search.tried} candidates, {runs}"
+    return f"none of {search.tried} candidates was confirmed {runs}"
 
 
 def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:

@@ -169,8 +169,8 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
     """Write the result of each repair, the robot with it, and its text of `diffs`, by `what`."""
     found = audit.repaired
     if found is None:
-        head = "No" if audit.seizes else "Nothing seizes, so no"
-        return f"<p>{head} repairs were searched for.</p>"
+        none = "No" if audit.seizes else "Nothing seizes, so no"
+        return f"<p>{none} repairs were searched for.</p>"
     head = (
         "repair",
         "in fresh runs",
