@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,10 +22,10 @@ from crawler2d.parameters.track import (
 )
 
 __all__ = [
-    "CARRIERS",
     "Candidate",
     "Pocket",
     "candidates_of",
+    "left_wheels",
     "pocket_between",
     "pockets",
     "wheel_count",
@@ -112,6 +113,29 @@ class Candidate:
     change: int
 
 
+class Wheel(NamedTuple):
+    """A wheel: number of its body, carrier, and centre and radius [m] in the chassis frame."""
+
+    body: int
+    carrier: str
+    x: float
+    y: float
+    radius: float
+
+    @property
+    def circle(self) -> Circle:
+        """[m] x, y and radius."""
+        return self.x, self.y, self.radius
+
+
+def left_wheels(robot: Robot) -> list[Wheel]:
+    """List the wheels of the left side, flippers included."""
+    table = robot.wheels()
+    left = table["side"] == "left"
+    columns = (table[name][left].tolist() for name in Wheel._fields)
+    return [Wheel(*row) for row in zip(*columns, strict=True)]
+
+
 def pocket_between(rear: Circle, front: Circle) -> tuple[float, float, float, float]:
     """Measure the space between two wheels and their common tangent below.
 
@@ -174,25 +198,17 @@ def pockets(robot: Robot) -> tuple[Pocket, ...]:
     >>> len(found), round(1e3 * found[0].depth, 1), round(found[0].friction, 2)
     (7, 7.5, 0.44)
     """
-    table = robot.wheels()
-    left = table["side"] == "left"
-    rows = zip(
-        table["carrier"][left].tolist(),
-        table["body"][left].tolist(),
-        *(table[name][left].tolist() for name in ("x", "y", "radius")),
-        strict=True,
-    )
-    wheels = [(carrier, body, (x, y, radius)) for carrier, body, x, y, radius in rows]
-    circles = [circle for _, _, circle in wheels]
-    order = sorted(_seen_from_below(circles), key=lambda seen: seen[1])
+    wheels = left_wheels(robot)
+    order = sorted(_seen_from_below([wheel.circle for wheel in wheels]), key=lambda seen: seen[1])
     found = []
     for (first, _), (second, _) in itertools.pairwise(order):
-        (carrier, body, rear), (other, its_body, front) = wheels[first], wheels[second]
-        width, gap, depth, friction = pocket_between(rear, front)
+        rear, front = wheels[first], wheels[second]
+        width, gap, depth, friction = pocket_between(rear.circle, front.circle)
+        both = f"{rear.carrier} and {front.carrier}"
         found.append(
             Pocket(
-                carrier=carrier if carrier == other else f"{carrier} and {other}",
-                bodies=(body, its_body),
+                carrier=rear.carrier if rear.carrier == front.carrier else both,
+                bodies=(rear.body, front.body),
                 width=width,
                 gap=max(gap, 0.0),
                 depth=depth,
@@ -252,7 +268,7 @@ def candidates_of(robot: Robot, carriers: Collection[str]) -> list[Candidate]:
 
 def wheel_count(robot: Robot) -> int:
     """Count the wheels of one side, flippers included."""
-    return int(np.count_nonzero(robot.wheels()["side"] == "left"))
+    return len(left_wheels(robot))
 
 
 def _fits(robot: Robot) -> bool:

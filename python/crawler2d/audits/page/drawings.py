@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.audits import words
+from crawler2d.audits.candidates import left_wheels
 from crawler2d.drawings.scene import Scene, extent_of
 from crawler2d.drawings.svg import MARGIN, Sheet, draw_robot_on, escape
 from crawler2d.errors import ignore_doubts
@@ -68,15 +69,12 @@ def draw_robot(
 
 def _number(sheet: Sheet, robot: Robot) -> None:
     """Write their numbers on the wheels of the left side; several in one place together."""
-    table = robot.wheels()
-    left = table["side"] == "left"
-    columns = (table[name][left].tolist() for name in ("x", "y", "radius", "body"))
     places: dict[tuple[float, float], tuple[float, list[int]]] = {}
-    for x, y, radius, body in zip(*columns, strict=True):
+    for body, _, x, y, radius in left_wheels(robot):
         near = (each for each in places if math.dist(each, (x, y)) < _TOGETHER)
         place = next(near, (x, y))
         widest, bodies = places.get(place, (0.0, []))
-        places[place] = max(widest, radius), [*bodies, int(body)]
+        places[place] = max(widest, radius), [*bodies, body]
     for place, (radius, bodies) in places.items():
         text = ", ".join(map(str, bodies))
         others = [math.dist(place, each) for each in places if each != place]
@@ -91,8 +89,7 @@ def draw_pockets(robot: Robot, pockets: Sequence[Pocket]) -> str:
     """Draw every pocket that differs from the others, with the wheels that it is between."""
     if not pockets:
         return "<p>None: there are no neighbouring wheels.</p>"
-    table = robot.wheels()
-    radii = dict(zip(table["body"].tolist(), table["radius"].tolist(), strict=True))
+    radii = {wheel.body: wheel.radius for wheel in left_wheels(robot)}
     alike: dict[tuple[float, ...], list[Pocket]] = {}
     for each in pockets:
         rear, front = (radii[body] for body in each.bodies)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d.audits import words
+from crawler2d.audits.candidates import left_wheels
 from crawler2d.audits.page.drawings import draw_pockets, draw_robot
 from crawler2d.audits.record import command_of, names_of
 from crawler2d.drawings.svg import escape
@@ -242,16 +243,14 @@ def robot_section(audit: AuditRecord) -> str:
 
 def _wheel_table(audit: AuditRecord) -> str:
     """List the wheels of the left side by number, with their names and lines in the file."""
-    read, table = audit.reading, audit.robot.wheels()
-    left = table["side"] == "left"
+    read = audit.reading
     names = names_of(audit.robot, read)
     lines: dict[str, int] = {}
     if read is not None:
         lines = dict(zip(read.wheels["name"].tolist(), read.wheels["line"].tolist(), strict=True))
     rows = []
-    columns = (table[key][left].tolist() for key in ("body", "carrier", "x", "y", "radius"))
-    for body, carrier, x, y, radius in zip(*columns, strict=True):
-        name = names.get(int(body), "")
+    for body, carrier, x, y, radius in left_wheels(audit.robot):
+        name = names.get(body, "")
         where = f"{read.tree.file}:{lines[name]}" if read is not None and name else ""
         place = f"({1e3 * x:.1f}, {1e3 * y:.1f})"
         rows.append((str(body), carrier, place, f"{1e3 * radius:.1f}", name, where))
