@@ -26,8 +26,8 @@ def seizing_file(name: str = "cart", wheels: str = "") -> str:
     return urdf(*pairs, shapes=box).replace('name="cart"', f'name="{name}"')
 
 
-def told(found: c2d.Audit) -> Any:
-    """An audit that takes no time, and tells what it found."""
+def instant_audit(found: c2d.Audit) -> Any:
+    """An audit that takes no time, and prints what it found."""
 
     def audit(*_: Any, progress: Any, **__: Any) -> c2d.Audit:
         progress.print(found.in_words)

@@ -102,25 +102,25 @@ def test_the_belt_does_not_drive_where_the_robot_clears() -> None:
 
 
 def test_what_is_known_before_the_runs_is_told_before_them() -> None:
-    told: list[str] = []
+    printed: list[str] = []
 
     class Recorder(LivePrinter):
         def print(self, text: str) -> None:
-            told.append(text)
+            printed.append(text)
 
         def __call__(self, done: int, total: int) -> None:
             assert done <= total
-            told.append("a run")
+            printed.append("a run")
 
     steps = {**STEP, "kerb": c2d.terrains.step(0.03, edge_radius=0.02)}
     how: Any = {"samples": 3, "repair": False}
     found = c2d.audit(SEIZING, steps, **how, progress=Recorder(sys.stdout))
-    assert "Lint: nothing found" in told[0]
-    assert "3 slots" in told[0]
-    first = next(index for index, text in enumerate(told) if text.startswith("  step of 75 mm"))
-    assert "a run" in told[1:first]
-    assert "a run" in told[first:]
-    assert "\n".join(text for text in told if text != "a run") == found.in_words
+    assert "Lint: nothing found" in printed[0]
+    assert "3 slots" in printed[0]
+    first = next(index for index, text in enumerate(printed) if text.startswith("  step of 75 mm"))
+    assert "a run" in printed[1:first]
+    assert "a run" in printed[first:]
+    assert "\n".join(text for text in printed if text != "a run") == found.in_words
 
 
 def test_a_quick_audit_has_fewer_samples_and_tries_round_wheels_alone() -> None:

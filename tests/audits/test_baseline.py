@@ -60,11 +60,11 @@ def made(of_file: c2d.Audit) -> Made:
 
 
 def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
-    """What is new, by rule and obstacle, and what is told."""
+    """What is new, by rule and obstacle, and what has changed, in words."""
     path = folder / "audit.json"
     write_baseline(path, [before], None)
-    check, told = compare(now, read_baseline(path), path)
-    return [issue.obstacle or issue.rule for issue in check.failing], "\n".join(told)
+    check, changes = compare(now, read_baseline(path), path)
+    return [issue.obstacle or issue.rule for issue in check.failing], "\n".join(changes)
 
 
 @pytest.mark.parametrize(
@@ -90,11 +90,11 @@ def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
 def test_a_seizure_is_new_by_its_interval_or_after_another_word(
     made: Made, tmp_path: Path, before: Any, now: Any, is_new: bool
 ) -> None:
-    new, told = compared(made(("step 30 mm", *before)), made(("step 30 mm", *now)), tmp_path)
+    new, changes = compared(made(("step 30 mm", *before)), made(("step 30 mm", *now)), tmp_path)
     assert new == ["step 30 mm"] * is_new
-    assert ("this is new" in told) is is_new
+    assert ("this is new" in changes) is is_new
     moved = before[0] != now[0] or is_new
-    assert (f"step 30 mm: {before[0]} is now {now[0]}" in told) is moved
+    assert (f"step 30 mm: {before[0]} is now {now[0]}" in changes) is moved
 
 
 @pytest.mark.parametrize(
@@ -113,21 +113,21 @@ def test_after_a_change_of_build_a_rate_near_a_bound_may_flip_its_word(
     check = made(("step 30 mm", *now))
     name = check.path.name
     baseline = {"baseline": 1, "models": {name: kept}}
-    check, told = compare(check, baseline, check.path.with_name("audit.json"))
+    check, changes = compare(check, baseline, check.path.with_name("audit.json"))
     assert [issue.obstacle for issue in check.failing] == ["step 30 mm"] * is_new
-    assert any("the build is another" in line for line in told) is not is_new
-    assert any("(another) is now" in line for line in told)
+    assert any("another build" in line for line in changes) is not is_new
+    assert any("(another) is now" in line for line in changes)
 
 
 def test_places_are_kept_from_the_root_of_the_repository(tmp_path: Path, made: Made) -> None:
-    def told(root: Path) -> list[Any]:
+    def changes(root: Path) -> list[Any]:
         (root / ".git").mkdir(parents=True)
         what = f"is taken to be {root}/urdf/utils.xacro: no package has that name"
         finding = Finding(rule="doubt", severity="warning", what=what)
         check = dataclasses.replace(made(lint=(finding,)), path=root / "robot" / "cart.sdf")
         return list(entry_of(check)["lint"])
 
-    assert told(tmp_path / "here") == told(tmp_path / "there" / "deeper")
+    assert changes(tmp_path / "here") == changes(tmp_path / "there" / "deeper")
 
 
 def test_a_seizure_at_one_speed_alone_is_new(made: Made, tmp_path: Path) -> None:
@@ -168,10 +168,10 @@ def test_lint_is_new_by_its_words_and_severity_and_not_by_lines_and_figures(
     made: Made, tmp_path: Path, changed: Any, new: list[str]
 ) -> None:
     now = dataclasses.replace(WARNING, **changed)
-    found, told = compared(made(lint=(WARNING,)), made(lint=(now,)), tmp_path)
+    found, changes = compared(made(lint=(WARNING,)), made(lint=(now,)), tmp_path)
     assert found == new
     if new:
-        assert f"new {now.severity} of lint, {now.rule}: {now.what}" in told
+        assert f"new {now.severity} of lint, {now.rule}: {now.what}" in changes
 
 
 def test_lines_in_what_a_doubt_says_are_no_change(made: Made, tmp_path: Path) -> None:
@@ -186,21 +186,25 @@ def test_lines_in_what_a_doubt_says_are_no_change(made: Made, tmp_path: Path) ->
 
 def test_what_is_gone_is_told(made: Made, tmp_path: Path) -> None:
     before = made(("step 30 mm", "seizes", 10), ("gap 9 mm", "seizes", 10), lint=(WARNING,))
-    new, told = compared(before, made(("step 30 mm", "does not seize", 0)), tmp_path)
+    new, changes = compared(before, made(("step 30 mm", "does not seize", 0)), tmp_path)
     assert new == []
-    assert "step 30 mm: seizes is now does not seize: seizes in 0 of 80 runs, was 10 of 80" in told
-    assert "no longer driven over: gap 9 mm" in told
-    assert "warning of lint that is gone, effort" in told
+    assert (
+        "step 30 mm: seizes is now does not seize: seizes in 0 of 80 runs, was 10 of 80" in changes
+    )
+    assert "no longer driven over: gap 9 mm" in changes
+    assert "warning of lint is gone, effort" in changes
 
 
 def test_obstacles_of_another_size_are_the_same_obstacles(made: Made, tmp_path: Path) -> None:
     before = made(("step 90 mm", "does not seize", 0), ("step 30 mm", "seizes", 10))
     now = made(("step 35 mm", "seizes", 10), ("step 105 mm", "does not seize", 0), mass=15.0)
-    new, told = compared(before, now, tmp_path)
+    new, changes = compared(before, now, tmp_path)
     assert new == []
-    assert "obstacles of other sizes: step 30 mm is now step 35 mm, step 90 mm is now step" in told
-    assert "another robot: robot.mass" in told
-    assert "is now 15" in told
+    assert (
+        "obstacles of other sizes: step 30 mm is now step 35 mm, step 90 mm is now step" in changes
+    )
+    assert "another robot: robot.mass" in changes
+    assert "is now 15" in changes
 
 
 def test_a_seizure_on_an_obstacle_that_the_baseline_lacks_is_new(
@@ -208,9 +212,9 @@ def test_a_seizure_on_an_obstacle_that_the_baseline_lacks_is_new(
 ) -> None:
     before = made(("step 30 mm", "seizes", 10))
     now = made(("step 30 mm", "seizes", 10), ("gap 9 mm", "seizes", 10))
-    new, told = compared(before, now, tmp_path)
+    new, changes = compared(before, now, tmp_path)
     assert new == ["gap 9 mm"]
-    assert "gap 9 mm: seizes; the baseline has no such obstacle" in told
+    assert "gap 9 mm: seizes; the baseline has no such obstacle" in changes
 
 
 def test_another_version_is_told_where_a_verdict_moved(made: Made, tmp_path: Path) -> None:
@@ -221,10 +225,10 @@ def test_another_version_is_told_where_a_verdict_moved(made: Made, tmp_path: Pat
     (entry,) = kept["models"].values()
     entry["crawler2d"] = "0.0.9"
     path.write_text(json.dumps(kept), encoding="utf-8")
-    _, told = compare(now, read_baseline(path), path)
-    assert told[-1].startswith("crawler2d 0.0.9 (")
-    assert f"is now {c2d.__version__} (" in told[-1]
-    assert "CHANGELOG.md" in told[-1]
+    _, changes = compare(now, read_baseline(path), path)
+    assert changes[-1].startswith("crawler2d 0.0.9 (")
+    assert f"is now {c2d.__version__} (" in changes[-1]
+    assert "CHANGELOG.md" in changes[-1]
     assert compare(before, read_baseline(path), path)[1] == []
 
 
@@ -233,9 +237,9 @@ def test_everything_is_new_in_a_file_that_the_baseline_lacks(made: Made, tmp_pat
     path = tmp_path / "audit.json"
     write_baseline(path, [check], None)
     other = dataclasses.replace(check, path=check.path.with_name("other.urdf"))
-    new, told = compare(other, read_baseline(path), path)
+    new, changes = compare(other, read_baseline(path), path)
     assert new.failing == check.issues
-    assert told == ["not in the baseline: all of it is new"]
+    assert changes == ["not in the baseline: everything is new"]
 
 
 def test_a_baseline_names_files_from_its_own_folder(

@@ -16,7 +16,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.__main__ import main
 from crawler2d.commands import audit as command
-from tests.audits.seizing import seizing_file, told
+from tests.audits.seizing import instant_audit, seizing_file
 from tests.walls.rooms import ROOT
 
 
@@ -40,7 +40,7 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def quick(repository: Path, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit) -> Path:
     """The same, with audits that take no time: all find what is found in a cart that seizes."""
-    monkeypatch.setattr(command, "audit", told(of_file))
+    monkeypatch.setattr(command, "audit", instant_audit(of_file))
     monkeypatch.setattr(c2d.Audit, "to_html", lambda _, path, **__: path.write_text("a page"))
     return repository
 
@@ -64,7 +64,7 @@ def test_a_file_that_cannot_be_read_is_an_error_in_the_reports_of_all(
     quick: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit
 ) -> None:
     assert quick.is_dir()
-    of_one = told(of_file)
+    of_one = instant_audit(of_file)
 
     def audit(file: Path, **how: Any) -> c2d.Audit:
         if file.stem == "two":

@@ -23,7 +23,7 @@ from crawler2d.__main__ import main
 from crawler2d.audits.record import OPTIONS, Call, as_options, command_of
 from crawler2d.audits.text import plain_of
 from crawler2d.commands import audit as command
-from tests.audits.seizing import told
+from tests.audits.seizing import instant_audit
 from tests.reading.carts import FILES, WHEELS, pair, urdf
 
 ROBOTS = Path(__file__).parent.parent / "robots"
@@ -72,7 +72,7 @@ def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[
 def test_the_command_says_whether_it_seizes(
     capsys: Any, monkeypatch: Any, found: c2d.Audit
 ) -> None:
-    monkeypatch.setattr(command, "audit", told(found))
+    monkeypatch.setattr(command, "audit", instant_audit(found))
     status, out, _ = run(capsys, "any.sdf", "--no-html")
     assert status == 1
     assert out.strip() == found.in_words
@@ -94,7 +94,7 @@ def test_after_ctrl_c_the_command_says_what_is_kept(
 @pytest.fixture
 def made(monkeypatch: Any, tmp_path: Path, found: c2d.Audit) -> Path:
     """An empty folder to work in, and an audit that takes no time."""
-    monkeypatch.setattr(command, "audit", told(found))
+    monkeypatch.setattr(command, "audit", instant_audit(found))
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -302,14 +302,14 @@ def test_errors_speak_of_options(name: str) -> None:
     assert as_options(f"{name} must be given, got None") == f"{option} must be given"
     assert as_options(f"{name}['a'] must be text, got 3") == f"{option} must be text, got 3"
     for advice in (f"or {name}= says", f'or {name}="hull" says', f"or {name}=0.01 says"):
-        told = as_options(advice)
-        assert told.startswith(f"or {option} ")
-        assert f"{name}=" not in told
-        assert told.endswith(" says")
+        expected = as_options(advice)
+        assert expected.startswith(f"or {option} ")
+        assert f"{name}=" not in expected
+        assert expected.endswith(" says")
 
 
 @pytest.mark.parametrize(
-    ("advice", "told"),
+    ("advice", "expected"),
     [
         ("trusted=True lets it", "--trusted lets it"),
         ("packages={name: folder}", "--package NAME=FOLDER"),
@@ -318,8 +318,8 @@ def test_errors_speak_of_options(name: str) -> None:
         ("a submodel=1 is none", "a submodel=1 is none"),
     ],
 )
-def test_advice_is_given_as_options(advice: str, told: str) -> None:
-    assert as_options(advice) == told
+def test_advice_is_given_as_options(advice: str, expected: str) -> None:
+    assert as_options(advice) == expected
 
 
 def test_a_file_ten_times_too_large_is_refused_before_any_run(capsys: Any) -> None:
@@ -327,6 +327,6 @@ def test_a_file_ten_times_too_large_is_refused_before_any_run(capsys: Any) -> No
     status, out, err = run(capsys, str(ROBOTS / "eng.urdf"), "--mesh", "leave_out")
     assert (status, out) == (2, "")
     assert "--scale must be given: eng.urdf is 5.32 m long" in err
-    assert "is it ten times too large? --scale 0.1 reads it so" in err
+    assert "if it is ten times too large, pass --scale 0.1" in err
     assert "--scale 1 leaves it as it is" in err
     assert len(err.strip().splitlines()) == 1

@@ -48,7 +48,7 @@ def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> 
     }
     for rate in (0.01, 0.03, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.9):
         going, before, held, seizes = {0: 1.0}, 0, 0.0, 0.0
-        for made, judged in ends.items():
+        for made, verdicts in ends.items():
             more = made - before
             came: dict[int, float] = {}
             for hits, chance in going.items():
@@ -57,7 +57,7 @@ def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> 
                     came[hits + k] = came.get(hits + k, 0.0) + own
             before, going = made, {}
             for hits, chance in came.items():
-                verdict, certain = judged[hits]
+                verdict, certain = verdicts[hits]
                 if made < samples and not certain:
                     going[hits] = chance
                     continue

@@ -181,8 +181,10 @@ def test_the_page_begins_with_the_answer_and_the_worst_replay(found: c2d.Audit, 
 
 def test_the_answer_says_in_which_runs_it_seizes_against_the_rule(of_file: c2d.Audit) -> None:
     weak = dataclasses.replace(of_file.verdicts[0], word="not certain")
-    told = answer(Page(dataclasses.replace(of_file, verdicts=(weak,)).to_html()))
-    assert told.startswith("By the rule it seizes nowhere, but in runs over 1 of 1 obstacles: step")
+    sentence = answer(Page(dataclasses.replace(of_file, verdicts=(weak,)).to_html()))
+    assert sentence.startswith(
+        "By the rule it seizes nowhere, but in runs over 1 of 1 obstacles: step"
+    )
 
 
 def test_an_error_of_lint_is_told_above_the_answer(of_file: c2d.Audit) -> None:
@@ -194,9 +196,9 @@ def test_an_error_of_lint_is_told_above_the_answer(of_file: c2d.Audit) -> None:
 
 
 def test_the_conclusion_is_that_of_the_short_form(found: c2d.Audit, page: Page) -> None:
-    told = [text for _, text in page.all("p")]
+    paragraphs = [text for _, text in page.all("p")]
     for sentence in words.conclusion(found):
-        assert sentence in told
+        assert sentence in paragraphs
         assert sentence in plain(found.in_words)
 
 
@@ -351,8 +353,8 @@ def test_a_repair_that_seizes_in_the_very_run_is_said_to(found: c2d.Audit) -> No
     same = dataclasses.replace(found.repairs[0], robot=found.robot, confirmed=False)
     repaired = found.repaired._replace(repairs=(same,))
     page = Page(dataclasses.replace(found, repaired=repaired).to_html())
-    ((_, told),) = page.all("p", **{"class": "diagnosis"})
-    assert told.endswith("In this run the other robot seizes, too.")
+    ((_, sentence),) = page.all("p", **{"class": "diagnosis"})
+    assert sentence.endswith("In this run the other robot seizes, too.")
     assert answer(page).endswith("No repair was confirmed.")
 
 
@@ -394,8 +396,8 @@ def test_without_a_seizure_the_run_that_came_closest_is_shown() -> None:
     of = [each.obstacle for each in found.verdicts].index(replay.verdict.obstacle)
     assert longest[of, replay.sample, replay.repeat] == longest.max()
     assert belt.scenario.robot == found.belt.robot
-    ((_, told),) = page.all("p", **{"class": "diagnosis"})
-    assert told == "It seized in no run; this is the one that came closest. It clears."
+    ((_, sentence),) = page.all("p", **{"class": "diagnosis"})
+    assert sentence == "It seized in no run; this is the one that came closest. It clears."
 
 
 def test_a_robot_on_belts_has_a_page() -> None:
@@ -476,8 +478,8 @@ def test_equal_pockets_are_drawn_once_and_all_to_one_scale() -> None:
         scales.append((u - x) / pocket.width)
         assert f"{1e3 * pocket.width:.1f} mm wide" in figure
     assert np.ptp(scales) < 0.01 * min(scales)  # to a tenth of a pixel
-    told = " ".join(figures)
-    assert all("-".join(map(str, each.bodies)) in told for each in found)
+    text = " ".join(figures)
+    assert all("-".join(map(str, each.bodies)) in text for each in found)
 
 
 def test_wheels_that_touch_hold_at_any_friction() -> None:

@@ -190,12 +190,12 @@ def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLE
 def _conclusion(entries: Sequence[Entry]) -> str:
     read = [entry for entry in entries if entry.reading is not None]
     seizing = [entry for entry in entries if entry.audit is not None and entry.audit.seizes]
-    mended = [
+    repaired = [
         e for e in seizing if e.audit is not None and any(r.confirmed for r in e.audit.repairs)
     ]
     return (
         f"Of {len(entries)} model files {len(read)} were read; {len(seizing)} robots seize where a"
-        f" belt clears, for {len(mended)} of which a repair was confirmed."
+        f" belt clears, for {len(repaired)} of which a repair was confirmed."
     )
 
 

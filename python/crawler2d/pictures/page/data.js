@@ -8,7 +8,7 @@ function unpack(column) {
   return Float64Array.from(counts, (count) => column.start + column.step * count);
 }
 
-// A path through points, closed unless told otherwise.
+// A path through points, closed unless `close` is false.
 function outlineOf(points, close = true) {
   const path = new Path2D();
   for (let i = 0; i < points.length; i += 2) path.lineTo(points[i], points[i + 1]);

@@ -45,7 +45,7 @@ function reset() {
   changed();
 }
 
-// Shows where the robot ended in a trial, beside where it stopped; a second press hides it.
+// Shows where the robot ended in a trial, together with where it stopped; a second press hides it.
 function showTrial(number) {
   scene.ghost = scene.ghost === number ? null : number;
   for (const button of document.querySelectorAll("[data-trial]")) {
