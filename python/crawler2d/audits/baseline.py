@@ -2,7 +2,7 @@
 
 A baseline keeps words, counts and intervals, not bits. A seizure is new
 
-- on an obstacle on which the robot was not said to seize, or that the baseline does not have;
+- on an obstacle on which the robot did not seize, or that the baseline does not have;
 - or if the interval of its rate is above the one it had, over all speeds or at one of them.
 
 Equal builds of crawler2d give equal runs. With another build a rate near a bound may change its
@@ -232,15 +232,15 @@ def _robot_moved(before: Plain, now: Plain) -> Iterator[str]:
         yield f"another robot: {list_names(moved, _MOST)}"
 
 
-def _leaves(plain: Any, path: str = "robot") -> Iterator[tuple[str, object]]:
-    if isinstance(plain, Mapping):
-        for name, each in plain.items():
+def _leaves(value: Any, path: str = "robot") -> Iterator[tuple[str, object]]:
+    if isinstance(value, Mapping):
+        for name, each in value.items():
             yield from _leaves(each, f"{path}.{name}")
-    elif isinstance(plain, list):
-        for number, each in enumerate(plain):
+    elif isinstance(value, list):
+        for number, each in enumerate(value):
             yield from _leaves(each, f"{path}[{number}]")
     else:
-        yield path, plain
+        yield path, value
 
 
 def _figure(value: object) -> str:

@@ -265,10 +265,10 @@ def _drive(
     samples = next(iter(courses.values())).samples
     count = RunCounter(show, samples * len(over) * (len(models) - 1))
     left = [what for what in models if what != OWN or what == reference]
-    for made in look_counts(samples):
+    for target in look_counts(samples):
         for course in courses.values():
             for what in left:
-                course.drive(what, made, count.next_batch())
+                course.drive(what, target, count.next_batch())
         tables = {name: course.table() for name, course in courses.items()}
         failed = [what for what in left if _fails(tables, what, reference, seizing)]
         left = [what for what in left if what == reference or what not in failed]

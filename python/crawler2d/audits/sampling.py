@@ -77,12 +77,12 @@ def verdict_on(course: Course, obstacle: str, count: RunCounter) -> tuple[Verdic
     Verdict, xarray.Dataset
         And the runs behind it.
     """
-    for made in look_counts(course.samples):
-        course.drive(OWN, made, count.next_batch())
+    for target in look_counts(course.samples):
+        course.drive(OWN, target, count.next_batch())
         table = course.table()
         verdict = verdict_of(table, obstacle)
         if verdict.seized.rate > 0.0 or not verdict.cleared.rate >= CLEARS:
-            course.drive(BELT, made, count.next_batch())
+            course.drive(BELT, target, count.next_batch())
             table = course.table()
             verdict = verdict_of(table, obstacle)
         if is_certain(table, verdict):

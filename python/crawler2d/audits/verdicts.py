@@ -77,13 +77,13 @@ class Proportion:
 
 
 def proportion_of(
-    happened: NDArray[np.bool_], made: NDArray[np.bool_], *, is_stopped: bool = False
+    happened: NDArray[np.bool_], counted: NDArray[np.bool_], *, is_stopped: bool = False
 ) -> Proportion:
     """Count how often something happened.
 
     Parameters
     ----------
-    happened, made : ndarray of bool, shape (samples, repeats)
+    happened, counted : ndarray of bool, shape (samples, repeats)
         Whether it happened in a run, and whether the run has a result.
     is_stopped : bool
         Whether these results decided that no more runs were made: then the interval is that of
@@ -101,7 +101,7 @@ def proportion_of(
     >>> round(seized.low, 3), round(seized.high, 3)  # about as 5 or 6 robots in 20
     (0.131, 0.488)
     """
-    hits, counts = (happened & made).sum(axis=1), made.sum(axis=1)
+    hits, counts = (happened & counted).sum(axis=1), counted.sum(axis=1)
     rates = hits[counts > 0] / counts[counts > 0]
     if not rates.size:
         return Proportion()
@@ -160,8 +160,8 @@ class ObstacleRuns:
         self, happened: NDArray[np.bool_], among: NDArray[np.bool_] | None = None
     ) -> Proportion:
         """Count how often something happened in the runs with a result, or in some of them."""
-        made = self.has_result if among is None else self.has_result & among
-        return proportion_of(happened, made, is_stopped=bool((self.ends == "").any()))
+        counted = self.has_result if among is None else self.has_result & among
+        return proportion_of(happened, counted, is_stopped=bool((self.ends == "").any()))
 
     def by_speed(self, happened: NDArray[np.bool_]) -> dict[float, Proportion]:
         """Count how often something happened at each speed [m/s], the slowest first."""

@@ -303,8 +303,8 @@ def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:
     rates = list(repair.seized.items())
     for obstacle, at in repair.seized_at.items():
         rates += [(f"{obstacle} at {speed:g} m/s", each) for speed, each in at.items()]
-    made = [(where, each) for where, each in rates if each.runs]
-    name, seized = max(made, key=lambda item: (item[1].low, item[1].rate))
+    driven = [(where, each) for where, each in rates if each.runs]
+    name, seized = max(driven, key=lambda item: (item[1].low, item[1].rate))
     return cleared, seized, name if seized.rate > 0.0 else ""
 
 
@@ -383,9 +383,9 @@ def _side(length: float, positive: str, negative: str) -> str:
     return f"{1e3 * abs(length):.0f} mm {positive if length >= 0.0 else negative}"
 
 
-def span(values: Sequence[float], form: str) -> str:
+def span(values: Sequence[float], digits: str) -> str:
     """Write the least and the largest of some numbers."""
-    low, high = (format(bound, form) for bound in (min(values), max(values)))
+    low, high = (format(bound, digits) for bound in (min(values), max(values)))
     return low if low == high else f"{low} to {high}"
 
 

@@ -242,14 +242,14 @@ def licence_of(repository: Path) -> str:
     """
     if not repository.is_dir():
         return "licence: none found"
-    said = []
+    statements = []
     for path in sorted(repository.glob("*")):
         if re.match(r"(?i)(licen[cs]e|copying)", path.name) and path.is_file():
             lines = path.read_text(encoding="utf-8", errors="replace")[:4000].splitlines()
             first = next((line.strip() for line in lines if line.strip()), "")
-            said.append(f"{path.name}: {first[:80]}")
+            statements.append(f"{path.name}: {first[:80]}")
     for path in sorted(repository.rglob("package.xml"))[:1]:
         text = path.read_text(encoding="utf-8", errors="replace")[:100_000]
         if stated := re.search(r"<license[^>]*>([^<]*)</license>", text):
-            said.append(f"package.xml: {stated[1].strip()[:80]}")
-    return f"licence: {'; '.join(said) or 'none found'}"
+            statements.append(f"package.xml: {stated[1].strip()[:80]}")
+    return f"licence: {'; '.join(statements) or 'none found'}"

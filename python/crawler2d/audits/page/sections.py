@@ -87,13 +87,13 @@ def answer_section(audit: AuditRecord) -> str:
             f'<strong class="good">It seized in no run over {len(every)} obstacles</strong>{but}.'
         )
     worst = max(seized, key=lambda each: each.seized.rate)
-    said = f"It seizes on {len(seized)} of {len(every)} obstacles where a belt clears"
+    claim = f"It seizes on {len(seized)} of {len(every)} obstacles where a belt clears"
     if not certain:
         runs = f"in runs over {len(seized)} of {len(every)} obstacles"
-        said = f"By the rule it seizes nowhere, but {runs}"
+        claim = f"By the rule it seizes nowhere, but {runs}"
     wheels = " and ".join(worst.where.split("-"))
     text = (
-        f'<strong class="{"bad" if certain else "warning"}">{said}</strong>'
+        f'<strong class="{"bad" if certain else "warning"}">{claim}</strong>'
         f"{', most often on' if len(seized) > 1 else ':'} {escape(worst.obstacle)}"
         f" ({words.percent(worst.seized.rate)} of the runs), between wheels {wheels} of the"
         f" {worst.carrier}."

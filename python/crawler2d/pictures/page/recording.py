@@ -78,7 +78,7 @@ def recording(run: Record, time: float | None = None, *, most: int = MOST_FRAMES
         "ghosts": [
             {"belt": each.is_belt, "frames": each.frames.round(5).tolist()} for each in ghosts(run)
         ],
-        "robot": _Robot(run, scene, kept).plain(),
+        "robot": _Robot(run, scene, kept).data(),
     }
 
 
@@ -167,7 +167,7 @@ class _Robot:
         self.robot, self.scene, self.kept = run.scenario.robot, scene, kept
         self.columns, self.outlines = _UniqueArrays(), _UniqueArrays()
 
-    def plain(self) -> dict[str, Any]:
+    def data(self) -> dict[str, Any]:
         """Collect the carriers of tracks, and all that is drawn on each.
 
         Returns
