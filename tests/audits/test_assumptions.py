@@ -1,4 +1,4 @@
-"""An audit says of a seizure whether it hangs on rotors and on blows."""
+"""An audit says of a seizure whether it depends on rotors and on restitution."""
 
 from dataclasses import replace
 
@@ -35,13 +35,13 @@ def test_a_seizure_holds_if_the_lower_bound_of_its_rate_is_above_5_percent(
     assert found.holds == holds
 
 
-def test_each_seizure_is_driven_again_under_each_assumption_and_told() -> None:
+def test_each_seizure_is_driven_again_under_each_assumption_and_reported() -> None:
     found = c2d.audit(ROBOT, STEP, quick=True, repair=False, progress=False)
     assert found.seizes
     (blows,) = found.assumed
     assert (blows.obstacle, blows.assumption, blows.made) == ("step of 75 mm", "restitution", 18)
     assert blows.seized <= 18
-    assert any("With blows that give some or all of it back" in each for each in conclusion(found))
+    assert any("With rebound (restitution 0 to 1)" in each for each in conclusion(found))
     again = c2d.audit(ROBOT, STEP, quick=True, repair=False, progress=False)
     assert again.assumed == found.assumed
 

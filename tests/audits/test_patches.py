@@ -153,7 +153,7 @@ def test_belts_of_urdf_are_written_as_sdf_beside_it(
     monkeypatch.setattr(command, "audit", lambda *_, **__: found)
     assert main(["audit", "any.sdf", "--no-html", "--patch", str(path)]) == 1
     printed = capsys.readouterr().out
-    assert "written anew as SDF, as URDF holds no belts" in printed
+    assert "a new SDF file, because URDF holds no belts" in printed
     assert f"The changed file is {tmp_path / 'new.sdf'}" in printed
     assert (tmp_path / "new.sdf").exists()
     assert not path.exists()

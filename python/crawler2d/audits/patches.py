@@ -140,11 +140,11 @@ def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change
     is_mjcf = read.tree.format == "MJCF"
     with ignore_doubts():  # they are in the lint
         text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
-    note = "" if is_mjcf or read.tree.format.startswith("SDF") else ", as URDF holds no belts"
+    note = "" if is_mjcf or read.tree.format.startswith("SDF") else ", because URDF holds no belts"
     return Change(
         text=labelled(text, f"crawler2d, {label}"),
         label=label,
-        summary=f"a new file of {'MJCF' if is_mjcf else 'SDF'}{note}",
+        summary=f"a new {'MJCF' if is_mjcf else 'SDF'} file{note}",
         suffix=".sdf" if note else "",
     )
 
