@@ -6,11 +6,12 @@ that it holds: ``except Exception`` must not swallow an interrupt.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import reprlib
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "ScenarioWarning",
     "SimulationDiverged",
     "StoreError",
+    "ignore_doubts",
     "own_error",
     "raise_first",
     "warn",
@@ -260,3 +262,11 @@ def warn(path: str, value: object, reason: str) -> None:
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == _PACKAGE:
         frame, level = frame.f_back, level + 1
     warnings.warn(ScenarioWarning(path, value, reason), stacklevel=level)
+
+
+@contextlib.contextmanager
+def ignore_doubts() -> Iterator[None]:
+    """Issue no `ScenarioWarning`, where doubts are reported elsewhere or would be out of place."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ScenarioWarning)
+        yield

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import crawler2d as c2d
-from crawler2d.drawings.scene import BLACK, BLUE, ORANGE
-from crawler2d.drawings.views import robot_alone
+from crawler2d.drawings.scene import BLACK, BLUE, ORANGE, Scene
 from crawler2d.parameters.track import Track
 from research.models import study_robot
 from research.paper import CWA_ROUND, LWA_ROUND, TABLE_1
@@ -345,7 +344,7 @@ def _grouser_angle(outline: ArrayLike) -> tuple[float, float]:
 
 def _draw_wheel(ax: Axes, robot: c2d.Robot, *, with_angle: bool) -> None:
     """Draw the rearmost wheel alone; mark the angle between two of its grousers."""
-    scene = robot_alone(c2d.Scenario(robot, c2d.terrains.flat()).to_json())
+    scene = Scene.of_robot(c2d.Scenario(robot, c2d.terrains.flat()).to_json())
     x, radius = -0.5 * robot.outline.axle_distance, robot.outline.rear_radius
     wheel = scene.outline(0, 0) - (x, 0.0)
     ax.fill(*wheel.T, facecolor="none", edgecolor=BLACK, linewidth=1.2)

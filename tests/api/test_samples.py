@@ -8,7 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.audits.subject import standard_obstacles
-from crawler2d.audits.text import linted
+from crawler2d.audits.text import lint_only
 from crawler2d.parameters.fields import to_dict
 from crawler2d.patching.patch import patch_file
 from tests.shared import refused
@@ -61,7 +61,7 @@ def test_each_format_has_the_same_robot(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_is_a_robot_that_could_be(name: str) -> None:
     read(name)
-    found = linted(c2d.samples.path(name))
+    found = lint_only(c2d.samples.path(name))
     assert {each.severity for each in found.lint} <= {"note"}
     assert 10.0 < found.robot.mass < 20.0
     outline = found.robot.outline

@@ -57,7 +57,9 @@ def test_belts_are_written_anew_by_name(audited: c2d.Audit, tmp_path: Path) -> N
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         assert audited.patch(path, repair=belt) == ""
-    assert ["because URDF holds no belts" in str(each.message) for each in caught] == [True] * is_urdf
+    assert ["because URDF holds no belts" in str(each.message) for each in caught] == [
+        True
+    ] * is_urdf
     written = path.with_suffix(".sdf") if is_urdf else path
     assert isinstance(quietly(written).robot.track, c2d.BeltTrack)
     assert "<!-- crawler2d, confirmed: belts moved by a track plugin" in written.read_text()

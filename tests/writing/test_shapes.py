@@ -9,7 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.drawings.scene import Scene, at_start, on_chassis
+from crawler2d.drawings.scene import Scene
 from crawler2d.model_tree import Shape, Tree
 from crawler2d.writing.carriers import Format, across_of
 from crawler2d.writing.formats import MJCF, SDF
@@ -120,7 +120,7 @@ def test_wheels_are_hoops_only_where_uniform_ones_leave_no_chassis() -> None:
 def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> None:
     robot = c2d.robots.engineer(track=c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=5)))
     text = robot._at_rest()
-    scene = Scene(text, on_chassis(at_start(text)))
+    scene = Scene.of_robot(text)
     tree = tree_of(robot)
     for number in range(3):
         outline = dense(scene.outline(3 + number, 0)[:-1])

@@ -13,9 +13,9 @@ import numpy as np
 from crawler2d.model_tree import Joint, Link, Where
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
-from crawler2d.reading.log import lines, named
+from crawler2d.reading.loading import size_of
+from crawler2d.reading.log import lines, list_names
 from crawler2d.reading.reading import Reading
-from crawler2d.reading.surfaces import size_of
 from crawler2d.reading.wheels import farthest
 
 __all__ = ["RULES", "SEVERITIES", "Finding", "lint"]
@@ -262,7 +262,7 @@ def _of_links(reading: Reading, links: list[Link], what: str) -> Iterator[_Break
     light = [link for link in order if link.mass < least]
     for each, severity in ((heavy, ""), (light, "note")):
         if each:
-            names = named([link.name for link in each])
+            names = list_names([link.name for link in each])
             yield _Break(f"{names}: {what}", lines([link.at for link in each]), severity)
 
 
@@ -344,7 +344,7 @@ def _no_motor(reading: Reading) -> Iterator[_Break]:
     wheels = [joint for _, joint in _wheel_links(reading)]
     idle = [joint for joint in wheels if joint.name not in reading.tree.driven]
     if idle:
-        names = named([joint.child for joint in idle])
+        names = list_names([joint.child for joint in idle])
         what = (
             f"the file names no motor for {len(idle)} of {len(wheels)} wheels ({names}); here all"
             " are driven, as by an external controller; wheels that nothing turns would drag"
@@ -363,7 +363,7 @@ def _balance(reading: Reading) -> Iterator[_Break]:
     found = [(away, link) for away, link in off if away > _OFF_AXLE * radii[link.name]]
     if found:
         most = max(away for away, _ in found)
-        names = named([link.name for _, link in found])
+        names = list_names([link.name for _, link in found])
         what = (
             f"{names}: their centres of mass are off their axles by up to {1e3 * most:.3g} mm: such"
             " wheels shake a robot as they turn; here they are balanced"

@@ -12,7 +12,7 @@ from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
 from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.robot import Robot
-from crawler2d.patching.patch import labelled, patched
+from crawler2d.patching.patch import add_label, patch_file
 
 if TYPE_CHECKING:
     from crawler2d.audits.record import AuditRecord
@@ -102,7 +102,7 @@ def change_of(audit: AuditRecord, repair: Repair) -> Change:
     assert audit.reading is not None
     label = words.repair_sentence(repair)
     with ignore_doubts():  # they are in the lint
-        patch = patched(audit.reading, repair.robot, f"crawler2d, {label}")
+        patch = patch_file(audit.reading, repair.robot, f"crawler2d, {label}")
     return Change(
         text=patch.text, label=label, diff=patch.diff, summary=patch.summary, left=patch.left
     )
@@ -142,7 +142,7 @@ def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change
         text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
     note = "" if is_mjcf or read.tree.format.startswith("SDF") else ", because URDF holds no belts"
     return Change(
-        text=labelled(text, f"crawler2d, {label}"),
+        text=add_label(text, f"crawler2d, {label}"),
         label=label,
         summary=f"a new {'MJCF' if is_mjcf else 'SDF'} file{note}",
         suffix=".sdf" if note else "",

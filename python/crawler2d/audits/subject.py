@@ -10,7 +10,8 @@ from typing import Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import lint
 from crawler2d.errors import ScenarioError, ignore_doubts
-from crawler2d.parameters.robot import Robot, TrackOutline
+from crawler2d.parameters.outline import TrackOutline
+from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import (
     Barrier,
@@ -24,9 +25,9 @@ from crawler2d.parameters.terrain import (
     Terrain,
 )
 from crawler2d.presets.unknowns import of_ground, of_robot
-from crawler2d.reading.options import Engine
+from crawler2d.reading.engines import Engine
+from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.reading import Reading, read_robot
-from crawler2d.reading.shapes import MeshRule
 from crawler2d.variation.distributions import Distribution, Levels, Ranges, scaled, shifted, uniform
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
@@ -253,38 +254,33 @@ def unknown_of_file(
     with_friction : bool
         See `unknown_of`.
     """
-    ranges: dict[str, Distribution] = {}
-    sources: dict[str, str] = {}
-
-    def add(path: str, distribution: Distribution, source: str) -> None:
-        ranges[path], sources[path] = distribution, source
-
+    ranges: dict[str, tuple[Distribution, str]] = {}
     stated, about = reading.sources, scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
     slack = "2 % of the axle distance for what is mounted or left off"
     for axis in (0, 1):
         place = shifted(-0.02, 0.02, of="robot.outline.axle_distance")
         source = f"{stated['robot.center_of_mass']}; {slack}"
-        add(f"robot.center_of_mass[{axis}]", place, source)
+        ranges[f"robot.center_of_mass[{axis}]"] = place, source
     torque = stated["robot.drivetrain.max_torque"]
     if torque.startswith("estimate"):
-        add("robot.drivetrain.max_torque", scaled(0.5, 2.0), f"{torque}; half to twice")
+        ranges["robot.drivetrain.max_torque"] = scaled(0.5, 2.0), f"{torque}; half to twice"
     else:
-        add("robot.drivetrain.max_torque", about, f"{torque}; a tenth")
+        ranges["robot.drivetrain.max_torque"] = about, f"{torque}; a tenth"
     if reading.robot.belly is not None:
         height = shifted(-0.05, 0.05, of="robot.outline.front_radius")
         source = f"{stated['robot.belly']}; a twentieth of the radius"
-        add("robot.belly[*][1]", height, source)
+        ranges["robot.belly[*][1]"] = height, source
     if with_friction:
         low, high = (0.0, 0.0) if floors is None else (min(floors.values()), max(floors.values()))
         if high - low <= _MOST_FROM_FLOORS * reading.friction:
-            add("terrain.friction", about, f"{stated['friction']}; a tenth")
+            ranges["terrain.friction"] = about, f"{stated['friction']}; a tenth"
         else:
             source = (
                 f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no file of a robot states,"
                 f" combined by the rule of {reading.engine} with {stated['friction']}"
             )
-            add("terrain.friction", uniform(low, high), source)
-    return Ranges(ranges, sources)
+            ranges["terrain.friction"] = uniform(low, high), source
+    return Ranges.with_sources(ranges)
 
 
 def subject_of(robot: object, how: ReadKeywords) -> Subject:

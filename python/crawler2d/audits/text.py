@@ -15,7 +15,7 @@ from crawler2d.audits.candidates import Pocket, pockets
 from crawler2d.audits.lint import Finding, lint
 from crawler2d.audits.subject import ReadKeywords, subject_of
 from crawler2d.audits.verdicts import Verdict
-from crawler2d.parameters.fields import to_plain
+from crawler2d.parameters.fields import to_dict
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading
@@ -190,7 +190,7 @@ def plain_of(audit: AuditRecord) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, (Robot, Terrain)):
-        return to_plain(value)
+        return to_dict(value)
     if isinstance(value, Ranges):
         return {path: str(distribution) for path, distribution in value.items()}
     if dataclasses.is_dataclass(value):

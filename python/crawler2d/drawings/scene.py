@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.bodies import TRACED, BodyKind, Lane, body_poses
+from crawler2d.common.bodies import POSE_COLUMNS, BodyKind, Lane, body_poses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -200,7 +200,7 @@ class Scene:
     text : str
         The scenario in JSON.
     columns : mapping of str to ndarray
-        Where the robot is at n samples: the columns of a run that `TRACED` names.
+        Where the robot is at n samples: the columns of a run that `POSE_COLUMNS` names.
 
     Attributes
     ----------
@@ -358,4 +358,4 @@ def _first_sample(text: str) -> dict[str, NDArray[np.float64]]:
     """Find where the robot of a scenario in JSON stands at time 0."""
     start = json.dumps({**json.loads(text), "duration": 0.0})
     trace = _core.simulate(start, 1.0, "full", [])["trace"]
-    return {name: trace[name] for name in TRACED}
+    return {name: trace[name] for name in POSE_COLUMNS}

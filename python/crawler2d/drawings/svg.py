@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.common.bodies import discs_in, ends_of, is_short
+from crawler2d.common.bodies import discs_in, end_discs, is_centered_pair
 from crawler2d.drawings.scene import BLACK, GREEN, GROUND, STYLES, Extent, Look, Scene, extent_of
 from crawler2d.errors import ignore_doubts
 
@@ -212,8 +212,8 @@ def _robot_rows(robot: dict[str, Any]) -> list[tuple[str, str]]:
     outline, drivetrain, flippers = robot["outline"], robot["drivetrain"], robot["flippers"]
     x, y = robot["center_of_mass"]
     discs = discs_in(outline)
-    (rear, _, _), (front, _, _) = ends_of(discs)
-    origin = "midway between the axles" if is_short(discs) else "the origin of the discs"
+    (rear, _, _), (front, _, _) = end_discs(discs)
+    origin = "midway between the axles" if is_centered_pair(discs) else "the origin of the discs"
     rows = [
         ("mass", f"{robot['mass']:.4g} kg, of which tracks {robot['track_mass']:.3g} kg"),
         ("centre of mass", f"({x:.3f}, {y:.3f}) m from {origin}"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.bodies import discs_in, ends_of
+from crawler2d.common.bodies import discs_in, end_discs
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import Canvas, draw_height, draw_length, draw_radius
 from crawler2d.drawings.scene import (
@@ -204,7 +204,7 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
     discs, arms = discs_in(robot["outline"]), _arms(scene, robot)
     # Labels below: radii of discs between the ends if others are equal to none, those of the ends,
     # and lengths.
-    of_ends = {radius for _, _, radius in ends_of(discs)}
+    of_ends = {radius for _, _, radius in end_discs(discs)}
     rows = 2 + any(radius not in of_ends for _, _, radius in discs)
     corners = [(left, bottom - (1 + rows) * _BELOW * width), (right, top)]
     left, right, below, top = extent_of(np.array([*corners, *(each.start for each in arms)]))
@@ -238,7 +238,7 @@ def _is_same(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
 
 def _arms(scene: Scene, robot: dict[str, Any]) -> list[_Arm]:
     """Find the flippers at each end, the front first."""
-    (rear, front), arms = ends_of(discs_in(robot["outline"])), []
+    (rear, front), arms = end_discs(discs_in(robot["outline"])), []
     for carrier in scene.carriers[1:]:
         pivot = np.array((front if carrier.name.startswith("front") else rear)[:2])
         tip = 2.0 * carrier.poses[0, :2] - pivot
@@ -255,7 +255,7 @@ def _draw_dimensions(ax: Axes, discs: Any, arms: list[_Arm], levels: list[float]
 
     `levels` [m] are those of the rows of labels, from above.
     """
-    rear, front = ends_of(discs)
+    rear, front = end_discs(discs)
     of_arms = [point for arm in arms for point in (arm.pivot, arm.tip)]
     axles = np.array([*(disc[:2] for disc in discs), *of_arms])
     ax.plot(*axles.T, "o", color=BLACK, markersize=2.5, zorder=2.5)

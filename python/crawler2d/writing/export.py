@@ -16,7 +16,7 @@ import numpy as np
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.bodies import Lane, discs_in, end_discs
-from crawler2d.drawings.scene import Scene, at_start
+from crawler2d.drawings.scene import Scene
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Friction, Pose, Tree, from_rpy
 from crawler2d.writing.carriers import Across, Format, across_of
@@ -186,7 +186,7 @@ def export_world(
     name = _FORMATS.get(Path(path).suffix.lower())
     if name is None:
         raise ScenarioError("path", os.fspath(path), "must end in .sdf, .world or .xml")
-    scene, scenario = Scene(text, at_start(text)), json.loads(text)
+    scene, scenario = Scene.at_start(text), json.loads(text)
     frictions = _frictions(scenario["terrain"])
     widths = track_width, chassis_width
     model = _build_model(alone, name, max(frictions.values()), widths)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from crawler2d.audits.candidates import Pocket
     from crawler2d.parameters.robot import Robot
-    from crawler2d.reading.tracks import Silhouette
+    from crawler2d.reading.assembly import Silhouette
 
 __all__ = ["draw_pockets", "draw_robot"]
 
