@@ -106,10 +106,10 @@ class Work:
         until = c2d.Until(width=_NO_WIDTH, least=repeats, most=repeats)
         return RateSampling(**self.sampling, until=until)
 
-    def count(self, found: FigureDataset) -> FigureDataset:
+    def count(self, figures: FigureDataset) -> FigureDataset:
         """Count what a study has tried, and return it; what two studies try counts twice."""
-        self.tried.update({name: found.attrs[name] for name in ("settings", "runs")})
-        return found
+        self.tried.update({name: figures.attrs[name] for name in ("settings", "runs")})
+        return figures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
