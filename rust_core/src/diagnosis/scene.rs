@@ -1,14 +1,18 @@
-//! A stop in its surroundings: ground inside the track, contacts that bear, and forces that could hold it.
+//! A stop in its surroundings: ground inside the track, contacts that bear, how drives move the surfaces there, and forces
+//! that could hold it.
+//!
+//! Belts with grousers and chains keep running while a robot is stopped: the part that bore at a place may be
+//! elsewhere when the stop is examined. The part that is there now then gives the motion.
 
-use super::mechanism::Facts;
-use super::statics::{Statics, Support};
-use super::{LoadedIntrusion, StopContact};
+use super::findings::{Facts, LoadedIntrusion, StopContact};
+use super::statics::{Hinge, Statics, Support};
 use crate::contact::{Contact, Intrusion, TrackEnvelope};
 use crate::dynamics::{Carrier, Levers};
-use crate::geometry::{Pose, right_of};
+use crate::geometry::{Motion, Pose, Vector, cross, right_of};
 use crate::observe::{Bearing, DriveMean, Stance};
-use crate::robot::{BodyKind, Model, Running};
+use crate::robot::{BodyKind, Model, Mount, Running, Shape};
 use crate::scenario::SeizureCriteria;
+use crate::solver::Direction;
 use crate::terrain::Profile;
 
 /// What a diagnosis needs besides the stop itself.
@@ -255,5 +259,182 @@ impl Scene<'_> {
     /// Whether a motor is at its torque limit, on average.
     fn is_at_limit(&self, drive: &DriveMean) -> bool {
         drive.force.abs() >= self.criteria.torque_limit * self.model.motor.force
+    }
+}
+
+impl Scene<'_> {
+    /// Motion relative to the chassis, per metre that the drive of a part runs; its contact is at `point` [m] in the
+    /// chassis frame.
+    pub(super) fn motion(&self, part: usize, point: Vector) -> Motion {
+        let mount = self.model.parts[part].mount;
+        match mount {
+            Mount::Shoe(shoe) => self.motion_of_shoe(shoe, point),
+            Mount::Chassis => self.motion_over_mount(part, point),
+            Mount::Flipper(k) => {
+                let pose = self.running.flippers[k].pose;
+                let there = pose.inverse_transform_point(point);
+                self.motion_over_mount(part, there).seen_from(pose)
+            }
+        }
+    }
+
+    fn motion_over_mount(&self, part: usize, point: Vector) -> Motion {
+        let part = &self.model.parts[part];
+        let run = part.run(&self.running);
+        match &part.shape {
+            Shape::Grouser(grouser) => grouser.motion_where(run, point),
+            _ => part.motion(run, 0.0),
+        }
+    }
+
+    /// As the chain runs, each shoe takes the place of the next one. The places of its neighbours give its motion,
+    /// including the travel of the tensioner.
+    fn motion_of_shoe(&self, shoe: usize, point: Vector) -> Motion {
+        /// Distance from its middle, in pitches, within which a contact belongs to the shoe.
+        const OWN: f64 = 0.75;
+
+        let places = &self.running.shoes;
+        let of_shoe = self.model.chains.iter().find(|c| c.shoes.contains(&shoe));
+        let Some(chain) = of_shoe else {
+            return Motion::default();
+        };
+        let distance = |shoe: usize| (places[shoe].translation - point).length();
+        let there = if distance(shoe) < OWN * chain.path.pitch {
+            shoe
+        } else {
+            let nearest = chain
+                .shoes
+                .clone()
+                .min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+            nearest.unwrap_or(shoe)
+        };
+        let (first, count) = (chain.shoes.start, chain.shoes.len());
+        let beside = |steps: usize| places[first + (there - first + steps) % count];
+        between(beside(count - 1), beside(1), 2.0 * chain.path.pitch)
+    }
+}
+
+/// The motion from one place to another while a chain runs so far [m].
+fn between(from: Pose, to: Pose, run: f64) -> Motion {
+    let turn = (from.rotation.inverse() * to.rotation).angle();
+    let half = 0.5 * turn;
+    // Share of the displacement that remains as translation when the turn is about the midpoint.
+    let share = if half.abs() < 1e-6 {
+        1.0
+    } else {
+        half / libm::tan(half)
+    };
+    Motion {
+        center: 0.5 * (from.translation + to.translation),
+        turn: -turn / run,
+        along: (to.translation - from.translation) * (share / run),
+    }
+}
+
+impl Scene<'_> {
+    /// The hinges of the robot in a pose.
+    pub(super) fn hinges(&self, pose: Pose) -> Vec<Hinge> {
+        let arms = self.model.flippers.iter().zip(&self.running.flippers);
+        arms.map(|(arm, mounted)| {
+            let spoke = pose.rotation * (mounted.pose.translation - arm.pivot);
+            Hinge {
+                weight: spoke.x * arm.mass / self.model.mass,
+                torque: if arm.self_locking {
+                    f64::INFINITY
+                } else {
+                    arm.torque_limit / (self.model.mass * self.gravity)
+                },
+            }
+        })
+        .collect()
+    }
+
+    /// The hinge of a mount, and a direction with its lever about that hinge. A turning arm runs its belt along
+    /// itself, because the sprocket stands still.
+    pub(super) fn hung(
+        &self,
+        mount: Mount,
+        pose: Pose,
+        point: Vector,
+        directions: [Direction; 2],
+    ) -> (Option<usize>, [Direction; 2]) {
+        let Mount::Flipper(k) = mount else {
+            return (None, directions);
+        };
+        let arm = point - pose.transform_point(self.model.flippers[k].pivot);
+        let hung = directions.map(|direction| Direction {
+            joint_lever: cross(arm, direction.unit) - direction.spin_lever,
+            ..direction
+        });
+        (Some(k), hung)
+    }
+}
+
+/// [rad] Smallest angle between two pinching shoes; on a straight run it is less.
+const BENT: f64 = 0.05;
+/// Share of the time for which each shoe must bear, so that both do so at once. Shoes that slip past one after
+/// another hold nothing.
+const STAYS: f64 = 0.5;
+
+impl Scene<'_> {
+    /// Whether two neighbouring shoes bear on the ground inside the track where the gap between them is closing: bent
+    /// apart, as round an end of the track, and about to be straightened, as at the leading end.
+    pub(super) fn pinches(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
+        let bearing = stance
+            .bearings
+            .iter()
+            .filter(|b| b.contact.normal_force > 0.0);
+        let mut durations = vec![0.0; self.running.shoes.len()];
+        for (bearing, contact) in bearing.zip(contacts).filter(|(_, c)| c.in_pocket) {
+            if let Some(shoe) = self.model.parts[contact.body].mount.shoe() {
+                durations[shoe] += bearing.duration;
+            }
+        }
+        let closes = |one: usize, next: usize| {
+            let [a, b] = [one, next].map(|shoe| self.running.shoes[shoe]);
+            let bent = (a.rotation.inverse() * b.rotation).angle().abs();
+            let middle = 0.5 * (a.translation.x + b.translation.x);
+            durations[one].min(durations[next]) > STAYS
+                && bent > BENT
+                && self.direction() * middle > 0.0
+        };
+        self.model.chains.iter().any(|chain| {
+            let next = |shoe: usize| {
+                if shoe + 1 == chain.shoes.end {
+                    chain.shoes.start
+                } else {
+                    shoe + 1
+                }
+            };
+            chain.shoes.clone().any(|shoe| closes(shoe, next(shoe)))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rotation, left_of};
+
+    #[test]
+    fn between_two_places_on_a_circle_it_turns_about_its_middle() {
+        let (radius, turn) = (0.05, 0.7);
+        let place = |angle: f64| {
+            let (sine, cosine) = libm::sincos(angle);
+            Pose::from_parts(Vector::new(cosine, sine) * radius, Rotation::new(angle))
+        };
+        // Clockwise, as when a chain drives forwards.
+        let motion = between(place(turn), place(-turn), 2.0 * turn * radius);
+        for point in [Vector::new(0.05, 0.0), Vector::new(0.06, 0.01)] {
+            let expected = -left_of(point) / radius;
+            assert!((motion.at(point) - expected).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn between_two_places_on_a_line_it_goes_straight() {
+        let place = |x: f64| Pose::from_translation(Vector::new(x, 0.0));
+        let motion = between(place(0.1), place(0.0), 0.1);
+        assert!((motion.at(Vector::new(0.3, 0.2)) - Vector::new(-1.0, 0.0)).length() < 1e-12);
     }
 }

@@ -1,16 +1,16 @@
-//! Builds a robot in a given state on its ground.
+//! Builds a robot in a given state on its ground. The shapes of parts are convex pieces whose union is the part.
 
 use rapier2d_f64::prelude::{
     CoefficientCombineRule, Collider, ColliderBuilder, Group, InteractionGroups,
     InteractionTestMode, JointAxis, MassProperties, PhysicsWorld, RigidBodyBuilder,
-    RigidBodyHandle, SpringCoefficients,
+    RigidBodyHandle, SharedShape, SpringCoefficients,
 };
 
-use super::surface::pieces;
-use super::{EngineWorld, Robot, Wheel, joints};
+use super::world::{EngineWorld, Robot, Wheel, axle, limit, push, shaft, turning};
+use crate::contact::solids_of;
 use crate::dynamics::State;
-use crate::geometry::{Pose, Rotation, Vector};
-use crate::robot::{Model, Part, Running, WheelBody};
+use crate::geometry::{Disc, Envelope, Pose, Rotation, Vector};
+use crate::robot::{Model, Part, Running, Shape, WheelBody};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Profile};
 
@@ -110,7 +110,7 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
             let inertia = (1.0 - shared) * wheel.moment_of_inertia;
             let body = insert(world, pose * place, [0.0, inertia]);
             world.insert_collider(collider(part, wheel.part, ground), Some(body));
-            axles.push(joints::axle(world, [chassis, body], frame * place));
+            axles.push(axle(world, [chassis, body], frame * place));
             built.push(Wheel {
                 body,
                 part: wheel.part,
@@ -129,19 +129,19 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
                 .map(|(w, ratio)| w.moment_of_inertia * ratio * ratio)
                 .sum();
             let wheels: Vec<_> = axles.into_iter().zip(ratios).collect();
-            joints::shaft(world, chassis, &wheels, shared * inertia)
+            shaft(world, chassis, &wheels, shared * inertia)
         };
         if model.has_motor(drive) && model.motor.force > 0.0 {
             let torque = model.motor.force * first.radius;
-            if let Some(joint) = joints::turning(&mut world.multibody_joints, joint) {
-                joints::limit(joint, JointAxis::AngX, torque);
+            if let Some(joint) = turning(&mut world.multibody_joints, joint) {
+                limit(joint, JointAxis::AngX, torque);
             }
             motors.push((joint, first.radius));
         }
     }
     free(world, chassis, pose.rotation.angle());
     let pushes = model.pushes_chassis && model.motor.force > 0.0;
-    let push = pushes.then(|| joints::push(world, chassis, frame.translation, model.motor.force));
+    let push = pushes.then(|| push(world, chassis, frame.translation, model.motor.force));
     Robot {
         chassis,
         wheels: built,
@@ -207,4 +207,42 @@ fn on_lane(
         .friction(friction)
         .friction_combine_rule(CoefficientCombineRule::Min)
         .collision_groups(InteractionGroups::new(own, other, InteractionTestMode::And))
+}
+
+/// [rad] How an arc is divided in a polygon; the discs fill what it leaves out.
+const TURN: f64 = 0.5;
+
+/// The convex pieces of a part, in its own frame; together they are exactly the part.
+pub(super) fn pieces(part: &Part) -> Vec<(Pose, SharedShape)> {
+    match &part.shape {
+        Shape::Disc { .. } | Shape::Gear { .. } => solids_of(part)
+            .into_iter()
+            .map(|solid| (Pose::IDENTITY, solid))
+            .collect(),
+        Shape::Hull { discs, .. } => hull(discs),
+        Shape::Polygon { corners } => polygon(corners.clone()),
+        Shape::Grouser(grouser) => polygon(grouser.corners().to_vec()),
+    }
+}
+
+/// The hull of discs: the discs, and the polygon of the points where its straight runs touch them.
+fn hull(discs: &[Disc]) -> Vec<(Pose, SharedShape)> {
+    let mut corners = Envelope::new(discs).polyline(TURN);
+    corners.reverse(); // counter-clockwise
+    corners.dedup();
+    if corners.first() == corners.last() {
+        corners.pop();
+    }
+    let round = discs.iter().map(|disc| {
+        let place = Pose::from_translation(disc.center);
+        (place, SharedShape::ball(disc.radius))
+    });
+    round.chain(polygon(corners)).collect()
+}
+
+fn polygon(corners: Vec<Vector>) -> Vec<(Pose, SharedShape)> {
+    SharedShape::convex_polyline(corners)
+        .map(|shape| (Pose::IDENTITY, shape))
+        .into_iter()
+        .collect()
 }

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use rapier2d_f64::prelude::{ContactPair, JointAxis, RigidBodyHandle};
 
-use super::EngineWorld;
-use super::motion::Motion;
+use super::world::EngineWorld;
+use super::world::Motion;
 use crate::contact::Contact;
 use crate::dynamics::State;
 use crate::geometry::{Vector, cross, right_of};

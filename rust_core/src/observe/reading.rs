@@ -1,4 +1,9 @@
-//! The state at an instant as users see it.
+//! The state at an instant as users see it, and the shaking of the chassis as an inertial sensor would measure it.
+
+#[cfg(test)]
+mod tests;
+
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::Vector;
 
@@ -28,5 +33,46 @@ impl Reading {
     pub(crate) fn forward_speed(&self) -> f64 {
         let (sine, cosine) = libm::sincos(self.chassis_angle);
         self.velocity.x * cosine + self.velocity.y * sine
+    }
+}
+
+/// Sums over the checks of a run.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Shaking {
+    last: Option<(f64, f64)>,
+    time: f64,
+    acceleration: f64,
+    rate: f64,
+}
+
+impl Shaking {
+    /// Takes one check.
+    pub(crate) fn look(&mut self, now: &Reading) {
+        if let Some((time, speed)) = self.last {
+            let dt = now.time - time;
+            let acceleration = (now.velocity.y - speed) / dt;
+            self.time += dt;
+            self.acceleration += acceleration * acceleration * dt;
+            self.rate += now.angular_velocity * now.angular_velocity * dt;
+        }
+        self.last = Some((now.time, now.velocity.y));
+    }
+
+    /// [m/s^2] Root mean square of the vertical acceleration of the chassis frame.
+    pub(crate) fn vertical_acceleration(&self) -> f64 {
+        self.mean_root(self.acceleration)
+    }
+
+    /// [rad/s] Root mean square of the rate of the chassis angle.
+    pub(crate) fn angular_velocity(&self) -> f64 {
+        self.mean_root(self.rate)
+    }
+
+    fn mean_root(&self, sum: f64) -> f64 {
+        if self.time > 0.0 {
+            (sum / self.time).sqrt()
+        } else {
+            0.0
+        }
     }
 }

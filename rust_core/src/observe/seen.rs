@@ -1,9 +1,13 @@
-//! What a monitor has observed of a run; part of a snapshot.
+//! What a monitor has observed of a run; part of a snapshot. Progress over a sliding window, and the stops where there is none.
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::progress::Progress;
-use super::{IntrusionWatch, Loads, Outcome, Shaking, Signals};
+use super::{Event, IntrusionWatch, Loads, Outcome, Reading, Shaking, Signals};
 use crate::robot::Model;
 use crate::solver::Effort;
 use crate::terrain::Profile;
@@ -121,4 +125,142 @@ pub(super) struct Anchor {
     pub(super) angle: f64,
     /// Signature of what bears there.
     pub(super) bearing: u64,
+}
+
+/// How far the robot has come, and since when it has been stopped.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Progress {
+    /// +1 or -1 as commanded; 0 in a pause.
+    direction: f64,
+    history: VecDeque<Look>,
+    best_advance: f64,
+    best_angle: f64,
+    commanded: f64,
+    falters: bool,
+    /// [s] Since when the robot has been stopped, if it is.
+    pub stop_since: Option<f64>,
+    /// Stops that have ended.
+    pub stops: Vec<Event>,
+    /// Share of the commanded distance covered in the last window; 1 before the first window is over.
+    pub share: f64,
+}
+
+/// Progress at one check.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Look {
+    advance: f64,
+    angle: f64,
+    commanded: f64,
+}
+
+impl Look {
+    /// Share of the commanded distance covered since then, either in x or by raising the nose.
+    fn share_since(&self, then: &Self) -> f64 {
+        let progress = (self.advance - then.advance).max(self.angle - then.angle);
+        let commanded = self.commanded - then.commanded;
+        if commanded > 0.0 {
+            progress / commanded
+        } else {
+            1.0
+        }
+    }
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self {
+            direction: 0.0,
+            history: VecDeque::new(),
+            best_advance: f64::NEG_INFINITY,
+            best_angle: f64::NEG_INFINITY,
+            commanded: 0.0,
+            falters: false,
+            stop_since: None,
+            stops: Vec::new(),
+            share: 1.0,
+        }
+    }
+}
+
+impl Progress {
+    /// Whether a robot with this number of parts on these lanes can have made it.
+    pub(super) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
+        let looks = self.history.iter();
+        let known = |look: &Look| {
+            let gained = look.advance + look.angle;
+            !gained.is_nan() && look.commanded.is_finite()
+        };
+        [-1.0, 0.0, 1.0].contains(&self.direction)
+            && looks.clone().all(known)
+            && !(self.best_advance + self.best_angle).is_nan()
+            && self.commanded.is_finite()
+            && self.share.is_finite()
+            && self.stop_since.is_none_or(f64::is_finite)
+            && self.stops.iter().all(|stop| stop.fits(parts, lanes))
+    }
+
+    /// Takes one step of `dt` [s] of a robot whose end axles are `length` [m] apart.
+    pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
+        let direction = if command == 0.0 {
+            0.0
+        } else {
+            command.signum()
+        };
+        if direction * self.direction <= 0.0 {
+            // Distance covered in the other direction or before a pause is no reference for the new command.
+            self.direction = direction;
+            self.history.clear();
+            (self.best_advance, self.best_angle) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        }
+        self.best_advance = self.best_advance.max(direction * now.position.x);
+        self.best_angle = self.best_angle.max(direction * now.chassis_angle * length);
+        self.commanded += now.commanded_speed.abs() * dt;
+    }
+
+    /// Compares with one window ago, at checks `every` [s]; less than `least` of the commanded distance is a
+    /// stop. Returns the beginning of a stop that has just ended.
+    pub(super) fn look(
+        &mut self,
+        time: f64,
+        commanded: bool,
+        (window, every): (f64, f64),
+        least: f64,
+    ) -> Option<f64> {
+        let here = Look {
+            advance: self.best_advance,
+            angle: self.best_angle,
+            commanded: self.commanded,
+        };
+        self.history.push_back(here);
+        // For slow commands the window may be longer than any run, and is then never complete.
+        let span = (window / every).ceil() as usize;
+        while self.history.len() > span.saturating_add(1) {
+            self.history.pop_front();
+        }
+        let whole = self.history.len() > span;
+        if whole {
+            self.share = here.share_since(&self.history[0]);
+        }
+        let half = self.history.len() > span / 2;
+        let recently = half.then(|| &self.history[self.history.len() - 1 - span / 2]);
+        let stopped = commanded && whole && self.share < least;
+        self.falters =
+            stopped || (commanded && recently.is_some_and(|then| here.share_since(then) < least));
+        match (stopped, self.stop_since) {
+            (true, None) => self.stop_since = Some(time - window),
+            (false, Some(_)) => return self.stop_since.take(),
+            _ => {}
+        }
+        None
+    }
+
+    /// [m] Greatest advance since the last change of direction.
+    pub(super) fn best_advance(&self) -> f64 {
+        self.best_advance
+    }
+
+    /// Whether half a window has passed without progress, so that a stop may be near.
+    pub(super) fn falters(&self) -> bool {
+        self.falters
+    }
 }

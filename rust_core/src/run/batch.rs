@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::budget::{self, STACK};
+use super::record::{STACK, batch_budget};
 use super::simulate::{Run, simulate_within};
 use super::{Checked, Record};
 use crate::error::{Error, LimitError, caught};
@@ -56,7 +56,7 @@ pub fn simulate_many(
 
     let scenarios = scenarios.into();
     let threads = threads.clamp(1, scenarios.len().max(1));
-    let budget = budget::of_batch(&scenarios, record, threads)?;
+    let budget = batch_budget(&scenarios, record, threads)?;
     let work = Arc::new(Work {
         next: AtomicUsize::new(0),
         ended: AtomicUsize::new(0),

@@ -1,8 +1,18 @@
-//! What to keep of a run, and how much that is.
+//! What is kept of a run: the history of its state and contacts as columns, and the memory that this takes.
 
+use std::collections::TryReserveError;
+
+use super::step_length::SAME_TIME;
+use super::valid_scenario::{BYTES_A_CORNER, corners};
+use super::{Checked, Simulation};
 use crate::diagnosis::Wanted;
+use crate::dynamics::State;
+use crate::error::LimitError;
+use crate::limits::memory::{Budget, Rows, reserve};
+use crate::observe::Loads;
 use crate::robot::Model;
 use crate::scenario::Scenario;
+use crate::units::MetresPerSecond;
 
 /// What to keep of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,4 +71,408 @@ impl Columns {
             flippers: model.flippers.len(),
         }
     }
+}
+
+/// Samples of the state; every column has one entry per sample (two for x, y pairs).
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// [s] Time at the end of the step.
+    pub time: Vec<f64>,
+    /// [m] Origin of the chassis frame, x and y.
+    pub position: Vec<f64>,
+    /// [m/s] Velocity of that point, x and y.
+    pub velocity: Vec<f64>,
+    /// [rad] Nose up > 0.
+    pub chassis_angle: Vec<f64>,
+    /// [rad/s] Its rate of change.
+    pub angular_velocity: Vec<f64>,
+    /// [m/s] Set-point of the drivetrain.
+    pub commanded_speed: Vec<f64>,
+    /// [m/s] Surface speed of the track, mean over the drives.
+    pub track_speed: Vec<f64>,
+    /// [m] How far the track surface has run, mean over the drives.
+    pub track_position: Vec<f64>,
+    /// 1 - v / track speed; 0 where the track stands still.
+    pub slip_ratio: Vec<f64>,
+    /// [N] Force of the ground on the robot along its driven surfaces, mean of the interval.
+    pub tractive_effort: Vec<f64>,
+    /// [N] Force of all motors at the surface, mean of the interval.
+    pub drive_force: Vec<f64>,
+    /// [m/s] Surface speed of each drive.
+    pub drive_speeds: Vec<f64>,
+    /// [m] How far the surface of each drive has run.
+    pub drive_positions: Vec<f64>,
+    /// [N] Force of each motor, mean of the interval.
+    pub drive_forces: Vec<f64>,
+    /// [N] Largest force in a pin of a chain; 0 without chains.
+    pub track_tension: Vec<f64>,
+    /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
+    pub shoe_poses: Vec<f64>,
+    /// [rad] Angle of the flippers at each end relative to the chassis, upwards > 0.
+    pub flipper_angles: Vec<f64>,
+    /// [N m] Torque of their motors, mean of the interval.
+    pub flipper_torques: Vec<f64>,
+}
+
+impl Trace {
+    /// Every column, with its number of entries per sample.
+    fn columns(&mut self, robot: Columns) -> [(&mut Vec<f64>, usize); 18] {
+        let Columns {
+            drives,
+            shoes,
+            flippers,
+            ..
+        } = robot;
+        [
+            (&mut self.time, 1),
+            (&mut self.position, 2),
+            (&mut self.velocity, 2),
+            (&mut self.chassis_angle, 1),
+            (&mut self.angular_velocity, 1),
+            (&mut self.commanded_speed, 1),
+            (&mut self.track_speed, 1),
+            (&mut self.track_position, 1),
+            (&mut self.slip_ratio, 1),
+            (&mut self.tractive_effort, 1),
+            (&mut self.drive_force, 1),
+            (&mut self.drive_speeds, drives),
+            (&mut self.drive_positions, drives),
+            (&mut self.drive_forces, drives),
+            (&mut self.track_tension, 1),
+            (&mut self.shoe_poses, 3 * shoes),
+            (&mut self.flipper_angles, flippers),
+            (&mut self.flipper_torques, flippers),
+        ]
+    }
+}
+
+impl Columns {
+    /// Bytes per sample without its contacts.
+    pub(crate) fn bytes(self) -> u64 {
+        let entries: usize = Trace::default()
+            .columns(self)
+            .iter()
+            .map(|(_, entries)| entries)
+            .sum();
+        8 * entries as u64
+    }
+}
+
+/// Collects samples during a run.
+pub(crate) struct Recorder<'a> {
+    /// [s] Time between two samples.
+    every: f64,
+    /// Number of samples at multiples of that, the first included.
+    taken: u64,
+    /// [s] Time up to which forces have been added.
+    until: f64,
+    sums: Sums,
+    columns: Columns,
+    trace: Trace,
+    samples: Rows<'a>,
+    contacts: ContactTable,
+    contact_rows: Rows<'a>,
+    /// A state within a step.
+    state: State,
+}
+
+/// Integrals of forces over an interval between two samples.
+struct Sums {
+    /// [s] Its length so far.
+    time: f64,
+    loads: Loads,
+    /// [N s] Of each motor.
+    forces: Vec<f64>,
+    /// [N s] Of the ground along the driven surfaces.
+    traction: f64,
+    /// [N m s] Of the motors of the flippers.
+    torques: Vec<f64>,
+}
+
+/// [m/s] Below this, the track counts as standing and has no slip.
+const STANDS: MetresPerSecond = MetresPerSecond(1e-3);
+
+impl Sums {
+    /// Adds a part of the last step, `dt` [s] long.
+    fn add(&mut self, simulation: &Simulation, dt: f64) {
+        self.time += dt;
+        self.loads.add(simulation.loaded(), dt);
+        for (sum, drive) in self.forces.iter_mut().zip(simulation.drive_states()) {
+            *sum += drive.force * dt;
+            self.traction += drive.traction * dt;
+        }
+        for (sum, torque) in self.torques.iter_mut().zip(simulation.flipper_torques()) {
+            *sum += torque * dt;
+        }
+    }
+}
+
+impl<'a> Recorder<'a> {
+    pub(crate) fn new(
+        simulation: &Simulation,
+        record: Record,
+        budget: &'a Budget,
+    ) -> Result<Self, LimitError> {
+        let columns = Columns::of(simulation.model());
+        let mut recorder = Self {
+            every: record.sample_interval,
+            taken: 0,
+            until: simulation.time(),
+            sums: Sums {
+                time: 0.0,
+                loads: Loads::default(),
+                forces: vec![0.0; columns.drives],
+                traction: 0.0,
+                torques: vec![0.0; columns.flippers],
+            },
+            columns,
+            trace: Trace::default(),
+            samples: Rows::new(budget, columns.bytes()),
+            contacts: ContactTable::default(),
+            contact_rows: Rows::new(budget, Columns::BYTES_A_CONTACT),
+            state: simulation.now().state.clone(),
+        };
+        recorder.taken = (recorder.until / recorder.every).floor() as u64;
+        recorder.sample(simulation, simulation.time())?;
+        Ok(recorder)
+    }
+
+    /// Takes in the last step and writes the samples that fall into it.
+    pub(crate) fn step(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
+        loop {
+            let next = (self.taken + 1) as f64 * self.every;
+            let end = next.min(simulation.time());
+            self.sums.add(simulation, end - self.until);
+            self.until = end;
+            if end < next {
+                return Ok(());
+            }
+            self.taken += 1;
+            self.sample(simulation, next)?;
+        }
+    }
+
+    /// The record, including the interval that the end of the run cut short.
+    pub(crate) fn finish(
+        mut self,
+        simulation: &Simulation,
+    ) -> Result<(Trace, ContactTable), LimitError> {
+        let end = simulation.time();
+        let is_taken = |last: &f64| end - last < SAME_TIME.value();
+        if !self.trace.time.last().is_some_and(is_taken) {
+            self.sample(simulation, end)?;
+        }
+        for (column, _) in self.trace.columns(self.columns) {
+            column.shrink_to_fit();
+        }
+        self.samples.shrink(self.trace.time.len());
+        self.contacts.shrink();
+        self.contact_rows.shrink(self.contacts.time.len());
+        Ok((self.trace, self.contacts))
+    }
+
+    fn make_room(&mut self) -> Result<(), LimitError> {
+        let (trace, contacts, columns) = (&mut self.trace, &mut self.contacts, self.columns);
+        self.samples.make(trace.time.len() + 1, |room| {
+            let mut all = trace.columns(columns).into_iter();
+            all.try_for_each(|(column, entries)| reserve(column, entries * room))
+        })?;
+        let rows = contacts.time.len() + self.sums.loads.count();
+        self.contact_rows.make(rows, |room| contacts.reserve(room))
+    }
+
+    fn sample(&mut self, simulation: &Simulation, time: f64) -> Result<(), LimitError> {
+        self.make_room()?;
+        let now = simulation.at(time, &mut self.state);
+        let reading = now.reading();
+        let length = std::mem::take(&mut self.sums.time);
+        let share = if length > 0.0 { 1.0 / length } else { 0.0 };
+        let t = &mut self.trace;
+        t.time.push(time);
+        t.position.extend([reading.position.x, reading.position.y]);
+        t.velocity.extend([reading.velocity.x, reading.velocity.y]);
+        t.chassis_angle.push(reading.chassis_angle);
+        t.angular_velocity.push(reading.angular_velocity);
+        t.commanded_speed.push(reading.commanded_speed);
+        t.track_speed.push(reading.track_speed);
+        t.track_position.push(reading.track_position);
+        let forward = reading.forward_speed();
+        let slip = if reading.track_speed.abs() < STANDS.value() {
+            0.0
+        } else {
+            1.0 - forward / reading.track_speed
+        };
+        t.slip_ratio.push(slip);
+        t.tractive_effort.push(self.sums.traction * share);
+        t.drive_force
+            .push(self.sums.forces.iter().sum::<f64>() * share);
+        for (k, force) in self.sums.forces.iter_mut().enumerate() {
+            t.drive_speeds.push(now.drive_speed(k));
+            t.drive_positions.push(now.state.drives[k].position);
+            t.drive_forces.push(*force * share);
+            *force = 0.0;
+        }
+        t.track_tension.push(simulation.chain().tension);
+        for shoe in &now.state.shoes {
+            t.shoe_poses
+                .extend([shoe.center.x, shoe.center.y, shoe.angle]);
+        }
+        t.flipper_angles.extend(now.flipper_angles());
+        for torque in &mut self.sums.torques {
+            t.flipper_torques.push(*torque * share);
+            *torque = 0.0;
+        }
+        self.sums.traction = 0.0;
+        self.contacts.append(simulation, time, &mut self.sums.loads);
+        Ok(())
+    }
+}
+
+/// Contacts of all samples.
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs)] // the columns are described in docs/conventions.md
+pub struct ContactTable {
+    pub time: Vec<f64>,
+    pub contact: Vec<i64>,
+    pub lane: Vec<i64>,
+    pub body: Vec<i64>,
+    pub body_kind: Vec<i64>,
+    pub segment: Vec<i64>,
+    pub edge: Vec<i64>,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub normal_x: Vec<f64>,
+    pub normal_y: Vec<f64>,
+    pub normal_force: Vec<f64>,
+    pub friction_force: Vec<f64>,
+    pub surface_speed: Vec<f64>,
+    pub penetration: Vec<f64>,
+}
+
+impl Simulation {
+    /// Contacts of the last step.
+    pub fn contact_table(&self) -> ContactTable {
+        let mut loads = Loads::default();
+        loads.add(self.loaded(), 1.0);
+        let mut table = ContactTable::default();
+        table.append(self, self.time(), &mut loads);
+        table
+    }
+}
+
+impl ContactTable {
+    /// All columns.
+    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 6]) {
+        let numbers = [
+            &mut self.time,
+            &mut self.x,
+            &mut self.y,
+            &mut self.normal_x,
+            &mut self.normal_y,
+            &mut self.normal_force,
+            &mut self.friction_force,
+            &mut self.surface_speed,
+            &mut self.penetration,
+        ];
+        let codes = [
+            &mut self.contact,
+            &mut self.lane,
+            &mut self.body,
+            &mut self.body_kind,
+            &mut self.segment,
+            &mut self.edge,
+        ];
+        (numbers, codes)
+    }
+
+    /// Reserves room in every column for a total number of rows.
+    pub(super) fn reserve(&mut self, rows: usize) -> Result<(), TryReserveError> {
+        let (numbers, codes) = self.columns();
+        numbers.into_iter().try_for_each(|c| reserve(c, rows))?;
+        codes.into_iter().try_for_each(|c| reserve(c, rows))
+    }
+
+    /// Releases room that no row uses.
+    pub(super) fn shrink(&mut self) {
+        let (numbers, codes) = self.columns();
+        numbers.into_iter().for_each(Vec::shrink_to_fit);
+        codes.into_iter().for_each(Vec::shrink_to_fit);
+    }
+
+    /// Appends the loads of the interval that ends at `time` [s].
+    pub(crate) fn append(&mut self, simulation: &Simulation, time: f64, loads: &mut Loads) {
+        for r in loads.drain() {
+            self.time.push(time);
+            self.contact.push(r.number as i64);
+            self.lane.push(simulation.side(r.part) as i64);
+            self.body.push(r.part as i64);
+            self.body_kind.push(simulation.part_kind(r.part) as i64);
+            self.segment.push(r.facet as i64);
+            self.edge.push(i64::from(r.edge));
+            self.x.push(r.point.x);
+            self.y.push(r.point.y);
+            self.normal_x.push(r.normal.x);
+            self.normal_y.push(r.normal.y);
+            self.normal_force.push(r.normal_force);
+            self.friction_force.push(r.friction_force);
+            self.surface_speed.push(r.surface_speed);
+            self.penetration.push((-r.distance).max(0.0));
+        }
+    }
+}
+
+/// Bytes of the stack of a thread.
+pub(crate) const STACK: usize = 2 << 20;
+/// Bytes per corner that the edges of a run take, including their copy as table columns.
+const BYTES_AN_EDGE: u64 = 128;
+/// Bytes of everything else that a run builds and returns.
+const BYTES_A_RUN: u64 = 64 << 10;
+
+/// Checks that the memory for a batch is available, and returns the budget for its records.
+///
+/// # Errors
+/// The batch needs more than it may have; the message says what would need less.
+pub(crate) fn batch_budget(
+    scenarios: &[Checked],
+    record: Record,
+    threads: usize,
+) -> Result<Budget, LimitError> {
+    let terrain_of = |checked: &Checked| corners(&checked.scenario().terrain);
+    let corners = scenarios.iter().map(terrain_of);
+    let largest = corners.clone().max().unwrap_or(0);
+    let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
+    let given_back = corners.map(|corners| BYTES_A_RUN + corners * BYTES_AN_EDGE);
+    let kept = built + given_back.sum::<u64>();
+    let mut recorded = 0;
+    if record.history {
+        for checked in scenarios {
+            recorded += record.samples(checked.scenario()) * bytes_of_sample(checked.model());
+        }
+    }
+    let budget = Budget::new()?;
+    budget.check(&described(scenarios, record), kept + recorded)?;
+    budget.take("a batch", kept)?;
+    Ok(budget)
+}
+
+fn described(scenarios: &[Checked], record: Record) -> String {
+    let runs = match scenarios.len() {
+        1 => "a run".to_owned(),
+        n => format!("a batch of {n} runs"),
+    };
+    if record.history {
+        let every = record.sample_interval;
+        format!(
+            "{runs} sampled every {every} s (a longer sample_interval, or \"summary\", takes less)"
+        )
+    } else {
+        runs
+    }
+}
+
+/// Bytes of a sample with half of the robot's parts in contact.
+fn bytes_of_sample(model: &Model) -> u64 {
+    let columns = Columns::of(model);
+    let touching = (columns.parts / 2).max(2);
+    columns.bytes() + touching as u64 * Columns::BYTES_A_CONTACT
 }

@@ -2,20 +2,18 @@
 //!
 //! docs/decisions/0012 explains why, docs/conventions.md defines the words.
 
-mod escape;
 #[cfg(test)]
 mod tests;
-mod variant;
 
-pub use escape::EscapeForce;
-pub(crate) use escape::measure as escape_force;
-
-use self::variant::Start;
 use super::{Checked, Simulation};
 use crate::diagnosis::{Change, Diagnosis, LoadedIntrusion, Trial, Wanted};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::observe::Outcome;
+use crate::scenario::{
+    BeltTrack, ClosedSurface, ClosedTrack, Engine, Gait, Hold, Robot, Scenario, TorqueSharing,
+    Track,
+};
 
 /// From how many instants a stop that rattles is tried.
 const STARTS: u32 = 5;
@@ -113,7 +111,7 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
     if change == Change::Nothing {
         return Ok(Some(stop.copy()));
     }
-    let Some((scenario, start)) = variant::of(stop.scenario(), change) else {
+    let Some((scenario, start)) = variant_of(stop.scenario(), change) else {
         return Ok(None);
     };
     if start == Start::Anew {
@@ -293,4 +291,188 @@ impl<'a> Bench<'a> {
             flipper_angles,
         })
     }
+}
+
+/// How a trial continues from a stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// With all of the state.
+    Continued,
+    /// With pose and speeds; ground inside is let out.
+    Rebuilt,
+    /// At rest, in the nearest pose in which no ground is inside.
+    Clear,
+    /// Where the scenario begins.
+    Anew,
+}
+
+/// The variant that a change makes of a scenario; `None` if it makes no sense for its robot.
+fn variant_of(scenario: &Scenario, change: Change) -> Option<(Scenario, Start)> {
+    let mut variant = scenario.clone();
+    // Trials of another engine's stops are made by our own dynamics, at its time step.
+    variant.solver.engine = Engine::Own;
+    let robot = &mut variant.robot;
+    let start = match change {
+        Change::Nothing => Start::Continued,
+        Change::Rebuilt => Start::Rebuilt,
+        Change::ClosedTrack | Change::ClosedTrackClear | Change::ClosedTrackFromStart => {
+            robot.track = closed(robot, ClosedSurface::Own)?;
+            match change {
+                Change::ClosedTrack => Start::Rebuilt,
+                Change::ClosedTrackClear => Start::Clear,
+                _ => Start::Anew,
+            }
+        }
+        Change::ClosedSmoothTrack => {
+            any_track(robot, Track::has_grousers).then_some(())?;
+            robot.track = closed(robot, ClosedSurface::Smooth)?;
+            Start::Rebuilt
+        }
+        Change::Belt | Change::BeltFromStart => {
+            any_track(robot, Track::has_pockets).then_some(())?;
+            robot.track = Track::Belt(BeltTrack {});
+            robot.drivetrain.torque_sharing = TorqueSharing::Track;
+            if let Some(flippers) = &mut robot.flippers {
+                flippers.track = None;
+            }
+            if change == Change::Belt {
+                Start::Rebuilt
+            } else {
+                Start::Anew
+            }
+        }
+        Change::OneMotor => {
+            let sharing = &mut robot.drivetrain.torque_sharing;
+            (*sharing == TorqueSharing::Wheel).then_some(())?;
+            *sharing = TorqueSharing::Track;
+            Start::Rebuilt
+        }
+        Change::TwiceTheTorque => {
+            robot.drivetrain.max_torque *= 2.0;
+            Start::Continued
+        }
+        Change::TenTimesTheTorque => {
+            robot.drivetrain.max_torque *= 10.0;
+            Start::Continued
+        }
+        Change::TwiceTheFriction => {
+            variant.terrain.scale_friction(2.0);
+            if let Track::Force(force) = &mut robot.track {
+                force.skid_friction *= 2.0;
+            }
+            Start::Continued
+        }
+        Change::NoBelly => {
+            robot.belly.take()?;
+            Start::Continued
+        }
+        Change::FlippersLevel => {
+            robot.flippers.as_ref()?;
+            variant.drive.gait = Some(Gait::Hold(Hold {
+                angle: 0.0,
+                schedule: None,
+            }));
+            Start::Continued
+        }
+    };
+    Some((variant, start))
+}
+
+/// The robot's track, closed; `None` if it has no pockets that could be closed.
+fn closed(robot: &Robot, surface: ClosedSurface) -> Option<Track> {
+    any_track(robot, Track::has_pockets).then(|| {
+        Track::Closed(ClosedTrack {
+            of: Box::new(robot.track.clone()),
+            surface,
+        })
+    })
+}
+
+/// Whether something is so of the robot's track or of its arms'.
+fn any_track(robot: &Robot, is_so: fn(&Track) -> bool) -> bool {
+    let arms = robot.flippers.as_ref().and_then(|f| f.track.as_ref());
+    is_so(&robot.track) || arms.is_some_and(is_so)
+}
+
+/// First level of the push and the last, in weights, and from one to the next.
+const LEVELS: (f64, f64, f64) = (0.01, 10.0, 1.1);
+/// [s] For how long a level is held at least, and how long it takes to rise to it.
+const HOLD: f64 = 0.5;
+const RISE: f64 = 0.1;
+/// [m] A robot that moves by more in the last half of a hold is still on its way, and the level is held again, as
+/// often as this: just beyond what it can bear, it takes seconds to leave.
+const SETTLED: f64 = 5e-5;
+const HOLDS: usize = 10;
+/// [s] How long the push goes on once the robot is on its way, to see whether it tips over.
+const AFTERWARDS: f64 = 2.0;
+
+/// A measured escape force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EscapeForce {
+    /// [N] The last level that did not move the robot on; 0 if the first did.
+    pub low: f64,
+    /// [N] The first level that moved it on, by `criteria.escape_distance` beyond where it had come before; infinite if
+    /// none did.
+    pub high: f64,
+    /// That push tipped it over.
+    pub tips: bool,
+}
+
+/// Measures the escape force of a stop, along the command.
+pub(crate) fn escape_force(stop: &Simulation, cancel: &Cancel) -> Result<EscapeForce, Error> {
+    let weight = stop.weight();
+    let mut robot = stop.copy();
+    let (direction, greatest) = (robot.direction(), stop.monitor().best_advance());
+    let far = stop.scenario().criteria.escape_distance;
+    let is_on = |robot: &Simulation| {
+        let ahead = direction * robot.reading().position.x - greatest;
+        ahead > far || robot.monitor().ended_as().is_some()
+    };
+    let tips = |robot: &Simulation| robot.monitor().ended_as() == Some(Outcome::TippedOver);
+    let begin = robot.reading().position;
+    let way = |robot: &Simulation| (robot.reading().position - begin).length();
+    let (first, last, ratio) = LEVELS;
+    let (mut low, mut level) = (0.0, first * weight);
+    while level <= last * weight {
+        robot.raise_push(direction * level, RISE)?;
+        for _ in 0..HOLDS {
+            let mut leaves = advance_until(&mut robot, 0.5 * HOLD, &is_on, cancel)?;
+            let half_way = way(&robot);
+            leaves = leaves || advance_until(&mut robot, 0.5 * HOLD, &is_on, cancel)?;
+            if leaves {
+                return Ok(EscapeForce {
+                    low,
+                    high: level,
+                    tips: advance_until(&mut robot, AFTERWARDS, &tips, cancel)?,
+                });
+            }
+            if (way(&robot) - half_way).abs() < SETTLED {
+                break;
+            }
+        }
+        (low, level) = (level, level * ratio);
+    }
+    Ok(EscapeForce {
+        low,
+        high: f64::INFINITY,
+        tips: false,
+    })
+}
+
+/// Goes on for a time [s], or until something is so; returns whether it is.
+fn advance_until(
+    robot: &mut Simulation,
+    time: f64,
+    until: &dyn Fn(&Simulation) -> bool,
+    cancel: &Cancel,
+) -> Result<bool, Error> {
+    let end = robot.time() + time;
+    while robot.time() < end {
+        robot.step_until(end)?;
+        cancel.check()?;
+        if until(robot) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }

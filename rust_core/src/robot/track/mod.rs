@@ -1,19 +1,15 @@
-//! Track models: the shapes that meet the ground, and the drive that moves each of them.
+//! Track models: the shapes that meet the ground, and the drive that moves each of them; on flippers, any model that suits
+//! a tapering outline, on a pivoting arm.
 
-mod belt;
-mod discs;
-mod flipper;
-mod force;
-mod grouser_belt;
-mod layout;
-mod running_gear;
+use crate::robot::{ChainOfShoes, Mount, Part};
+use crate::scenario::{
+    CircumferentialWheels, End, Flippers, HybridWheels, LineOfWheels, MAX_WHEELS, Robot,
+    ScenarioError, TorqueSharing, Track,
+};
+
+mod belts;
 mod segmental;
 mod wheels;
-
-use crate::robot::{ChainOfShoes, Part};
-use crate::scenario::{
-    CircumferentialWheels, HybridWheels, LineOfWheels, Robot, ScenarioError, Track,
-};
 
 /// What a track model adds to the chassis.
 pub(crate) struct TrackModel {
@@ -34,15 +30,15 @@ pub(crate) struct TrackModel {
 /// # Errors
 /// Discs that no track would touch; wheels that do not fit the robot.
 pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
-    discs::check(&robot.outline)?;
+    belts::check_discs(&robot.outline)?;
     let mut track = match &robot.track {
         Track::Line(LineOfWheels { wheel, .. })
         | Track::Circumferential(CircumferentialWheels { wheel, .. })
         | Track::Hybrid(HybridWheels { wheel, .. }) => wheels::driven(robot, wheel),
-        Track::Belt(_) => Ok(belt::build(robot)),
-        Track::GrouserBelt(belt) => grouser_belt::build(robot, belt),
+        Track::Belt(_) => Ok(belts::belt(robot)),
+        Track::GrouserBelt(belt) => belts::grouser_belt(robot, belt),
         Track::Segmental(track) => segmental::build(robot, track),
-        Track::Force(force) => force::build(robot, force),
+        Track::Force(force) => belts::force(robot, force),
         Track::Closed(closed) => {
             let open = Robot {
                 track: (*closed.of).clone(),
@@ -55,7 +51,71 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
         }
     }?;
     if let Some(flippers) = &robot.flippers {
-        flipper::add(robot, flippers, &mut track)?;
+        add_flipper_tracks(robot, flippers, &mut track)?;
     }
     Ok(track)
+}
+
+/// Adds the tracks of the arms to the track of a robot, whose motors drive them.
+fn add_flipper_tracks(
+    robot: &Robot,
+    flippers: &Flippers,
+    track: &mut TrackModel,
+) -> Result<(), ScenarioError> {
+    for (number, end) in flippers.ends().enumerate() {
+        let own = of_arm(robot, flippers, end).map_err(|error| ScenarioError {
+            path: error
+                .path
+                .replacen("robot.track", "robot.flippers.track", 1),
+            ..error
+        })?;
+        let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
+        // One motor per track drives its flippers, too; free wheels turn independently. A chain cannot share a motor
+        // with a belt, because its motor has no spin to turn one with.
+        let with_own_motors = with_own_motors || !track.chains.is_empty();
+        let shared = if with_own_motors { 0 } else { own.motors };
+        let first = track.drives;
+        let of_robot = |drive: usize| {
+            if drive < shared {
+                drive
+            } else {
+                first + drive - shared
+            }
+        };
+        track.parts.extend(own.parts.into_iter().map(|part| Part {
+            drive: part.drive.map(of_robot),
+            mount: Mount::Flipper(number),
+            ..part
+        }));
+        track.drives += own.drives - shared;
+        track.motors += own.motors - shared;
+    }
+    Ok(())
+}
+
+/// The track of the arms at an end. If the robot has small wheels all round and the arms have no model of their
+/// own, their number is raised as needed, because the wheels are smaller at a tip.
+fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, ScenarioError> {
+    let mut arm = arm_as_robot(robot, flippers, end);
+    loop {
+        let built = build(&arm);
+        match &mut arm.track {
+            Track::Circumferential(wheels)
+                if flippers.track.is_none() && built.is_err() && wheels.count < MAX_WHEELS =>
+            {
+                wheels.count += 1;
+            }
+            _ => return built,
+        }
+    }
+}
+
+/// An arm treated as a robot, to build its track.
+fn arm_as_robot(robot: &Robot, flippers: &Flippers, end: End) -> Robot {
+    Robot {
+        outline: flippers.outline(end, &robot.outline),
+        track: flippers.track_model(&robot.track),
+        flippers: None,
+        ..robot.clone()
+    }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::geometry::{Envelope, Rotation};
 use crate::limits::memory::Budget;
 use crate::robot::{BodyKind, Part, Shape};
-use crate::run::trace::Recorder;
+use crate::run::record::Recorder;
 use crate::run::{Checked, Record, Simulation};
 use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
 

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use super::Simulation;
-use super::command::Commands;
-use super::gait::has_the_same_speeds;
+use super::commands::{Commands, has_the_same_speeds};
 use crate::contact::Dents;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
 use crate::error::Error;

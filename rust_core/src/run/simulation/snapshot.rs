@@ -7,10 +7,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::Simulation;
-use super::command::Commands;
-use super::gait::Driver;
-use super::push::Push;
-use super::step::LastStep;
+use super::attempt::LastStep;
+use super::commands::{Commands, Driver, Push};
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;

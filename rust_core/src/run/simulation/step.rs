@@ -1,12 +1,11 @@
 //! One step: attempted, judged by its local error, and kept, or dropped for a shorter one.
 
 use super::Simulation;
-use crate::contact::{Contact, Dents};
-use crate::dynamics::{SetPoint, State, Trend};
+use super::attempt::Attempt;
+use crate::dynamics::SetPoint;
 use crate::engine::Command;
 use crate::error::{Error, SimulationError};
 use crate::geometry::Vector;
-use crate::robot::Running;
 use crate::run::step_length::{SAME_TIME, StepRule, arrive};
 use crate::solver::Effort;
 use crate::units::{Metres, MetresPerSecond, Seconds};
@@ -26,61 +25,6 @@ const UNSEEN: Metres = Metres(5e-4);
 const GAIN: f64 = 2.0;
 /// A step that is cut short by more than this share looks for its contacts again.
 const CUT: f64 = 0.1;
-
-/// What one step tries; nothing of it is in the simulation until it is kept.
-#[derive(Default)]
-pub(super) struct Attempt {
-    /// The state at its end.
-    state: State,
-    /// [s] Its length.
-    length: f64,
-    /// Whether something strikes the ground in it.
-    strikes: bool,
-    /// [m/s] Set-point of the drivetrain at its end.
-    set_point: f64,
-    /// Positions of the moving parts in its middle, where contacts are searched for.
-    running: Running,
-    contacts: Vec<Contact>,
-    dents: Dents,
-    /// [m] How far beyond the pose at its end that search saw.
-    sight: f64,
-}
-
-/// The last step that was kept.
-#[derive(Clone)]
-pub(super) struct LastStep {
-    /// The state at its beginning.
-    pub before: State,
-    /// [s] When it began.
-    pub began: f64,
-    /// [s] Its length.
-    pub length: f64,
-    /// [s] Its length if nothing struck the ground in it, else 0: an impact says nothing of how velocities go on.
-    pub free: f64,
-    /// [m/s] Set-point of the drivetrain at its beginning.
-    pub set_point: f64,
-    /// [m] How far beyond the pose at its end the search for contacts saw.
-    pub sight: f64,
-}
-
-impl LastStep {
-    /// None: the simulation begins with a state at time 0.
-    pub(super) fn none(state: &State) -> Self {
-        Self {
-            before: state.clone(),
-            began: 0.0,
-            length: 0.0,
-            free: 0.0,
-            set_point: 0.0,
-            sight: 0.0,
-        }
-    }
-
-    /// How velocities changed in it.
-    fn trend(&self) -> Option<Trend<'_>> {
-        Trend::since(&self.before, self.free)
-    }
-}
 
 impl Simulation {
     /// Advances by one step.
@@ -334,6 +278,7 @@ fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::Running;
     use crate::run::Checked;
     use crate::scenario::Scenario;
 

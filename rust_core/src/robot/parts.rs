@@ -1,6 +1,6 @@
-//! A part of the robot: its shape, its carrier, its position, and how its drive moves it.
+//! The parts of a robot: kind, shape, what carries them, where they are, and how their drives move them.
 
-use super::{BodyKind, Mount, Running};
+use super::Mounted;
 use crate::geometry::{Disc, Gear, Grouser, Motion, Pose, Rotation, Vector};
 
 /// A shape on a body of the robot that can meet the ground.
@@ -140,5 +140,147 @@ impl Part {
     /// Whether its shape moves relative to its mount at all.
     pub(crate) fn is_carried(&self) -> bool {
         matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_)) || self.mount.shoe().is_some()
+    }
+}
+
+/// What a body represents; its code is the `body_kind` of the contact table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// A wheel.
+    Wheel = 0,
+    /// A moving belt.
+    Belt = 1,
+    /// A skid runner.
+    Skid = 2,
+    /// The underside of the chassis.
+    Belly = 3,
+    /// A grouser of a moving belt or of a shoe.
+    Grouser = 4,
+    /// The plate of a shoe.
+    Shoe = 5,
+    /// The guide that a chain slides on.
+    Guide = 6,
+    /// The toothed wheel that drives a chain.
+    Sprocket = 7,
+    /// The front wheel of a chain, on the tensioner.
+    Idler = 8,
+    /// A wheel that runs on the lower run of a chain.
+    RoadWheel = 9,
+    /// A return roller, which carries the upper run.
+    Roller = 10,
+}
+
+impl BodyKind {
+    /// All kinds, in the order of their codes.
+    pub const ALL: [Self; 11] = [
+        Self::Wheel,
+        Self::Belt,
+        Self::Skid,
+        Self::Belly,
+        Self::Grouser,
+        Self::Shoe,
+        Self::Guide,
+        Self::Sprocket,
+        Self::Idler,
+        Self::RoadWheel,
+        Self::Roller,
+    ];
+
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wheel => "wheel",
+            Self::Belt => "belt",
+            Self::Skid => "skid",
+            Self::Belly => "belly",
+            Self::Grouser => "grouser",
+            Self::Shoe => "shoe",
+            Self::Guide => "guide",
+            Self::Sprocket => "sprocket",
+            Self::Idler => "idler",
+            Self::RoadWheel => "road_wheel",
+            Self::Roller => "roller",
+        }
+    }
+
+    /// Whether a chain of shoes runs round it.
+    pub(crate) fn is_in_chain(self) -> bool {
+        match self {
+            Self::Guide | Self::Sprocket | Self::Idler | Self::RoadWheel | Self::Roller => true,
+            Self::Wheel | Self::Belt | Self::Skid | Self::Belly | Self::Grouser | Self::Shoe => {
+                false
+            }
+        }
+    }
+}
+
+/// A body of the robot that carries parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// The chassis.
+    Chassis,
+    /// The shoe of this number.
+    Shoe(usize),
+    /// The arms at one end, by number.
+    Flipper(usize),
+}
+
+impl Mount {
+    /// What carries the track that it belongs to: the chassis carries chains.
+    pub(crate) fn carrier(self) -> Self {
+        match self {
+            Self::Chassis | Self::Shoe(_) => Self::Chassis,
+            Self::Flipper(_) => self,
+        }
+    }
+
+    /// Number of the shoe, if it is one.
+    pub fn shoe(self) -> Option<usize> {
+        match self {
+            Self::Shoe(shoe) => Some(shoe),
+            Self::Chassis | Self::Flipper(_) => None,
+        }
+    }
+}
+
+/// The positions of everything that moves relative to the chassis.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Running {
+    /// [m] Travel of the surface of each drive.
+    pub drives: Vec<f64>,
+    /// Frames of the shoes in that of the chassis.
+    pub shoes: Vec<Pose>,
+    /// Poses of the flippers.
+    pub flippers: Vec<Mounted>,
+}
+
+impl Running {
+    /// Frame of a mount on a robot whose chassis frame is `pose`.
+    pub(crate) fn mounted(&self, mount: Mount, pose: Pose) -> Pose {
+        match mount {
+            Mount::Chassis => pose,
+            Mount::Shoe(shoe) => pose * self.shoes[shoe],
+            Mount::Flipper(k) => pose * self.flippers[k].pose,
+        }
+    }
+
+    /// [m] Travel of a drive's surface relative to a mount.
+    pub(crate) fn run(&self, mount: Mount, drive: usize) -> f64 {
+        let over_chassis = self.drives[drive];
+        match mount {
+            Mount::Flipper(k) => over_chassis + self.flippers[k].run,
+            Mount::Chassis | Mount::Shoe(_) => over_chassis,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_listed_by_their_codes() {
+        let codes = BodyKind::ALL.map(|kind| kind as usize);
+        assert_eq!(codes, std::array::from_fn(|code| code));
     }
 }

@@ -1,0 +1,329 @@
+//! What the robot is to do: by the schedule, by a driver who watches the flippers, or by hand; and a push.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
+
+/// What the robot is to do.
+#[derive(Clone, Copy)]
+pub(super) struct Commands {
+    /// [m/s] Speed of the drives.
+    pub speed: f64,
+    pub driver: Driver,
+    /// Where the driver wants the front and rear flippers.
+    pub targets: [Target; 2],
+    /// The push at the centre of mass, along x.
+    pub push: Push,
+    /// Whether they have been the scenario's from time 0 on: no branch, no command by hand, no push.
+    pub follow_scenario: bool,
+}
+
+impl Commands {
+    /// Those of a scenario at time 0.
+    pub(super) fn of(drive: &Drive) -> Self {
+        Self {
+            speed: drive.speed,
+            driver: Driver::default(),
+            targets: Default::default(),
+            push: Push::default(),
+            follow_scenario: true,
+        }
+    }
+}
+
+/// What a driver knows about the robot: its pose, and whether flippers bear.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    /// [s] Time.
+    pub time: f64,
+    /// [rad] Chassis angle, nose up > 0.
+    pub chassis_angle: f64,
+    /// Whether the front and the rear flippers bear on something beyond their roots.
+    pub touches: [bool; 2],
+}
+
+/// Where a driver wants the flippers at one end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Target {
+    /// [rad] Angle relative to the chassis, upwards > 0.
+    pub angle: f64,
+    /// Whether they turn against the chassis as fast as it turns, to keep their angle to the ground; otherwise they
+    /// would lag behind.
+    pub keeps_level: bool,
+}
+
+impl Target {
+    fn fixed(angle: f64) -> Self {
+        Self {
+            angle,
+            keeps_level: false,
+        }
+    }
+}
+
+/// What a driver remembers.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Driver {
+    /// Number of past entries of the schedule of speeds.
+    entries: usize,
+    phase: Phase,
+    /// [rad] Angles given by hand that override the gait, front and rear.
+    by_hand: [Option<f64>; 2],
+}
+
+/// Phases of a climb.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    /// The front flippers reach up and forward.
+    #[default]
+    Reach,
+    /// They have touched something and sweep down on it.
+    Sweep,
+    /// The chassis is raised: the rear flippers lift it from behind.
+    Lift,
+}
+
+impl Driver {
+    /// [m/s] The next speed of the schedule, if it is due.
+    pub(crate) fn speed(&mut self, drive: &Drive, time: f64) -> Option<f64> {
+        let entries = drive.schedule.as_deref().unwrap_or_default();
+        let past = entries.partition_point(|[from, _]| *from <= time);
+        let speed = (past > self.entries).then(|| entries[past - 1][1]);
+        self.entries = past;
+        speed
+    }
+
+    /// The same driver with another command; what the commands have in common goes on.
+    pub(crate) fn commanded(self, before: &Drive, now: &Drive) -> Self {
+        let speeds = if has_the_same_speeds(before, now) {
+            self
+        } else {
+            Self::default()
+        };
+        let angles = if before.gait == now.gait {
+            self
+        } else {
+            Self::default()
+        };
+        Self {
+            entries: speeds.entries,
+            ..angles
+        }
+    }
+
+    /// Whether commands can have led to this state.
+    pub(crate) fn fits(&self, drive: &Drive) -> bool {
+        let entries = drive.schedule.as_ref().map_or(0, Vec::len);
+        let known = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+        self.entries <= entries && self.by_hand.iter().all(known)
+    }
+
+    /// Overrides the gait at one end.
+    pub(crate) fn hold(&mut self, end: usize, angle: f64) {
+        self.by_hand[end] = Some(angle);
+    }
+
+    /// Where it wants the front and rear flippers; `start` is their angle at time 0 [rad].
+    pub(crate) fn targets(&mut self, drive: &Drive, start: f64, sight: Sight) -> [Target; 2] {
+        let of_gait = match &drive.gait {
+            None => [Target::fixed(start); 2],
+            Some(Gait::Hold(hold)) => [Target::fixed(hold.angle_at(sight.time)); 2],
+            Some(Gait::Climb(climb)) => self.climb(climb, start, sight),
+        };
+        std::array::from_fn(|end| self.by_hand[end].map_or(of_gait[end], Target::fixed))
+    }
+
+    /// Where the flippers are to be during a climb.
+    fn climb(&mut self, climb: &Climb, start: f64, sight: Sight) -> [Target; 2] {
+        let [front, rear] = sight.touches;
+        let raised = sight.chassis_angle > climb.level_angle;
+        self.phase = match self.phase {
+            Phase::Reach | Phase::Sweep if raised => Phase::Lift,
+            Phase::Reach if front => Phase::Sweep,
+            Phase::Sweep if !front => Phase::Reach,
+            // Raising rear flippers that bear would drop the robot.
+            Phase::Lift if !raised && !rear => Phase::Reach,
+            same => same,
+        };
+        let level = |angle| Target {
+            angle,
+            keeps_level: true,
+        };
+        let swept = level(climb.sweep_angle - sight.chassis_angle);
+        let pushed = level(climb.push_angle + sight.chassis_angle);
+        let (reach, start) = (Target::fixed(climb.reach_angle), Target::fixed(start));
+        match self.phase {
+            Phase::Reach => [reach, start],
+            Phase::Sweep => [swept, start],
+            Phase::Lift => [swept, pushed],
+        }
+    }
+}
+
+/// Whether two commands differ in what the flippers do at most.
+pub(crate) fn has_the_same_speeds(one: &Drive, other: &Drive) -> bool {
+    let level = |drive: &Drive| Drive {
+        gait: None,
+        ..drive.clone()
+    };
+    level(one) == level(other)
+}
+
+impl Hold {
+    fn angle_at(&self, time: f64) -> f64 {
+        let entries = self.schedule.as_deref().unwrap_or_default();
+        let past = entries.partition_point(|[from, _]| *from <= time);
+        past.checked_sub(1)
+            .map_or(self.angle, |last| entries[last][1])
+    }
+}
+
+/// [m/s] The set-point after `dt` [s]; its magnitude rises and falls at the drivetrain's rates.
+pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) -> f64 {
+    let (target, rate) = ramp(now, command, limits);
+    now + (target - now).clamp(-rate * dt, rate * dt)
+}
+
+/// [s] How long the set-point changes at the same rate; infinite if it has its command.
+pub(crate) fn ramp_time(now: f64, command: f64, limits: &Drivetrain) -> f64 {
+    let (target, rate) = ramp(now, command, limits);
+    let way = (target - now).abs();
+    if way > 0.0 { way / rate } else { f64::INFINITY }
+}
+
+/// [m/s] Where the set-point goes, and [m/s^2] its rate.
+fn ramp(now: f64, command: f64, limits: &Drivetrain) -> (f64, f64) {
+    let slowing = now * command < 0.0 || command.abs() < now.abs();
+    let target = if now * command < 0.0 { 0.0 } else { command };
+    let rate = if slowing {
+        limits.max_deceleration
+    } else {
+        limits.max_acceleration
+    };
+    (target, rate)
+}
+
+/// A horizontal force over time: it rises evenly from one value to another, and stays there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Push {
+    /// [N] Force before it rises.
+    from: f64,
+    /// [N] Force once it has risen.
+    to: f64,
+    /// [s] When it begins to rise, and for how long.
+    since: f64,
+    rise: f64,
+}
+
+impl Push {
+    /// [N] Largest force that can be asked for: the weight of the heaviest robot.
+    const MOST: f64 = 1e15;
+
+    /// A push that rises from what it is now to a force [N].
+    pub(super) fn raised(self, force: f64, now: f64, rise: f64) -> Self {
+        Self {
+            from: self.at(now),
+            to: force,
+            since: now,
+            rise,
+        }
+    }
+
+    /// [N] The force at a time [s].
+    pub(super) fn at(self, time: f64) -> f64 {
+        if time >= self.end() {
+            self.to
+        } else if time <= self.since {
+            self.from
+        } else {
+            self.from + (self.to - self.from) * (time - self.since) / self.rise
+        }
+    }
+
+    /// [s] When it has risen.
+    pub(super) fn end(self) -> f64 {
+        self.since + self.rise
+    }
+
+    /// Whether it can have been asked for.
+    pub(super) fn fits(self) -> bool {
+        let most = -Self::MOST..=Self::MOST;
+        most.contains(&self.from)
+            && most.contains(&self.to)
+            && self.since.is_finite()
+            && (0.0..f64::INFINITY).contains(&self.rise)
+    }
+
+    /// Whether a force [N] can be asked for.
+    pub(super) fn may_be(force: f64) -> bool {
+        (-Self::MOST..=Self::MOST).contains(&force)
+    }
+}
+
+#[cfg(test)]
+mod drive_tests {
+    use super::*;
+    use crate::scenario::TorqueSharing;
+
+    const LIMITS: Drivetrain = Drivetrain {
+        max_speed: 1.0,
+        max_acceleration: 0.2,
+        max_deceleration: 4.0,
+        max_torque: 6.0,
+        torque_sharing: TorqueSharing::Track,
+        rotor_inertia: 0.0,
+        no_load_speed: None,
+        torque_curve: None,
+        controller: None,
+        self_locking: false,
+    };
+
+    #[test]
+    fn speeds_up_slowly_and_brakes_fast() {
+        assert!((set_point(0.1, 0.4, &LIMITS, 0.1) - 0.12).abs() < 1e-15);
+        assert!((set_point(0.4, 0.0, &LIMITS, 0.05) - 0.2).abs() < 1e-15);
+        assert!((set_point(-0.1, -0.4, &LIMITS, 0.1) + 0.12).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_ramp_lasts_until_the_command_or_a_stand() {
+        assert!((ramp_time(0.1, 0.4, &LIMITS) - 1.5).abs() < 1e-12);
+        assert!((ramp_time(0.1, -0.4, &LIMITS) - 0.025).abs() < 1e-12);
+        assert!(ramp_time(0.4, 0.4, &LIMITS).is_infinite());
+    }
+
+    #[test]
+    fn reversing_brakes_to_a_stand_first() {
+        assert!((set_point(0.1, -0.4, &LIMITS, 0.1) - 0.0).abs() < 1e-15);
+        assert!((set_point(0.0, -0.4, &LIMITS, 0.1) + 0.02).abs() < 1e-15);
+    }
+
+    #[test]
+    fn reaches_the_command_and_stays() {
+        assert!((set_point(0.399, 0.4, &LIMITS, 0.1) - 0.4).abs() < 1e-15);
+    }
+}
+
+#[cfg(test)]
+mod push_tests {
+    #![allow(clippy::float_cmp)] // halves of whole numbers
+
+    use super::*;
+
+    #[test]
+    fn a_push_rises_evenly_and_stays() {
+        let push = Push::default().raised(8.0, 1.0, 2.0);
+        assert_eq!(
+            [1.0, 1.5, 3.0, 9.0].map(|time| push.at(time)),
+            [0.0, 2.0, 8.0, 8.0]
+        );
+        let more = push.raised(16.0, 2.0, 1.0);
+        assert_eq!([2.0, 2.5, 3.0].map(|time| more.at(time)), [4.0, 10.0, 16.0]);
+    }
+
+    #[test]
+    fn a_push_without_a_rise_is_there_at_once() {
+        let push = Push::default().raised(5.0, 1.0, 0.0);
+        assert_eq!([0.5, 1.0].map(|time| push.at(time)), [0.0, 5.0]);
+    }
+}
