@@ -13,7 +13,6 @@ type Unit = [i32; 3];
 const NUMBER: Unit = [0, 0, 0];
 const LENGTH: Unit = [1, 0, 0];
 const TIME: Unit = [0, 1, 0];
-const SPEED: Unit = [1, -1, 0];
 const TORQUE: Unit = [2, -2, 1];
 
 /// Factors of length, time and mass. Powers of two change no digit, and those of length are the squares of those of time, so
@@ -25,69 +24,41 @@ const SCALES: [[f64; 3]; 4] = [
     [16.0, 4.0, 4096.0],
 ];
 
-/// The unit of a field of scenarios.
-fn unit(field: &str) -> Unit {
-    match field {
-        "center_of_mass"
-        | "belly"
-        | "points"
-        | "gauge"
-        | "axle_distance"
-        | "front_radius"
-        | "rear_radius"
-        | "grouser_height"
-        | "grouser_pitch"
-        | "grouser_thickness"
-        | "wheel_radius"
-        | "tip_thickness"
-        | "base_thickness"
-        | "length"
-        | "root_radius"
-        | "tip_radius"
-        | "height"
-        | "thickness"
-        | "edge_radius"
-        | "goal"
-        | "approach"
-        | "track_phase"
-        | "accuracy"
-        | "prediction_distance"
-        | "stationary_distance"
-        | "intrusion_depth"
-        | "cycling_distance"
-        | "escape_distance" => LENGTH,
-        "duration" | "stop_window" | "clear_time" | "escape_time" => TIME,
-        "speed" | "max_speed" | "max_push_speed" => SPEED,
-        "gravity" | "max_acceleration" | "max_deceleration" => [1, -2, 0],
-        "rate_limit" | "contact_frequency" => [0, -1, 0],
-        "mass" | "track_mass" => [0, 0, 1],
-        "moment_of_inertia" | "rotor_inertia" => [2, 0, 1],
-        "max_torque" | "torque_limit" => TORQUE,
-        "schema"
-        | "count"
-        | "friction"
-        | "angle"
-        | "level_angle"
-        | "push_angle"
-        | "reach_angle"
-        | "sweep_angle"
-        | "stationary_windows"
-        | "clear_angle"
-        | "tip_over_angle"
-        | "stop_pitches"
-        | "stop_progress"
-        | "belly_load"
-        | "creep_from"
-        | "creep_to"
-        | "imbalance"
-        | "mean_imbalance"
-        | "intrusion_load"
-        | "sliding_speed"
-        | "contact_damping_ratio"
-        | "phase_fraction"
-        | "grouser_count"
-        | "restitution" => NUMBER,
-        _ => panic!("{field} has no unit here"),
+/// The unit of a field of scenarios, from the package's list of them.
+fn unit(room: &str, field: &str) -> Unit {
+    match (room, field) {
+        // The criteria have a share of the torque by the same name.
+        ("flippers", "torque_limit") => return TORQUE,
+        (_, "schema") => return NUMBER,
+        _ => (),
+    }
+    let text = include_str!("../../../python/crawler2d/common/units.py");
+    let list = text.split("_FIELDS_BY_UNIT = {").nth(1).expect("a list");
+    let mut parts = list.split("\n}").next().expect("its end").split('"');
+    let mut unit = "";
+    while let (Some(_), Some(text)) = (parts.next(), parts.next()) {
+        // A unit stands before a colon, the names of its fields do not.
+        if parts.clone().next().is_some_and(|after| after.starts_with(':')) {
+            unit = text;
+        } else if text.split(' ').any(|name| name == field) {
+            return exponents(unit);
+        }
+    }
+    panic!("{field} has no unit")
+}
+
+fn exponents(unit: &str) -> Unit {
+    match unit {
+        "1" | "rad" => NUMBER,
+        "m" => LENGTH,
+        "s" => TIME,
+        "Hz" | "rad/s" => [0, -1, 0],
+        "m/s" => [1, -1, 0],
+        "m/s^2" => [1, -2, 0],
+        "kg" => [0, 0, 1],
+        "kg m^2" => [2, 0, 1],
+        "N m" => TORQUE,
+        _ => panic!("no scenario here has a field in {unit}"),
     }
 }
 
@@ -110,9 +81,7 @@ fn scale_fields(fields: &mut Map<String, Value>, room: &str, scale: [f64; 3]) {
     for (name, value) in fields.iter_mut() {
         match value {
             Value::Object(fields) => scale_fields(fields, name, scale),
-            // The criteria have a share of the torque by the name that is a torque elsewhere.
-            _ if room == "criteria" && name == "torque_limit" => (),
-            Value::Number(_) | Value::Array(_) => multiply(value, factor(unit(name), scale)),
+            Value::Number(_) | Value::Array(_) => multiply(value, factor(unit(room, name), scale)),
             _ => (),
         }
     }
