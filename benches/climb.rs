@@ -4,14 +4,14 @@
 use std::hint::black_box;
 
 use crawler2d_benches::{SCENES, Scene};
-use crawler2d_core::{Checked, Record, Simulation, simulate};
+use crawler2d_core::{Record, Simulation, ValidScenario, simulate};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 
 /// [s] Simulated time of a measurement.
 const PIECE: f64 = 0.2;
 
 /// A simulation in the middle of its climb.
-fn simulation(scene: &Scene, checked: &Checked) -> Simulation {
+fn simulation(scene: &Scene, checked: &ValidScenario) -> Simulation {
     let mut simulation = Simulation::new(checked);
     simulation
         .advance(scene.in_the_climb())
@@ -20,7 +20,7 @@ fn simulation(scene: &Scene, checked: &Checked) -> Simulation {
 }
 
 /// The scene by name of what moves the robot.
-fn engines(scene: &Scene) -> impl Iterator<Item = (&'static str, Checked)> {
+fn engines(scene: &Scene) -> impl Iterator<Item = (&'static str, ValidScenario)> {
     let rapier = scene.in_rapier().map(|checked| ("rapier", checked));
     std::iter::once(("crawler2d", scene.checked())).chain(rapier)
 }

@@ -1,6 +1,6 @@
 //! The scenes that the benchmarks time, from scenario files shared with the tests.
 
-use crawler2d_core::{Checked, Engine, Scenario};
+use crawler2d_core::{Engine, Scenario, ValidScenario};
 
 /// [s] Length of a step of rapier's dynamics: the default there.
 pub const ENGINE_STEP: f64 = 2.5e-4;
@@ -54,16 +54,16 @@ impl Scene {
     ///
     /// # Panics
     /// As [`Self::scenario`].
-    pub fn checked(&self) -> Checked {
-        Checked::from_json(self.text).expect("the shared scenario is valid")
+    pub fn checked(&self) -> ValidScenario {
+        ValidScenario::from_json(self.text).expect("the shared scenario is valid")
     }
 
     /// The same moved by rapier's dynamics; `None` if they cannot hold its robot.
-    pub fn in_rapier(&self) -> Option<Checked> {
+    pub fn in_rapier(&self) -> Option<ValidScenario> {
         let mut scenario = self.scenario();
         scenario.solver.engine = Engine::Rapier;
         (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(ENGINE_STEP));
-        Checked::new(&scenario).ok()
+        ValidScenario::new(&scenario).ok()
     }
 
     /// [s] An instant at which the robot is on its obstacle: one second, plus the time to the obstacle and a third of

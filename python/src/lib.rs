@@ -1,12 +1,9 @@
 //! The Python module `crawler2d._core`: JSON text in, `NumPy` columns out.
 
-mod beside;
+mod calls;
+mod classes;
 mod convert;
-mod diagnosis;
-mod door;
-mod errors;
 mod pictures;
-mod stepwise;
 
 use pyo3::prelude::*;
 
@@ -15,48 +12,47 @@ use pyo3::prelude::*;
 mod _core {
     use std::collections::HashMap;
 
-    use crawler2d_core::{Cancel, Checked, Finished, Progress, Record};
+    use crawler2d_core::{Cancel, Finished, Progress, Record, ValidScenario};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
 
-    use crate::beside::{beside, built};
+    use crate::calls;
+    use crate::calls::{build_interruptible, run_interruptible};
     use crate::convert;
-    use crate::diagnosis;
-    use crate::errors;
     use crate::pictures;
 
     #[pymodule_export]
-    use crate::stepwise::Simulation;
+    use crate::classes::Simulation;
 
     #[pymodule_export]
-    use crate::door::Passed;
+    use crate::classes::PreparedScenario;
 
     /// Validates a scenario and returns its canonical JSON.
     #[pyfunction]
     fn canonical(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
-        let checked = built(py, text, Checked::from_json)?;
+        let checked = build_interruptible(py, text, ValidScenario::from_json)?;
         Ok(checked.scenario().to_json())
     }
 
     /// Validates a scenario, and warns of values that are unlikely to be meant.
     #[pyfunction]
     fn validate(py: Python<'_>, text: PyBackedStr) -> PyResult<()> {
-        let checked = built(py, text, Checked::from_json)?;
-        errors::warn(py, checked.doubts())
+        let checked = build_interruptible(py, text, ValidScenario::from_json)?;
+        calls::warn(py, checked.doubts())
     }
 
     /// SHA-256 of the canonical JSON.
     #[pyfunction]
     fn identity(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
-        let checked = built(py, text, Checked::from_json)?;
+        let checked = build_interruptible(py, text, ValidScenario::from_json)?;
         Ok(checked.scenario().identity())
     }
 
     /// Ground and robot of a scenario as arrays for drawing.
     #[pyfunction]
     fn geometry(py: Python<'_>, text: PyBackedStr) -> PyResult<Bound<'_, PyDict>> {
-        let checked = built(py, text, Checked::from_json)?;
+        let checked = build_interruptible(py, text, ValidScenario::from_json)?;
         pictures::of(py, &checked)
     }
 
@@ -68,10 +64,10 @@ mod _core {
         columns: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let trace = convert::moved(columns)?;
-        let checked = built(py, text, Checked::from_json)?;
+        let checked = build_interruptible(py, text, ValidScenario::from_json)?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
+        let found = run_interruptible(py, &cancel, move || {
             crawler2d_core::poses(&checked, &trace, &asked)
         })?;
         pictures::poses(py, found)
@@ -100,7 +96,7 @@ mod _core {
     /// The wheels of a scenario's robot.
     #[pyfunction]
     fn wheels<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
-        let checked = errors::guarded(|| Checked::from_json(text))?;
+        let checked = calls::guarded(|| ValidScenario::from_json(text))?;
         convert::wheels(py, checked.model())
     }
 
@@ -114,8 +110,8 @@ mod _core {
         trials: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, record, &trials)?;
-        let checked = built(py, text, Checked::from_json)?;
-        errors::warn(py, checked.doubts())?;
+        let checked = build_interruptible(py, text, ValidScenario::from_json)?;
+        calls::warn(py, checked.doubts())?;
         let mut result = None;
         let interrupted = run_all(py, vec![checked], 1, record, |_, finished| {
             result = finished.into_iter().next().or(result.take());
@@ -126,18 +122,18 @@ mod _core {
         }
         match result {
             Some((_, Ok(run))) => {
-                errors::warn(py, &run.doubts)?;
+                calls::warn(py, &run.doubts)?;
                 convert::run(py, run)
             }
-            Some((_, Err(error))) => Err(errors::to_python(error)),
-            None => Err(errors::internal("the run ended without a result")),
+            Some((_, Err(error))) => Err(calls::to_python(error)),
+            None => Err(calls::internal("the run ended without a result")),
         }
     }
 
     /// Warns of what in a batch is legal but unlikely to be meant, once for each field.
     #[pyfunction]
-    fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, Passed>>) -> PyResult<()> {
-        errors::warn(
+    fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<()> {
+        calls::warn(
             py,
             scenarios.iter().flat_map(|passed| passed.checked.doubts()),
         )
@@ -150,7 +146,7 @@ mod _core {
     #[pyfunction]
     fn simulate_many(
         py: Python<'_>,
-        scenarios: Vec<PyRef<'_, Passed>>,
+        scenarios: Vec<PyRef<'_, PreparedScenario>>,
         threads: usize,
         sample_interval: f64,
         record: &str,
@@ -176,14 +172,14 @@ mod _core {
                 let converted = match result {
                     Ok(run) if with_tables => convert::run(py, run),
                     Ok(run) => convert::row(py, &run),
-                    Err(error) => Err(errors::to_python(error)),
+                    Err(error) => Err(calls::to_python(error)),
                 };
                 let kept = converted.or_else(|error| convert::failure(py, error))?;
                 list.append((place, kept))?;
             }
             take.call1(py, (list,)).map(|_| ())
         })?;
-        errors::warn(py, &doubts)?;
+        calls::warn(py, &doubts)?;
         match interrupted {
             // After Ctrl-C, finished runs are kept; any other exception of a callback is passed on unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {
@@ -207,9 +203,9 @@ mod _core {
         let record = convert::record(sample_interval, record, &[])?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let run = beside(py, &cancel, move || {
-            let scenario = Checked::from_json(&text)?;
-            let variant = Checked::from_json_like(&variant, Some(&scenario))?;
+        let run = run_interruptible(py, &cancel, move || {
+            let scenario = ValidScenario::from_json(&text)?;
+            let variant = ValidScenario::from_json_like(&variant, Some(&scenario))?;
             crawler2d_core::branch(&scenario, at, (&variant, push), record, &asked)
         })?;
         convert::run(py, run)
@@ -226,10 +222,10 @@ mod _core {
         let wanted = convert::wanted(&names)?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
-            crawler2d_core::make_trials(&Checked::from_json(&text)?, at, wanted, &asked)
+        let found = run_interruptible(py, &cancel, move || {
+            crawler2d_core::make_trials(&ValidScenario::from_json(&text)?, at, wanted, &asked)
         })?;
-        let found = found.iter().map(|trial| diagnosis::trial(py, trial));
+        let found = found.iter().map(|trial| convert::trial(py, trial));
         PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)
     }
 
@@ -244,12 +240,12 @@ mod _core {
     ) -> PyResult<Option<Bound<'_, PyDict>>> {
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
-            let scenario = Checked::from_json(&text)?;
-            let variant = Checked::from_json_like(&variant, Some(&scenario))?;
+        let found = run_interruptible(py, &cancel, move || {
+            let scenario = ValidScenario::from_json(&text)?;
+            let variant = ValidScenario::from_json_like(&variant, Some(&scenario))?;
             crawler2d_core::what_if(&scenario, at, (&variant, push), &asked)
         })?;
-        found.map(|trial| diagnosis::trial(py, &trial)).transpose()
+        found.map(|trial| convert::trial(py, &trial)).transpose()
     }
 
     /// The scenario of a trial, and its run.
@@ -266,8 +262,14 @@ mod _core {
         let change = convert::change(name)?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
-            crawler2d_core::run_of_trial(&Checked::from_json(&text)?, at, change, record, &asked)
+        let found = run_interruptible(py, &cancel, move || {
+            crawler2d_core::run_of_trial(
+                &ValidScenario::from_json(&text)?,
+                at,
+                change,
+                record,
+                &asked,
+            )
         })?;
         found
             .map(|(variant, run)| Ok((variant.to_json(), convert::run(py, run)?)))
@@ -279,8 +281,8 @@ mod _core {
     fn escape_force(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<(f64, f64, bool)> {
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
-            crawler2d_core::escape_force(&Checked::from_json(&text)?, at, &asked)
+        let found = run_interruptible(py, &cancel, move || {
+            crawler2d_core::escape_force(&ValidScenario::from_json(&text)?, at, &asked)
         })?;
         Ok((found.low, found.high, found.tips))
     }
@@ -290,12 +292,10 @@ mod _core {
     fn tip_over(py: Python<'_>, text: PyBackedStr) -> PyResult<Option<Bound<'_, PyDict>>> {
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
-            crawler2d_core::tip_over(&Checked::from_json(&text)?, &asked)
+        let found = run_interruptible(py, &cancel, move || {
+            crawler2d_core::tip_over(&ValidScenario::from_json(&text)?, &asked)
         })?;
-        found
-            .map(|found| diagnosis::tip_over(py, &found))
-            .transpose()
+        found.map(|found| convert::tip_over(py, &found)).transpose()
     }
 
     /// Whether forces could hold a stop: the least imbalance, its tolerance, between which factors of the friction, and by
@@ -304,12 +304,10 @@ mod _core {
     fn balance(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<Option<Bound<'_, PyDict>>> {
         let cancel = Cancel::default();
         let asked = cancel.clone();
-        let found = beside(py, &cancel, move || {
-            crawler2d_core::balance(&Checked::from_json(&text)?, at, &asked)
+        let found = run_interruptible(py, &cancel, move || {
+            crawler2d_core::balance(&ValidScenario::from_json(&text)?, at, &asked)
         })?;
-        found
-            .map(|found| diagnosis::balance(py, &found))
-            .transpose()
+        found.map(|found| convert::balance(py, &found)).transpose()
     }
 
     /// Version and build of the compiled core.
@@ -323,14 +321,14 @@ mod _core {
     /// Returns what interrupted the batch: a signal or an exception of `take`.
     fn run_all(
         py: Python<'_>,
-        scenarios: Vec<Checked>,
+        scenarios: Vec<ValidScenario>,
         threads: usize,
         record: Record,
         mut take: impl Send + FnMut(Python<'_>, Vec<Finished>) -> PyResult<()>,
     ) -> PyResult<Option<PyErr>> {
         let mut interrupted: Option<PyErr> = None;
         py.detach(|| {
-            errors::guarded(|| {
+            calls::guarded(|| {
                 crawler2d_core::simulate_many(scenarios, threads, record, |finished| {
                     let taken = Python::attach(|py| {
                         // What is finished is kept even if this is the moment of Ctrl-C.

@@ -1,6 +1,6 @@
 //! Arrays of ground and robot that pictures need.
 
-use crawler2d_core::{Body, Checked, Ground, Model, Mount, Part, Poses, Shape, Vector};
+use crawler2d_core::{Body, Ground, Model, Mount, Part, Poses, Shape, ValidScenario, Vector};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::convert::{edges, rows};
 
 /// Ground, bodies of the robot, and the carriers of the track in front in a side view: of two tracks, the right one.
-pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Bound<'py, PyDict>> {
     let (model, ground) = (checked.model(), checked.ground());
     let lanes = PyList::empty(py);
     for lane in &ground.lanes {

@@ -4,10 +4,10 @@
 //! over and at what cost. A [`Scenario`] goes in, a [`Run`] comes out:
 //!
 //! ```no_run
-//! use crawler2d_core::{Checked, Record, simulate};
+//! use crawler2d_core::{ValidScenario, Record, simulate};
 //!
 //! let text = std::fs::read_to_string("scenario.json").unwrap();
-//! let scenario = Checked::from_json(&text).unwrap();
+//! let scenario = ValidScenario::from_json(&text).unwrap();
 //! let run = simulate(&scenario, Record::default()).unwrap();
 //! println!("{} after {} s", run.outcome, run.metrics.time);
 //! ```
@@ -47,9 +47,9 @@ pub use robot::{
     Shape, Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    Checked, ContactTable, EscapeForce, Finished, Metric, Metrics, Poses, Progress, Record, Run,
-    Simulation, TipOver, Trace, balance, branch, diagnose, escape_force, make_trials, outcome_of,
-    poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
+    ContactTable, EscapeForce, Finished, Metric, Metrics, Poses, Progress, Record, Run, Simulation,
+    TipOver, Trace, ValidScenario, balance, branch, diagnose, escape_force, make_trials,
+    outcome_of, poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

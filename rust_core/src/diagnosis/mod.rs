@@ -22,7 +22,7 @@ pub use findings::{Change, Diagnosis, LoadedIntrusion, Mechanism, StopContact, T
 pub(crate) use scene::Scene;
 
 /// When a stop was observed.
-pub(crate) struct Seen {
+pub(crate) struct StopTimes {
     pub time: f64,
     pub since: f64,
     pub progress: f64,
@@ -38,7 +38,7 @@ pub(crate) fn tolerance(criteria: &SeizureCriteria, stationary: bool) -> f64 {
 }
 
 /// Examines a stop; its outcome is the symptom until something has been tried.
-pub(crate) fn examine(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis {
+pub(crate) fn examine(scene: &Scene, stance: &Stance, times: &StopTimes) -> Diagnosis {
     let criteria = scene.criteria;
     let inside = scene.loaded_intrusions(stance);
     let most_loaded = |pieces: &mut dyn Iterator<Item = &LoadedIntrusion>| {
@@ -73,8 +73,8 @@ pub(crate) fn examine(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis 
         trials: Vec::new(),
         jammed,
         mechanism: held.and_then(|_| Mechanism::of(&facts, criteria, weight)),
-        time: seen.time,
-        since: seen.since,
+        time: times.time,
+        since: times.since,
         position: [stance.position.x, stance.position.y],
         chassis_angle: stance.angle,
         intrusion,
@@ -82,7 +82,7 @@ pub(crate) fn examine(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis 
         sliding_share: facts.sliding_share,
         stalled_share: facts.stalled_share,
         contacts: facts.contacts,
-        progress: seen.progress,
+        progress: times.progress,
         stationary,
         imbalance,
         certified: imbalance.is_some_and(|i| i <= tolerance),

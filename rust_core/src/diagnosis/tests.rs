@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::contact::{Contact, TrackEnvelope};
-use crate::geometry::Rotation;
+use crate::geometry::{Rotation, Vector};
 use crate::observe::{Bearing, DriveMean};
 use crate::robot::{Model, Mount};
 use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, TrackOutline, Wheel};
@@ -98,7 +98,7 @@ impl Stage {
     }
 
     fn examine(&self, stance: &Stance) -> Diagnosis {
-        let seen = Seen {
+        let seen = StopTimes {
             time: 3.0,
             since: 1.0,
             progress: 0.25,

@@ -5,7 +5,7 @@
 use super::approach::Approach;
 use crate::geometry::{Vector, left_of};
 use crate::robot::Flipper;
-use crate::solver::{Acts, Direction, Inertia, Joint, Twist};
+use crate::solver::{ActsOn, Direction, Inertia, Joint, Twist};
 
 /// The arms at one end of the robot.
 pub(super) struct Arm {
@@ -94,6 +94,6 @@ impl Arm {
             (along(Vector::Y, [pivot.y, arm.y]), mass, free.velocity.y),
             (along(Vector::ZERO, [0.0, 1.0]), inertia, free.turn),
         ]
-        .map(|(along, inertia, free)| Inertia::new(Acts::on_joint(joint), along, inertia, free))
+        .map(|(along, inertia, free)| Inertia::new(ActsOn::on_joint(joint), along, inertia, free))
     }
 }

@@ -7,7 +7,7 @@ use super::chain::Chain;
 use super::push::push_axis;
 use crate::robot::Model;
 use crate::scenario::Solver;
-use crate::solver::{Acts, Base, Bilateral, Driven, Motor, Problem, Spin};
+use crate::solver::{ActsOn, Base, Bilateral, Driven, Motor, Problem, Spin};
 
 /// A robot's bodies and motors: those of its drives, then those of its arms.
 pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solver) -> Problem {
@@ -50,7 +50,7 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
     let of_arms = arms.iter().enumerate().map(of_arm);
     problem.motors = (0..model.drives).map(of_drive).chain(of_arms).collect();
     if let Some(drive) = model.push_drive() {
-        let acts = Acts::Base {
+        let acts = ActsOn::Base {
             joint: None,
             spin: Some(drive),
         };

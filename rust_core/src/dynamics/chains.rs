@@ -6,11 +6,11 @@
 mod tests;
 
 use super::Dynamics;
-use super::chain::{Chain, Stand};
+use super::chain::{Chain, ChainPose};
 use super::state::State;
 use super::touch::{Touch, is_on_ground};
 use crate::geometry::Vector;
-use crate::solver::{Acts, Twist};
+use crate::solver::{ActsOn, Twist};
 
 /// A shoe that is closer to the guide than so many times the way of the fastest part may come to rest on it within a step.
 /// Of 5,200 that did so from more than 50 um, the farthest came from 1.6 times that way at the speed after the step; the
@@ -71,7 +71,7 @@ impl Dynamics {
             let place_of = |i: usize| state.shoes[first + i].after(half).pose();
             let idler = &state.idlers[chain.rule.number];
             let number = chain.rule.number;
-            let stand = Stand {
+            let stand = ChainPose {
                 chassis: pose,
                 travel: idler.travel + idler.rate * half,
                 run: state.drives[number].position + state.track_speed(&self.model, number) * half,
@@ -95,7 +95,7 @@ impl Dynamics {
             chain.forget_rests();
         }
         for (touch, solved) in self.touches.iter().zip(&self.problem.contacts) {
-            if let Acts::LinkAndSlide(link) | Acts::LinkAndSpin { link, .. } = solved.acts {
+            if let ActsOn::LinkAndSlide(link) | ActsOn::LinkAndSpin { link, .. } = solved.acts {
                 self.chains[link.ring].remember_rest(link.number, touch, solved.grip);
             }
         }

@@ -16,7 +16,7 @@ use super::trend::Trend;
 use crate::geometry::Vector;
 use crate::robot::held_speed;
 use crate::scenario::End;
-use crate::solver::{Acts, Inertia, Twist};
+use crate::solver::{ActsOn, Inertia, Twist};
 
 impl Dynamics {
     /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
@@ -97,7 +97,7 @@ impl Dynamics {
         let turn = self.problem.free.base.turn;
         let with_rotor = arms.filter(|(_, arm)| arm.rule.rotor_inertia > 0.0);
         inertias.extend(with_rotor.map(|(k, arm)| {
-            let (on, free) = (Acts::on_joint(k), arm.free.turn - turn);
+            let (on, free) = (ActsOn::on_joint(k), arm.free.turn - turn);
             Inertia::of_rotor(on, arm.rule.rotor_inertia, free)
         }));
         let motors = &mut self.problem.motors[self.model.flipper_motors()];

@@ -5,7 +5,7 @@
 use super::Dynamics;
 use super::push::push_axis;
 use super::state::State;
-use crate::solver::{Acts, Damper, Inertia};
+use crate::solver::{ActsOn, Damper, Inertia};
 
 impl Dynamics {
     /// Solves for the velocities after a `time` [s] in which motors push.
@@ -35,7 +35,7 @@ impl Dynamics {
                 let mass = spin.rotor / (lever * lever);
                 ring.drive.rotor = Damper::new(mass * lever * free, mass);
             } else {
-                let rotor = Inertia::of_rotor(Acts::on_spin(k), spin.rotor, free);
+                let rotor = Inertia::of_rotor(ActsOn::on_spin(k), spin.rotor, free);
                 problem.inertias.push(rotor);
             }
         }

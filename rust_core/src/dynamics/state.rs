@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Pose, Rotation, Vector, direction, left_of};
 use crate::robot::{ChainOfShoes, Flipper, Model, Mount, Running};
-use crate::solver::{Moves, Twist, Velocities};
+use crate::solver::{HasVelocities, Twist, Velocities};
 
 /// The state of motion.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -338,7 +338,7 @@ impl State {
     }
 }
 
-impl Moves for State {
+impl HasVelocities for State {
     fn base(&self) -> Twist {
         self.twist()
     }

@@ -9,7 +9,7 @@ use super::softness::Softness;
 use super::state::State;
 use crate::geometry::Rotation;
 use crate::robot::{Model, Mount};
-use crate::solver::{Acts, Contact, Grip};
+use crate::solver::{ActsOn, Contact, Grip};
 
 /// Compliance of the contacts of shoes, in units of that of the contact frequency: shoes are light, but the
 /// robot stands on them. Harder ones hardly reduce the penetration, and jam more.
@@ -73,11 +73,11 @@ impl Touch {
                 let pivot = middle.center - state.moved(time).0;
                 let joint = Some(k);
                 let directions = [normal, tangent].map(|along| along.on_flipper(pivot));
-                Contact::new(Acts::Base { joint, spin }, directions)
+                Contact::new(ActsOn::Base { joint, spin }, directions)
             }
             Mount::Chassis | Mount::Shoe(_) => {
                 let joint = None;
-                Contact::new(Acts::Base { joint, spin }, [normal, tangent])
+                Contact::new(ActsOn::Base { joint, spin }, [normal, tangent])
             }
         };
         let mut touch = Self {
@@ -154,14 +154,14 @@ impl Touch {
 
 /// Whether the ground bears at a contact, not the robot itself.
 pub(super) fn is_on_ground(solved: &Contact) -> bool {
-    matches!(solved.acts, Acts::Base { .. } | Acts::Link(_))
+    matches!(solved.acts, ActsOn::Base { .. } | ActsOn::Link(_))
 }
 
 /// What carries a contact, if that is no shoe.
 pub(super) fn mount(solved: &Contact) -> Option<Mount> {
     match solved.acts {
-        Acts::Base { joint: Some(k), .. } => Some(Mount::Flipper(k)),
-        Acts::Base { joint: None, .. } => Some(Mount::Chassis),
+        ActsOn::Base { joint: Some(k), .. } => Some(Mount::Flipper(k)),
+        ActsOn::Base { joint: None, .. } => Some(Mount::Chassis),
         _ => None,
     }
 }

@@ -29,7 +29,7 @@ const ON_SHAFT: f64 = 0.9;
 /// [m] Depth up to which the engine lets bodies sink in.
 const SLOP: f64 = 1e-5;
 /// [m/s^2] How fast parts may gain speed within a step, as far as the search for contacts looks ahead.
-const GAIN: f64 = 100.0;
+const SPEED_GAIN: f64 = 100.0;
 
 impl EngineWorld {
     /// A robot at rest in a state.
@@ -59,7 +59,7 @@ fn set_up(world: &mut PhysicsWorld, scenario: &Scenario) {
     p.max_ccd_substeps = 0;
     p.normalized_max_corrective_velocity = PUSH_OUT;
     // A surface that runs at its fastest over a corner must be seen before it arrives.
-    p.normalized_prediction_distance = 2.0 * (fastest + GAIN * step) * step;
+    p.normalized_prediction_distance = 2.0 * (fastest + SPEED_GAIN * step) * step;
     p.normalized_allowed_linear_error = SLOP;
     let (natural_frequency, damping_ratio) = CONTACT;
     p.contact_softness = SpringCoefficients {

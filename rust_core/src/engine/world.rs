@@ -128,7 +128,7 @@ impl Clone for EngineWorld {
 
 /// [N m s] By how much a motor's torque rises with the error of its speed, or [N s/m] a force: so steep that only its limit
 /// limits it.
-const GAIN: f64 = 1e5;
+const MOTOR_GAIN: f64 = 1e5;
 
 /// A wheel turns on the chassis; `place` is its pose in the frame of that body at the beginning.
 pub(super) fn axle(
@@ -205,7 +205,7 @@ pub(super) fn limit(joint: &mut GenericJoint, axis: JointAxis, most: f64) {
 
 /// Lets the motor of a joint hold a speed, [rad/s] or [m/s].
 pub(super) fn hold(joint: &mut GenericJoint, axis: JointAxis, speed: f64) {
-    joint.set_motor_velocity(axis, speed, GAIN);
+    joint.set_motor_velocity(axis, speed, MOTOR_GAIN);
 }
 
 /// The joint of a wheel or a shaft.

@@ -105,7 +105,7 @@ impl<'a> Rows<'a> {
     ///
     /// # Errors
     /// There is no room.
-    pub(crate) fn make(
+    pub(crate) fn make_room(
         &mut self,
         rows: usize,
         reserve: impl FnOnce(usize) -> Result<(), TryReserveError>,
@@ -207,7 +207,7 @@ mod tests {
         let mut rows = Rows::new(&budget, 8);
         let mut column: Vec<f64> = Vec::new();
         for row in 0..200 {
-            let made = rows.make(row + 1, |room| reserve(&mut column, room));
+            let made = rows.make_room(row + 1, |room| reserve(&mut column, room));
             made.expect("there is room");
             column.push(0.0);
         }
@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(taken(&budget), 8 * column.capacity() as u64);
         rows.shrink(column.len());
         assert_eq!(taken(&budget), 8 * 200);
-        let too_many = rows.make(2000, |_| unreachable!("the budget has no room"));
+        let too_many = rows.make_room(2000, |_| unreachable!("the budget has no room"));
         assert!(too_many.is_err());
     }
 }

@@ -21,17 +21,17 @@ const TOUCHES: Metres = Metres(1e-6);
 /// Sums over the last complete window and the current one.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Signals {
-    older: Block,
-    newer: Block,
+    older: WindowSums,
+    newer: WindowSums,
 }
 
 /// Sums over one window.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Block {
+struct WindowSums {
     start: f64,
     /// [s] Time that it covers.
     time: f64,
-    contacts: Vec<Summed>,
+    contacts: Vec<ContactSums>,
     drives: Vec<DriveMean>,
     place: [f64; 3],
     low: [f64; 3],
@@ -40,7 +40,7 @@ struct Block {
 
 /// Sums of one contact.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Summed {
+struct ContactSums {
     last: Contact,
     normal_force: f64,
     friction_force: f64,
@@ -135,7 +135,7 @@ impl Signals {
     }
 }
 
-impl Block {
+impl WindowSums {
     fn numbers_differ(&self) -> bool {
         let mut seen = HashSet::new();
         let mut numbers = self.contacts.iter().map(|c| c.last.number);
@@ -167,12 +167,12 @@ impl Block {
         }
         let bears = |l: &&Contact| l.normal_force > 0.0 || l.distance < TOUCHES.value();
         for l in loaded.iter().filter(bears) {
-            self.gather(&Summed::new(l, dt));
+            self.gather(&ContactSums::new(l, dt));
         }
     }
 
     /// Adds a contact to its sums.
-    fn gather(&mut self, new: &Summed) {
+    fn gather(&mut self, new: &ContactSums) {
         let number = new.last.number;
         let mut known = self.contacts.iter_mut();
         match known.find(|c| c.last.number == number) {
@@ -205,7 +205,7 @@ impl Block {
     }
 }
 
-impl Summed {
+impl ContactSums {
     fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         let sums = [
             self.normal_force,
@@ -269,7 +269,7 @@ pub(crate) struct Loads {
     /// [s] Length of the interval so far.
     time: f64,
     /// Each with its last state and with the sums over the interval as its forces.
-    seen: Vec<Contact>,
+    contacts: Vec<Contact>,
 }
 
 impl Loads {
@@ -279,37 +279,37 @@ impl Loads {
         // Contacts come in the same order in each step.
         let mut next = 0;
         for l in loaded.iter().filter(|l| l.normal_force > 0.0) {
-            let mut all = (next..self.seen.len()).chain(0..next);
-            let known = all.find(|i| self.seen[*i].number == l.number);
+            let mut all = (next..self.contacts.len()).chain(0..next);
+            let known = all.find(|i| self.contacts[*i].number == l.number);
             let new = Contact {
                 normal_force: l.normal_force * dt,
                 friction_force: l.friction_force * dt,
                 ..*l
             };
             if let Some(i) = known {
-                let sum = self.seen[i];
-                self.seen[i] = Contact {
+                let sum = self.contacts[i];
+                self.contacts[i] = Contact {
                     normal_force: sum.normal_force + new.normal_force,
                     friction_force: sum.friction_force + new.friction_force,
                     ..new
                 };
                 next = i + 1;
             } else {
-                self.seen.push(new);
+                self.contacts.push(new);
             }
         }
     }
 
     /// Number of contacts in the interval so far.
     pub(crate) fn count(&self) -> usize {
-        self.seen.len()
+        self.contacts.len()
     }
 
     /// Returns the means, in the order in which contacts first appeared, and starts a new interval.
     pub(crate) fn drain(&mut self) -> impl Iterator<Item = Contact> + '_ {
         let time = std::mem::take(&mut self.time);
         let share = if time > 0.0 { 1.0 / time } else { 0.0 };
-        self.seen.drain(..).map(move |l| Contact {
+        self.contacts.drain(..).map(move |l| Contact {
             normal_force: l.normal_force * share,
             friction_force: l.friction_force * share,
             ..l
@@ -320,6 +320,6 @@ impl Loads {
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         plausible(&[self.time])
             && self.time >= 0.0
-            && self.seen.iter().all(|l| l.fits(model, lanes))
+            && self.contacts.iter().all(|l| l.fits(model, lanes))
     }
 }

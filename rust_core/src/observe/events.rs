@@ -88,32 +88,32 @@ impl Event {
 /// Tracks intrusions from check to check.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct IntrusionWatch {
-    present: Vec<Present>,
+    present: Vec<OngoingIntrusion>,
     past: Vec<Event>,
 }
 
 /// An intrusion that is going on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Present {
+struct OngoingIntrusion {
     event: Event,
     /// Edges inside at the last check.
     edges: Vec<i32>,
     looks: f64,
-    seen: bool,
+    is_present: bool,
 }
 
 impl IntrusionWatch {
     /// Takes the intrusions at `time`, each with the force [N] on it.
     pub(crate) fn look(&mut self, time: f64, inside: impl Iterator<Item = (Intrusion, f64)>) {
         for (intrusion, force) in inside {
-            let same = |p: &&mut Present| {
+            let same = |p: &&mut OngoingIntrusion| {
                 p.event.bodies == Some(intrusion.bodies)
                     && p.edges.iter().any(|edge| intrusion.edges.contains(edge))
             };
             if let Some(known) = self.present.iter_mut().find(same) {
                 known.add(&intrusion, force);
             } else {
-                let mut new = Present::new(time, &intrusion);
+                let mut new = OngoingIntrusion::new(time, &intrusion);
                 new.add(&intrusion, force);
                 self.present.push(new);
             }
@@ -121,7 +121,7 @@ impl IntrusionWatch {
         for i in (0..self.present.len()).rev() {
             let known = &mut self.present[i];
             known.event.end = time;
-            if !std::mem::take(&mut known.seen) {
+            if !std::mem::take(&mut known.is_present) {
                 self.past.push(self.present.remove(i).event);
             }
         }
@@ -161,7 +161,7 @@ impl IntrusionWatch {
     }
 }
 
-impl Present {
+impl OngoingIntrusion {
     fn new(time: f64, intrusion: &Intrusion) -> Self {
         let event = Event {
             kind: EventKind::Intrusion,
@@ -178,13 +178,13 @@ impl Present {
             event,
             edges: Vec::new(),
             looks: 0.0,
-            seen: false,
+            is_present: false,
         }
     }
 
     fn add(&mut self, intrusion: &Intrusion, force: f64) {
         self.looks += 1.0;
-        self.seen = true;
+        self.is_present = true;
         self.edges.clone_from(&intrusion.edges);
         let e = &mut self.event;
         if intrusion.depth > e.depth {

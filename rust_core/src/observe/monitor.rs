@@ -5,7 +5,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use super::seen::{Anchor, LOOK, Seen};
+use super::observations::{Anchor, LOOK, Observations};
 use super::{Event, Outcome, Reading, Signals, Stance};
 use crate::contact::{Contact, TrackEnvelope};
 use crate::dynamics::{ChainReading, DriveState};
@@ -36,7 +36,7 @@ pub(crate) struct Monitor {
     /// Whether a turning grouser may change the contacts while the pose stays the same.
     has_grousers: bool,
     /// Its observations.
-    pub seen: Seen,
+    pub observed: Observations,
 }
 
 impl Monitor {
@@ -61,13 +61,13 @@ impl Monitor {
                 || (scenario.drive.gait.is_some() && !model.flippers.is_empty()),
             parts: model.parts.clone(),
             has_grousers: model.parts.iter().any(Part::is_carried),
-            seen: Seen::from(0.0),
+            observed: Observations::from(0.0),
         }
     }
 
     /// [s] When it checks the progress next; a step is taken in parts that end there.
     pub(crate) fn next_look(&self) -> f64 {
-        self.seen.looks as f64 * LOOK.value()
+        self.observed.looks as f64 * LOOK.value()
     }
 
     /// Takes a step, or a part of one: the state of the robot at its end, and during it the mean speed [m/s] along the
@@ -80,33 +80,33 @@ impl Monitor {
         drives: impl Iterator<Item = (DriveState, f64)> + Clone,
         running: &Running,
     ) {
-        let seen = &mut self.seen;
-        let dt = now.time - seen.last_time;
-        seen.last_time = now.time;
-        seen.loads.add(loaded, dt);
+        let observed = &mut self.observed;
+        let dt = now.time - observed.last_time;
+        observed.last_time = now.time;
+        observed.loads.add(loaded, dt);
         let work_rate: f64 = drives
             .clone()
             .map(|(drive, speed)| drive.force * speed)
             .sum();
-        seen.drive_work += work_rate * dt;
-        seen.path_length += forward_speed * dt;
-        seen.max_angle = seen.max_angle.max(now.chassis_angle);
-        seen.min_angle = seen.min_angle.min(now.chassis_angle);
+        observed.drive_work += work_rate * dt;
+        observed.path_length += forward_speed * dt;
+        observed.max_angle = observed.max_angle.max(now.chassis_angle);
+        observed.min_angle = observed.min_angle.min(now.chassis_angle);
         for l in loaded {
-            seen.max_penetration = seen.max_penetration.max(-l.distance);
+            observed.max_penetration = observed.max_penetration.max(-l.distance);
         }
         let length = 2.0 * self.half_length;
-        seen.progress.advance(now, command, length, dt);
+        observed.progress.advance(now, command, length, dt);
         let window = self.window(command);
-        if self.seen.progress.falters() {
-            self.seen.signals.add((now, dt), loaded, drives, window);
+        if self.observed.progress.falters() {
+            self.observed.signals.add((now, dt), loaded, drives, window);
         }
-        if self.seen.ended.is_none() {
-            self.seen.ended = self.ended(now, dt);
+        if self.observed.ended.is_none() {
+            self.observed.ended = self.ended(now, dt);
         }
         if now.time >= self.next_look() {
-            self.seen.looks += 1;
-            self.seen.shaking.look(now);
+            self.observed.looks += 1;
+            self.observed.shaking.look(now);
             self.look_inside(now, running);
             self.look(now, command, window);
             if !self.has_grousers && !self.may_change {
@@ -117,18 +117,19 @@ impl Monitor {
 
     /// Takes the solver's work in the same step.
     pub(crate) fn observe_effort(&mut self, effort: Effort) {
-        self.seen.effort = self.seen.effort.plus(effort);
+        self.observed.effort = self.observed.effort.plus(effort);
     }
 
     /// Takes the state of the chains in the same step.
     pub(crate) fn observe_chains(&mut self, chains: ChainReading) {
-        let seen = &mut self.seen;
-        seen.max_track_tension = seen.max_track_tension.max(chains.tension);
-        seen.max_pin_gap = seen.max_pin_gap.max(chains.pin_gap);
-        seen.max_guide_penetration = seen.max_guide_penetration.max(chains.guide_penetration);
-        seen.max_sprocket_slip = seen.max_sprocket_slip.max(chains.sprocket_slip);
+        let observed = &mut self.observed;
+        observed.max_track_tension = observed.max_track_tension.max(chains.tension);
+        observed.max_pin_gap = observed.max_pin_gap.max(chains.pin_gap);
+        observed.max_guide_penetration =
+            observed.max_guide_penetration.max(chains.guide_penetration);
+        observed.max_sprocket_slip = observed.max_sprocket_slip.max(chains.sprocket_slip);
         if chains.is_off {
-            seen.ended.get_or_insert(Outcome::Detracked);
+            observed.ended.get_or_insert(Outcome::Detracked);
         }
     }
 
@@ -155,17 +156,17 @@ impl Monitor {
         let level = (now.chassis_angle - self.ground.angle_at(now.position.x)).abs()
             < self.criteria.clear_angle;
         let beyond = rear - self.goal - self.rear_radius;
-        let before = std::mem::replace(&mut self.seen.beyond, beyond);
+        let before = std::mem::replace(&mut self.observed.beyond, beyond);
         if beyond > 0.0 && level {
             // It has passed the goal within the step.
             let over = beyond / (beyond - before.min(0.0));
-            let since = *self.seen.goal_since.get_or_insert(now.time - over * dt);
+            let since = *self.observed.goal_since.get_or_insert(now.time - over * dt);
             if now.time - since >= self.criteria.clear_time {
-                self.seen.time_to_clear = since;
+                self.observed.time_to_clear = since;
                 return Some(Outcome::Cleared);
             }
         } else {
-            self.seen.goal_since = None;
+            self.observed.goal_since = None;
         }
         None
     }
@@ -182,29 +183,29 @@ impl Monitor {
                 Vec::new()
             }
         });
-        let loads: Vec<Contact> = self.seen.loads.drain().collect();
+        let loads: Vec<Contact> = self.observed.loads.drain().collect();
         let with_force = inside.filter(|i| i.edge >= 0).map(|i| {
             let bears = |l: &&Contact| i.bears(lanes, &self.parts, l);
             let force = loads.iter().filter(bears).map(|l| l.normal_force).sum();
             (i, force)
         });
-        self.seen.intrusions.look(now.time, with_force);
+        self.observed.intrusions.look(now.time, with_force);
     }
 
     /// Compares the progress with that one stop window ago.
     fn look(&mut self, now: &Reading, command: f64, window: f64) {
         let least = self.criteria.stop_progress;
-        let seen = &mut self.seen;
-        let freed = seen
+        let observed = &mut self.observed;
+        let freed = observed
             .progress
             .look(now.time, command != 0.0, (window, LOOK.value()), least);
         if let Some(start) = freed {
-            let inside = seen.intrusions.most_loaded();
+            let inside = observed.intrusions.most_loaded();
             let stop = Event::stop(start, now.time, inside);
-            seen.progress.stops.push(stop);
+            observed.progress.stops.push(stop);
         }
-        if !seen.progress.falters() {
-            seen.signals = Signals::default();
+        if !observed.progress.falters() {
+            observed.signals = Signals::default();
         }
     }
 
@@ -228,56 +229,56 @@ impl Monitor {
             bearing: signature(loaded),
         };
         let tolerance = self.criteria.stationary_distance;
-        let seen = &mut self.seen;
-        let anchor = *seen.anchor.get_or_insert(here);
+        let observed = &mut self.observed;
+        let anchor = *observed.anchor.get_or_insert(here);
         let moved = (here.x - anchor.x).abs().max((here.y - anchor.y).abs());
         let turned = (here.angle - anchor.angle).abs() * self.half_length;
         if moved > tolerance || turned > tolerance || here.bearing != anchor.bearing {
-            seen.anchor = Some(here);
+            observed.anchor = Some(here);
             return;
         }
         let still = now.time - anchor.since;
         let enough = f64::from(self.criteria.stationary_windows) * window;
-        seen.stays |= seen.progress.stop_since.is_some() && still >= enough;
+        observed.stays |= observed.progress.stop_since.is_some() && still >= enough;
     }
 
     /// Whether the outcome is certain.
     pub(crate) fn is_over(&self) -> bool {
-        self.seen.ended.is_some() || self.seen.stays
+        self.observed.ended.is_some() || self.observed.stays
     }
 
     /// The outcome of a run that did not end in a stop or by time.
     pub(crate) fn ended_as(&self) -> Option<Outcome> {
-        self.seen.ended
+        self.observed.ended
     }
 
     /// [s] Since when the robot has been stopped, if it is.
     pub(crate) fn stop_since(&self) -> Option<f64> {
-        self.seen.progress.stop_since
+        self.observed.progress.stop_since
     }
 
     /// Share of the commanded distance covered in the last stop window; 1 before the first window is over.
     pub(crate) fn progress(&self) -> f64 {
-        self.seen.progress.share
+        self.observed.progress.share
     }
 
     /// [m] How far the robot has come in the commanded direction, at most.
     pub(crate) fn best_advance(&self) -> f64 {
-        self.seen.progress.best_advance()
+        self.observed.progress.best_advance()
     }
 
     /// Means over the last one to two stop windows.
     pub(crate) fn stance(&self) -> Stance {
-        self.seen.signals.stance()
+        self.observed.signals.stance()
     }
 
     /// Stops and intrusions so far, ordered by their beginning; those still going on end at `now`.
     pub(crate) fn events(&self, now: f64) -> Vec<Event> {
-        let Seen {
+        let Observations {
             progress,
             intrusions,
             ..
-        } = &self.seen;
+        } = &self.observed;
         let inside = intrusions.most_loaded();
         let open = progress
             .stop_since
@@ -290,13 +291,13 @@ impl Monitor {
 
     /// [s] Duration of the longest stop from which the robot freed itself, 0 if there was none.
     pub(crate) fn time_to_free(&self) -> f64 {
-        let stops = self.seen.progress.stops.iter();
+        let stops = self.observed.progress.stops.iter();
         stops.fold(0.0, |longest, stop| longest.max(stop.end - stop.start))
     }
 
     /// The most loaded intrusion into the track.
     pub(crate) fn intrusion(&self) -> Option<&Event> {
-        self.seen.intrusions.most_loaded()
+        self.observed.intrusions.most_loaded()
     }
 
     pub(crate) fn envelopes(&self) -> &[TrackEnvelope] {
@@ -388,7 +389,7 @@ mod bearing_tests {
     #[test]
     fn no_two_pairs_of_parts_and_facets_are_taken_for_each_other() {
         let parts = (0..400).flat_map(|part| (0..200).map(move |facet| (part, facet)));
-        let seen: HashSet<u64> = parts.map(|bears| of(&[bears])).collect();
-        assert_eq!(seen.len(), 400 * 200);
+        let observed: HashSet<u64> = parts.map(|bears| of(&[bears])).collect();
+        assert_eq!(observed.len(), 400 * 200);
     }
 }

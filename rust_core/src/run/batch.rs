@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::record::{STACK, batch_budget};
 use super::simulate::{Run, simulate_within};
-use super::{Checked, Record};
+use super::{Record, ValidScenario};
 use crate::error::{Error, LimitError, caught};
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
@@ -26,7 +26,7 @@ pub type Finished = (usize, Result<Run, Error>);
 
 /// Data shared by the threads of a batch.
 struct Work {
-    scenarios: Arc<[Checked]>,
+    scenarios: Arc<[ValidScenario]>,
     record: Record,
     budget: Budget,
     next: AtomicUsize,
@@ -47,7 +47,7 @@ struct Work {
 /// # Errors
 /// The batch needs more memory than it may have; nothing has been run.
 pub fn simulate_many(
-    scenarios: impl Into<Arc<[Checked]>>,
+    scenarios: impl Into<Arc<[ValidScenario]>>,
     threads: usize,
     record: Record,
     mut take: impl FnMut(Vec<Finished>) -> Progress,

@@ -85,42 +85,42 @@ impl Metrics {
     pub(super) fn of(simulation: &Simulation, start: &Reading, events: &[Event]) -> Self {
         let end = simulation.reading();
         let monitor = simulation.monitor();
-        let seen = &monitor.seen;
+        let observed = &monitor.observed;
         let inside = monitor.intrusion();
         Self {
             time: end.time,
-            time_to_clear: seen.time_to_clear,
+            time_to_clear: observed.time_to_clear,
             final_x: end.position.x,
             final_y: end.position.y,
             final_angle: end.chassis_angle,
             distance: end.position.x - start.position.x,
             track_distance: end.track_position - start.track_position,
-            path_length: seen.path_length,
-            max_angle: seen.max_angle.max(start.chassis_angle),
-            min_angle: seen.min_angle.min(start.chassis_angle),
-            max_penetration: seen.max_penetration,
-            drive_work: seen.drive_work,
+            path_length: observed.path_length,
+            max_angle: observed.max_angle.max(start.chassis_angle),
+            min_angle: observed.min_angle.min(start.chassis_angle),
+            max_penetration: observed.max_penetration,
+            drive_work: observed.drive_work,
             stopped_time: events
                 .iter()
                 .filter(|e| e.kind == EventKind::Stop)
                 .fold(0.0, |sum, e| sum + e.end - e.start),
             time_to_free: monitor.time_to_free(),
             progress: monitor.progress(),
-            vertical_acceleration: seen.shaking.vertical_acceleration(),
-            angular_velocity: seen.shaking.angular_velocity(),
+            vertical_acceleration: observed.shaking.vertical_acceleration(),
+            angular_velocity: observed.shaking.angular_velocity(),
             intrusion_depth: inside.map_or(0.0, |e| e.depth),
             intrusion_root_depth: inside.map_or(0.0, |e| e.root_depth),
             intrusion_force: inside.map_or(0.0, |e| e.force),
-            max_track_tension: seen.max_track_tension,
-            max_pin_gap: seen.max_pin_gap,
-            max_guide_penetration: seen.max_guide_penetration,
-            max_sprocket_slip: seen.max_sprocket_slip,
-            steps: seen.effort.steps as f64,
-            repeated_steps: seen.effort.repeated_steps as f64,
-            solves: seen.effort.solves as f64,
-            solve_rounds: seen.effort.rounds as f64,
-            lowerings: seen.effort.lowerings as f64,
-            unresolved_solves: seen.effort.unresolved as f64,
+            max_track_tension: observed.max_track_tension,
+            max_pin_gap: observed.max_pin_gap,
+            max_guide_penetration: observed.max_guide_penetration,
+            max_sprocket_slip: observed.max_sprocket_slip,
+            steps: observed.effort.steps as f64,
+            repeated_steps: observed.effort.repeated_steps as f64,
+            solves: observed.effort.solves as f64,
+            solve_rounds: observed.effort.rounds as f64,
+            lowerings: observed.effort.lowerings as f64,
+            unresolved_solves: observed.effort.unresolved as f64,
         }
     }
 }
@@ -128,9 +128,9 @@ impl Metrics {
 /// [s] Time between two looks at how deep the robot is: what has sunk in does not come out at once.
 const BETWEEN_LOOKS: Seconds = Seconds(0.05);
 /// [m] How deep something may get in a step that the search for contacts did not see: 0.5 mm by its middle.
-const UNSEEN: Metres = Metres(1e-3);
+const UNSEEN_DEPTH: Metres = Metres(1e-3);
 /// Effective mass at the end of a rod, in units of its mass.
-const AT_END: f64 = 0.25;
+const ROD_END: f64 = 0.25;
 
 /// What was seen of a run.
 pub(super) struct Sinkage {
@@ -206,8 +206,8 @@ fn explained(simulation: &Simulation, speed: f64) -> f64 {
     let omega = std::f64::consts::TAU * simulation.scenario().solver.contact_frequency;
     let mass = model.total_mass();
     // The mass that a contact is as stiff as.
-    let of_shoes = model.chains.iter().map(|chain| AT_END * chain.shoe_mass);
+    let of_shoes = model.chains.iter().map(|chain| ROD_END * chain.shoe_mass);
     let own = of_shoes.fold(mass, f64::min);
     let load = simulation.weight() + model.motors as f64 * model.motor.force;
-    load / (own * omega * omega) + speed / omega * (mass / own).sqrt() + UNSEEN.value()
+    load / (own * omega * omega) + speed / omega * (mass / own).sqrt() + UNSEEN_DEPTH.value()
 }

@@ -22,4 +22,4 @@ pub use simulate::{
 };
 pub use simulation::Simulation;
 pub use trials::EscapeForce;
-pub use valid_scenario::Checked;
+pub use valid_scenario::ValidScenario;

@@ -4,7 +4,7 @@
 mod tests;
 
 use super::record::Columns;
-use super::{Checked, Trace};
+use super::{Trace, ValidScenario};
 use crate::error::Error;
 use crate::geometry::{Pose, Vector};
 use crate::limits::Cancel;
@@ -70,7 +70,7 @@ impl Sample<'_> {
 ///
 /// # Errors
 /// Columns that do not belong to the scenario; more samples than fit into memory; cancellation by the caller.
-pub fn poses(checked: &Checked, trace: &Trace, cancel: &Cancel) -> Result<Poses, Error> {
+pub fn poses(checked: &ValidScenario, trace: &Trace, cancel: &Cancel) -> Result<Poses, Error> {
     let model = checked.model();
     let bodies = model.outlines();
     let samples = trace.chassis_angle.len();

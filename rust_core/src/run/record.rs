@@ -4,7 +4,7 @@ use std::collections::TryReserveError;
 
 use super::step_length::SAME_TIME;
 use super::valid_scenario::{BYTES_A_CORNER, corners};
-use super::{Checked, Simulation};
+use super::{Simulation, ValidScenario};
 use crate::diagnosis::Wanted;
 use crate::dynamics::State;
 use crate::error::LimitError;
@@ -273,12 +273,13 @@ impl<'a> Recorder<'a> {
 
     fn make_room(&mut self) -> Result<(), LimitError> {
         let (trace, contacts, columns) = (&mut self.trace, &mut self.contacts, self.columns);
-        self.samples.make(trace.time.len() + 1, |room| {
+        self.samples.make_room(trace.time.len() + 1, |room| {
             let mut all = trace.columns(columns).into_iter();
             all.try_for_each(|(column, entries)| reserve(column, entries * room))
         })?;
         let rows = contacts.time.len() + self.sums.loads.count();
-        self.contact_rows.make(rows, |room| contacts.reserve(room))
+        self.contact_rows
+            .make_room(rows, |room| contacts.reserve(room))
     }
 
     fn sample(&mut self, simulation: &Simulation, time: f64) -> Result<(), LimitError> {
@@ -433,11 +434,11 @@ const BYTES_A_RUN: u64 = 64 << 10;
 /// # Errors
 /// The batch needs more than it may have; the message says what would need less.
 pub(crate) fn batch_budget(
-    scenarios: &[Checked],
+    scenarios: &[ValidScenario],
     record: Record,
     threads: usize,
 ) -> Result<Budget, LimitError> {
-    let terrain_of = |checked: &Checked| corners(&checked.scenario().terrain);
+    let terrain_of = |checked: &ValidScenario| corners(&checked.scenario().terrain);
     let corners = scenarios.iter().map(terrain_of);
     let largest = corners.clone().max().unwrap_or(0);
     let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
@@ -455,7 +456,7 @@ pub(crate) fn batch_budget(
     Ok(budget)
 }
 
-fn described(scenarios: &[Checked], record: Record) -> String {
+fn described(scenarios: &[ValidScenario], record: Record) -> String {
     let runs = match scenarios.len() {
         1 => "a run".to_owned(),
         n => format!("a batch of {n} runs"),

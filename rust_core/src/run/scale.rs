@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use super::{Checked, Record, Run, simulate};
+use super::{Record, Run, ValidScenario, simulate};
 use crate::scenario::Scenario;
 use crate::units::with_units;
 
@@ -38,7 +38,11 @@ fn unit(room: &str, field: &str) -> Unit {
     let mut unit = "";
     while let (Some(_), Some(text)) = (parts.next(), parts.next()) {
         // A unit stands before a colon, the names of its fields do not.
-        if parts.clone().next().is_some_and(|after| after.starts_with(':')) {
+        if parts
+            .clone()
+            .next()
+            .is_some_and(|after| after.starts_with(':'))
+        {
             unit = text;
         } else if text.split(' ').any(|name| name == field) {
             return exponents(unit);
@@ -98,7 +102,7 @@ fn copy(scenario: &Scenario, scale: [f64; 3]) -> Scenario {
 
 fn run(scenario: &Scenario, [length, time, _]: [f64; 3]) -> Run {
     with_units([length, time], || {
-        let checked = Checked::new(scenario).expect("it is valid");
+        let checked = ValidScenario::new(scenario).expect("it is valid");
         simulate(&checked, Record::default()).expect("it runs")
     })
 }

@@ -6,7 +6,7 @@ use super::metrics::Sinkage;
 use super::record::{ContactTable, Record, Recorder, Trace, batch_budget};
 use super::step_length::SAME_TIME;
 use super::trials::{self, EscapeForce};
-use super::{Checked, Metrics, Simulation};
+use super::{Metrics, Simulation, ValidScenario};
 use crate::diagnosis::{Balance, Change, Diagnosis, Trial, Wanted};
 use crate::error::Error;
 use crate::geometry::Vector;
@@ -52,14 +52,14 @@ pub struct Run {
 /// # Errors
 /// [`Error::Limit`] before the run or if the record needs too much memory, [`Error::Simulation`] if the
 /// state became non-finite.
-pub fn simulate(checked: &Checked, record: Record) -> Result<Run, Error> {
+pub fn simulate(checked: &ValidScenario, record: Record) -> Result<Run, Error> {
     let budget = batch_budget(std::slice::from_ref(checked), record, 1)?;
     simulate_within(checked, record, (&budget, &Cancel::default()))
 }
 
 /// The same within a budget of memory; ends early with [`Error::Interrupted`] if asked to.
 pub(crate) fn simulate_within(
-    checked: &Checked,
+    checked: &ValidScenario,
     record: Record,
     limits: Limits,
 ) -> Result<Run, Error> {
@@ -74,9 +74,9 @@ pub(crate) fn simulate_within(
 /// # Errors
 /// As [`simulate`], [`Error::Scenario`] if the push is out of range, and [`Error::Interrupted`] once `cancel` is asked.
 pub fn branch(
-    scenario: &Checked,
+    scenario: &ValidScenario,
     at: f64,
-    (variant, push): (&Checked, (f64, f64)),
+    (variant, push): (&ValidScenario, (f64, f64)),
     record: Record,
     cancel: &Cancel,
 ) -> Result<Run, Error> {
@@ -95,12 +95,12 @@ pub fn branch(
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
 pub fn make_trials(
-    scenario: &Checked,
+    scenario: &ValidScenario,
     at: f64,
     wanted: Wanted,
     cancel: &Cancel,
 ) -> Result<Vec<Trial>, Error> {
-    trials::make(&replay(scenario, at, cancel)?, wanted, cancel)
+    trials::make_trials(&replay(scenario, at, cancel)?, wanted, cancel)
 }
 
 /// Simulates `scenario` up to the time `at` [s], where it has stopped, and tries to continue as `variant` with a push
@@ -109,9 +109,9 @@ pub fn make_trials(
 /// # Errors
 /// As [`branch`].
 pub fn what_if(
-    scenario: &Checked,
+    scenario: &ValidScenario,
     at: f64,
-    changes: (&Checked, (f64, f64)),
+    changes: (&ValidScenario, (f64, f64)),
     cancel: &Cancel,
 ) -> Result<Option<Trial>, Error> {
     trials::what_if(&replay(scenario, at, cancel)?, changes, cancel)
@@ -123,7 +123,7 @@ pub fn what_if(
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
 pub fn run_of_trial(
-    scenario: &Checked,
+    scenario: &ValidScenario,
     at: f64,
     change: Change,
     record: Record,
@@ -144,7 +144,11 @@ pub fn run_of_trial(
 ///
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
-pub fn escape_force(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<EscapeForce, Error> {
+pub fn escape_force(
+    scenario: &ValidScenario,
+    at: f64,
+    cancel: &Cancel,
+) -> Result<EscapeForce, Error> {
     trials::escape_force(&replay(scenario, at, cancel)?, cancel)
 }
 
@@ -153,7 +157,11 @@ pub fn escape_force(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Esca
 ///
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
-pub fn balance(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Option<Balance>, Error> {
+pub fn balance(
+    scenario: &ValidScenario,
+    at: f64,
+    cancel: &Cancel,
+) -> Result<Option<Balance>, Error> {
     Ok(replay(scenario, at, cancel)?.balance())
 }
 
@@ -182,7 +190,7 @@ pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, E
 }
 
 /// The simulation of a scenario at the end of its first step that reaches a time [s].
-fn replay(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
+fn replay(scenario: &ValidScenario, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
     let mut simulation = Simulation::new(scenario);
     let end = scenario.scenario().duration.max(at);
     while simulation.time() < at - SAME_TIME.value() {
@@ -267,7 +275,7 @@ pub struct TipOver {
 ///
 /// # Errors
 /// [`Error::Simulation`] if the state became non-finite, [`Error::Interrupted`] once `cancel` is asked.
-pub fn tip_over(scenario: &Checked, cancel: &Cancel) -> Result<Option<TipOver>, Error> {
+pub fn tip_over(scenario: &ValidScenario, cancel: &Cancel) -> Result<Option<TipOver>, Error> {
     let (mut robot, end) = (Simulation::new(scenario), scenario.scenario().duration);
     // The last instants of standing ahead of the rearmost contact, and behind the foremost one.
     let mut stood = [None; 2];
@@ -307,14 +315,14 @@ mod tests {
     use super::*;
     use crate::scenario::{Scenario, Surface, Terrain};
 
-    fn before_a_step(height: f64) -> Checked {
+    fn before_a_step(height: f64) -> ValidScenario {
         let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
         let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
         scenario.terrain = Terrain::Step {
             height,
             surface: Surface::sharp(0.9),
         };
-        Checked::new(&scenario).expect("it is valid")
+        ValidScenario::new(&scenario).expect("it is valid")
     }
 
     #[test]

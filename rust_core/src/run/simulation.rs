@@ -13,8 +13,8 @@ mod tests;
 use std::sync::Arc;
 
 use self::attempt::{Attempt, LastStep, Scratch};
-use self::commands::{Commands, Push, Sight, ramp_time, set_point};
-use super::Checked;
+use self::commands::{Commands, DriverView, Push, ramp_time, set_point};
+use super::ValidScenario;
 use super::step_length::{SAME_TIME, StepControl, StepRule};
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Balance, Diagnosis, Scene};
@@ -55,7 +55,7 @@ pub struct Simulation {
 
 impl Simulation {
     /// Places the robot in front of the first edge, at rest.
-    pub fn new(checked: &Checked) -> Self {
+    pub fn new(checked: &ValidScenario) -> Self {
         let ground = Arc::clone(checked.ground());
         let model = checked.model().clone();
         Self::at_rest(checked.scenario(), ground, model, checked.position())
@@ -207,12 +207,12 @@ impl Simulation {
         if self.monitor.ended_as().is_some() {
             return None;
         }
-        let seen = diagnosis::Seen {
+        let observed = diagnosis::StopTimes {
             time: self.time(),
             since,
             progress: self.monitor.progress(),
         };
-        Some(self.with_scene(|scene| diagnosis::examine(scene, &self.monitor.stance(), &seen)))
+        Some(self.with_scene(|scene| diagnosis::examine(scene, &self.monitor.stance(), &observed)))
     }
 
     /// Whether forces could hold the present stop; `None` if the robot is not stopped, or has no weight.
@@ -352,7 +352,7 @@ impl Simulation {
             self.commands.speed = speed;
         }
         if let Some(flippers) = &self.scenario.robot.flippers {
-            let sight = Sight {
+            let sight = DriverView {
                 time,
                 chassis_angle: self.state.angle,
                 touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),

@@ -5,7 +5,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::{Checked, Simulation};
+use super::{Simulation, ValidScenario};
 use crate::diagnosis::{Change, Diagnosis, LoadedIntrusion, Trial, Wanted};
 use crate::error::Error;
 use crate::limits::Cancel;
@@ -29,27 +29,27 @@ pub(super) fn judge(
     let Some(mut found) = stop.examine() else {
         return Ok(None);
     };
-    let mut bench = Bench::new(stop, &found, cancel);
-    let passing = bench.frees(Change::Nothing)?;
-    let leaves = !passing && found.jammed && bench.frees(Change::Rebuilt)?;
+    let mut series = TrialSeries::new(stop, &found, cancel);
+    let passing = series.frees(Change::Nothing)?;
+    let leaves = !passing && found.jammed && series.frees(Change::Rebuilt)?;
     if passing || leaves && !stop.is_in_an_engine() {
         found.outcome = Outcome::TimedOut;
     } else {
         // Where our own dynamics do not hold the stop of another engine, they cannot say what would end it.
         if found.jammed && !leaves {
-            let in_pose = bench.frees(Change::ClosedTrack)?;
-            let from_clear = bench.frees(Change::ClosedTrackClear)?;
+            let in_pose = series.frees(Change::ClosedTrack)?;
+            let from_clear = series.frees(Change::ClosedTrackClear)?;
             // The model's bodies need not be where its track is,
             if !in_pose {
-                bench.frees(Change::Belt)?;
+                series.frees(Change::Belt)?;
             }
             // and no track need come to this pose.
-            if !bench.frees(Change::BeltFromStart)? {
-                bench.frees(Change::ClosedTrackFromStart)?;
+            if !series.frees(Change::BeltFromStart)? {
+                series.frees(Change::ClosedTrackFromStart)?;
             }
             if in_pose || from_clear {
                 // What one motor for all wheels ends was want of torque at some of them.
-                let lacks_torque = bench.frees(Change::OneMotor)?;
+                let lacks_torque = series.frees(Change::OneMotor)?;
                 found.outcome = if lacks_torque {
                     Outcome::Stalled
                 } else {
@@ -59,21 +59,21 @@ pub(super) fn judge(
         }
         if found.symptom == Outcome::HungUp && !found.jammed {
             // A closed track may cover the belly.
-            bench.frees(Change::ClosedTrack)?;
-            bench.frees(Change::NoBelly)?;
+            series.frees(Change::ClosedTrack)?;
+            series.frees(Change::NoBelly)?;
         }
         for change in wanted.changes() {
-            bench.frees(change)?;
+            series.frees(change)?;
         }
     }
-    found.trials = bench.made;
+    found.trials = series.trials;
     let rank = |trial: &Trial| Change::ALL.iter().position(|c| c.name() == trial.name);
     found.trials.sort_by_key(rank);
     Ok(Some(found))
 }
 
 /// Makes trials of a stop; those that make no sense for the robot are left out.
-pub(super) fn make(
+pub(super) fn make_trials(
     stop: &Simulation,
     wanted: Wanted,
     cancel: &Cancel,
@@ -81,18 +81,18 @@ pub(super) fn make(
     let Some(found) = stop.examine() else {
         return Ok(Vec::new());
     };
-    let mut bench = Bench::new(stop, &found, cancel);
+    let mut series = TrialSeries::new(stop, &found, cancel);
     for change in wanted.changes() {
-        bench.frees(change)?;
+        series.frees(change)?;
     }
-    Ok(bench.made)
+    Ok(series.trials)
 }
 
 /// Tries a variant of the scenario from a stop, and a push that rises to a force [N] in a time [s]; `None` if it has not
 /// stopped.
 pub(super) fn what_if(
     stop: &Simulation,
-    (variant, push): (&Checked, (f64, f64)),
+    (variant, push): (&ValidScenario, (f64, f64)),
     cancel: &Cancel,
 ) -> Result<Option<Trial>, Error> {
     let Some(found) = stop.examine() else {
@@ -103,7 +103,7 @@ pub(super) fn what_if(
         branch.raise_push(push.0, push.1)?;
         Ok(Some(branch))
     };
-    Bench::new(stop, &found, cancel).attempt("changed", (STARTS, pose_duration(stop)), &start)
+    TrialSeries::new(stop, &found, cancel).attempt("changed", (STARTS, pose_duration(stop)), &start)
 }
 
 /// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
@@ -115,8 +115,10 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
         return Ok(None);
     };
     if start == Start::Anew {
-        // Only the course of a scenario can be had again: nothing is known of commands by hand, or of a trunk.
-        let again = stop.follows_scenario().then(|| Checked::new(&scenario));
+        // Only the run of a scenario can be had again: nothing is known of commands by hand, or of a trunk.
+        let again = stop
+            .follows_scenario()
+            .then(|| ValidScenario::new(&scenario));
         return Ok(again.transpose()?.map(|checked| Simulation::new(&checked)));
     }
     let started = stop.varied(&scenario, start != Start::Continued)?;
@@ -142,20 +144,20 @@ fn pose_duration(stop: &Simulation) -> f64 {
 }
 
 /// A stop, and the trials that have been made of it.
-struct Bench<'a> {
+struct TrialSeries<'a> {
     /// The instants from which it is tried; those after the first follow when they are needed.
     starts: Vec<Simulation>,
     rattles: bool,
     direction: f64,
     /// [m] How far the robot had come, in the commanded direction.
     greatest: f64,
-    made: Vec<Trial>,
+    trials: Vec<Trial>,
     cancel: &'a Cancel,
 }
 
 /// What came of one start.
 #[derive(Clone)]
-struct Course {
+struct TrialRun {
     distance: f64,
     time: f64,
     outcome: Outcome,
@@ -165,14 +167,14 @@ struct Course {
     flipper_angles: [f64; 2],
 }
 
-impl<'a> Bench<'a> {
+impl<'a> TrialSeries<'a> {
     fn new(stop: &Simulation, found: &Diagnosis, cancel: &'a Cancel) -> Self {
         Self {
             starts: vec![stop.copy()],
             rattles: !found.stationary,
             direction: stop.direction(),
             greatest: stop.monitor().best_advance(),
-            made: Vec::new(),
+            trials: Vec::new(),
             cancel,
         }
     }
@@ -180,7 +182,7 @@ impl<'a> Bench<'a> {
     /// Whether a change frees the robot; it is tried once.
     fn frees(&mut self, change: Change) -> Result<bool, Error> {
         let name = change.name();
-        if let Some(made) = self.made.iter().find(|trial| trial.name == name) {
+        if let Some(made) = self.trials.iter().find(|trial| trial.name == name) {
             return Ok(made.freed);
         }
         // A run that goes on passes through all the other starts, and a run has one beginning.
@@ -193,7 +195,7 @@ impl<'a> Bench<'a> {
             made => made?,
         };
         let freed = made.as_ref().is_some_and(|trial| trial.freed);
-        self.made.extend(made);
+        self.trials.extend(made);
         Ok(freed)
     }
 
@@ -206,34 +208,34 @@ impl<'a> Bench<'a> {
     ) -> Result<Option<Trial>, Error> {
         let most = if self.rattles { most } else { 1 };
         let enough = ENOUGH.min(most);
-        let mut courses: [Vec<Course>; 2] = Default::default();
+        let mut runs: [Vec<TrialRun>; 2] = Default::default();
         for i in 0..most {
             let Some(started) = start(self.start(i as usize)?)? else {
                 return Ok(None);
             };
-            let course = self.follow(started, duration)?;
-            courses[usize::from(course.time.is_finite())].push(course);
-            let [stays, frees] = [0, 1].map(|k| courses[k].len() as u32);
+            let run = self.follow(started, duration)?;
+            runs[usize::from(run.time.is_finite())].push(run);
+            let [stays, frees] = [0, 1].map(|k| runs[k].len() as u32);
             if frees == enough || stays > most - enough {
                 break;
             }
         }
-        let [starts, freeing] = [courses.concat().len(), courses[1].len()].map(|n| n as u32);
+        let [starts, freeing] = [runs.concat().len(), runs[1].len()].map(|n| n as u32);
         let freed = freeing >= enough;
-        let first = courses[usize::from(freed)].drain(..).next();
-        Ok(first.map(|course| Trial {
+        let first = runs[usize::from(freed)].drain(..).next();
+        Ok(first.map(|run| Trial {
             name,
             freed,
             starts,
             freeing,
-            distance: course.distance,
-            time: course.time,
-            outcome: course.outcome,
-            jammed: course.jammed,
-            intrusion: course.intrusion,
+            distance: run.distance,
+            time: run.time,
+            outcome: run.outcome,
+            jammed: run.jammed,
+            intrusion: run.intrusion,
             duration,
-            pose: course.pose,
-            flipper_angles: course.flipper_angles,
+            pose: run.pose,
+            flipper_angles: run.flipper_angles,
         }))
     }
 
@@ -250,7 +252,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Lets a start run for a time [s]; a change of the command changes neither that nor what is ahead.
-    fn follow(&self, mut simulation: Simulation, duration: f64) -> Result<Course, Error> {
+    fn follow(&self, mut simulation: Simulation, duration: f64) -> Result<TrialRun, Error> {
         let begin = simulation.time();
         let end = begin + duration;
         let criteria = simulation.scenario().criteria.clone();
@@ -281,7 +283,7 @@ impl<'a> Bench<'a> {
         for (kept, angle) in flipper_angles.iter_mut().zip(simulation.flipper_angles()) {
             *kept = angle;
         }
-        Ok(Course {
+        Ok(TrialRun {
             distance,
             time,
             outcome: ended.unwrap_or(symptom),

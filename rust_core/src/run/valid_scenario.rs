@@ -21,7 +21,7 @@ const DISCS: &str = "/robot/outline/discs";
 
 /// A valid scenario, with the robot and the ground that were built to check it.
 #[derive(Clone, Debug)]
-pub struct Checked {
+pub struct ValidScenario {
     scenario: Scenario,
     ground: Arc<Ground>,
     model: Arc<Model>,
@@ -42,7 +42,7 @@ fn check_text(text: &str) -> Result<(), Error> {
     Ok(ask_for_text(text)?)
 }
 
-impl Checked {
+impl ValidScenario {
     /// Reads and checks a scenario.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ impl Checked {
     /// # Errors
     /// As [`Self::from_json`].
     pub fn new(scenario: &Scenario) -> Result<Self, Error> {
-        Self::of_value(&plain(scenario), None)
+        Self::of_value(&to_value(scenario), None)
     }
 
     /// Scenarios that differ from this one in some numbers: one per row, which has a number for each field.
@@ -79,7 +79,7 @@ impl Checked {
         fields: &[(String, bool)],
         rows: impl IntoIterator<Item = &'a [f64]>,
     ) -> Vec<Result<Self, Error>> {
-        let mut value = plain(&self.scenario);
+        let mut value = to_value(&self.scenario);
         // Texts have another form for two discs.
         if fields.iter().any(|(pointer, _)| pointer.starts_with(DISCS)) {
             value["robot"]["outline"] = self.scenario.robot.outline.with_discs();
@@ -90,7 +90,7 @@ impl Checked {
                     let error = ScenarioError::new(pointer, number, "must be a known field");
                     return Err(error.into());
                 };
-                *place = written(*number, *whole);
+                *place = to_number(*number, *whole);
             }
             Self::of_value(&value, Some(self))
         };
@@ -169,12 +169,12 @@ impl Checked {
     }
 }
 
-fn plain(scenario: &Scenario) -> Value {
+fn to_value(scenario: &Scenario) -> Value {
     serde_json::to_value(scenario).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
 }
 
 /// A number as JSON has it; what is not finite is a text, for which there is a rule.
-fn written(number: f64, whole: bool) -> Value {
+fn to_number(number: f64, whole: bool) -> Value {
     if whole && number >= 0.0 && number.fract() == 0.0 {
         return Value::from(number as u64);
     }
@@ -183,12 +183,12 @@ fn written(number: f64, whole: bool) -> Value {
 }
 
 impl Scenario {
-    /// Reads and checks a scenario, so that it can be changed before it runs; [`Checked`] keeps what was built.
+    /// Reads and checks a scenario, so that it can be changed before it runs; [`ValidScenario`] keeps what was built.
     ///
     /// # Errors
-    /// As [`Checked::from_json`].
+    /// As [`ValidScenario::from_json`].
     pub fn from_json(text: &str) -> Result<Self, Error> {
-        Checked::from_json(text).map(|checked| checked.scenario)
+        ValidScenario::from_json(text).map(|checked| checked.scenario)
     }
 }
 
@@ -297,8 +297,8 @@ mod tests {
         Scenario::from_json(text).expect("the shared scenario is valid")
     }
 
-    fn opened(scenario: &Scenario, like: Option<&Checked>) -> Checked {
-        Checked::from_json_like(&scenario.to_json(), like).expect("it is valid")
+    fn opened(scenario: &Scenario, like: Option<&ValidScenario>) -> ValidScenario {
+        ValidScenario::from_json_like(&scenario.to_json(), like).expect("it is valid")
     }
 
     #[test]

@@ -2,13 +2,13 @@
 //!
 //! The equations: docs/physics.md, "The problem".
 
-use super::damper::{DAMPING, Damper};
+use super::damper::{COMPLIANCE, Damper};
 use super::direction::Direction;
-use super::velocities::{Acts, Velocities};
+use super::velocities::{ActsOn, Velocities};
 
 /// A direction along which nothing moves.
 pub(crate) struct Bilateral {
-    pub acts: Acts,
+    pub acts: ActsOn,
     pub along: Direction,
     /// [N s] Impulse along it.
     pub impulse: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Bilateral {
 }
 
 impl Bilateral {
-    pub(crate) fn new(acts: Acts, along: Direction) -> Self {
+    pub(crate) fn new(acts: ActsOn, along: Direction) -> Self {
         Self {
             acts,
             along,
@@ -33,7 +33,7 @@ impl Bilateral {
     }
 
     pub(super) fn damper(&self) -> Damper {
-        Damper::new(self.center, 1.0 / (DAMPING * self.admittance))
+        Damper::new(self.center, 1.0 / (COMPLIANCE * self.admittance))
     }
 
     /// Updates the impulse to match the velocities; returns the error of the velocity [m/s].

@@ -4,7 +4,7 @@
 
 use super::damper::Damper;
 use super::direction::Direction;
-use super::velocities::{Acts, Velocities};
+use super::velocities::{ActsOn, Velocities};
 
 /// The base.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ impl Joint {
 /// Inertia along one direction: of a body that is hinged to the base, or of a motor's rotor, which turns over the base.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia {
-    pub acts: Acts,
+    pub acts: ActsOn,
     pub along: Direction,
     /// The impulse that it takes to give it a speed along that.
     pub damper: Damper,
@@ -68,7 +68,7 @@ pub(crate) struct Inertia {
 
 impl Inertia {
     /// One of `inertia` [kg] along a direction, with a speed there without constraints [m/s].
-    pub(crate) fn new(acts: Acts, along: Direction, inertia: f64, free: f64) -> Self {
+    pub(crate) fn new(acts: ActsOn, along: Direction, inertia: f64, free: f64) -> Self {
         Self {
             acts,
             along,
@@ -77,7 +77,7 @@ impl Inertia {
     }
 
     /// That of a rotor [kg m^2], with its rate over the base without constraints [rad/s].
-    pub(crate) fn of_rotor(on: Acts, inertia: f64, free: f64) -> Self {
+    pub(crate) fn of_rotor(on: ActsOn, inertia: f64, free: f64) -> Self {
         Self::new(on, on.over_base(1.0), inertia, free)
     }
 

@@ -5,7 +5,7 @@
 use super::damper::Damper;
 use super::direction::Direction;
 use super::grip::Grip;
-use super::velocities::{Acts, Moves, Velocities};
+use super::velocities::{ActsOn, HasVelocities, Velocities};
 use super::way::Way;
 use crate::geometry::Vector;
 
@@ -21,7 +21,7 @@ pub(super) struct Admittance {
 /// A contact: it can only push along its normal, and its friction along the tangent is limited by that.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact {
-    pub acts: Acts,
+    pub acts: ActsOn,
     pub normal: Direction,
     pub tangent: Direction,
     /// Coefficient of friction.
@@ -57,7 +57,7 @@ pub(crate) struct Contact {
 
 impl Contact {
     /// A contact along these directions, without friction or history.
-    pub(crate) fn new(acts: Acts, [normal, tangent]: [Direction; 2]) -> Self {
+    pub(crate) fn new(acts: ActsOn, [normal, tangent]: [Direction; 2]) -> Self {
         Self {
             acts,
             normal,
@@ -81,12 +81,12 @@ impl Contact {
     }
 
     /// [m/s] Speed at which it opens.
-    pub(crate) fn opening_speed(&self, of: &impl Moves) -> f64 {
+    pub(crate) fn opening_speed(&self, of: &impl HasVelocities) -> f64 {
         self.acts.speed(&self.normal, of)
     }
 
     /// [m/s] Velocity along the tangent.
-    pub(crate) fn slip(&self, of: &impl Moves) -> f64 {
+    pub(crate) fn slip(&self, of: &impl HasVelocities) -> f64 {
         self.acts.speed(&self.tangent, of)
     }
 

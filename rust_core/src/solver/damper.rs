@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "The linear system".
 
 /// Compliance of the dampers, in units of the contact's own admittance.
-pub(super) const DAMPING: f64 = 1e-6;
+pub(super) const COMPLIANCE: f64 = 1e-6;
 
 /// An impulse that decreases with the speed along its direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -13,19 +13,19 @@ use super::direction::Direction;
 use super::motor::Driven;
 use super::ring::{Beside, Ring};
 use super::system::System;
-use super::velocities::Acts;
+use super::velocities::ActsOn;
 use super::{AGREEMENT, Contact, Inertia, Problem};
 
 /// Solutions of the system in one search; since all misfits are corrected at once, corrections could
 /// alternate for ever.
-const AT_ONCE: u32 = 4;
+const MOST_SOLUTIONS: u32 = 4;
 
 impl Problem {
     /// Finds the impulses that satisfy all constraints, if corrected guesses lead there.
     pub(super) fn solve_at_once(&mut self) -> bool {
         self.settle();
         let mut last = None;
-        for _ in 0..AT_ONCE {
+        for _ in 0..MOST_SOLUTIONS {
             let before = last.take();
             self.effort.rounds += 1;
             self.assemble();
@@ -110,7 +110,7 @@ impl Problem {
                     let given = given.unwrap_or_default();
                     system.turn(k, motor.lever * given.at(0.0));
                     if given.stiffness != 0.0 {
-                        let acts = Acts::on_spin(k);
+                        let acts = ActsOn::on_spin(k);
                         let along = acts.over_base(motor.lever);
                         system.add(acts, [&along; 2], Damper::new(0.0, given.stiffness));
                     }
@@ -125,7 +125,7 @@ impl Problem {
                 Driven::Joint(k) => match given {
                     None => system.hold(k),
                     Some(given) => {
-                        let acts = Acts::on_joint(k);
+                        let acts = ActsOn::on_joint(k);
                         let along = acts.over_base(motor.lever);
                         system.add(acts, [&along; 2], given);
                     }
@@ -160,17 +160,17 @@ impl Problem {
 pub(super) fn add(
     system: &mut System,
     rings: &mut [Ring],
-    acts: Acts,
+    acts: ActsOn,
     along: [&Direction; 2],
     damper: Damper,
 ) {
     match acts {
-        Acts::Base { .. } => system.add(acts, along, damper),
-        Acts::Link(link) => rings[link.ring].add(link, along, damper),
-        Acts::LinkAndSlide(link) => {
+        ActsOn::Base { .. } => system.add(acts, along, damper),
+        ActsOn::Link(link) => rings[link.ring].add(link, along, damper),
+        ActsOn::LinkAndSlide(link) => {
             rings[link.ring].add_between(link, Beside::Slide, along, damper);
         }
-        Acts::LinkAndSpin { link, .. } => {
+        ActsOn::LinkAndSpin { link, .. } => {
             rings[link.ring].add_between(link, Beside::Spin, along, damper);
         }
     }

@@ -4,7 +4,7 @@
 //! The equations: docs/physics.md, "Coulomb's law".
 
 use super::Contact;
-use super::damper::{DAMPING, Damper};
+use super::damper::{COMPLIANCE, Damper};
 use super::direction::Direction;
 use super::grip::Grip;
 use super::settling::beyond;
@@ -66,7 +66,7 @@ impl Contact {
 
     /// Compliance of its damper about the last impulses; one that gives way elastically needs none.
     fn proximal(&self) -> f64 {
-        if self.give == 0.0 { DAMPING } else { 0.0 }
+        if self.give == 0.0 { COMPLIANCE } else { 0.0 }
     }
 
     /// The grip at these speeds, and the impulses along normal and tangent [N s].

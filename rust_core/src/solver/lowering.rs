@@ -21,7 +21,7 @@ const TOGETHER: f64 = 1e-9;
 const ALONE: f64 = 0.0;
 /// Rounds in which all motors switch at once; from then on the first that has to, which cannot go on for ever (Murty
 /// 1974).
-const AT_ONCE: usize = 4;
+const SIMULTANEOUS_ROUNDS: usize = 4;
 
 /// What is met on the way, which leads down (1) or up (-1): conditions, after a share of the way to the ground; the
 /// ground; or nothing, on a way up.
@@ -148,7 +148,7 @@ impl Problem {
             self.solve_for_change()?;
             self.go(1.0);
             self.bear(0.0);
-            if round < AT_ONCE {
+            if round < SIMULTANEOUS_ROUNDS {
                 if !self.switch_motors() {
                     break;
                 }

@@ -44,7 +44,7 @@ pub(crate) use grip::Grip;
 pub(crate) use motor::{Driven, Hold, Motor};
 pub(crate) use ring::{Drive, Grasp, Hinge, Ring};
 pub(crate) use twist::Twist;
-pub(crate) use velocities::{Acts, Link, Moves, Velocities};
+pub(crate) use velocities::{ActsOn, HasVelocities, Link, Velocities};
 
 use crate::units::MetresPerSecond;
 use condition::Condition;

@@ -9,7 +9,7 @@ use super::{AGREEMENT, Contact, Problem, Twist};
 use crate::units::MetresPerSecond;
 
 /// Solutions with the same states at most.
-const CLOSING: u32 = 8;
+const MOST_ITERATIONS: u32 = 8;
 /// Changes that are taken at once at most.
 const FARTHEST: f64 = 1e6;
 /// [m/s] By how much the base may still move where a search ends close to a jam, ...
@@ -71,7 +71,7 @@ impl Problem {
     pub(super) fn close_in(&mut self) -> bool {
         self.settle();
         let mut last = None;
-        for _ in 0..CLOSING {
+        for _ in 0..MOST_ITERATIONS {
             let before = last.take();
             self.effort.rounds += 1;
             self.assemble();

@@ -5,7 +5,7 @@
 use super::damper::Damper;
 use super::direction::Direction;
 use super::twist::Twist;
-use super::velocities::{Acts, JOINTS, Velocities};
+use super::velocities::{ActsOn, JOINTS, Velocities};
 use crate::geometry::Vector;
 
 /// Columns of the base, of the bodies hinged to it, and the right-hand side.
@@ -94,7 +94,7 @@ impl System {
     }
 
     /// Adds a constraint on the base: its impulse acts along the first of two directions, with a damper along the second.
-    pub(super) fn add(&mut self, acts: Acts, [force, action]: [&Direction; 2], damper: Damper) {
+    pub(super) fn add(&mut self, acts: ActsOn, [force, action]: [&Direction; 2], damper: Damper) {
         let (f, d) = (force.body(), action.body());
         let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
         for (row, f) in self.rows.iter_mut().zip(f) {

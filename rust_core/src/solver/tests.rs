@@ -35,7 +35,7 @@ fn contact(arm: Vector, normal: Vector, friction: f64) -> Contact {
         lever: cross(arm, unit),
         ..Direction::default()
     });
-    let acts = Acts::Base {
+    let acts = ActsOn::Base {
         joint: None,
         spin: None,
     };
@@ -191,7 +191,7 @@ fn opposed_contacts_on_one_belt_share_its_motor() {
         problem.motors.push(motor);
         for (up, load) in [(1.0, 0.3), (-1.0, 0.2)] {
             let mut on_belt = contact(Vector::new(0.0, -0.1 * up), Vector::Y * up, friction);
-            on_belt.acts = Acts::Base {
+            on_belt.acts = ActsOn::Base {
                 joint: None,
                 spin: Some(0),
             };

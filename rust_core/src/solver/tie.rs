@@ -6,7 +6,7 @@ use super::Problem;
 use super::bodies::{Joint, Spin};
 use super::direction::Direction;
 use super::motor::Driven;
-use super::velocities::{Acts, Link};
+use super::velocities::{ActsOn, Link};
 
 impl Problem {
     /// Ties what motors hold to the base, and finds the directions of all constraints with that.
@@ -40,9 +40,9 @@ impl Problem {
     }
 
     /// A direction with the motors in their present state.
-    pub(super) fn tied(&self, acts: Acts, along: Direction) -> Direction {
+    pub(super) fn tied(&self, acts: ActsOn, along: Direction) -> Direction {
         match acts {
-            Acts::Base { joint, spin } => along.tied(
+            ActsOn::Base { joint, spin } => along.tied(
                 spin.and_then(|k| self.spins[k].held),
                 joint.and_then(|k| self.joints[k].held),
             ),
@@ -81,7 +81,7 @@ impl Problem {
     }
 
     /// [1/kg] Speed along a direction per unit impulse along it.
-    fn admittance(&self, acts: Acts, along: &Direction) -> f64 {
+    fn admittance(&self, acts: ActsOn, along: &Direction) -> f64 {
         let of_body = |mass: f64, inertia: f64, lever: f64| {
             along.unit.length_squared() / mass + lever * lever / inertia
         };
@@ -101,16 +101,18 @@ impl Problem {
             of_body(ring.mass, ring.inertia, along.lever)
         };
         match acts {
-            Acts::Base { joint, spin } => {
+            ActsOn::Base { joint, spin } => {
                 let of_joint = joint.map_or(0.0, |k| {
                     let Joint { mass, inertia, .. } = self.joints[k];
                     of_body(mass, inertia, along.joint_lever)
                 });
                 of_base(along.lever) + spin.map_or(0.0, |k| of_spin(k) - of_rotor(k)) + of_joint
             }
-            Acts::Link(link) => of_link(link),
-            Acts::LinkAndSlide(link) => of_link(link) + of_base(along.back),
-            Acts::LinkAndSpin { link, spin } => of_link(link) + of_base(along.back) + of_spin(spin),
+            ActsOn::Link(link) => of_link(link),
+            ActsOn::LinkAndSlide(link) => of_link(link) + of_base(along.back),
+            ActsOn::LinkAndSpin { link, spin } => {
+                of_link(link) + of_base(along.back) + of_spin(spin)
+            }
         }
     }
 }

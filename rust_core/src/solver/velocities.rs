@@ -39,7 +39,7 @@ impl Velocities {
 }
 
 /// Velocities of all bodies, however they are kept.
-pub(crate) trait Moves {
+pub(crate) trait HasVelocities {
     fn base(&self) -> Twist;
     fn joint(&self, joint: usize) -> f64;
     fn spin(&self, spin: usize) -> f64;
@@ -47,7 +47,7 @@ pub(crate) trait Moves {
     fn slide(&self, ring: usize) -> f64;
 }
 
-impl Moves for Velocities {
+impl HasVelocities for Velocities {
     fn base(&self) -> Twist {
         self.base
     }
@@ -78,7 +78,7 @@ pub(crate) struct Link {
 
 /// The bodies on which a constraint acts.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Acts {
+pub(crate) enum ActsOn {
     /// The base, or what is hinged to it, and what spins on either.
     Base {
         joint: Option<usize>,
@@ -94,7 +94,7 @@ pub(crate) enum Acts {
     },
 }
 
-impl Acts {
+impl ActsOn {
     /// On the base, and what spins on it.
     pub(crate) fn on_spin(spin: usize) -> Self {
         Self::Base {
@@ -123,7 +123,7 @@ impl Acts {
     }
 
     /// [m/s] Speed along a direction, without its offset.
-    pub(crate) fn speed(self, along: &Direction, of: &impl Moves) -> f64 {
+    pub(crate) fn speed(self, along: &Direction, of: &impl HasVelocities) -> f64 {
         let of_link = |link: Link, beside: f64| {
             let base = of.base();
             let reaction = along.unit.dot(base.velocity) + along.back * base.turn;

@@ -37,7 +37,7 @@ fn a_wheel_that_comes_down_gives_back_its_share_of_the_blow() {
 #[test]
 fn what_cannot_bounce_is_refused() {
     let refused = |scenario: &crawler2d_core::Scenario| {
-        crawler2d_core::Checked::new(scenario)
+        crawler2d_core::ValidScenario::new(scenario)
             .expect_err("it is refused")
             .to_string()
     };

@@ -1,10 +1,10 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, Cancel, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Engine,
-    Flippers, ForceSupport, ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold,
-    HybridWheels, LineOfWheels, Outcome, Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape,
-    Simulation, Surface, Terrain, Track, Wheel, outcome_of, simulate,
+    BeltTrack, Cancel, ChainMechanism, CircumferentialWheels, Climb, Ends, Engine, Flippers,
+    ForceSupport, ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels,
+    LineOfWheels, Outcome, Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation,
+    Surface, Terrain, Track, ValidScenario, Wheel, outcome_of, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -22,8 +22,8 @@ pub(crate) fn engineer() -> Scenario {
 }
 
 /// A scenario as it comes out of the door.
-pub(crate) fn checked(scenario: &Scenario) -> Checked {
-    Checked::new(scenario).expect("the scenario is valid")
+pub(crate) fn checked(scenario: &Scenario) -> ValidScenario {
+    ValidScenario::new(scenario).expect("the scenario is valid")
 }
 
 /// The outcome if a simulation ended now.

@@ -1,9 +1,9 @@
 //! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
 
 use crawler2d_core::{
-    ChainMechanism, Checked, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers,
-    Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
-    ShoeShape, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Gait,
+    GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack, ShoeShape,
+    Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline, ValidScenario, Wheel,
 };
 
 use crate::common::*;
@@ -269,7 +269,7 @@ pub(crate) fn drawn_on_discs(draw: &mut Draw) -> Scenario {
             scenario.robot.drivetrain.torque_sharing = TorqueSharing::Track;
         }
         // A disc may lie within the others, and a shoe be too long for a short run.
-        if Checked::new(&scenario).is_ok() {
+        if ValidScenario::new(&scenario).is_ok() {
             return scenario;
         }
     }

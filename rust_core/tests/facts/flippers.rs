@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use crawler2d_core::{
-    Checked, Drive, End, Ends, Error, Gait, Hold, Outcome, Record, Scenario, Simulation, Track,
-    Wheel, simulate,
+    Drive, End, Ends, Error, Gait, Hold, Outcome, Record, Scenario, Simulation, Track,
+    ValidScenario, Wheel, simulate,
 };
 
 use crate::common::*;
@@ -264,7 +264,7 @@ fn a_gait_without_flippers_moves_nothing() {
 #[test]
 fn arms_and_shoes_that_leave_no_chassis_are_refused() {
     let mut scenario = with_flippers(Ends::Both, belt());
-    let path = |scenario: &Scenario| match Checked::new(scenario).map(|_| ()) {
+    let path = |scenario: &Scenario| match ValidScenario::new(scenario).map(|_| ()) {
         Err(Error::Scenario(error)) => error.path,
         other => panic!("{other:?}"),
     };

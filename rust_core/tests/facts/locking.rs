@@ -1,7 +1,7 @@
 //! Gears that lock themselves: the load turns no motor back, and holds none beyond its speed.
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Checked, Error, Pi, Scenario, Simulation, TorqueSharing, Track, Wheel};
+use crawler2d_core::{Error, Pi, Scenario, Simulation, TorqueSharing, Track, ValidScenario, Wheel};
 
 use crate::basics::models;
 use crate::common::*;
@@ -247,7 +247,7 @@ fn an_arm_that_its_motor_cannot_hold_is_held_by_its_gear_and_sinks_without() {
 }
 
 /// The next drawn scenario that can have gears that lock, with them.
-fn drawn_with_locks(draw: &mut Draw) -> (Scenario, Checked) {
+fn drawn_with_locks(draw: &mut Draw) -> (Scenario, ValidScenario) {
     loop {
         let mut scenario = drawn(draw);
         let drivetrain = &mut scenario.robot.drivetrain;
@@ -255,7 +255,7 @@ fn drawn_with_locks(draw: &mut Draw) -> (Scenario, Checked) {
         if let Some(flippers) = &mut scenario.robot.flippers {
             flippers.self_locking = true;
         }
-        if let Ok(checked) = Checked::new(&scenario) {
+        if let Ok(checked) = ValidScenario::new(&scenario) {
             return (scenario, checked);
         }
     }
@@ -299,7 +299,7 @@ fn a_lock_with_a_controller_or_a_force_track_is_refused() {
         let mut scenario = engineer();
         scenario.robot.drivetrain.self_locking = true;
         change(&mut scenario);
-        match Checked::new(&scenario).map(|_| ()) {
+        match ValidScenario::new(&scenario).map(|_| ()) {
             Err(Error::Scenario(error)) => error.path,
             other => panic!("{other:?}"),
         }

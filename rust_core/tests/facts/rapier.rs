@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use crawler2d_core::{
-    Cancel, Checked, ClosedSurface, ClosedTrack, ContactMethod, Ends, Engine, Error, ForceSupport,
-    Outcome, Scenario, Simulation, TorqueSharing, Track, Wheel, balance,
+    Cancel, ClosedSurface, ClosedTrack, ContactMethod, Ends, Engine, Error, ForceSupport, Outcome,
+    Scenario, Simulation, TorqueSharing, Track, ValidScenario, Wheel, balance,
 };
 
 use crate::common::*;
@@ -154,7 +154,7 @@ fn a_force_along_the_chassis_drives_on_skids_and_on_wheels_in_rapier() {
 
 /// The path of the field that is refused.
 fn refused(scenario: &Scenario) -> String {
-    match Checked::new(scenario) {
+    match ValidScenario::new(scenario) {
         Err(Error::Scenario(error)) => error.path,
         other => panic!("it is refused, not {:?}", other.map(|_| ())),
     }
@@ -198,7 +198,7 @@ fn settings_of_our_own_dynamics_are_refused_in_rapier() {
         change(&mut scenario);
         assert_eq!(refused(&scenario), format!("solver.{name}"));
         scenario.solver.engine = Engine::Own;
-        assert!(Checked::new(&scenario).is_ok(), "{name}");
+        assert!(ValidScenario::new(&scenario).is_ok(), "{name}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! The same scenario gives the same bits, wherever and whenever it runs.
 
 use crawler2d_core::{
-    Checked, Finished, Progress, Record, Run, Scenario, Wheel, simulate, simulate_many,
+    Finished, Progress, Record, Run, Scenario, ValidScenario, Wheel, simulate, simulate_many,
 };
 
 use crate::common::*;
@@ -84,8 +84,8 @@ fn fingerprints(mut results: Vec<Finished>) -> Vec<u64> {
 
 #[test]
 fn threads_and_order_do_not_change_a_bit() {
-    let scenarios: Vec<Checked> = batch().iter().map(checked).collect();
-    let go = |scenarios: &[Checked], threads| {
+    let scenarios: Vec<ValidScenario> = batch().iter().map(checked).collect();
+    let go = |scenarios: &[ValidScenario], threads| {
         let mut results = Vec::new();
         let done = simulate_many(scenarios, threads, Record::default(), |finished| {
             results.extend(finished);
@@ -101,7 +101,7 @@ fn threads_and_order_do_not_change_a_bit() {
     for threads in [1, 2, 3, 8] {
         assert_eq!(go(&scenarios, threads), alone);
     }
-    let reversed: Vec<Checked> = scenarios.iter().rev().cloned().collect();
+    let reversed: Vec<ValidScenario> = scenarios.iter().rev().cloned().collect();
     let mut back = go(&reversed, 2);
     back.reverse();
     assert_eq!(back, alone);

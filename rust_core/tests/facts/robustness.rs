@@ -3,8 +3,8 @@
 use std::panic::catch_unwind;
 
 use crawler2d_core::{
-    Checked, Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Surface, Terrain,
-    simulate,
+    Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Surface, Terrain,
+    ValidScenario, simulate,
 };
 use serde_json::{Value, json};
 
@@ -152,17 +152,17 @@ fn nested_json_is_refused_before_the_stack_runs_out() {
     assert!(Scenario::from_json(&text).is_err());
 }
 
-fn with_points(points: Vec<[f64; 2]>) -> Result<Checked, Error> {
+fn with_points(points: Vec<[f64; 2]>) -> Result<ValidScenario, Error> {
     let mut scenario = engineer();
     scenario.terrain = Terrain::Points {
         points,
         goal: 1.0,
         surface: Surface::sharp(0.9),
     };
-    Checked::new(&scenario)
+    ValidScenario::new(&scenario)
 }
 
-fn rule(result: Result<Checked, Error>) -> String {
+fn rule(result: Result<ValidScenario, Error>) -> String {
     match result {
         Err(Error::Scenario(e)) => e.to_string(),
         Err(e) => panic!("{e}"),
@@ -214,7 +214,7 @@ fn order_duplicates_and_collinear_points_do_not_matter() {
     ];
     messy.reverse();
     let profile =
-        |s: Result<Checked, Error>| s.map(|s| s.ground().lanes[0].clone()).expect("accepted");
+        |s: Result<ValidScenario, Error>| s.map(|s| s.ground().lanes[0].clone()).expect("accepted");
     let (a, b) = (profile(with_points(clean)), profile(with_points(messy)));
     assert_eq!(a.points, b.points);
     assert_eq!((a.merged, b.merged), (0, 4));

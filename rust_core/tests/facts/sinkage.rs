@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use crawler2d_core::{Checked, FieldPattern, Run, Scenario, Stepfield, Surface, Terrain};
+use crawler2d_core::{FieldPattern, Run, Scenario, Stepfield, Surface, Terrain, ValidScenario};
 
 use crate::common::*;
 use crate::drawn::drawn;
@@ -305,7 +305,7 @@ fn no_drawn_robot_sinks_in_behind_an_arc_that_takes_up_a_whole_face() {
         scenario.drive.speed = scenario.drive.speed.abs().max(0.2);
         scenario.duration = 4.0;
         // Posts of some centimetres have no room for every radius.
-        if Checked::new(&scenario).is_err() {
+        if ValidScenario::new(&scenario).is_err() {
             continue;
         }
         let told = format!("seed {SEED} case {case}, over {}", terrains[pick].0);

@@ -1,6 +1,6 @@
 //! A snapshot holds everything that the future depends on.
 
-use crawler2d_core::{Checked, Error, Simulation};
+use crawler2d_core::{Error, Simulation, ValidScenario};
 
 use crate::common::*;
 use crate::drawn::drawn;
@@ -11,7 +11,7 @@ fn simulation_goes_on_from_a_snapshot_with_the_same_bits() {
     let mut draw = Draw(seed);
     let (mut runs, mut largest) = (0, 0);
     while runs < 100 {
-        let Ok(checked) = Checked::new(&drawn(&mut draw)) else {
+        let Ok(checked) = ValidScenario::new(&drawn(&mut draw)) else {
             continue;
         };
         let mut whole = Simulation::new(&checked);

@@ -9,7 +9,7 @@ use crate::dynamics::state::State;
 use crate::dynamics::touch::Touch;
 use crate::geometry::{Vector, cross, right_of};
 use crate::robot::Model;
-use crate::solver::{Acts, Contact, Direction, Link};
+use crate::solver::{ActsOn, Contact, Direction, Link};
 
 impl Touch {
     /// A shoe's contact with the ground, found half a step (`time` [s]) from now.
@@ -34,7 +34,7 @@ impl Touch {
             ring: ring.unwrap_or_default(),
             number: shoe,
         };
-        let solved = Contact::new(Acts::Link(link), directions);
+        let solved = Contact::new(ActsOn::Link(link), directions);
         let touch = Self {
             drive: part.drive,
             gap: contact.distance - solved.opening_speed(state) * time,
@@ -58,8 +58,8 @@ impl Touch {
             number: shoe,
         };
         let (acts, borne_at) = match rest.on {
-            Bearing::Chassis(_) => (Acts::LinkAndSlide(link), rest.point),
-            Bearing::Tooth(axle) => (Acts::LinkAndSpin { link, spin: chain }, axle),
+            Bearing::Chassis(_) => (ActsOn::LinkAndSlide(link), rest.point),
+            Bearing::Tooth(axle) => (ActsOn::LinkAndSpin { link, spin: chain }, axle),
         };
         let directions = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
             unit,

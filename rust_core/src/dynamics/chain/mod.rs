@@ -20,7 +20,7 @@ use crate::geometry::{Pose, Vector, plausible};
 use crate::robot::ChainOfShoes;
 use crate::solver::{Drive, Grip, Ring};
 
-pub(super) use rest::Stand;
+pub(super) use rest::ChainPose;
 
 /// Stiffness of an idler's stop in units of its tensioner's. Harder stops work, but a chain that is tightened
 /// by an obstacle hits them with kilonewtons.

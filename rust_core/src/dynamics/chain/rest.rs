@@ -30,7 +30,7 @@ pub(in crate::dynamics) enum Bearing {
 
 /// The pose of chassis, idler and sprocket in which rests are searched for.
 #[derive(Clone, Copy)]
-pub(in crate::dynamics) struct Stand {
+pub(in crate::dynamics) struct ChainPose {
     pub chassis: Pose,
     /// [m] Travel of the idler.
     pub travel: f64,

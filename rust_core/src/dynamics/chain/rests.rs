@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "Chains".
 
 use super::Chain;
-use super::rest::{Bearing, Rest, Stand};
+use super::rest::{Bearing, ChainPose, Rest};
 use crate::geometry::{Disc, Pose, Vector};
 
 /// Number of pitches off the guide from which a chain counts as having jumped off.
@@ -13,7 +13,7 @@ impl Chain {
     /// Calls `found` for every place within `reach` [m] where a shoe could rest.
     pub(in crate::dynamics) fn rests(
         &mut self,
-        stand: Stand,
+        stand: ChainPose,
         place_of: impl Fn(usize) -> Pose,
         reach: f64,
         mut found: impl FnMut(&Self, Rest),
@@ -34,7 +34,7 @@ impl Chain {
     /// Finds the rests on a guide; returns whether a shoe is too far off it to come back.
     fn rests_on_guide(
         &self,
-        stand: Stand,
+        stand: ChainPose,
         reach: f64,
         found: &mut impl FnMut(&Self, Rest),
     ) -> bool {
@@ -76,7 +76,7 @@ impl Chain {
         &self,
         (shoe, place): (usize, usize),
         (disc, slides): (Disc, Vector),
-        stand: Stand,
+        stand: ChainPose,
         reach: f64,
         found: &mut impl FnMut(&Self, Rest),
     ) {

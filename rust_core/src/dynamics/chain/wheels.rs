@@ -3,14 +3,14 @@
 //! The equations: docs/physics.md, "Chains".
 
 use super::Chain;
-use super::rest::{Bearing, Rest, Stand};
+use super::rest::{Bearing, ChainPose, Rest};
 use crate::geometry::{Disc, Rotation, Vector};
 
 impl Chain {
     /// Finds the rests of plates and pins on wheels, and of pins on teeth.
     pub(super) fn rests_on_wheels(
         &self,
-        stand: Stand,
+        stand: ChainPose,
         reach: f64,
         found: &mut impl FnMut(&Self, Rest),
     ) {
@@ -37,7 +37,7 @@ impl Chain {
         &self,
         (shoe, wheel): (usize, usize),
         (disc, slides): (Disc, Vector),
-        stand: Stand,
+        stand: ChainPose,
         reach: f64,
         found: &mut impl FnMut(&Self, Rest),
     ) {
@@ -72,7 +72,7 @@ impl Chain {
     fn rest_on_teeth(
         &self,
         shoe: usize,
-        stand: Stand,
+        stand: ChainPose,
         reach: f64,
         found: &mut impl FnMut(&Self, Rest),
     ) {
@@ -113,7 +113,7 @@ impl Chain {
     }
 
     /// Whether the chain is off: it no longer forms a loop round both sprocket and idler.
-    pub(super) fn is_off_wheels(&self, stand: Stand) -> bool {
+    pub(super) fn is_off_wheels(&self, stand: ChainPose) -> bool {
         let [rear, front] = self.rule.ends.map(|end| end.center);
         let goes_round = |center: Vector, outwards: f64| {
             let mut crossings = 0;

@@ -130,8 +130,8 @@ impl Watched {
         self.monitor.ended_as()
     }
 
-    fn seen(&self) -> &Seen {
-        &self.monitor.seen
+    fn observed(&self) -> &Observations {
+        &self.monitor.observed
     }
 }
 
@@ -141,12 +141,12 @@ fn path_length_counts_backwards_when_the_robot_goes_backwards_along_its_axis() {
     // Nose up by 60 degrees: motion along the axis is sin 60 of motion upwards and cos 60 of motion forwards.
     robot.now.chassis_angle = std::f64::consts::FRAC_PI_3;
     robot.goes_until(0.5, [0.4, 0.0], 0.0);
-    assert_relative_eq!(robot.seen().path_length, 0.1, max_relative = 1e-12);
+    assert_relative_eq!(robot.observed().path_length, 0.1, max_relative = 1e-12);
     robot.goes_until(1.0, [0.0, 0.4], 0.0);
     let up = 0.2 * 0.75_f64.sqrt();
-    assert_relative_eq!(robot.seen().path_length, 0.1 + up, max_relative = 1e-12);
+    assert_relative_eq!(robot.observed().path_length, 0.1 + up, max_relative = 1e-12);
     robot.goes_until(3.0, [-0.4, 0.0], 0.0);
-    assert_relative_eq!(robot.seen().path_length, up - 0.3, max_relative = 1e-12);
+    assert_relative_eq!(robot.observed().path_length, up - 0.3, max_relative = 1e-12);
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn drive_work_is_that_of_all_drives_and_less_for_one_that_brakes() {
     };
     robot.drives = vec![drive(10.0, 0.5), drive(-4.0, 0.5)];
     robot.stands_until(2.0);
-    assert_relative_eq!(robot.seen().drive_work, 6.0, max_relative = 1e-12);
+    assert_relative_eq!(robot.observed().drive_work, 6.0, max_relative = 1e-12);
 }
 
 #[test]
@@ -178,9 +178,9 @@ fn angles_and_penetrations_are_remembered_at_their_extremes() {
     }
     robot.loaded.clear();
     robot.step();
-    let seen = robot.seen();
-    assert_eq!((seen.max_angle, seen.min_angle), (0.5, -0.125));
-    assert_eq!(seen.max_penetration, 0.002);
+    let observed = robot.observed();
+    assert_eq!((observed.max_angle, observed.min_angle), (0.5, -0.125));
+    assert_eq!(observed.max_penetration, 0.002);
 }
 
 #[test]
@@ -195,10 +195,10 @@ fn chains_are_remembered_at_their_worst() {
     };
     robot.monitor.observe_chains(worst);
     robot.monitor.observe_chains(ChainReading::default());
-    let seen = robot.seen();
-    let remembered = (seen.max_track_tension, seen.max_pin_gap);
+    let observed = robot.observed();
+    let remembered = (observed.max_track_tension, observed.max_pin_gap);
     assert_eq!(remembered, (worst.tension, worst.pin_gap));
-    let remembered = (seen.max_guide_penetration, seen.max_sprocket_slip);
+    let remembered = (observed.max_guide_penetration, observed.max_sprocket_slip);
     assert_eq!(remembered, (worst.guide_penetration, worst.sprocket_slip));
 }
 
@@ -211,10 +211,10 @@ fn shaking_is_looked_at_every_ten_milliseconds() {
         robot.now.velocity.y *= if i == 0 { -1.0 } else { 1.0 };
         robot.step();
     }
-    assert_eq!(robot.seen().shaking.vertical_acceleration(), 0.0);
+    assert_eq!(robot.observed().shaking.vertical_acceleration(), 0.0);
     robot.goes_until(2.0, [0.0, 0.0], 0.5);
     let mean = 0.5 * 0.5_f64.sqrt();
-    let found = robot.seen().shaking.angular_velocity();
+    let found = robot.observed().shaking.angular_velocity();
     assert_relative_eq!(found, mean, max_relative = 1e-3);
 }
 
@@ -223,13 +223,13 @@ fn a_monitor_that_begins_late_counts_from_there() {
     let mut robot = Watched::with(|_| {});
     robot.steps = 4_996;
     robot.now.time = f64::from(robot.steps) * STEP;
-    robot.monitor.seen = Seen::from(robot.now.time);
+    robot.monitor.observed = Observations::from(robot.now.time);
     robot.goes_until(5.5, [0.25, 0.0], 0.0);
-    assert_relative_eq!(robot.seen().path_length, 0.126, max_relative = 1e-12);
+    assert_relative_eq!(robot.observed().path_length, 0.126, max_relative = 1e-12);
     let mut robot = Watched::with(|_| {});
     robot.steps = 4_996;
     robot.now.time = f64::from(robot.steps) * STEP;
-    robot.monitor.seen = Seen::from(robot.now.time);
+    robot.monitor.observed = Observations::from(robot.now.time);
     robot.stands_until(5.995);
     assert_eq!(robot.monitor.stop_since(), None);
     robot.stands_until(6.0);

@@ -5,7 +5,7 @@ use crate::geometry::{Envelope, Rotation};
 use crate::limits::memory::Budget;
 use crate::robot::{BodyKind, Part, Shape};
 use crate::run::record::Recorder;
-use crate::run::{Checked, Record, Simulation};
+use crate::run::{Record, Simulation, ValidScenario};
 use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
 
 /// Robots with all kinds of bodies, in front of a step, or of a step under one track only.
@@ -68,7 +68,7 @@ fn read(text: &str) -> Scenario {
 
 /// A simulation after a number of steps, and the trace of that instant.
 fn after(scenario: &Scenario, steps: usize) -> (Simulation, Trace) {
-    let mut simulation = Simulation::new(&Checked::new(scenario).expect("it is valid"));
+    let mut simulation = Simulation::new(&ValidScenario::new(scenario).expect("it is valid"));
     for _ in 0..steps {
         simulation.step().expect("the state stays finite");
     }
@@ -81,7 +81,7 @@ fn after(scenario: &Scenario, steps: usize) -> (Simulation, Trace) {
 }
 
 fn poses_of(scenario: &Scenario, trace: &Trace) -> Poses {
-    let checked = Checked::new(scenario).expect("the scenario is valid");
+    let checked = ValidScenario::new(scenario).expect("the scenario is valid");
     poses(&checked, trace, &Cancel::default()).expect("the trace is the scenario's")
 }
 

@@ -7,9 +7,9 @@ use super::commands::{Commands, has_the_same_speeds};
 use crate::contact::Dents;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
 use crate::error::Error;
-use crate::observe::Seen;
+use crate::observe::Observations;
 use crate::robot::Model;
-use crate::run::Checked;
+use crate::run::ValidScenario;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Ground;
 
@@ -20,7 +20,7 @@ impl Simulation {
     /// track takes over the pose and the speeds; ground inside it is let out without a push; so does what another engine
     /// has moved. Our own dynamics move the branch. Outcome, stops and progress count from here.
     #[must_use]
-    pub fn branch(&self, variant: &Checked) -> Self {
+    pub fn branch(&self, variant: &ValidScenario) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
         let variant = variant.scenario();
         if self.engine.is_none() && has_the_same_parts(&self.scenario.robot, &variant.robot) {
@@ -117,7 +117,7 @@ impl Simulation {
             ..self.commands
         };
         (self.set_point, self.last.set_point) = (other.set_point, other.set_point);
-        self.monitor.seen = Seen::from(self.time);
+        self.monitor.observed = Observations::from(self.time);
     }
 }
 

@@ -19,7 +19,7 @@ const NOTHING: Metres = Metres(1e-8);
 const ROUNDS: usize = 200;
 
 /// A displacement of the centre of mass [m], and a turn about it times half the robot's length [m].
-type Way = [f64; 3];
+type Displacement = [f64; 3];
 
 impl Simulation {
     /// The same robot at rest in the nearest pose in which no ground is inside it; a turn counts as far as it moves the
@@ -28,7 +28,7 @@ impl Simulation {
         self.stand_still();
         let raised = self.raised_clear()?;
         let found = [[0.0; 3], raised].map(|from| self.nearest_clear(from));
-        let near = |way: &Way| length(*way);
+        let near = |way: &Displacement| length(*way);
         let nearest = found
             .into_iter()
             .flatten()
@@ -57,7 +57,7 @@ impl Simulation {
     }
 
     /// Straight up from its own floor, as far as it takes to be clear.
-    fn raised_clear(&mut self) -> Option<Way> {
+    fn raised_clear(&mut self) -> Option<Displacement> {
         /// [m] First distance; it doubles until it is farther than any robot is high.
         const FIRST: Metres = Metres(0.01);
         const DOUBLINGS: i32 = 10;
@@ -72,13 +72,13 @@ impl Simulation {
     }
 
     /// The nearest displacement to none from which no ground is inside, looked for from one on.
-    fn nearest_clear(&mut self, from: Way) -> Option<Way> {
+    fn nearest_clear(&mut self, from: Displacement) -> Option<Displacement> {
         let half = self.half_length();
         let mut way = from;
         for _ in 0..ROUNDS {
             let contacts = self.contacts_at(way);
             let center = self.state.center + Vector::new(way[0], way[1]);
-            let walls: Vec<(Way, f64)> = contacts
+            let walls: Vec<(Displacement, f64)> = contacts
                 .iter()
                 .map(|contact| {
                     let normal = contact.normal;
@@ -88,7 +88,7 @@ impl Simulation {
                 })
                 .collect();
             let aim = nearest_beyond(&walls);
-            let step: Way = std::array::from_fn(|i| aim[i] - way[i]);
+            let step: Displacement = std::array::from_fn(|i| aim[i] - way[i]);
             let share = (FARTHEST.value() / length(step)).min(1.0);
             way = std::array::from_fn(|i| way[i] + share * step[i]);
             if length(step) < NOTHING.value() {
@@ -103,7 +103,7 @@ impl Simulation {
     }
 
     /// The contacts that it would have after a displacement.
-    fn contacts_at(&mut self, way: Way) -> Vec<Contact> {
+    fn contacts_at(&mut self, way: Displacement) -> Vec<Contact> {
         let before = self.state.clone();
         self.displace(way);
         let (mut contacts, running) = (Vec::new(), self.running());
@@ -115,7 +115,7 @@ impl Simulation {
     }
 
     /// Moves the robot as one body.
-    fn displace(&mut self, way: Way) {
+    fn displace(&mut self, way: Displacement) {
         let turn = way[2] / self.half_length();
         self.state.center += Vector::new(way[0], way[1]);
         self.state.angle += turn;
@@ -131,7 +131,7 @@ impl Simulation {
 }
 
 /// The point nearest to the origin that is beyond all walls, `along . x >= bound`: Hildreth's method.
-fn nearest_beyond(walls: &[(Way, f64)]) -> Way {
+fn nearest_beyond(walls: &[(Displacement, f64)]) -> Displacement {
     const SWEEPS: usize = 2000;
 
     let mut point = [0.0; 3];
@@ -152,10 +152,10 @@ fn nearest_beyond(walls: &[(Way, f64)]) -> Way {
     point
 }
 
-fn dot(a: Way, b: Way) -> f64 {
+fn dot(a: Displacement, b: Displacement) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn length(way: Way) -> f64 {
+fn length(way: Displacement) -> f64 {
     dot(way, way).sqrt()
 }

@@ -33,7 +33,7 @@ impl Commands {
 
 /// What a driver knows about the robot: its pose, and whether flippers bear.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight {
+pub(crate) struct DriverView {
     /// [s] Time.
     pub time: f64,
     /// [rad] Chassis angle, nose up > 0.
@@ -124,7 +124,7 @@ impl Driver {
     }
 
     /// Where it wants the front and rear flippers; `start` is their angle at time 0 [rad].
-    pub(crate) fn targets(&mut self, drive: &Drive, start: f64, sight: Sight) -> [Target; 2] {
+    pub(crate) fn targets(&mut self, drive: &Drive, start: f64, sight: DriverView) -> [Target; 2] {
         let of_gait = match &drive.gait {
             None => [Target::fixed(start); 2],
             Some(Gait::Hold(hold)) => [Target::fixed(hold.angle_at(sight.time)); 2],
@@ -134,7 +134,7 @@ impl Driver {
     }
 
     /// Where the flippers are to be during a climb.
-    fn climb(&mut self, climb: &Climb, start: f64, sight: Sight) -> [Target; 2] {
+    fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [Target; 2] {
         let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
         self.phase = match self.phase {

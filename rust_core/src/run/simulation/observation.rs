@@ -10,7 +10,7 @@ use crate::solver::Effort;
 
 /// A simulation at an instant.
 #[derive(Clone, Copy)]
-pub(crate) struct Moment<'a> {
+pub(crate) struct StateView<'a> {
     pub model: &'a Model,
     pub state: &'a State,
     /// [s] Simulated time.
@@ -19,7 +19,7 @@ pub(crate) struct Moment<'a> {
     pub set_point: f64,
 }
 
-impl<'a> Moment<'a> {
+impl<'a> StateView<'a> {
     /// Pose of the chassis frame.
     pub(crate) fn pose(&self) -> Pose {
         self.state.pose(self.model)
@@ -73,8 +73,8 @@ impl<'a> Moment<'a> {
 
 impl Simulation {
     /// The present instant.
-    pub(crate) fn now(&self) -> Moment<'_> {
-        Moment {
+    pub(crate) fn now(&self) -> StateView<'_> {
+        StateView {
             model: self.dynamics.model(),
             state: &self.state,
             time: self.time,
@@ -83,7 +83,7 @@ impl Simulation {
     }
 
     /// An instant of the last step, whose state is written to `state`.
-    pub(crate) fn at<'a>(&'a self, time: f64, state: &'a mut State) -> Moment<'a> {
+    pub(crate) fn at<'a>(&'a self, time: f64, state: &'a mut State) -> StateView<'a> {
         if time >= self.time {
             return self.now();
         }
@@ -92,7 +92,7 @@ impl Simulation {
         let share = (time - last.began) / h;
         let model = self.dynamics.model();
         state.set_between([&last.before, &self.state], model, (h, share));
-        Moment {
+        StateView {
             model,
             state,
             time,
@@ -148,7 +148,7 @@ impl Simulation {
 struct Body {
     /// [kg] Mass.
     mass: f64,
-    /// [kg m^2] Moment of inertia about its centre of mass.
+    /// [kg m^2] StateView of inertia about its centre of mass.
     inertia: f64,
     /// [m] Centre of mass.
     center: Vector,
@@ -167,7 +167,7 @@ impl Simulation {
         moment / mass
     }
 
-    /// [kg m^2] Moment of inertia about the centre of mass, drives included.
+    /// [kg m^2] StateView of inertia about the centre of mass, drives included.
     pub fn moment_of_inertia(&self) -> f64 {
         let center = self.center_of_mass();
         let about = |body: &Body| (body.center - center).length_squared();

@@ -12,8 +12,8 @@ use super::commands::{Commands, Driver, Push};
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
-use crate::observe::Seen;
-use crate::run::Checked;
+use crate::observe::Observations;
+use crate::run::ValidScenario;
 use crate::run::step_length::StepControl;
 use crate::scenario::ScenarioError;
 use crate::version::BUILD_ID;
@@ -25,7 +25,7 @@ const DIGEST: usize = 32;
 
 /// The contents of a snapshot.
 #[derive(Serialize, Deserialize)]
-struct Image {
+struct Payload {
     /// Build that wrote it; the layout of the rest depends on the build.
     build: String,
     rest: Vec<u8>,
@@ -33,7 +33,7 @@ struct Image {
 
 /// Everything that changes from step to step.
 #[derive(Serialize, Deserialize)]
-struct Moment {
+struct SavedState {
     scenario: String,
     time: f64,
     steps: u64,
@@ -49,7 +49,7 @@ struct Moment {
     state: State,
     impulses: Impulses,
     dents: Dents,
-    seen: Seen,
+    observed: Observations,
 }
 
 impl Simulation {
@@ -63,7 +63,7 @@ impl Simulation {
                 "must be own for a snapshot: what rapier keeps changes from version to version";
             return Err(ScenarioError::new("solver.engine", "rapier", rule).into());
         }
-        let moment = Moment {
+        let saved = SavedState {
             scenario: self.scenario.to_json(),
             time: self.time,
             steps: self.steps,
@@ -79,14 +79,14 @@ impl Simulation {
             state: self.state.clone(),
             impulses: self.dynamics.impulses(),
             dents: self.dents.clone(),
-            seen: self.monitor.seen.clone(),
+            observed: self.monitor.observed.clone(),
         };
-        let image = Image {
+        let payload = Payload {
             build: BUILD_ID.to_owned(),
-            rest: bytes(&moment),
+            rest: bytes(&saved),
         };
         let mut snapshot = MAGIC.to_vec();
-        snapshot.extend(bytes(&image));
+        snapshot.extend(bytes(&payload));
         let digest = Sha256::digest(&snapshot);
         snapshot.extend_from_slice(&digest);
         Ok(snapshot)
@@ -109,52 +109,52 @@ impl Simulation {
         if Sha256::digest(&snapshot[..MAGIC.len() + length])[..] != *digest {
             return Err(damaged());
         }
-        let image: Image = postcard::from_bytes(body).map_err(|_| damaged())?;
-        if image.build != BUILD_ID {
+        let payload: Payload = postcard::from_bytes(body).map_err(|_| damaged())?;
+        if payload.build != BUILD_ID {
             let rule = format!(
                 "must be from this build, {BUILD_ID}, because the layout differs between builds"
             );
             return Err(refused(
-                &format!("a snapshot of build {}", image.build),
+                &format!("a snapshot of build {}", payload.build),
                 &rule,
             ));
         }
-        let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
-        let mut simulation = Self::new(&Checked::from_json(&moment.scenario)?);
-        if !simulation.fits(&moment) {
+        let saved: SavedState = postcard::from_bytes(&payload.rest).map_err(|_| damaged())?;
+        let mut simulation = Self::new(&ValidScenario::from_json(&saved.scenario)?);
+        if !simulation.fits(&saved) {
             let rule = "must hold a state that its own robot and ground can reach";
             return Err(refused("an impossible state", rule));
         }
-        simulation.time = moment.time;
-        simulation.steps = moment.steps;
-        simulation.step_control = moment.step_control;
+        simulation.time = saved.time;
+        simulation.steps = saved.steps;
+        simulation.step_control = saved.step_control;
         simulation.last = LastStep {
-            before: moment.before,
-            began: moment.time,
+            before: saved.before,
+            began: saved.time,
             length: 0.0,
-            free: moment.free,
-            set_point: moment.set_point,
-            sight: moment.sight,
+            free: saved.free,
+            set_point: saved.set_point,
+            sight: saved.sight,
         };
         simulation.commands = Commands {
-            speed: moment.command,
-            driver: moment.driver,
-            push: moment.push,
-            follow_scenario: moment.follow_scenario,
+            speed: saved.command,
+            driver: saved.driver,
+            push: saved.push,
+            follow_scenario: saved.follow_scenario,
             ..simulation.commands
         };
-        simulation.set_point = moment.set_point;
-        simulation.state = moment.state;
-        simulation.dynamics.start_from(moment.impulses);
-        simulation.dents = moment.dents;
-        simulation.monitor.seen = moment.seen;
+        simulation.set_point = saved.set_point;
+        simulation.state = saved.state;
+        simulation.dynamics.start_from(saved.impulses);
+        simulation.dents = saved.dents;
+        simulation.monitor.observed = saved.observed;
         Ok(simulation)
     }
 }
 
 impl Simulation {
     /// Whether the simulation can have reached a moment, because a snapshot may come from a stranger.
-    fn fits(&self, moment: &Moment) -> bool {
+    fn fits(&self, saved: &SavedState) -> bool {
         /// [s] More than any run lasts.
         const LATEST: f64 = 1e9;
         /// Number of steps that no run comes near.
@@ -163,26 +163,26 @@ impl Simulation {
         const FAR: f64 = 1e6;
 
         let (model, lanes) = (self.dynamics.model(), &self.ground.lanes);
-        let time = moment.time;
+        let time = saved.time;
         let (low, high) = self.ground.extent();
-        let (x, y) = (moment.state.center.x, moment.state.center.y);
+        let (x, y) = (saved.state.center.x, saved.state.center.y);
         let fastest = self.scenario.robot.drivetrain.max_speed;
         (0.0..LATEST).contains(&time)
-            && moment.steps <= MOST_STEPS
-            && moment.step_control.fits()
-            && (0.0..LATEST).contains(&moment.free)
-            && moment.before.fits(model)
-            && (0.0..FAR).contains(&moment.sight)
+            && saved.steps <= MOST_STEPS
+            && saved.step_control.fits()
+            && (0.0..LATEST).contains(&saved.free)
+            && saved.before.fits(model)
+            && (0.0..FAR).contains(&saved.sight)
             && (low - FAR..=high + FAR).contains(&x)
             && y < FAR + self.ground.highest()
-            && moment.command.abs() <= fastest
-            && moment.set_point.abs() <= fastest
-            && moment.push.fits()
-            && moment.driver.fits(&self.scenario.drive)
-            && moment.state.fits(model)
-            && self.dynamics.fits(&moment.impulses, lanes)
-            && moment.dents.fits(moment.impulses.contacts())
-            && moment.seen.fits(time, model, lanes)
+            && saved.command.abs() <= fastest
+            && saved.set_point.abs() <= fastest
+            && saved.push.fits()
+            && saved.driver.fits(&self.scenario.drive)
+            && saved.state.fits(model)
+            && self.dynamics.fits(&saved.impulses, lanes)
+            && saved.dents.fits(saved.impulses.contacts())
+            && saved.observed.fits(time, model, lanes)
     }
 }
 

@@ -22,7 +22,7 @@ const COLLISION_STEP: Seconds = Seconds(LEAD.0 + SAME_BLOW.0);
 /// [m] Depth up to which new contacts are found; half of what counts as sinking in.
 const UNSEEN: Metres = Metres(5e-4);
 /// How fast parts may gain speed within a step, in units of gravity, as far as the search for contacts looks ahead.
-const GAIN: f64 = 2.0;
+const SPEED_GAIN: f64 = 2.0;
 /// A step that is cut short by more than this share looks for its contacts again.
 const CUT: f64 = 0.1;
 
@@ -200,7 +200,7 @@ impl Simulation {
 
     /// [m/s^2] How fast any part may gain speed.
     fn gain(&self) -> f64 {
-        GAIN * self.scenario.gravity
+        SPEED_GAIN * self.scenario.gravity
     }
 
     /// Finds the contacts of a step of `h` [s]; returns how far anything may move in it [m].
@@ -279,7 +279,7 @@ fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
 mod tests {
     use super::*;
     use crate::robot::Running;
-    use crate::run::Checked;
+    use crate::run::ValidScenario;
     use crate::scenario::Scenario;
 
     /// [m] How far the tips of gear wheels reach into the ground at their lowest.
@@ -313,7 +313,7 @@ mod tests {
         let text = include_str!("../../../../tests/scenarios/judge_gear3_step.json");
         let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
         scenario.start.track_phase = phase;
-        Simulation::new(&Checked::new(&scenario).expect("it is valid"))
+        Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"))
     }
 
     /// Gear wheels that turn by 0.5 rad in a step, above level ground.

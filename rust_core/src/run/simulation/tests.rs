@@ -21,7 +21,8 @@ fn run_until(simulation: &mut Simulation, time: f64) {
 
 /// The simulation, one second after the robot has stopped.
 fn stopped(scenario: &Scenario) -> Simulation {
-    let mut simulation = Simulation::new(&Checked::new(scenario).expect("the scenario is valid"));
+    let mut simulation =
+        Simulation::new(&ValidScenario::new(scenario).expect("the scenario is valid"));
     while simulation.monitor.stop_since().is_none() {
         assert!(simulation.time() < scenario.duration, "it has not stopped");
         simulation.step().expect("the state stays finite");
@@ -79,7 +80,8 @@ fn an_end_counts_before_a_stop() {
     let mut scenario = skids();
     scenario.goal = Some(-2.0);
     scenario.criteria.clear_time = 2.5;
-    let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
+    let mut simulation =
+        Simulation::new(&ValidScenario::new(&scenario).expect("the scenario is valid"));
     assert!(simulation.examine().is_none());
     run_until(&mut simulation, 2.0);
     let found = simulation.examine().expect("it stands");
@@ -109,7 +111,7 @@ fn a_chain_that_comes_off_as_the_robot_tips_over_has_come_off() {
     scenario.start.angle = 1e-3;
     let tips = |off: bool| {
         let mut simulation =
-            Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
+            Simulation::new(&ValidScenario::new(&scenario).expect("the scenario is valid"));
         if off {
             // A shoe high above the robot.
             simulation.state.shoes[0].center.y += 0.5;
@@ -160,7 +162,7 @@ fn a_copy_in_the_middle_of_a_run_goes_on_with_the_same_bits_in_either_engine() {
         let mut scenario = gears(3, 0.06, 0.0);
         scenario.solver.engine = engine;
         (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(2.5e-4));
-        let checked = Checked::new(&scenario).expect("the scenario is valid");
+        let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
         let [mut whole, mut undisturbed] = [(); 2].map(|()| Simulation::new(&checked));
         for time in [0.3, 0.9, 1.6] {
             run_until(&mut whole, time);
@@ -189,7 +191,7 @@ fn a_robot_that_is_pushed_by_a_force_keeps_the_balance_in_every_step() {
     for support in [ForceSupport::Skids, ForceSupport::Wheels] {
         let scenario = pushed(support);
         let weight = scenario.robot.mass * scenario.gravity;
-        let checked = Checked::new(&scenario).expect("the scenario is valid");
+        let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
         let mut simulation = Simulation::new(&checked);
         let (mut worst, mut pushed) = (0.0_f64, 0.0_f64);
         while simulation.time() < 1.0 {

@@ -36,7 +36,7 @@ fn barrier(height: f64, thickness: f64) -> Terrain {
 }
 
 fn why(scenario: &Scenario, wanted: Wanted) -> Diagnosis {
-    let checked = Checked::new(scenario).expect("the scenario is valid");
+    let checked = ValidScenario::new(scenario).expect("the scenario is valid");
     let record = Record {
         trials: wanted,
         ..Record::summary()
@@ -98,7 +98,7 @@ fn a_robot_that_tips_over_after_it_got_away_is_not_freed() {
 
 #[test]
 fn a_belt_from_the_start_is_tried_where_the_run_can_begin_anew() {
-    let checked = Checked::new(&wheels(4, 0.075)).expect("the scenario is valid");
+    let checked = ValidScenario::new(&wheels(4, 0.075)).expect("the scenario is valid");
     let names = |simulation: &mut Simulation| -> Vec<&str> {
         simulation.advance(10.0).expect("the state stays finite");
         let found = judge(simulation, Wanted::default(), &Cancel::default());
@@ -208,7 +208,7 @@ fn skids_that_nothing_pushes_hold_the_friction_of_their_weight() {
     });
     scenario.robot.drivetrain.max_torque = 0.0;
     let at = why(&scenario, Wanted::default()).time;
-    let checked = Checked::new(&scenario).expect("the scenario is valid");
+    let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
     let found = escape_force(&checked, at, &Cancel::default()).expect("the state stays finite");
     let hold = 0.3 * scenario.robot.mass * scenario.gravity;
     assert!(

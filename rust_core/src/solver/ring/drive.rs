@@ -5,7 +5,7 @@
 use crate::solver::damper::Damper;
 
 /// Compliance of the drive's damper, in units of its admittance.
-const DAMPING: f64 = 1e-8;
+const DRIVE_COMPLIANCE: f64 = 1e-8;
 
 /// The drive of one ring.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +40,7 @@ impl Drive {
     }
 
     pub(in crate::solver) fn damper(&self) -> Damper {
-        Damper::new(self.center, 1.0 / (DAMPING * self.admittance))
+        Damper::new(self.center, 1.0 / (DRIVE_COMPLIANCE * self.admittance))
     }
 
     /// Updates the impulse to match a drive that is so much faster [m/s] than it aims to be; returns the error of its

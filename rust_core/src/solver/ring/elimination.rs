@@ -8,7 +8,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 use super::hinge::Hinge;
-use super::system::{BASE, CLOSING, DRIVE, Entry, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
+use super::system::{BASE, CLOSING_HINGE, DRIVE, Entry, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
 use crate::geometry::{Vector, left_of};
 use crate::solver::twist::Twist;
 
@@ -62,14 +62,14 @@ impl RingSystem {
         let Entry { own, beside, below } = &self.links[last];
         self.last = -beside * own.try_inverse()?.transpose();
         self.border += below * self.last.transpose();
-        self.border[(CLOSING, RIGHT)] += hinge.velocity.x;
-        self.border[(CLOSING + 1, RIGHT)] += hinge.velocity.y;
+        self.border[(CLOSING_HINGE, RIGHT)] += hinge.velocity.x;
+        self.border[(CLOSING_HINGE + 1, RIGHT)] += hinge.velocity.y;
         Some(())
     }
 
     /// Expresses the closing hinge, the drive and the slide in terms of the base.
     fn solve_border(&mut self) -> Option<()> {
-        for pivot in [CLOSING, CLOSING + 1, SLIDE, DRIVE] {
+        for pivot in [CLOSING_HINGE, CLOSING_HINGE + 1, SLIDE, DRIVE] {
             let by = self.border[(pivot, pivot)];
             if by == 0.0 || !by.is_finite() {
                 return None;
@@ -95,11 +95,11 @@ impl RingSystem {
         known.fixed_rows_mut::<3>(BASE).copy_from_slice(&base);
         known[RIGHT] = -1.0;
         let of_border = -(self.border * known);
-        for i in [CLOSING, CLOSING + 1, DRIVE, SLIDE] {
+        for i in [CLOSING_HINGE, CLOSING_HINGE + 1, DRIVE, SLIDE] {
             known[i] = of_border[i];
         }
         let last = links.len() - 1;
-        self.impulses[last] = known.fixed_rows::<2>(CLOSING).into_owned();
+        self.impulses[last] = known.fixed_rows::<2>(CLOSING_HINGE).into_owned();
         let mut next = Twist::from(<[f64; 3]>::from(self.last.tr_mul(&known)));
         links[last] = next;
         for k in (0..last).rev() {
@@ -124,9 +124,9 @@ impl Entry {
     fn close(&mut self, side: usize, hinge: &Hinge) {
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let at_hinge = Matrix2::identity() * sign;
-        let mut below = self.below.fixed_rows_mut::<2>(CLOSING);
+        let mut below = self.below.fixed_rows_mut::<2>(CLOSING_HINGE);
         below += on_link(at_hinge, hinge.ends[side]);
-        let mut beside = self.beside.fixed_rows_mut::<2>(CLOSING);
+        let mut beside = self.beside.fixed_rows_mut::<2>(CLOSING_HINGE);
         beside -= on_link(at_hinge, hinge.pushed_at[side]);
     }
 

@@ -23,7 +23,7 @@ const TURN: usize = 2;
 pub(super) const DRIVE: usize = 3;
 pub(super) const SLIDE: usize = 4;
 /// ... two for the closing hinge; then the right-hand side, a column without a row.
-pub(super) const CLOSING: usize = 5;
+pub(super) const CLOSING_HINGE: usize = 5;
 pub(super) const RIGHT: usize = 7;
 pub(super) const WIDTH: usize = 8;
 

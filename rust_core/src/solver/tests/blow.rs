@@ -72,7 +72,7 @@ fn a_blow_meets_inertia_and_no_motor() {
         motor.aim(speed, most);
         problem.motors.push(motor);
         let mut flank = contact(Vector::ZERO, Vector::X, 0.0);
-        flank.acts = Acts::on_spin(0);
+        flank.acts = ActsOn::on_spin(0);
         flank.normal.spin_lever = -radius;
         flank.bears = false;
         problem.contacts.push(flank);
@@ -117,7 +117,7 @@ fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
         problem.motors.push(motor);
         let side = if comes > 0.0 { -1.0 } else { 1.0 };
         let mut flank = contact(Vector::ZERO, Vector::X * side, 0.0);
-        flank.acts = Acts::on_spin(0);
+        flank.acts = ActsOn::on_spin(0);
         flank.normal.spin_lever = -radius * side;
         flank.bears = false;
         problem.contacts.push(flank);

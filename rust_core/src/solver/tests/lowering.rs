@@ -15,7 +15,7 @@ fn driving_off() -> Problem {
     problem.motors.push(motor);
     for x in [-0.2, 0.15] {
         let mut on_belt = contact(Vector::new(x, -0.1), Vector::Y, 0.5);
-        on_belt.acts = Acts::Base {
+        on_belt.acts = ActsOn::Base {
             joint: None,
             spin: Some(0),
         };

@@ -47,7 +47,7 @@ pub(super) fn drawn(draw: &mut Draw) -> Problem {
         let mut next = contact(arm, normal, friction);
         if !problem.spins.is_empty() && draw.chance(0.7) {
             let spin = Some(draw.below(problem.spins.len()));
-            next.acts = Acts::Base { joint: None, spin };
+            next.acts = ActsOn::Base { joint: None, spin };
             next.tangent.spin_lever = 0.1;
             next.tangent.lever -= 0.1;
         }

@@ -74,7 +74,7 @@ fn a_ring_that_falls_keeps_its_hinges_closed() {
         let link = Link { ring: 0, number: 0 };
         let arm = Vector::new(end * HALF, -0.01);
         let mut below = contact(arm, Vector::Y, 0.4);
-        below.acts = Acts::Link(link);
+        below.acts = ActsOn::Link(link);
         problem.contacts.push(below);
     }
     problem.solve();

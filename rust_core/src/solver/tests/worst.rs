@@ -39,7 +39,7 @@ fn along(entries: &[f64]) -> Direction {
 fn contact_of(entries: &[f64]) -> Contact {
     const GRIPS: [Grip; 4] = [Grip::Open, Grip::Sticks, Grip::Forwards, Grip::Backwards];
 
-    let acts = Acts::Base {
+    let acts = ActsOn::Base {
         spin: body_at(entries[0]),
         joint: body_at(entries[1]),
     };
@@ -89,7 +89,7 @@ fn problem_of(line: &str) -> Problem {
     problem.velocities.joints.copy_from_slice(&rates);
     problem.mass_on_springs = given["springs"].as_f64();
     let inertia = |entries: Vec<f64>| Inertia {
-        acts: Acts::on_joint(entries[0] as usize),
+        acts: ActsOn::on_joint(entries[0] as usize),
         along: along(&entries[1..7]),
         damper: Damper::new(entries[7], entries[8]),
     };

@@ -70,12 +70,12 @@ fn a_run_is_cleared_when_the_goal_was_held_for_its_time() {
         None,
         "it was not held long enough"
     );
-    assert!(robot.seen().time_to_clear.is_infinite());
+    assert!(robot.observed().time_to_clear.is_infinite());
     robot.stands_until(0.701 + 0.501);
     assert_eq!(robot.monitor.ended_as(), Some(Outcome::Cleared));
     assert!(robot.monitor.is_over());
     // Until then it stood just before it.
-    assert_relative_eq!(robot.seen().time_to_clear, 0.7);
+    assert_relative_eq!(robot.observed().time_to_clear, 0.7);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_goal_that_is_lost_must_be_held_anew() {
     assert_eq!(robot.monitor.ended_as(), None);
     robot.stands_until(0.91);
     // In the step from 0.401 s on it passes the goal half-way.
-    assert_relative_eq!(robot.seen().time_to_clear, 0.4015);
+    assert_relative_eq!(robot.observed().time_to_clear, 0.4015);
 }
 
 #[test]

@@ -8,11 +8,11 @@ use super::*;
 use crate::diagnosis::Change;
 use crate::draw::Draw;
 use crate::observe::Outcome;
-use crate::run::{Checked, trials};
+use crate::run::{ValidScenario, trials};
 use crate::scenario::{Scenario, Surface, Terrain};
 
 /// A belt in front of a post whose top is at a height [m], moved onto it by `way` from its start.
-fn on_a_post(height: f64, way: Way) -> Simulation {
+fn on_a_post(height: f64, way: Displacement) -> Simulation {
     let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
     scenario.robot.belly = None;
@@ -21,7 +21,7 @@ fn on_a_post(height: f64, way: Way) -> Simulation {
         thickness: 0.01,
         surface: Surface::sharp(0.9),
     };
-    let checked = Checked::new(&scenario).expect("the scenario is valid");
+    let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
     let mut simulation = Simulation::new(&checked);
     let onto = -simulation.reading().position.x + way[0];
     simulation.displace([onto, way[1], way[2]]);
@@ -29,7 +29,7 @@ fn on_a_post(height: f64, way: Way) -> Simulation {
 }
 
 /// [m] Deepest overlap after a displacement.
-fn overlap(simulation: &mut Simulation, way: Way) -> f64 {
+fn overlap(simulation: &mut Simulation, way: Displacement) -> f64 {
     let found = simulation.contacts_at(way);
     found
         .iter()
@@ -83,7 +83,8 @@ fn no_pose_of_a_grid_is_nearer_and_clear() {
 fn a_robot_that_is_clear_stays_where_it_is_and_rests() {
     let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
     let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-    let mut moving = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
+    let mut moving =
+        Simulation::new(&ValidScenario::new(&scenario).expect("the scenario is valid"));
     moving.advance(0.3).expect("the state stays finite");
     let (before, phase) = (moving.state.center, moving.reading().track_position);
     let clear = moving.clear_of_the_ground().expect("it is clear");
@@ -148,7 +149,7 @@ fn trials_from_other_starts() {
         let stop: Value = serde_json::from_str(line).expect("a stop");
         let scenario = stop["scenario"].as_str().expect("a scenario");
         let at = stop["at"].as_f64().expect("a time");
-        let checked = Checked::from_json(scenario).expect("a valid scenario");
+        let checked = ValidScenario::from_json(scenario).expect("a valid scenario");
         let mut robot = Simulation::new(&checked);
         let end = robot.scenario.duration;
         while robot.time() < at - crate::run::step_length::SAME_TIME.value() {

@@ -37,7 +37,8 @@ fn on_wheels() -> Simulation {
         thickness: 0.01,
         surface: Surface::sharp(0.9),
     };
-    let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
+    let mut simulation =
+        Simulation::new(&ValidScenario::new(&scenario).expect("the scenario is valid"));
     // The post is now in the gap between the middle and the front wheel.
     let x = simulation.reading().position.x;
     simulation.state.center.x -= x + 0.085;
@@ -50,7 +51,7 @@ fn busy() -> Simulation {
     let wheels = on_wheels();
     let mut variant = wheels.scenario().clone();
     variant.robot.track = Track::Belt(BeltTrack {});
-    let mut belt = wheels.branch(&Checked::new(&variant).expect("the variant is valid"));
+    let mut belt = wheels.branch(&ValidScenario::new(&variant).expect("the variant is valid"));
     // Backwards, so that it makes a difference at once.
     belt.set_speed(-0.3).expect("within the drivetrain's");
     belt.set_push(20.0).expect("within the limits");
@@ -71,8 +72,8 @@ fn future(mut simulation: Simulation) -> Vec<[u64; 7]> {
     let mut look = || {
         simulation.step().expect("the state stays finite");
         let now = simulation.reading();
-        let seen = &simulation.monitor.seen;
-        let path = seen.path_length;
+        let observed = &simulation.monitor.observed;
+        let path = observed.path_length;
         let Vector { x, y } = now.position;
         let angles: f64 = simulation.flipper_angles().sum();
         [
@@ -142,8 +143,8 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
             s.dynamics.start_from(fresh.dynamics.impulses());
         }),
         ("dents", |s, fresh| s.dents = fresh.dents),
-        ("what was seen", |s, fresh| {
-            s.monitor.seen = fresh.monitor.seen;
+        ("what was observed", |s, fresh| {
+            s.monitor.observed = fresh.monitor.observed;
         }),
     ];
     let whole = busy();
@@ -151,7 +152,8 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     let expected = future(whole);
     for (what, forget) in all {
         let mut copy = Simulation::from_snapshot(&snapshot).expect("it was just made");
-        let fresh = Simulation::new(&Checked::new(copy.scenario()).expect("the scenario is valid"));
+        let fresh =
+            Simulation::new(&ValidScenario::new(copy.scenario()).expect("the scenario is valid"));
         forget(&mut copy, fresh);
         assert!(
             copy.snapshot().expect("our own dynamics") != snapshot,
@@ -174,9 +176,9 @@ fn refusal(bytes: &[u8]) -> String {
 }
 
 /// A snapshot with correct head and digest.
-fn sealed(image: &Image) -> Vec<u8> {
+fn sealed(payload: &Payload) -> Vec<u8> {
     let mut snapshot = MAGIC.to_vec();
-    snapshot.extend(bytes(image));
+    snapshot.extend(bytes(payload));
     let digest = Sha256::digest(&snapshot);
     snapshot.extend_from_slice(&digest);
     snapshot
@@ -199,11 +201,11 @@ fn bytes_that_are_no_whole_snapshot_are_refused() {
 
 #[test]
 fn a_snapshot_of_another_build_is_refused() {
-    let image = Image {
+    let payload = Payload {
         build: "another".to_owned(),
         rest: Vec::new(),
     };
-    let refusal = refusal(&sealed(&image));
+    let refusal = refusal(&sealed(&payload));
     assert!(refusal.contains("a snapshot of build another"), "{refusal}");
     assert!(refusal.contains(BUILD_ID), "{refusal}");
 }
@@ -222,20 +224,20 @@ impl Genuine {
         let simulation = busy();
         let snapshot = simulation.snapshot().expect("our own dynamics");
         let body = &snapshot[MAGIC.len()..snapshot.len() - DIGEST];
-        let image: Image = postcard::from_bytes(body).expect("it was just made");
-        let rest = image.rest;
+        let payload: Payload = postcard::from_bytes(body).expect("it was just made");
+        let rest = payload.rest;
         Self { simulation, rest }
     }
 
-    fn moment(&self) -> Moment {
+    fn saved(&self) -> SavedState {
         postcard::from_bytes(&self.rest).expect("it was just made")
     }
 
     /// Whether a moment with one change is accepted.
-    fn fits(&self, change: impl Fn(&mut Moment)) -> bool {
-        let mut moment = self.moment();
-        change(&mut moment);
-        self.simulation.fits(&moment)
+    fn fits(&self, change: impl Fn(&mut SavedState)) -> bool {
+        let mut saved = self.saved();
+        change(&mut saved);
+        self.simulation.fits(&saved)
     }
 }
 
@@ -247,7 +249,7 @@ fn of_nobody() -> Contact {
     }
 }
 
-type Spoil = fn(&mut Moment);
+type Spoil = fn(&mut SavedState);
 
 /// Each spoils one thing.
 const SPOILS: [(&str, Spoil); 16] = [
@@ -267,11 +269,11 @@ const SPOILS: [(&str, Spoil); 16] = [
     ("impulses of a robot without flippers", |m| {
         let mut scenario = Scenario::from_json(&m.scenario).expect("it was just made");
         scenario.robot.flippers = None;
-        let other = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
+        let other = Simulation::new(&ValidScenario::new(&scenario).expect("the scenario is valid"));
         m.impulses = other.dynamics.impulses();
     }),
     ("dents", |m| m.dents = Dents::of(&[of_nobody()])),
-    ("seen", |m| m.seen.max_angle = f64::NAN),
+    ("seen", |m| m.observed.max_angle = f64::NAN),
 ];
 
 #[test]
@@ -287,11 +289,11 @@ fn a_moment_with_one_thing_spoilt_does_not_fit() {
 fn a_snapshot_of_a_moment_that_does_not_fit_is_refused() {
     let genuine = Genuine::new();
     for (what, spoil) in SPOILS {
-        let mut moment = genuine.moment();
-        spoil(&mut moment);
-        let refusal = refusal(&sealed(&Image {
+        let mut saved = genuine.saved();
+        spoil(&mut saved);
+        let refusal = refusal(&sealed(&Payload {
             build: BUILD_ID.to_owned(),
-            rest: bytes(&moment),
+            rest: bytes(&saved),
         }));
         assert!(refusal.contains("must hold a state that its own"), "{what}");
     }
@@ -303,7 +305,7 @@ fn a_moment_fits_up_to_the_latest_time_and_the_most_steps() {
     let at = |time: f64| {
         genuine.fits(|m| {
             m.time = time;
-            m.seen = Seen::from(time);
+            m.observed = Observations::from(time);
         })
     };
     assert!(at(0.0) && at(1e9_f64.next_down()));

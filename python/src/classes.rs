@@ -1,18 +1,19 @@
-//! A simulation that Python advances and commands step by step.
+//! Classes of the module: a simulation that Python advances and commands step by step, and valid scenarios on their way to
+//! a batch.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{Cancel, Checked, ContactTable, End, Error, Outcome};
-use numpy::IntoPyArray;
+use crawler2d_core::{Cancel, ContactTable, End, Error, Outcome, ValidScenario};
+use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyList};
 
-use crate::beside::{beside, built};
-use crate::{convert, diagnosis, errors};
+use crate::calls::{build_interruptible, run_interruptible};
+use crate::{calls, convert};
 
 /// A running simulation; a lock lets any thread use it, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
@@ -52,19 +53,19 @@ type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 impl Simulation {
     #[new]
     fn new(py: Python<'_>, text: PyBackedStr) -> PyResult<Self> {
-        let (simulation, doubts) = built(py, text, |text| {
-            let checked = Checked::from_json(text)?;
+        let (simulation, doubts) = build_interruptible(py, text, |text| {
+            let checked = ValidScenario::from_json(text)?;
             let simulation = crawler2d_core::Simulation::new(&checked);
             Ok((simulation, checked.doubts().to_vec()))
         })?;
-        errors::warn(py, &doubts)?;
+        calls::warn(py, &doubts)?;
         Ok(Self::of(simulation))
     }
 
     /// Restores a simulation from a snapshot.
     #[staticmethod]
     fn from_snapshot(py: Python<'_>, snapshot: PyBackedBytes) -> PyResult<Self> {
-        let simulation = beside(py, &Cancel::default(), move || {
+        let simulation = run_interruptible(py, &Cancel::default(), move || {
             crawler2d_core::Simulation::from_snapshot(&snapshot)
         })?;
         Ok(Self::of(simulation))
@@ -90,18 +91,18 @@ impl Simulation {
         let wanted = convert::wanted(&trials)?;
         let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
         let asked = cancel.clone();
-        let why = beside(py, &cancel, move || {
+        let why = run_interruptible(py, &cancel, move || {
             call(&inner, |simulation| {
                 crawler2d_core::diagnose(simulation, wanted, &asked)
             })
         })?;
-        why.map(|d| diagnosis::of(py, &d)).transpose()
+        why.map(|d| convert::diagnosis(py, &d)).transpose()
     }
 
     /// Advances by a duration; the last step ends with it.
     fn advance(&self, py: Python<'_>, duration: f64) -> PyResult<()> {
         if !(0.0..=1e5).contains(&duration) {
-            return Err(errors::argument(
+            return Err(calls::argument(
                 "duration",
                 &duration.to_string(),
                 "must be >= 0 s and <= 100000 s",
@@ -119,7 +120,7 @@ impl Simulation {
         }
         let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
         let asked = cancel.clone();
-        let slowest = beside(py, &cancel, move || {
+        let slowest = run_interruptible(py, &cancel, move || {
             call(&inner, |simulation| {
                 let mut slowest = Duration::ZERO;
                 while simulation.time() < end {
@@ -222,7 +223,7 @@ impl Simulation {
         }
         let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
         let asked = cancel.clone();
-        let outcome = beside(py, &cancel, move || {
+        let outcome = run_interruptible(py, &cancel, move || {
             call(&inner, |simulation| {
                 crawler2d_core::outcome_of(simulation, &asked)
             })
@@ -265,7 +266,7 @@ impl Simulation {
         py: Python<'_>,
         change: impl Send + FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
     ) -> PyResult<T> {
-        py.detach(|| errors::guarded(|| call(&self.inner, change)))
+        py.detach(|| calls::guarded(|| call(&self.inner, change)))
     }
 }
 
@@ -285,4 +286,59 @@ fn call<T>(
         *inner = None;
     }
     result
+}
+
+/// A valid scenario, with the robot and the ground that were built to check it.
+#[pyclass(frozen, module = "crawler2d._core", name = "Passed")]
+pub(crate) struct PreparedScenario {
+    pub checked: ValidScenario,
+}
+
+#[pymethods]
+impl PreparedScenario {
+    /// Validates a scenario; robot or ground equal to those of `like` are not built again.
+    #[new]
+    #[pyo3(signature = (text, like = None))]
+    fn new(py: Python<'_>, text: PyBackedStr, like: Option<PyRef<'_, Self>>) -> PyResult<Self> {
+        let like = like.map(|like| like.checked.clone());
+        let checked = build_interruptible(py, text, move |text| {
+            ValidScenario::from_json_like(text, like.as_ref())
+        })?;
+        Ok(Self { checked })
+    }
+
+    /// Scenarios that differ from this one in some numbers, one per row; or the error of what breaks a rule.
+    ///
+    /// `fields` are JSON pointers, each with whether it takes whole numbers; `rows` has shape (n, fields).
+    fn varied<'py>(
+        &self,
+        py: Python<'py>,
+        fields: Vec<(String, bool)>,
+        rows: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let numbers = rows.as_slice()?.to_vec();
+        let (count, width) = (rows.shape()[0], rows.shape()[1]);
+        let rows = (0..count).map(|row| &numbers[row * width..(row + 1) * width]);
+        let found = calls::guarded(|| Ok(self.checked.varied(&fields, rows)))?;
+        let list = PyList::empty(py);
+        for each in found {
+            match each {
+                Ok(checked) => list.append(Bound::new(py, Self { checked })?)?,
+                Err(error) => list.append(calls::to_python(error).into_value(py))?,
+            }
+        }
+        Ok(list)
+    }
+
+    /// The canonical JSON.
+    #[getter]
+    fn text(&self) -> String {
+        self.checked.scenario().to_json()
+    }
+
+    /// SHA-256 of the canonical JSON.
+    #[getter]
+    fn identity(&self) -> String {
+        self.checked.scenario().identity()
+    }
 }

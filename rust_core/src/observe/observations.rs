@@ -18,7 +18,7 @@ pub(super) const LOOK: Seconds = Seconds(0.01);
 
 /// What a monitor has observed of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Seen {
+pub(crate) struct Observations {
     pub(super) looks: u64,
     pub(super) last_time: f64,
     pub(super) progress: Progress,
@@ -58,7 +58,7 @@ pub(crate) struct Seen {
     pub effort: Effort,
 }
 
-impl Seen {
+impl Observations {
     /// No observations, at a time [s].
     pub(crate) fn from(time: f64) -> Self {
         Self {

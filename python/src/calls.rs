@@ -1,9 +1,13 @@
-//! Turns errors and doubts of the core into the exceptions of `crawler2d.errors`; no panic gets past this file.
+//! Calls of the core: beside the interpreter, which answers Ctrl-C in the meantime, and with its errors and doubts as the
+//! exceptions of `crawler2d.errors`; no panic gets past this file.
 
 use std::collections::HashSet;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::time::Duration;
 
-use crawler2d_core::{Doubt, Error, LimitError, check_rounding};
+use crawler2d_core::{Cancel, Doubt, Error, LimitError, check_rounding};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyDict;
 
 /// Runs the core, turning errors and panics into Python exceptions.
@@ -93,4 +97,58 @@ fn raise<'py>(
         Ok(exception) => PyErr::from_value(exception),
         Err(error) => error,
     }
+}
+
+/// Runs the core in a thread of its own and checks for Ctrl-C until it has ended.
+///
+/// Ctrl-C is answered at once: the thread is asked to end, and does so at its next check. The data that it works
+/// on must be its own, or locked.
+pub(crate) fn run_interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    cancel: &Cancel,
+    call: impl Send + 'static + FnOnce() -> Result<T, Error>,
+) -> PyResult<T> {
+    /// Time between two checks.
+    const PAUSE: Duration = Duration::from_millis(10);
+
+    let (sender, receiver) = sync_channel(1);
+    let work = move || {
+        // After Ctrl-C, nobody receives the result.
+        let _ = sender.send(caught(call));
+    };
+    let thread = std::thread::Builder::new().spawn(work);
+    if let Err(error) = thread {
+        return Err(limit(&format!("a thread could not be started: {error}")));
+    }
+    let result = py.detach(move || {
+        loop {
+            match receiver.recv_timeout(PAUSE) {
+                Ok(result) => break Ok(result),
+                Err(RecvTimeoutError::Timeout) => {
+                    #[allow(clippy::redundant_closure_for_method_calls)]
+                    // the closure's lifetime is not general enough
+                    Python::attach(|py| py.check_signals()).inspect_err(|_| cancel.ask())?;
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    break Err(internal("a thread of the core failed"));
+                }
+            }
+        }
+    })?;
+    result.map_err(to_python)
+}
+
+/// Builds what a text describes, beside the interpreter if that may take long.
+pub(crate) fn build_interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    text: PyBackedStr,
+    call: impl Send + 'static + FnOnce(&str) -> Result<T, Error>,
+) -> PyResult<T> {
+    /// A text of this many bytes is built within some milliseconds.
+    const SHORT: usize = 50_000;
+
+    if text.len() <= SHORT {
+        return guarded(|| call(&text));
+    }
+    run_interruptible(py, &Cancel::default(), move || call(&text))
 }
