@@ -81,6 +81,12 @@ mod _core {
             .collect()
     }
 
+    /// Former names of metrics, with those that they have now.
+    #[pyfunction]
+    fn renamed_metrics() -> HashMap<&'static str, &'static str> {
+        crawler2d_core::Metrics::RENAMED.into()
+    }
+
     /// Settings of the core's own contacts that rapier does not have, with their defaults.
     #[pyfunction]
     fn own_settings() -> HashMap<&'static str, f64> {

@@ -7,7 +7,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.common.units import METRICS, unit_of
+from crawler2d.common.units import METRICS, RENAMED_METRICS, unit_of
 from crawler2d.parameters import (
     drivetrain,
     flippers,
@@ -23,6 +23,15 @@ from crawler2d.pictures import page
 
 def test_every_metric_has_a_unit(run: c2d.Run) -> None:
     assert set(run.metrics) == set(METRICS)
+
+
+def test_a_metric_answers_to_its_former_name_with_a_warning(run: c2d.Run) -> None:
+    for before, now in RENAMED_METRICS.items():
+        for look in (run.metrics.__getitem__, run.metrics.get):
+            with pytest.warns(DeprecationWarning, match=f"{before!r} is called {now!r} now"):
+                assert look(before) == run.metrics[now]
+        assert before not in set(run.metrics)
+    assert run.metrics.get("another") is None
 
 
 def test_a_page_shows_figures_of_the_core_in_its_units() -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from crawler2d.common.extras import extra
+from crawler2d.common.units import RENAMED_METRICS
 from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
@@ -66,6 +68,23 @@ class Metrics(dict[str, float]):
     """
 
     __slots__ = ()
+
+    def __missing__(self, name: str) -> float:
+        """Look up the former name of a metric, with a warning."""
+        now = RENAMED_METRICS.get(name)
+        if now not in self:
+            raise KeyError(name)
+        warnings.warn(
+            f"the metric {name!r} is called {now!r} now", DeprecationWarning, stacklevel=2
+        )
+        return self[now]
+
+    def get(self, name: str, default: Any = None, /) -> Any:
+        """Look up a figure, also by a former name."""
+        try:
+            return self[name]
+        except KeyError:
+            return default
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
         """Raise, and say why."""

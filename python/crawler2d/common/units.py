@@ -6,7 +6,7 @@ import textwrap
 
 from crawler2d import _core
 
-__all__ = ["FIELDS", "METRICS", "table_of_metrics", "unit_of"]
+__all__ = ["FIELDS", "METRICS", "RENAMED_METRICS", "table_of_metrics", "unit_of"]
 
 _FIELDS_BY_UNIT = {
     "m": (
@@ -66,6 +66,9 @@ def unit_of(path: str) -> str | None:
 
 METRICS = {name: unit for name, unit, _ in _core.metrics()}
 """Unit of every metric of a run."""
+
+RENAMED_METRICS = _core.renamed_metrics()
+"""Former names of metrics, with those that they have now."""
 
 
 def table_of_metrics() -> str:

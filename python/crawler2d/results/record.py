@@ -327,7 +327,7 @@ class Row:
             identity,
             scenario,
             str(result["outcome"]),
-            result["metrics"],
+            Figures(result["metrics"]),
             result["diagnosis"],
             result["wall_time"],
         )

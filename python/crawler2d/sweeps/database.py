@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d._core import build_info
+from crawler2d.common.arrays import Figures
+from crawler2d.common.units import RENAMED_METRICS
 from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, StoreError
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import NO_RESULT, Row, diagnosis_json, read_diagnosis
@@ -105,7 +107,12 @@ def read_checked(values: Sequence[Any]) -> Kept:
             identity,
             scenario,
             outcome,
-            {name: _number(value) for name, value in json.loads(metrics).items()},
+            Figures(
+                {
+                    RENAMED_METRICS.get(name, name): _number(value)
+                    for name, value in json.loads(metrics).items()
+                }
+            ),
             None if diagnosis is None else read_diagnosis(diagnosis),
             _number(wall_time),
             None if error is None else _read_error(*json.loads(error)),
