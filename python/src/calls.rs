@@ -1,5 +1,5 @@
-//! Calls of the core: beside the interpreter, which answers Ctrl-C in the meantime, and with its errors and doubts as the
-//! exceptions of `crawler2d.errors`; no panic gets past this file.
+//! Calls of the core: in a thread of their own, so that the interpreter can answer Ctrl-C, and with its errors and doubts
+//! as the exceptions of `crawler2d.errors`; no panic gets past this file.
 
 use std::collections::HashSet;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -138,7 +138,7 @@ pub(crate) fn run_interruptible<T: Send + 'static>(
     result.map_err(to_python)
 }
 
-/// Builds what a text describes, beside the interpreter if that may take long.
+/// Builds what a text describes, in a thread of its own if that may take long.
 pub(crate) fn build_interruptible<T: Send + 'static>(
     py: Python<'_>,
     text: PyBackedStr,

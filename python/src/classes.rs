@@ -27,7 +27,7 @@ pub(crate) struct Simulation {
     outcome: Mutex<Option<Outcome>>,
 }
 
-/// Contacts at an instant, whose columns are made when somebody asks for them.
+/// Contacts at an instant, whose columns are made when they are asked for.
 #[pyclass(frozen, module = "crawler2d._core")]
 struct Contacts(ContactTable);
 

@@ -149,7 +149,7 @@ def test_damaged_bytes_are_refused(scenario: Scenario, damage: str) -> None:
     assert caught.value.path == "snapshot"
     assert caught.value.rule in (
         "must be a snapshot of crawler2d",
-        "must be whole and unchanged",
+        "must be complete and unchanged",
     )
 
 

@@ -1,6 +1,6 @@
 //! Is a stop an equilibrium of rigid bodies with Coulomb friction, whatever engine came to it?
 //!
-//! Only the pose counts, the places where the ground bears, and which surfaces slide on it. The forces are found anew:
+//! Only the pose counts, the places where the ground bears, and which surfaces slide on it. The forces are computed again:
 //! sliding contacts have friction at its limit against their slip, sticking ones any within it, motors any force within
 //! theirs, gears that lock themselves any at rest, and the ground only pushes.
 

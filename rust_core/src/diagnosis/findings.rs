@@ -196,7 +196,7 @@ pub(super) struct Facts {
 pub enum Change {
     /// Nothing: the run goes on.
     Nothing,
-    /// Nothing, but the track is built anew, as others are.
+    /// Nothing, but the track is built again, as for other changes.
     Rebuilt,
     /// A closed track, with the grousers of the model where it has some.
     ClosedTrack,

@@ -1,7 +1,7 @@
-//! rapier's own dynamics behind the same door: the robot in its bodies, colliders, joints and motors.
+//! rapier's own dynamics as a second backend: the robot in its bodies, colliders, joints and motors.
 //!
 //! It shares the robot, the ground and the outlines with our own dynamics, and nothing of the equations of motion: its
-//! wheels are bodies on revolute joints, its contacts and forces are the engine's. A step moves the same [`State`] and
+//! wheels are bodies on revolute joints, its contacts and forces are the engine's. A step moves the same state and
 //! gives the same contacts with forces, so that everything that watches a run works on both.
 //!
 //! docs/decisions/0016 explains why and how.

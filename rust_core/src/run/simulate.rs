@@ -27,7 +27,7 @@ pub struct Run {
     pub metrics: Metrics,
     /// [m] How deep the robot was in the ground, by its outline alone, at some instants.
     pub depth: f64,
-    /// What in it is hardly right.
+    /// Results that are unlikely to be right.
     pub doubts: Vec<Doubt>,
     /// History, if recorded.
     pub trace: Trace,

@@ -74,7 +74,7 @@ impl Simulation {
         branch
     }
 
-    /// The same simulation, watched anew; the same engine moves it.
+    /// A copy whose observations begin now; the same engine moves it.
     pub(in crate::run) fn copy(&self) -> Self {
         let model = self.dynamics.model().clone();
         let mut copy = self.continued(&self.scenario, Arc::clone(&self.ground), model);

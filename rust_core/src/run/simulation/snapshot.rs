@@ -103,7 +103,7 @@ impl Simulation {
                 "must be a snapshot of crawler2d",
             ));
         };
-        let damaged = || refused("damaged bytes", "must be whole and unchanged");
+        let damaged = || refused("damaged bytes", "must be complete and unchanged");
         let length = body.len().checked_sub(DIGEST).ok_or_else(damaged)?;
         let (body, digest) = body.split_at(length);
         if Sha256::digest(&snapshot[..MAGIC.len() + length])[..] != *digest {

@@ -190,12 +190,12 @@ fn bytes_that_are_no_whole_snapshot_are_refused() {
     assert!(refusal(b"").contains("must be a snapshot of crawler2d"));
     assert!(refusal(&snapshot[1..]).contains("must be a snapshot of crawler2d"));
     for length in [MAGIC.len(), MAGIC.len() + DIGEST, snapshot.len() - 1] {
-        assert!(refusal(&snapshot[..length]).contains("must be whole and unchanged"));
+        assert!(refusal(&snapshot[..length]).contains("must be complete and unchanged"));
     }
     for place in [MAGIC.len(), snapshot.len() / 2, snapshot.len() - 1] {
         let mut changed = snapshot.clone();
         changed[place] ^= 1;
-        assert!(refusal(&changed).contains("must be whole and unchanged"));
+        assert!(refusal(&changed).contains("must be complete and unchanged"));
     }
 }
 
