@@ -72,19 +72,21 @@ class Metrics(dict[str, float]):
     def __missing__(self, name: str) -> float:
         """Look up the former name of a metric, with a warning."""
         now = RENAMED_METRICS.get(name)
-        if now not in self:
+        if now is None or now not in self:
             raise KeyError(name)
         warnings.warn(
             f"the metric {name!r} is called {now!r} now", DeprecationWarning, stacklevel=2
         )
         return self[now]
 
-    def get(self, name: str, default: Any = None, /) -> Any:
-        """Look up a figure, also by a former name."""
-        try:
-            return self[name]
-        except KeyError:
-            return default
+    if not TYPE_CHECKING:  # the types are those of any dict
+
+        def get(self, name: str, default: Any = None, /) -> Any:
+            """Look up a metric, also by a former name."""
+            try:
+                return self[name]
+            except KeyError:
+                return default
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
         """Raise, and say why."""

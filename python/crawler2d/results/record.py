@@ -327,7 +327,7 @@ class Row:
             identity,
             scenario,
             str(result["outcome"]),
-            Figures(result["metrics"]),
+            Metrics(result["metrics"]),
             result["diagnosis"],
             result["wall_time"],
         )

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d._core import build_info
-from crawler2d.common.arrays import Figures
+from crawler2d.common.arrays import Metrics
 from crawler2d.common.units import RENAMED_METRICS
 from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, StoreError
 from crawler2d.results.outcome import Outcome
@@ -107,7 +107,7 @@ def read_checked(values: Sequence[Any]) -> Kept:
             identity,
             scenario,
             outcome,
-            Figures(
+            Metrics(
                 {
                     RENAMED_METRICS.get(name, name): _number(value)
                     for name, value in json.loads(metrics).items()

@@ -197,7 +197,7 @@ impl Statics {
             // The force at the surface, and its reaction on the chassis.
             let mut effect = self.nothing();
             effect[MOMENT] = self.radius / self.lever;
-            effect[self.of_drive(k)] = -1.0;
+            effect[Self::of_drive(k)] = -1.0;
             let [least, most] = self.bounds[k];
             forces.push(Force {
                 effect,
@@ -214,20 +214,20 @@ impl Statics {
             let mut effect = self.nothing();
             (effect[HORIZONTAL], effect[VERTICAL]) = (x, y);
             effect[MOMENT] = lever / self.lever;
-            effect[self.of_drive(drive)] = 1.0;
+            effect[Self::of_drive(drive)] = 1.0;
             forces.push(Force::within(effect, WITHOUT_LIMIT));
         }
         forces
     }
 
     /// The balance of the torque on a drive.
-    fn of_drive(&self, drive: usize) -> usize {
+    fn of_drive(drive: usize) -> usize {
         MOMENT + 1 + drive
     }
 
     /// The balance of the moment on an arm about its pivot.
     fn of_hinge(&self, hinge: usize) -> usize {
-        self.of_drive(self.motors.len()) + hinge
+        Self::of_drive(self.motors.len()) + hinge
     }
 
     /// Number of balances.
@@ -247,7 +247,7 @@ impl Statics {
         (effect[HORIZONTAL], effect[VERTICAL]) = (unit.x, unit.y);
         effect[MOMENT] = (n.lever + t.lever * friction) / self.lever;
         if let Some(k) = support.drive {
-            effect[self.of_drive(k)] = (n.spin_lever + t.spin_lever * friction) / self.radius;
+            effect[Self::of_drive(k)] = (n.spin_lever + t.spin_lever * friction) / self.radius;
         }
         if let Some(k) = support.hinge {
             let lever = n.joint_lever + t.joint_lever * friction;

@@ -78,7 +78,7 @@ impl Simulation {
     pub(in crate::run) fn copy(&self) -> Self {
         let model = self.dynamics.model().clone();
         let mut copy = self.continued(&self.scenario, Arc::clone(&self.ground), model);
-        copy.engine = self.engine.clone();
+        copy.engine.clone_from(&self.engine);
         copy.commands.follow_scenario = self.commands.follow_scenario;
         copy
     }

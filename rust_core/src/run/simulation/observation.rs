@@ -148,7 +148,7 @@ impl Simulation {
 struct Body {
     /// [kg] Mass.
     mass: f64,
-    /// [kg m^2] StateView of inertia about its centre of mass.
+    /// [kg m^2] Moment of inertia about its centre of mass.
     inertia: f64,
     /// [m] Centre of mass.
     center: Vector,
@@ -167,7 +167,7 @@ impl Simulation {
         moment / mass
     }
 
-    /// [kg m^2] StateView of inertia about the centre of mass, drives included.
+    /// [kg m^2] Moment of inertia about the centre of mass, drives included.
     pub fn moment_of_inertia(&self) -> f64 {
         let center = self.center_of_mass();
         let about = |body: &Body| (body.center - center).length_squared();

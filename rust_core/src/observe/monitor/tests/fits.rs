@@ -39,16 +39,16 @@ fn what_was_seen_with_one_thing_spoilt_does_not_fit() {
             r.monitor.observed.time_to_clear = f64::NAN;
         }),
         ("penetration", |r| {
-            r.monitor.observed.max_penetration = f64::NAN
+            r.monitor.observed.max_penetration = f64::NAN;
         }),
         ("largest angle", |r| r.monitor.observed.max_angle = f64::NAN),
         ("smallest angle", |r| {
-            r.monitor.observed.min_angle = f64::NAN
+            r.monitor.observed.min_angle = f64::NAN;
         }),
         ("work", |r| r.monitor.observed.drive_work = f64::NAN),
         ("path", |r| r.monitor.observed.path_length = f64::NAN),
         ("tension", |r| {
-            r.monitor.observed.max_track_tension = f64::NAN
+            r.monitor.observed.max_track_tension = f64::NAN;
         }),
         ("gap", |r| r.monitor.observed.max_pin_gap = f64::NAN),
         ("guide", |r| {

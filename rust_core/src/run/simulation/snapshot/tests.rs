@@ -128,13 +128,13 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
             (s.time, s.last.began) = (fresh.time, fresh.time);
         }),
         ("step_control", |s, fresh| {
-            s.step_control = fresh.step_control
+            s.step_control = fresh.step_control;
         }),
         ("command", |s, fresh| {
-            s.commands.speed = fresh.commands.speed
+            s.commands.speed = fresh.commands.speed;
         }),
         ("driver", |s, fresh| {
-            s.commands.driver = fresh.commands.driver
+            s.commands.driver = fresh.commands.driver;
         }),
         ("set point", |s, fresh| s.set_point = fresh.set_point),
         ("push", |s, fresh| s.commands.push = fresh.commands.push),
