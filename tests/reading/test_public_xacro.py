@@ -215,7 +215,7 @@ def test_what_needs_an_include_that_was_left_out_says_so(tmp_path: Path) -> None
     assert re.fullmatch(
         r"cart\.xacro:1 must be xacro that expands, for which it may need what was left out,"
         r" \$\(find parts\)/sizes\.xacro \(cart\.xacro:1\), got name 'hull_mass' is not defined .*:"
-        r" put the file there, or say by packages=\{name: folder\} where its package is",
+        r" put the file there, or pass the folder of its package as packages=\{name: folder\}",
         str(caught.value),
     )
 

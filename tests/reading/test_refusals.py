@@ -121,7 +121,7 @@ def test_a_mesh_that_is_not_there_is_left_out_or_refused_on_request(tmp_path: Pa
 def test_a_mesh_of_an_unknown_kind_or_package_is_left_out(tmp_path: Path) -> None:
     (tmp_path / "a.blend").write_text("")
     for name, reason in (
-        ("a.blend", "must be a mesh of a kind"),
+        ("a.blend", "must be a mesh of a known kind"),
         ("package://p/a.stl", "packages="),
     ):
         left_out(tmp_path, urdf(WHEELS, shapes=collision(f'<mesh filename="{name}"/>')), reason)

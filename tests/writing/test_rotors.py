@@ -43,7 +43,7 @@ def belt_radius(robot: c2d.Robot) -> float:
 
 def left_out(text: str) -> list[str]:
     """Names of what the comment says is left out."""
-    found = re.search(r"Left out, for [A-Z]+ has no place for it: (.*)\.\n", text)
+    found = re.search(r"Left out, as [A-Z]+ has no place for it: (.*)\.\n", text)
     return [] if found is None else found[1].split(", ")
 
 
