@@ -1,5 +1,5 @@
 //! Coulomb's law with softness: the grip and the impulses of a contact at given velocities, the constraints of a grip, and
-//! the conditions under which it holds. Nothing outside of this file knows the limit of friction.
+//! the conditions under which it holds. No other file of the solver knows the limit of friction.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
