@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import crawler2d as c2d
 from crawler2d.parameters.track import Track
@@ -14,17 +14,15 @@ FRICTION = 0.9
 """[-] Between track and ground: an estimate, like those of the robot."""
 
 
-def study_robot(*, flippers: bool = False, **parts: Any) -> c2d.Robot:
+def study_robot(flippers: c2d.Flippers | Literal["built"] | None = None, **parts: Any) -> c2d.Robot:
     """Make the robot of the studies: the Engineer without rotors, as models for simulators are.
 
     Parameters
     ----------
-    flippers : bool
-        Whether it has its own.
-    **parts
-        See `engineer`.
+    flippers, **parts
+        See `engineer`; by default it has no flippers.
     """
-    return c2d.robots.engineer(flippers="built" if flippers else None, **parts).without_rotors()
+    return c2d.robots.engineer(flippers=flippers, **parts).without_rotors()
 
 
 def study_robots() -> dict[str, c2d.Robot]:

@@ -195,15 +195,15 @@ def chain_steps_text(rows: Sequence[ChainStep], heights: Sequence[float] = _CHAI
 
 def flipper_robots() -> dict[str, c2d.Robot]:
     """List the robots: without flippers, with front flippers, driven backwards, with both."""
-    built = study_robot(flippers=True)
+    built = study_robot("built")
     arms = built.flippers
     if arms is None:
         raise AssertionError("the preset has flippers")
     return {
         "no flippers": study_robot(),
         "in front": built,
-        "behind": replace(built, flippers=replace(arms, ends="rear")),
-        "both ends": replace(built, flippers=replace(arms, ends="both")),
+        "behind": study_robot(replace(arms, ends="rear")),
+        "both ends": study_robot(replace(arms, ends="both")),
     }
 
 

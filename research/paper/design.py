@@ -262,11 +262,12 @@ def models_of(
     names: Iterable[str], setting: Setting = PRESET, *, flippers: bool = True
 ) -> dict[str, Any]:
     """Put layouts with the motors of a setting on the robot, as studies take their `models`."""
-    known, robot = layouts(), study_robot(flippers=flippers)
+    known, robot = layouts(), study_robot("built" if flippers else None)
     return {name: {"robot": setting.on(known[name].on(robot))} for name in names}
 
 
 def climb(ground: Terrain, setting: Setting = PRESET, *, flippers: bool = True) -> c2d.Scenario:
     """Drive the robot with the motors of a setting, the gait `Climb` and the paper's speed."""
     drive = c2d.Drive(speed=paper.TABLE_1.max_speed, gait=c2d.Climb())
-    return c2d.Scenario(setting.on(study_robot(flippers=flippers)), ground, drive=drive)
+    robot = setting.on(study_robot("built" if flippers else None))
+    return c2d.Scenario(robot, ground, drive=drive)

@@ -143,7 +143,7 @@ _OTHER_FIGURES = {
 
 def phases(work: Work) -> list[Phase]:
     """Compare the starting angles of all gears with those of the formula."""
-    robot = study_robot(flippers=True)
+    robot = study_robot("built")
     runs = _runs([robot.with_track(track) for track in _PHASED.values()], work)
     return [
         Phase(model=model, count=len(gears), off=max(off_formula(*gear) for gear in gears))

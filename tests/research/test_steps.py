@@ -21,6 +21,7 @@ from research.steps import (
     chain_models,
     chain_steps,
     chain_steps_text,
+    flipper_robots,
     highest_steps,
     highest_steps_text,
     plot_chains,
@@ -119,6 +120,18 @@ def test_the_table_of_steps_has_its_units() -> None:
     assert "64.00 to 64.48" in line
     assert "0.50 (0.40 to 0.60)" in line
     assert line.split()[-1] == "54"
+
+
+def test_robots_with_other_flippers_weigh_what_the_preset_makes_them_weigh() -> None:
+    arms = c2d.robots.engineer().flippers
+    assert arms is not None
+    robots = flipper_robots()
+    for name, other in (
+        ("in front", arms),
+        ("behind", replace(arms, ends="rear")),
+        ("both ends", replace(arms, ends="both")),
+    ):
+        assert robots[name] == c2d.robots.engineer(flippers=other).without_rotors()
 
 
 def test_flippers_at_both_ends_carry_a_belt_over_a_higher_step() -> None:
