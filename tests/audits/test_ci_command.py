@@ -126,7 +126,7 @@ def test_a_baseline_is_written_compared_and_updated(quick: Path, capsys: Any) ->
     # The other file is not there yet.
     status, out, _ = run(capsys, *both, "--baseline", "audit.json")
     assert status == 1
-    assert "not in the baseline: all of it is new" in out
+    assert "not in the baseline: everything is new" in out
     status, out, _ = run(capsys, *both, *update)
     assert status == 0
     assert run(capsys, *both, "--baseline", "audit.json")[0] == 0
