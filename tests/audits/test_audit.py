@@ -518,7 +518,7 @@ def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
     (tmp_path / "cart.urdf").unlink()
     few: Any = {"samples": 1, "repeats": 1, "duration": 0.1, "repair": False, **QUIET}
     assert c2d.audit(reading, **few).reading is reading
-    with pytest.raises(c2d.ScenarioError, match="engine must be left out: no file is read"):
+    with pytest.raises(c2d.ScenarioError, match="engine must be left out, because no file is read"):
         c2d.audit(reading, engine="gz")
 
 
