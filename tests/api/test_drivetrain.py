@@ -78,7 +78,7 @@ def test_another_engine_refuses_motors_that_it_does_not_have() -> None:
 
 def test_a_lock_is_refused_where_it_has_nothing_to_do_and_says_why() -> None:
     with_controller = refusal(driven(self_locking=True, controller=c2d.PI(1.0)))
-    assert "with a controller: the load never reaches the motor" in str(with_controller)
+    assert "with a controller, got true: the load never reaches the motor" in str(with_controller)
     on_a_force = refusal(driven(self_locking=True).with_track(c2d.ForceTrack()))
     assert on_a_force.path == "robot.drivetrain.self_locking"
     with pytest.raises(c2d.errors.ScenarioError, match="must be True or False"):

@@ -342,7 +342,7 @@ def test_of_several_models_the_one_that_can_drive_is_read(tmp_path: Path) -> Non
     assert read(tmp_path, text, "w.sdf").robot.name == "cart"
     refused(tmp_path, world.format(crate + door), "one of several with wheels .* door", "w.sdf")
     two = f"<model{cart}</model><model{cart.replace('cart', 'other', 1)}</model>{crate}"
-    refused(tmp_path, world.format(two), "model= names it; .* got cart, other$", "w.sdf")
+    refused(tmp_path, world.format(two), "got cart, other: model= names it; ", "w.sdf")
 
 
 def test_of_several_bodies_the_one_that_can_drive_is_read(tmp_path: Path) -> None:

@@ -308,7 +308,7 @@ XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
     [
         ("\n<xacro:wheel/>", 2, "unknown macro name: xacro:wheel"),
         ('\n\n<link name="a${mass + 1}"/>', 3, "must be xacro that expands"),
-        ('\n<link name="$(find parts)"/>', 2, r"got parts: packages={name: folder} says"),
+        ('\n<link name="$(find parts)"/>', 2, r"got parts: packages={name: folder} gives"),
     ],
 )
 def test_xacro_that_does_not_expand_is_refused_with_its_line(

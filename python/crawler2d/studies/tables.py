@@ -53,7 +53,9 @@ def read_terrains(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
     by_label = read_labels(terrains, "terrains")
     for label, terrain in by_label.items():
         if not isinstance(terrain, Terrain):
-            raise ScenarioError(f"terrains[{label!r}]", terrain, "must be a terrain")
+            # A list labels itself: its values are no places in it.
+            path = f"terrains[{label!r}]" if isinstance(terrains, Mapping) else "terrains"
+            raise ScenarioError(path, terrain, "must be a terrain")
     return by_label
 
 

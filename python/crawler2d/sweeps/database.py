@@ -276,7 +276,9 @@ def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
     with store_errors(path), contextlib.ExitStack() as stack:
         real = Path(os.path.realpath(path))
         lock = stack.enter_context(contextlib.closing(Lock(real)))
-        if not real.is_file() or real.stat().st_nlink > 1:
+        if not real.is_file():
+            raise StoreError(f"{path} must be a file")
+        if real.stat().st_nlink > 1:
             raise StoreError(
                 f"{path} has a second name, a hard link, and SQLite loses what is written under two"
                 " names: make a copy of it"
