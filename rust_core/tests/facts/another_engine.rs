@@ -101,6 +101,7 @@ fn ensemble() -> (u32, u32) {
 
 /// Chaotic from grouser to grouser, so that only rates mean anything.
 #[test]
+#[ignore = "a minute of rapier; run by make soak"]
 fn the_engines_own_dynamics_agree_on_who_climbs_with_gear_wheels() {
     let (starts, most_apart) = ensemble();
     for (count, height) in [(3, 0.06), (3, 0.12), (5, 0.09), (5, 0.12)] {
@@ -116,6 +117,7 @@ fn the_engines_own_dynamics_agree_on_who_climbs_with_gear_wheels() {
 /// them: their tips chatter in rapier, and it slips (docs/decisions/0016). A run costs rapier two seconds: without
 /// `CRAWLER2D_SOAK` the lower step is left to the gear wheels.
 #[test]
+#[ignore = "a minute of rapier; run by make soak"]
 fn the_engines_own_dynamics_agree_on_small_wheels_round_the_outline() {
     let (starts, most_apart) = ensemble();
     let mut cases = vec![("round", Wheel::Round, 0.06), ("gear", paper_gear(), 0.03)];
