@@ -15,11 +15,11 @@ pub struct Model {
     pub center_of_mass: Vector,
     /// [kg m^2] Moment of inertia without the parts that turn with the drives.
     pub moment_of_inertia: f64,
-    /// Parts that can meet the ground, in the order of [`Self::in_order`].
+    /// Parts that can meet the ground, in the order of `in_order`.
     pub parts: Vec<Part>,
     /// Number of drives.
     pub drives: usize,
-    /// Number of drives with a motor, which are [`Self::driven`].
+    /// Number of drives with a motor, which are `driven`.
     pub motors: usize,
     /// [kg] Mass that moves at the surface speed, for each drive.
     pub drive_masses: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Model {
     pub drive_radius: f64,
     /// What each motor can do.
     pub motor: MotorRule,
-    /// A drive, [`Self::push_drive`], pushes the chassis along its axis, whether it touches the ground or not.
+    /// A drive, `push_drive`, pushes the chassis along its axis, whether it touches the ground or not.
     pub pushes_chassis: bool,
     /// Chains of shoes, each with the drive of the same number. If there are any, `mass`, `center_of_mass` and
     /// `moment_of_inertia` are those of the chassis without them.
