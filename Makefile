@@ -30,7 +30,7 @@ study: $(VENV)/.built ## the main job in half a minute; all of it with ARGS=--fu
 
 # Two at a time, in this order: where one needs but one core, compiles or waits for another build, the other takes the rest.
 test: ## all tests (Rust, Python, documentation) and all checks
-	@$(MAKE) --no-print-directory --jobs=2 test-rust test-python test-debug check
+	@$(MAKE) --no-print-directory --jobs=2 test-rust test-python check
 test-rust: | tools
 	$(CARGO) test --release
 test-python: $(VENV)/.built
@@ -113,7 +113,7 @@ paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Tab
 picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
 	$(BIN)/python docs/readme_picture.py
 
-soak: $(VENV)/.built ## the long tests, minutes to hours
+soak: $(VENV)/.built test-debug ## the long tests, and those of a debug build, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored
 	CRAWLER2D_SOAK=1 $(BIN)/python -m pytest -m 'soak or not soak'
 
