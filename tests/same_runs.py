@@ -18,16 +18,9 @@ import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from tests.fuzz.drawn_robots import Draw
 from tests.fuzz.drawn_scenes import drawn_scenario
-from tests.shared import VARIANTS
+from tests.shared import ARRAYS, VARIANTS
 
 DRAWN = 400
-
-ARRAYS = (
-    *("time", "position", "velocity", "chassis_angle", "angular_velocity", "commanded_speed"),
-    *("track_speed", "track_position", "slip_ratio", "tractive_effort", "drive_force"),
-    *("drive_speeds", "drive_positions", "drive_forces", "track_tension", "shoe_poses"),
-    *("flipper_angles", "flipper_torques"),
-)
 
 
 def scenarios() -> Iterator[tuple[str, Scenario]]:

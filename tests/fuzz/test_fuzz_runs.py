@@ -16,18 +16,12 @@ from crawler2d.parameters.scenario import Scenario
 from tests.fuzz.account import SEED, Account, cases, interrupted
 from tests.fuzz.drawn_robots import Draw
 from tests.fuzz.drawn_scenes import STEPS, drawn_scenario
+from tests.shared import ARRAYS
 
 Say = Callable[[str], None]
 
 PATIENCE = 5.0  # [s] of processor time, after which a case is interrupted
 ANSWER = 0.2  # [s] of processor time from an interrupt to its answer
-
-ARRAYS = (
-    *("time", "position", "velocity", "chassis_angle", "angular_velocity", "commanded_speed"),
-    *("track_speed", "track_position", "slip_ratio", "tractive_effort", "drive_force"),
-    *("drive_speeds", "drive_positions", "drive_forces", "track_tension", "shoe_poses"),
-    *("flipper_angles", "flipper_torques"),
-)
 
 
 def _columns(name: str, table: Table) -> Iterable[tuple[str, Any]]:
