@@ -22,7 +22,7 @@ RUNS = {
         duration=8.0,
     ),
     "chain": c2d.Scenario(
-        ROBOT.with_track(c2d.SegmentalTrack()), c2d.terrains.step(0.3, friction=0.4), duration=6.0
+        ROBOT.with_track(c2d.SegmentalTrack()), c2d.terrains.step(0.3, friction=0.4), duration=3.0
     ),
 }
 

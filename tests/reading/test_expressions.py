@@ -290,7 +290,7 @@ PIECES = st.one_of(
 )
 
 
-@settings(max_examples=500, deadline=1000)
+@settings(deadline=1000)
 @given(st.lists(PIECES, max_size=40).map("".join))
 def test_whatever_is_written_gives_plain_data_or_an_error_soon(text: str) -> None:
     try:

@@ -15,6 +15,11 @@ pub(crate) fn is_soak() -> bool {
     std::env::var_os("CRAWLER2D_SOAK").is_some()
 }
 
+/// How many cases to try: few, or many where there is time.
+pub(crate) fn few_or_many(few: u32, many: u32) -> u32 {
+    if is_soak() { many } else { few }
+}
+
 /// The Engineer with a belt before a step, as the Python presets write it.
 pub(crate) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");

@@ -115,7 +115,7 @@ fn no_chain_leaves_its_wheels() {
 /// them, a hundred starts of each, ten of them for a minute.
 fn stays_on(build: Build, first: usize, deepest: f64) {
     let soak = is_soak();
-    let starts = if soak { 100 } else { 1 };
+    let starts = u64::from(few_or_many(1, 100));
     let (mut runs, mut draw) = (0, Draw(7));
     for (place, count) in COUNTS.into_iter().enumerate() {
         for seed in 0..trials(0).len() {

@@ -84,7 +84,7 @@ pub(crate) fn scale(scenario: &Scenario, account: &Account) -> f64 {
 fn unpowered_robots_never_gain_energy() {
     let mut draw = Draw(7);
     for (name, mut scenario) in models() {
-        for _ in 0..3 {
+        for _ in 0..few_or_many(1, 3) {
             scenario.robot.drivetrain.max_torque = 0.0;
             if let Some(flippers) = &mut scenario.robot.flippers {
                 flippers.torque_limit = 0.0;
@@ -105,12 +105,8 @@ fn unpowered_robots_never_gain_energy() {
 /// With `CRAWLER2D_SOAK` two thousand robots of each of two seeds.
 #[test]
 fn drawn_robots_gain_no_more_than_their_motors_give() {
-    if is_soak() {
-        for seed in [97, 1234] {
-            drawn_robots_gain_no_more(seed, 2000);
-        }
-    } else {
-        drawn_robots_gain_no_more(97, 100);
+    for seed in [97, 1234] {
+        drawn_robots_gain_no_more(seed, few_or_many(30, 2000));
     }
 }
 

@@ -248,7 +248,8 @@ fn wheels_of_unlike_radii_climb_on_one_motor_and_on_a_motor_each_in_rapier() {
 /// Axles hold exactly, so a wheel needs no mass of its own.
 #[test]
 fn wheels_that_weigh_next_to_nothing_climb_in_rapier() {
-    for (wheels, track) in [(3.0, line(3)), (24.0, circumferential(24, Wheel::Round))] {
+    let tracks = [(3.0, line(3)), (24.0, circumferential(24, Wheel::Round))];
+    for (wheels, track) in tracks.into_iter().take(few_or_many(1, 2) as usize) {
         let mut scenario = on_wheels();
         scenario.robot.track = track;
         scenario.robot.track_mass = 2e-5 * wheels * scenario.robot.mass;

@@ -11,22 +11,17 @@ use serde_json::{Value, json};
 use crate::common::*;
 use crate::drawn::{drawn, drawn_on_discs};
 
-/// More cases where time allows.
-fn cases(few: u64) -> u64 {
-    if is_soak() { 200 * few } else { few }
-}
-
 #[test]
 fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
-    run_finite_and_stay_out(31, cases(150), drawn);
+    run_finite_and_stay_out(31, few_or_many(60, 30_000), drawn);
 }
 
 #[test]
 fn drawn_scenarios_on_discs_run_finite_and_stay_out_of_the_ground() {
-    run_finite_and_stay_out(32, cases(75), drawn_on_discs);
+    run_finite_and_stay_out(32, few_or_many(30, 15_000), drawn_on_discs);
 }
 
-fn run_finite_and_stay_out(seed: u64, cases: u64, drawn: fn(&mut Draw) -> Scenario) {
+fn run_finite_and_stay_out(seed: u64, cases: u32, drawn: fn(&mut Draw) -> Scenario) {
     let mut draw = Draw(seed);
     let mut deepest = 0.0_f64;
     for case in 0..cases {

@@ -97,12 +97,12 @@ fn seized_on(draw: &mut Draw, wheel: &Wheel) -> Option<Simulation> {
 fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
     let seed = 3;
     let mut draw = Draw(seed);
-    let (mut cases, mut deepest, mut most, mut freed) = (0, 0.0_f64, f64::NEG_INFINITY, 0);
-    while cases < 30 {
+    let (mut count, mut deepest, mut most, mut freed) = (0, 0.0_f64, f64::NEG_INFINITY, 0);
+    while count < few_or_many(12, 30) {
         let Some(stopped) = seized(&mut draw) else {
             continue;
         };
-        cases += 1;
+        count += 1;
         let inside = stopped.intrusions().into_iter().map(|i| i.depth);
         deepest = deepest.max(inside.fold(0.0, f64::max));
         freed += u32::from(is_freed(&stopped, Change::ClosedTrack));
@@ -110,7 +110,7 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
         most = most.max(gain_when_braked(belt));
     }
     println!(
-        "seed {seed}: {cases} seized robots, ground up to {:.0} mm inside; braked in a closed belt they gained \
+        "seed {seed}: {count} seized robots, ground up to {:.0} mm inside; braked in a closed belt they gained \
          energy for at most {:.4} mm of height; driven, {freed} of them got away",
         1e3 * deepest,
         1e3 * most
@@ -118,7 +118,7 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
     assert!(deepest > 0.02);
     // A contact sinks in by up to 0.3 mm when a robot falls on it, and is pushed out again.
     assert!(most < 3e-4);
-    assert!(freed > 25);
+    assert!(6 * freed > 5 * count);
 }
 
 /// [m] Height that a belt could give with the most energy that it gains, braked at once so that its motor can
@@ -139,26 +139,26 @@ fn gain_when_braked(mut belt: Simulation) -> f64 {
 fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
     let seed = 5;
     let mut draw = Draw(seed);
-    let (mut cases, mut most, mut smooth, mut freed) = (0, f64::NEG_INFINITY, 0, 0);
-    while cases < 15 {
+    let (mut count, mut most, mut smooth, mut freed) = (0, f64::NEG_INFINITY, 0, 0);
+    while count < few_or_many(5, 15) {
         let Some(stopped) = seized_on(&mut draw, &paper_gear()) else {
             continue;
         };
-        cases += 1;
+        count += 1;
         smooth += u32::from(is_freed(&stopped, Change::ClosedSmoothTrack));
         freed += u32::from(is_freed(&stopped, Change::ClosedTrack));
         let belt = in_a_closed_belt(&stopped, ClosedSurface::Own);
         most = most.max(gain_when_braked(belt));
     }
     println!(
-        "seed {seed}: {cases} seized robots on gear wheels; braked in a belt with grousers they gained energy for \
+        "seed {seed}: {count} seized robots on gear wheels; braked in a belt with grousers they gained energy for \
          at most {:.4} mm of height; driven, {smooth} got away on a smooth belt, {freed} on one with grousers",
         1e3 * most
     );
     // Not none, as of a smooth belt: a grouser deep in the ground has several faces to be let out of. It is a
     // small share of the 50 mm that an escape takes.
     assert!(most < 2e-3);
-    assert!(freed > 10);
+    assert!(3 * freed > 2 * count);
 }
 
 #[test]
@@ -330,10 +330,8 @@ fn moves_under(stopped: &Simulation, force: f64) -> f64 {
 fn a_seized_robot_holds_the_lower_escape_force_and_gives_way_to_the_upper() {
     let seed = 21;
     let mut draw = Draw(seed);
-    let soak = is_soak();
-    let wanted = if soak { 200 } else { 30 };
-    let (mut cases, mut held, mut moved, mut wedged) = (0, 0, 0, 0);
-    while cases < wanted {
+    let (mut count, mut held, mut moved, mut wedged) = (0, 0, 0, 0);
+    while count < few_or_many(12, 200) {
         let Some(stopped) = seized(&mut draw) else {
             continue;
         };
@@ -343,7 +341,7 @@ fn a_seized_robot_holds_the_lower_escape_force_and_gives_way_to_the_upper() {
             wedged += 1;
             continue;
         }
-        cases += 1;
+        count += 1;
         let [less, more] = [found.low, found.high].map(|force| moves_under(&stopped, force));
         held += u32::from(less <= 5e-3);
         moved += u32::from(more > 5e-3);
@@ -358,11 +356,11 @@ fn a_seized_robot_holds_the_lower_escape_force_and_gives_way_to_the_upper() {
         }
     }
     println!(
-        "seed {seed}: of {cases} seized robots {held} hold the lower force and {moved} give way to the upper one; \
+        "seed {seed}: of {count} seized robots {held} hold the lower force and {moved} give way to the upper one; \
          {wedged} more are wedged"
     );
     // Another course of the push may end the stop a little earlier or later than the levels of a tenth.
-    assert!(f64::from(held.min(moved)) >= 0.9 * f64::from(cases));
+    assert!(10 * held.min(moved) >= 9 * count);
 }
 
 #[test]
