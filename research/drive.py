@@ -17,8 +17,9 @@ from crawler2d.parameters.fields import json_pointer
 from crawler2d.parameters.track import Track
 from crawler2d.runs.progress import reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
+from research.figures import add_legend, make_panels, style
 from research.models import study_models
-from research.study import Job, Study, add_legend, make_panels, style
+from research.study import Job, Study
 from research.tables import aligned_table, group_by, mm
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ import numpy as np
 import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK
 from crawler2d.sweeps.rates import rates_of
+from research.figures import THREE, add_legend, draw_rates, make_panels, style
 from research.models import study_robot
 from research.paper import RPM, TABLE_2, TABLE_3
-from research.study import add_legend, draw_rates, make_panels, style
 from research.tables import aligned_table, counts, gaps, group_by, in_mm, mm, percent
 
 if TYPE_CHECKING:
@@ -436,7 +436,7 @@ def plot_rates(cells: Sequence[Cell]) -> Figure:
     for index, (ax, model) in enumerate(zip(axes.flat, models, strict=False)):
         for place, (obstacle, width) in enumerate(zip(obstacles, _WIDTHS, strict=False)):
             line = {"linewidth": width, "markersize": 2.0 + width, "label": obstacle}
-            draw_rates(ax, own[model, obstacle], alpha=0.15, **style(place, of_three=True), **line)
+            draw_rates(ax, own[model, obstacle], alpha=0.15, **style(place, THREE), **line)
         ax.set_title(model, fontsize="medium")
         ax.set_ylim(-5.0, 105.0)
         if index % columns == 0:
@@ -473,7 +473,7 @@ def plot_phases(phases: Sequence[Phase]) -> Figure:
             ax.plot(
                 [phase.phase_fraction for phase in own],
                 [getattr(phase, name) for phase in own],
-                **style(index, of_three=True),
+                **style(index, THREE),
                 markersize=4,
                 label=f"{count} gear wheels",
             )

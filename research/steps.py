@@ -14,10 +14,11 @@ import numpy as np
 import crawler2d as c2d
 from crawler2d.sweeps.rates import rates_of
 from research import seizure
+from research.figures import draw_rates, make_panels, style
 from research.models import FRICTION, StudyModel, study_models, study_robot
 from research.paper import TABLE_3
 from research.seizure_tables import Cell, cells, rates_text, rates_title, write_runs
-from research.study import Job, Study, draw_rates, make_panels, style
+from research.study import Job, Study
 from research.tables import aligned_table, group_by, mm
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The shape of a study: its options, the files that it writes, and how its figures look."""
+"""The shape of a study: its options, and the files that it writes."""
 
 from __future__ import annotations
 
@@ -11,14 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import crawler2d as c2d
 from crawler2d.__main__ import Command
-from crawler2d.common.extras import extra
-from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 from research.tables import write_csv
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,48 +95,3 @@ class Study:
             print(interrupt, file=sys.stderr)
             return 130
         return 0
-
-
-# Okabe and Ito's palette, which colour-blind readers can tell apart.
-_COLORS = (BLACK, BLUE, PURPLE, ORANGE, RED, GREEN, SKY)
-_MARKERS = ("o", "s", "P", "D", "^", "v", "X", "*", "<", ">")
-_THREE = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"))
-
-
-def style(index: int, *, of_three: bool = False) -> dict[str, Any]:
-    """Return colour and marker of a line by its place, in a set of up to ten or of three."""
-    if of_three:
-        color, marker = _THREE[index % len(_THREE)]
-    else:
-        color, marker = _COLORS[index % len(_COLORS)], _MARKERS[index % len(_MARKERS)]
-    return {"color": color, "marker": marker}
-
-
-def make_panels(
-    rows: int, columns: int, size: tuple[float, float], **options: Any
-) -> tuple[Figure, NDArray[Any]]:
-    """Make a figure of some size [in] with its axes, shape (rows, columns).
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is missing; the message names the extra to install.
-    """
-    figure: Figure = extra("matplotlib.figure", "plot").Figure(size, layout="constrained")
-    return figure, figure.subplots(rows, columns, squeeze=False, **options)
-
-
-def add_legend(figure: Figure, ax: Axes, place: str, **more: Any) -> None:
-    """Put one legend, with the labels of one panel, outside all panels."""
-    handles, labels = ax.get_legend_handles_labels()
-    options: Any = {"loc": f"outside {place}", "ncols": len(labels)} | more
-    figure.legend(handles, labels, **options)
-
-
-def draw_rates(ax: Axes, cells: Sequence[Any], *, alpha: float, **line: Any) -> None:
-    """Draw rates over heights, with their intervals as a band."""
-    heights = [1e3 * cell.height for cell in cells]
-    lows, highs = [1e2 * cell.low for cell in cells], [1e2 * cell.high for cell in cells]
-    ax.fill_between(heights, lows, highs, color=line["color"], alpha=alpha, linewidth=0.0)
-    ax.plot(heights, [1e2 * cell.rate for cell in cells], **line)
-    ax.grid(alpha=0.25)

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
 from benches.accuracy.findings import Finding, Study, models, size_of_difference
-from benches.shared.figures import COLORS, GREY, light_grid, save
+from crawler2d.drawings.scene import BLUE, RED
+from research.figures import GREY, add_legend, light_grid, make_panels, save_svg
 
 _COLUMNS = 5
-_BLUE, _RED, *_ = COLORS
 _COST = "processor time per simulated time [ms/s]"
 _ERRORS = {"rates": "mean size of the difference of rates", "paths": "median path error [mm]"}
 
@@ -37,7 +37,7 @@ _FAMILIES = (
     _Family(
         "time_step", "fixed time step", {"color": GREY, "marker": "s", "linestyle": "--"}, "right"
     ),
-    _Family("accuracy", "error control", {"color": _BLUE, "marker": "o", "linestyle": "-"}, "left"),
+    _Family("accuracy", "error control", {"color": BLUE, "marker": "o", "linestyle": "-"}, "left"),
 )
 
 
@@ -63,13 +63,12 @@ def plot(study: Study, folder: Path) -> None:
     with mpl.rc_context({"font.size": 8.0}):
         figures = {"all": _all(study)} | {name: _models(study, name) for name in _ERRORS}
         for name, figure in figures.items():
-            save(figure, folder / f"{name}.svg")
+            save_svg(figure, folder / f"{name}.svg")
 
 
 def _all(study: Study) -> Figure:
     """Draw all cells together, and name the settings."""
-    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
-    axes = figure.subplots(1, 2)
+    figure, (axes,) = make_panels(1, 2, (8.0, 3.6))
     for ax, name in zip(axes, _ERRORS, strict=True):
         _panel(ax, study, study.findings, name, is_named=True)
         ax.set(xlabel=_COST, ylabel=_ERRORS[name])
@@ -82,8 +81,8 @@ def _models(study: Study, name: str) -> Figure:
     """Draw one panel for each model."""
     groups = models(study.findings)
     rows = max(1, math.ceil(len(groups) / _COLUMNS))
-    figure = Figure(figsize=(10.0, 0.9 + 1.7 * rows), layout="constrained")
-    grid = figure.subplots(rows, _COLUMNS, sharex=True, sharey=True, squeeze=False)
+    size = (10.0, 0.9 + 1.7 * rows)
+    figure, grid = make_panels(rows, _COLUMNS, size, sharex=True, sharey=True)
     for ax in grid.flat[len(groups) :]:
         ax.set_axis_off()
     for ax, (model, own) in zip(grid.flat, groups.items(), strict=False):
@@ -113,7 +112,7 @@ def _panel(
             place = (point.cost, point.error)
             if point.setting == study.default:
                 ring: dict[str, Any] = {"markersize": 10, "markerfacecolor": "none"}
-                ax.plot(*place, marker="o", color=_RED, linestyle="", label=point.setting, **ring)
+                ax.plot(*place, marker="o", color=RED, linestyle="", label=point.setting, **ring)
             if is_named:
                 _name(ax, point, family.side)
     if is_named:
@@ -187,6 +186,5 @@ def _name(ax: Axes, point: Point, side: Literal["left", "right"]) -> None:
 
 
 def _legend(figure: Figure, ax: Axes) -> None:
-    handles, names = ax.get_legend_handles_labels()
-    if handles:
-        figure.legend(handles, names, loc="outside upper center", ncols=len(names), frameon=False)
+    if ax.get_legend_handles_labels()[0]:
+        add_legend(figure, ax, "upper center", frameon=False)

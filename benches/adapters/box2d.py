@@ -16,13 +16,12 @@ Single precision.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
-from typing import Any
 
 import pyb2d3
 
-from benches.adapters.planar import Body, Scene, Setting, SteppedEngine
+from benches.adapters.planar import Body, Scene, Setting, Started, SteppedEngine
 
 # [s] Time unit of a tuned world.
 _TUNED_UNIT = 0.02
@@ -48,9 +47,7 @@ class Box2D(SteppedEngine):
     finest = Setting(0.25e-3, substeps=8)
     next_finest = Setting(0.5e-3, substeps=4)
 
-    def start(
-        self, scene: Scene, setting: Setting
-    ) -> tuple[Callable[[int], object], Callable[[], Any]]:
+    def start(self, scene: Scene, setting: Setting) -> Started:
         """Build a world."""
         world, bodies = _build(scene, setting)
         step, dt, substeps = world.step, setting.time_step / _unit(setting), setting.substeps

@@ -129,9 +129,7 @@ class Pymunk(planar.SteppedEngine):
     finest = Setting(0.25e-3, iterations=80)
     next_finest = Setting(0.5e-3, iterations=40)
 
-    def start(
-        self, scene: planar.Scene, setting: Setting
-    ) -> tuple[Callable[[int], object], Callable[[], Any]]:
+    def start(self, scene: planar.Scene, setting: Setting) -> planar.Started:
         """Build a world."""
         plane, bodies = build(scene, setting)
         advance = plane.steps(setting.time_step)

@@ -12,14 +12,14 @@ sticking contacts from creeping. Newton's method is MuJoCo's default; the iterat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
-from benches.adapters.planar import Body, Scene, Setting, SteppedEngine, seconds
+from benches.adapters.planar import Body, Scene, Setting, Started, SteppedEngine, seconds
 
 # [N m s/rad] 10 N m at an error of 0.01 rad/s.
 _SERVO_GAIN = 1000.0
@@ -43,9 +43,7 @@ class MuJoCo(SteppedEngine):
     finest = Setting(0.25e-3, iterations=100)
     next_finest = Setting(0.5e-3, iterations=100)
 
-    def start(
-        self, scene: Scene, setting: Setting
-    ) -> tuple[Callable[[int], object], Callable[[], Any]]:
+    def start(self, scene: Scene, setting: Setting) -> Started:
         """Build a world."""
         model, data = build(scene, setting)
         angles = np.zeros(len(scene.bodies))

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import crawler2d as c2d
-from benches.adapters.planar import Array, Motion, Scene, Setting
+from benches.adapters.planar import Motion, Scene, Setting, to_world
 from crawler2d import Scenario, ScenarioError, SimulationDiverged, Solver, simulate_many
 
 _SCENARIOS = Path(__file__).parents[2] / "tests" / "scenarios"
@@ -60,9 +60,8 @@ class Crawler2D:
         for index, joint in enumerate(scene.joints):
             # Wheels are counted along the belt here.
             drive = int(np.argmin(np.hypot(*(centers - joint.pa).T)))
-            poses[:, index + 1] = _wheel(poses[:, 0], centers[drive])
-            way = run.drive_positions[:, drive]
-            poses[:, index + 1, 2] -= way / radii[drive]
+            poses[:, index + 1, :2] = to_world(poses[:, 0], centers[drive])
+            poses[:, index + 1, 2] = poses[:, 0, 2] - run.drive_positions[:, drive] / radii[drive]
         return Motion.of(run.time, poses, run.metrics["max_penetration"])
 
     def batch_time(self, variants: Sequence[Scene], setting: Setting, threads: int) -> float:
@@ -108,14 +107,6 @@ def nominal(name: str) -> Scenario:
             "robot.track.count": 3,
         }
     )
-
-
-def _wheel(chassis: Array, center: Array) -> Array:
-    """[m], [m], [rad] Pose of a point of the chassis."""
-    cosine, sine = np.cos(chassis[:, 2]), np.sin(chassis[:, 2])
-    x, y = center
-    at = chassis[:, :2] + np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
-    return np.column_stack([at, chassis[:, 2]])
 
 
 def simulated(scenario: Scenario, engine: str | None = None) -> dict[str, Any]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
@@ -65,6 +66,14 @@ class Motion(NamedTuple):
         a, b = self.path(), other.path()
         shared = min(len(a), len(b))
         return float(np.linalg.norm(a[:shared] - b[:shared], axis=1).max())
+
+
+def to_world(poses: Array, point: Iterable[float]) -> Array:
+    """[m] A point of a body in the world, given the poses of the body; shape (n, 2)."""
+    cosine, sine = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+    x, y = point
+    offset = np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
+    return np.asarray(poses[:, :2] + offset)
 
 
 class Draw(NamedTuple):
@@ -315,14 +324,16 @@ class Engine(Protocol):
         """Run and sample all poses every `interval` [s], at most every step."""
 
 
-class SteppedEngine:
+Started = tuple[Callable[[int], object], Callable[[], Any]]
+"""A world: what takes a number of steps, and what reads all poses."""
+
+
+class SteppedEngine(ABC):
     """An engine whose steps have a given length."""
 
-    def start(
-        self, scene: Scene, setting: Setting
-    ) -> tuple[Callable[[int], object], Callable[[], Any]]:
+    @abstractmethod
+    def start(self, scene: Scene, setting: Setting) -> Started:
         """Build a world; return what takes a number of steps, and what reads all poses."""
-        raise NotImplementedError
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
         """[s] Time a run."""

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from benches.adapters.planar import Body, Motion, Scene, Setting
+from benches.adapters.planar import Motion, Scene, Setting
 
 _ROOT = Path(__file__).parents[2]
 
@@ -49,34 +49,24 @@ class Rapier:
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
         """[s] Time a run."""
-        (wall,) = self._do(scene, setting, duration, repeats=1)["wall"]
-        return float(wall)
+        return float(self._do(scene, setting, duration)["wall"])
 
     def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
         """Run and sample all poses."""
-        figures = self._do(scene, setting, duration, sample_every=setting.stride(interval))
+        figures = self._do(scene, setting, duration, setting.stride(interval))
         poses = np.reshape(figures["poses"], (-1, len(scene.bodies), 3))
         return Motion.of(figures["time"], poses)
 
-    def _do(
-        self,
-        scene: Scene,
-        setting: Setting,
-        duration: float,
-        *,
-        repeats: int = 0,
-        sample_every: int = 0,
-    ) -> Any:
-        kind = {"boxes": "cuboids", "profile": "polyline"}[setting.ground]
+    def _do(self, scene: Scene, setting: Setting, duration: float, sample_every: int = 0) -> Any:
         job = {
-            "scene": _scene_data(scene),
-            "settings": asdict(setting) | {"ground": kind},
+            "scene": asdict(scene) | {"profile": scene.profile()},
+            "settings": asdict(setting),
             "duration": duration,
-            "repeats": repeats,
             "sample_every": sample_every,
         }
+        text = json.dumps(job, default=np.ndarray.tolist)
         done = subprocess.run(
-            [self._binary], input=json.dumps(job).encode(), stdout=subprocess.PIPE, check=True
+            [self._binary], input=text.encode(), stdout=subprocess.PIPE, check=True
         )
         return json.loads(done.stdout)
 
@@ -87,29 +77,3 @@ def _build() -> Path:
     subprocess.run([*command, "--bin", "bare_rapier"], cwd=_ROOT, check=True)
     target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
     return _ROOT / target / "release" / "bare_rapier"
-
-
-def _scene_data(scene: Scene) -> dict[str, Any]:
-    joints = [
-        {**asdict(joint), "motor": {"speed": joint.speed, "torque": joint.torque}}
-        for joint in scene.joints
-    ]
-    return {
-        "bodies": [_body_data(body) for body in scene.bodies],
-        "joints": joints,
-        "ground": [{"pts": box.tolist(), "mu": scene.friction} for box in scene.boxes],
-        "profile": scene.profile().tolist(),
-    }
-
-
-def _body_data(body: Body) -> dict[str, Any]:
-    circles = [{"kind": "circle", "r": body.radius}] if body.radius > 0.0 else []
-    polygons = [{"kind": "poly", "pts": polygon.tolist()} for polygon in body.polygons]
-    return {
-        "x": body.x,
-        "y": body.y,
-        "a": body.angle,
-        "mass": body.mass,
-        "inertia": body.inertia,
-        "shapes": circles + polygons,
-    }

@@ -24,9 +24,9 @@ from benches.agreement.study import (
     study_percentages,
     study_table,
 )
-from benches.shared.figures import draw_dots
 from benches.shared.measuring import write_parts
 from benches.shared.results import read, table_of
+from research.figures import draw_dots
 
 _FILES = ("pairs", "third", "study", "one_by_one", "ensembles", "pinched")
 _PAGE = Path(__file__).parents[2] / "docs" / "studies" / "agreement.md"

@@ -15,9 +15,9 @@ from benches.engines import runs, yaw
 from benches.engines.cells import STARTS, Cell, find_cells, read_cells, write_cells
 from benches.engines.runs import ENGINES, FINE, FINER, LADDERS, PREDICTIONS, RESULTS
 from benches.engines.table import agreeing, parts
-from benches.shared.figures import draw_dots
 from benches.shared.measuring import write_parts
 from benches.shared.results import processes, progress
+from research.figures import draw_dots
 
 _PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
 _QUICK = Path("out") / "engines"  # a look, from nothing

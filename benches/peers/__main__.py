@@ -17,8 +17,8 @@ from benches.peers import chains, report
 from benches.peers.accuracy import Effort, equal_accuracy
 from benches.peers.chains import measure_chains
 from benches.peers.sections import batches, defaults, yardstick
-from benches.shared.figures import draw_dots
 from benches.shared.measuring import machine, write_parts
+from research.figures import draw_dots
 
 _ROOT = Path(__file__).parents[2]
 _RESULT = _ROOT / "out" / "peers.json"

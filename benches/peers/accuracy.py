@@ -38,6 +38,7 @@ from benches.adapters.planar import (
     load_engine,
     load_engines,
     load_scene,
+    to_world,
 )
 from benches.shared.measuring import Key, Time, interleaved
 from benches.shared.results import progress
@@ -109,8 +110,8 @@ def joint_gap(scene: Scene, motion: Motion) -> float:
     """[m] Largest distance between the two points that a pin holds together."""
     gaps = [
         np.linalg.norm(
-            _to_world(motion.poses[:, joint.a], joint.pa)
-            - _to_world(motion.poses[:, joint.b], joint.pb),
+            to_world(motion.poses[:, joint.a], joint.pa)
+            - to_world(motion.poses[:, joint.b], joint.pb),
             axis=1,
         ).max()
         for joint in scene.joints
@@ -156,7 +157,7 @@ def _corner_depth(ground: _Ground, body: Body, poses: Array) -> float:
     """[m] Largest depth of a body's corners in the ground, except those within its circle."""
     corners = np.concatenate(body.polygons)
     corners = corners[np.hypot(*corners.T) > body.radius]
-    points = np.concatenate([_to_world(poses, corner) for corner in corners])
+    points = np.concatenate([to_world(poses, corner) for corner in corners])
     points = points[ground.inside(points)]
     return float(ground.distance(points).max()) if len(points) else 0.0
 
@@ -190,14 +191,6 @@ def _depth_in(polygon: Array, radius: float, points: Array) -> Array:
     depths = ((points[:, None, :] - polygon) * normals).sum(-1)
     is_inside = (depths > 0.0).all(axis=1)
     return np.asarray(np.where(is_inside, depths[:, ~covered].min(axis=1), -1.0))
-
-
-def _to_world(poses: Array, point: tuple[float, float] | Array) -> Array:
-    """[m] A point of a body in the world, shape (n, 2)."""
-    cosine, sine = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-    x, y = point
-    offset = np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
-    return np.asarray(poses[:, :2] + offset)
 
 
 COST_SPAN = 2.5

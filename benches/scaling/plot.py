@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benches.scaling.report import Curve, curves, deviations
-from benches.shared.figures import COLORS, GREY, MARKERS, light_grid, save
+from research.figures import FIVE, GREY, add_legend, light_grid, make_panels, save_svg, style
 
 _LABELS = {
     "wheels": "wheels a side",
@@ -25,18 +25,17 @@ def plot(result: dict[str, Any], folder: Path) -> None:
     """Write one picture per figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for figure in _LABELS:
-        save(_costs(figure, curves(result["rows"], figure)), folder / f"{figure}.svg")
-    save(_accuracies(result["rows"]), folder / "accuracy.svg")
-    save(_threads(result["threads"]), folder / "threads.svg")
+        save_svg(_costs(figure, curves(result["rows"], figure)), folder / f"{figure}.svg")
+    save_svg(_accuracies(result["rows"]), folder / "accuracy.svg")
+    save_svg(_threads(result["threads"]), folder / "threads.svg")
 
 
 def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
     """Draw the cost of a simulated second, one panel per scene, with a line of slope 1."""
     panels = list(dict.fromkeys(curve.panel for curve in drawn))
     labels = list(dict.fromkeys(curve.name for curve in drawn))
-    styles = dict(zip(labels, _styles(), strict=False))
-    figure = Figure(figsize=(8.0, 3.8), layout="constrained")
-    axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
+    styles = {label: _style(index) for index, label in enumerate(labels)}
+    figure, (axes,) = make_panels(1, len(panels), (8.0, 3.8), sharex=True, sharey=True)
     for panel, ax in zip(panels, axes, strict=True):
         own = [curve for curve in drawn if curve.panel == panel]
         for curve in own:
@@ -50,21 +49,19 @@ def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
     _whole_decades(axes)
     _proportional(axes[0])
     axes[0].set_ylabel("wall time a simulated second [ms]")
-    handles, names = axes[0].get_legend_handles_labels()
-    columns = min(_COLUMNS, len(names))
-    figure.legend(handles, names, loc="outside lower center", ncols=columns, frameon=False)
+    columns = min(_COLUMNS, len(axes[0].get_legend_handles_labels()[1]))
+    add_legend(figure, axes[0], "lower center", ncols=columns, frameon=False)
     return figure
 
 
 def _accuracies(rows: Sequence[dict[str, Any]]) -> Figure:
     """Draw the cost over the accuracy and how far off the robot gets, one curve per scene."""
-    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
-    cost, error = figure.subplots(1, 2)
+    figure, ((cost, error),) = make_panels(1, 2, (8.0, 3.4))
     drawn = curves(rows, "accuracy")
-    for curve, style in zip(drawn, _styles(), strict=False):
-        x = [value * 1e6 for value in curve.x]
-        cost.loglog(x, [value * 1e3 for value in curve.per_second], label=curve.panel, **style)
-        error.loglog(x[1:], [value * 1e3 for value in deviations(rows, curve)], **style)
+    for index, curve in enumerate(drawn):
+        look, x = _style(index), [value * 1e6 for value in curve.x]
+        cost.loglog(x, [value * 1e3 for value in curve.per_second], label=curve.panel, **look)
+        error.loglog(x[1:], [value * 1e3 for value in deviations(rows, curve)], **look)
         for ax in (cost, error):
             ax.set_xlabel("accuracy [µm]")
             _decimal_ticks(ax, x)
@@ -79,26 +76,19 @@ def _accuracies(rows: Sequence[dict[str, Any]]) -> Figure:
 
 def _threads(rows: Sequence[dict[str, Any]]) -> Figure:
     """Draw the speed-ups over one thread."""
-    figure = Figure(figsize=(4.6, 3.4), layout="constrained")
-    ax = figure.subplots()
+    figure, ((ax,),) = make_panels(1, 1, (4.6, 3.4))
     counts = [row["threads"] for row in rows]
     ax.plot(counts, counts, color=GREY, linestyle=":", label="as many times as fast")
-    for kind, name, color, marker in zip(
-        ("worlds", "loops"), ("worlds", "a loop that counts"), COLORS, MARKERS, strict=False
-    ):
-        heights = [row[kind] for row in rows]
-        ax.plot(counts, heights, color=color, marker=marker, markersize=5, label=name)
+    for index, (kind, name) in enumerate((("worlds", "worlds"), ("loops", "a loop that counts"))):
+        ax.plot(counts, [row[kind] for row in rows], label=name, **_style(index))
     ax.set(xlabel="threads", ylabel="speed-up over one thread", ylim=(0.0, None), xticks=counts)
     _grid(ax)
     ax.legend(loc="lower right", frameon=False)
     return figure
 
 
-def _styles() -> list[dict[str, Any]]:
-    return [
-        {"color": color, "marker": marker, "markersize": 5}
-        for color, marker in zip(COLORS, MARKERS, strict=True)
-    ]
+def _style(index: int) -> dict[str, Any]:
+    return style(index, FIVE) | {"markersize": 5}
 
 
 def _whole_decades(axes: Sequence[Axes]) -> None:

@@ -13,10 +13,10 @@ import numpy as np
 import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK, BLUE, ORANGE, Scene
 from crawler2d.parameters.track import Track
+from research.figures import make_panels
 from research.models import study_robot
 from research.paper import CWA_ROUND, LWA_ROUND, TABLE_1
 from research.paper.design import READINGS, layouts
-from research.study import make_panels
 from research.tables import markdown_table, mm
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK
 from crawler2d.parameters.terrain import RandomStepfield
 from crawler2d.sweeps.store import Store
+from research.figures import THREE, add_legend, make_panels, style
 from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
 from research.paper.design import READINGS, SETTINGS, Setting, climb, layouts, models_of
-from research.study import add_legend, make_panels, style
 from research.tables import counts, group_by, markdown_table, percent
 
 if TYPE_CHECKING:
@@ -363,7 +363,7 @@ def plot_table_2(rows: Sequence[Comparison]) -> Figure:
                 x = place + 0.16 * (step - 1.5)
                 look = {"color": BLACK, "marker": "D"}
                 if step:
-                    look = style(settings.index(label), of_three=True)
+                    look = style(settings.index(label), THREE)
                 ax.vlines(x, 100 * low, 100 * high, color=look["color"], linewidth=1.6)
                 named = {"label": label} if place == 0 else {}
                 ax.plot(x, 100 * rate, linestyle="", **look, **named)

@@ -13,8 +13,6 @@ struct Job {
     settings: Settings,
     /// [s] Simulated time.
     duration: f64,
-    /// Number of timed runs, each in a world of its own.
-    repeats: usize,
     /// Steps between two recorded poses; 0 records none.
     sample_every: usize,
 }
@@ -37,65 +35,55 @@ struct Settings {
 #[serde(rename_all = "lowercase")]
 enum GroundKind {
     /// The scene's boxes.
-    Cuboids,
+    Boxes,
     /// The outline of their union, one-sided.
-    Polyline,
+    Profile,
 }
 
+/// As `benches/adapters/planar.py` has it.
 #[derive(Deserialize)]
 struct Scene {
     bodies: Vec<Body>,
     joints: Vec<Pin>,
-    ground: Vec<GroundBox>,
+    boxes: Vec<Polygon>,
+    friction: f64,
     /// [m] Upper outline of the ground, from left to right.
-    profile: Vec<[f64; 2]>,
+    profile: Polygon,
 }
+
+/// [m] Corners.
+type Polygon = Vec<[f64; 2]>;
 
 #[derive(Deserialize)]
 struct Body {
     x: f64,
     y: f64,
-    a: f64,
+    angle: f64,
     mass: f64,
     inertia: f64,
-    shapes: Vec<Outline>,
+    /// [m] Of its circle, 0 if there is none.
+    radius: f64,
+    polygons: Vec<Polygon>,
 }
 
-#[derive(Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-enum Outline {
-    Circle { r: f64 },
-    Poly { pts: Vec<[f64; 2]> },
-}
-
+/// A pin with a motor.
 #[derive(Deserialize)]
 struct Pin {
     a: usize,
     b: usize,
     pa: [f64; 2],
     pb: [f64; 2],
-    motor: Motor,
-}
-
-#[derive(Deserialize)]
-struct Motor {
     /// [rad/s] Of b relative to a.
     speed: f64,
     /// [N m] Torque limit.
     torque: f64,
 }
 
-#[derive(Deserialize)]
-struct GroundBox {
-    pts: Vec<[f64; 2]>,
-    mu: f64,
-}
-
 /// The results.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Figures {
-    /// [s] Wall time of each timed run, without building its world.
-    wall: Vec<f64>,
+    /// [s] Wall time of the steps, without building the world.
+    wall: f64,
     /// [s] Time of each recorded sample.
     time: Vec<f64>,
     /// [m], [m], [rad] Pose of each body at each sample, one after another.
@@ -111,31 +99,19 @@ struct Bare {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let job: Job = serde_json::from_reader(io::stdin().lock())?;
     let steps = (job.duration / job.settings.time_step).round() as usize;
-    let mut figures = Figures {
-        wall: Vec::new(),
-        time: Vec::new(),
-        poses: Vec::new(),
-    };
-    for _ in 0..job.repeats {
-        let mut bare = Bare::new(&job)?;
-        let start = Instant::now();
-        for _ in 0..steps {
+    let mut figures = Figures::default();
+    let mut bare = Bare::new(&job)?;
+    let start = Instant::now();
+    for step in 0..=steps {
+        if step > 0 {
             bare.world.step();
         }
-        figures.wall.push(start.elapsed().as_secs_f64());
-    }
-    if job.sample_every > 0 {
-        let mut bare = Bare::new(&job)?;
-        for step in 0..=steps {
-            if step > 0 {
-                bare.world.step();
-            }
-            if step % job.sample_every == 0 {
-                figures.time.push(step as f64 * job.settings.time_step);
-                bare.append_poses(&mut figures.poses);
-            }
+        if job.sample_every > 0 && step % job.sample_every == 0 {
+            figures.time.push(step as f64 * job.settings.time_step);
+            bare.append_poses(&mut figures.poses);
         }
     }
+    figures.wall = start.elapsed().as_secs_f64();
     serde_json::to_writer(io::stdout().lock(), &figures)?;
     Ok(())
 }
@@ -146,11 +122,10 @@ impl Bare {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::new(0.0, -9.81);
         set(&mut world.integration_parameters, &job.settings);
-        let friction = scene.ground.first().ok_or("a scene needs ground")?.mu;
         let finish = |collider: ColliderBuilder, own: Group, other: Group| {
             collider
                 .density(0.0)
-                .friction(friction)
+                .friction(scene.friction)
                 .friction_combine_rule(CoefficientCombineRule::Min)
                 .collision_groups(InteractionGroups::new(own, other, InteractionTestMode::And))
         };
@@ -163,11 +138,11 @@ impl Bare {
             let handle = world.insert_body(
                 RigidBodyBuilder::dynamic()
                     .translation(Vector::new(body.x, body.y))
-                    .rotation(body.a)
+                    .rotation(body.angle)
                     .can_sleep(false) // slowly driven wheels fall asleep
                     .additional_mass_properties(properties),
             );
-            let collider = outline(&body.shapes)?;
+            let collider = outline(body)?;
             world.insert_collider(
                 finish(collider, Group::GROUP_2, Group::GROUP_1),
                 Some(handle),
@@ -181,8 +156,8 @@ impl Bare {
                 .contacts_enabled(false)
                 .motor_model(MotorModel::ForceBased)
                 // A gain so high that only the torque limit matters.
-                .motor_velocity(pin.motor.speed, 1e4)
-                .motor_max_force(pin.motor.torque);
+                .motor_velocity(pin.speed, 1e4)
+                .motor_max_force(pin.torque);
             world.insert_impulse_joint(bodies[pin.a], bodies[pin.b], joint);
         }
         Ok(Self { world, bodies })
@@ -215,13 +190,13 @@ fn set(parameters: &mut IntegrationParameters, settings: &Settings) {
 }
 
 fn ground(scene: &Scene, kind: &GroundKind) -> Vec<ColliderBuilder> {
-    if *kind == GroundKind::Polyline {
+    if *kind == GroundKind::Profile {
         // The outside is on the right of each segment, so go backwards.
         let points = scene.profile.iter().rev().copied().map(vector).collect();
         return vec![ColliderBuilder::oriented_polyline(points, None)];
     }
-    let boxes = scene.ground.iter().map(|ground| {
-        let corners = ground.pts.iter().copied().map(vector);
+    let boxes = scene.boxes.iter().map(|corners| {
+        let corners = corners.iter().copied().map(vector);
         let (low, high) = corners.fold((Vector::MAX, Vector::MIN), |(low, high), corner| {
             (low.min(corner), high.max(corner))
         });
@@ -231,16 +206,14 @@ fn ground(scene: &Scene, kind: &GroundKind) -> Vec<ColliderBuilder> {
     boxes.collect()
 }
 
-fn outline(shapes: &[Outline]) -> Result<ColliderBuilder, &'static str> {
+fn outline(body: &Body) -> Result<ColliderBuilder, &'static str> {
     let mut parts = Vec::new();
-    for shape in shapes {
-        let part = match shape {
-            Outline::Circle { r } => SharedShape::ball(*r),
-            Outline::Poly { pts } => {
-                let corners = pts.iter().copied().map(vector).collect();
-                SharedShape::convex_polyline(corners).ok_or("a polygon must be convex")?
-            }
-        };
+    if body.radius > 0.0 {
+        parts.push((Pose::IDENTITY, SharedShape::ball(body.radius)));
+    }
+    for polygon in &body.polygons {
+        let corners = polygon.iter().copied().map(vector).collect();
+        let part = SharedShape::convex_polyline(corners).ok_or("a polygon must be convex")?;
         parts.push((Pose::IDENTITY, part));
     }
     match <[_; 1]>::try_from(parts) {

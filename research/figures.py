@@ -1,0 +1,104 @@
+"""What all figures have in common: colours, panels, legends, rates, and a chart of dots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crawler2d.common.extras import extra
+from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+GREY = "#666666"
+
+# Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
+_COLORS = (BLACK, BLUE, PURPLE, ORANGE, RED, GREEN, SKY, BLACK, BLUE, PURPLE)
+LINES = tuple(zip(_COLORS, "osPD^vX*<>", strict=True))
+"""Colours and markers of up to ten lines."""
+THREE = tuple(zip((BLUE, ORANGE, GREEN), "os^", strict=True))
+"""Those of up to three."""
+FIVE = tuple(zip((BLUE, RED, GREEN, PURPLE, "#000000"), "os^Dx", strict=True))
+"""Those of up to five, as in a chart of dots."""
+
+
+def style(index: int, looks: Sequence[tuple[str, str]] = LINES) -> dict[str, Any]:
+    """Return colour and marker of a line by its place in a set."""
+    return dict(zip(("color", "marker"), looks[index % len(looks)], strict=True))
+
+
+def make_panels(
+    rows: int, columns: int, size: tuple[float, float], **options: Any
+) -> tuple[Figure, NDArray[Any]]:
+    """Make a figure of some size [in] with its axes, shape (rows, columns).
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is missing; the message names the extra to install.
+    """
+    figure: Figure = extra("matplotlib.figure", "plot").Figure(size, layout="constrained")
+    return figure, figure.subplots(rows, columns, squeeze=False, **options)
+
+
+def add_legend(figure: Figure, ax: Axes, place: str, **more: Any) -> None:
+    """Put one legend, with the labels of one panel, outside all panels."""
+    handles, labels = ax.get_legend_handles_labels()
+    options: Any = {"loc": f"outside {place}", "ncols": len(labels)} | more
+    figure.legend(handles, labels, **options)
+
+
+def light_grid(ax: Axes) -> None:
+    """Draw a grid, and no frame at the top and right."""
+    ax.grid(alpha=0.25)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def draw_rates(ax: Axes, cells: Sequence[Any], *, alpha: float, **line: Any) -> None:
+    """Draw rates over heights, with their intervals as a band."""
+    heights = [1e3 * cell.height for cell in cells]
+    lows, highs = [1e2 * cell.low for cell in cells], [1e2 * cell.high for cell in cells]
+    ax.fill_between(heights, lows, highs, color=line["color"], alpha=alpha, linewidth=0.0)
+    ax.plot(heights, [1e2 * cell.rate for cell in cells], **line)
+    ax.grid(alpha=0.25)
+
+
+def save_svg(figure: Figure, path: Path) -> None:
+    """Write a figure as SVG, whose text stays text; equal figures give equal files."""
+    fixed = {"svg.fonttype": "none", "svg.hashsalt": "crawler2d"}
+    with extra("matplotlib", "plot").rc_context(fixed):
+        figure.savefig(path, metadata={"Date": None})
+
+
+def draw_dots(
+    rows: Mapping[str, Mapping[str, float]], label: str, path: Path, *, scale: str = "linear"
+) -> None:
+    """Write a chart with a row for each case and a dot for each series, as SVG.
+
+    The first of the `rows`, which are values by series, is on top.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "chart.svg"
+    ...     draw_dots({"a": {"one": 1.0, "two": 2.0}, "b": {"one": 3.0}}, "length [m]", path)
+    ...     "length [m]" in path.read_text("utf-8")
+    True
+    """
+    figure, ((ax,),) = make_panels(1, 1, (7.0, 1.2 + 0.28 * len(rows)))
+    series = list(dict.fromkeys(name for values in rows.values() for name in values))
+    for name, look in zip(series, FIVE, strict=False):
+        points = [(values[name], y) for y, values in enumerate(rows.values()) if name in values]
+        x, y = zip(*points, strict=True)
+        color, marker = look
+        ax.plot(x, y, marker, color=color, label=name, markersize=6, alpha=0.8)
+    ax.set(xlabel=label, xscale=scale, yticks=range(len(rows)), yticklabels=list(rows))
+    ax.invert_yaxis()
+    light_grid(ax)
+    figure.legend(loc="outside lower center", ncols=len(series), frameon=False)
+    save_svg(figure, path)
