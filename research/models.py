@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import crawler2d as c2d
+from crawler2d.parameters.terrain import Barrier, Step
 from crawler2d.parameters.track import Track
 from research.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
 
@@ -44,6 +45,14 @@ def study_robots() -> dict[str, c2d.Robot]:
     }
 
 
+def obstacle(name: str, height: float, friction: float = FRICTION) -> Step | Barrier:
+    """Make an obstacle: a "step", a "barrier" 100 mm thick, or a "knife edge" of 10 mm."""
+    if name == "step":
+        return c2d.terrains.step(height, friction=friction)
+    thickness = {"barrier": 0.1, "knife edge": 0.01}[name]
+    return c2d.terrains.barrier(height, thickness, friction=friction)
+
+
 class StudyModel(NamedTuple):
     """A track model and where it comes from."""
 
@@ -52,10 +61,20 @@ class StudyModel(NamedTuple):
     """Figure or section of the paper, or "ours"."""
     row: str | None = None
     """The row of the paper's Table 3 with this kind of model; None if there is none."""
+    arms: Track | None = None
+    """The track of the flippers; None takes the model of the robot's."""
+
+    def on(self, robot: c2d.Robot) -> c2d.Robot:
+        """Put it on a robot, and on its flippers if it has some."""
+        arms = None if robot.flippers is None else replace(robot.flippers, track=self.arms)
+        return replace(robot, track=self.track, flippers=arms)
 
 
 def study_models() -> dict[str, StudyModel]:
     """List the track models of the study by name, in the order of the tables.
+
+    Wheels that touch on the robot, or are placed by hand, have no place on an arm that tapers:
+    there a line of four wheels takes theirs, which is about where four touch.
 
     Examples
     --------
@@ -68,6 +87,7 @@ def study_models() -> dict[str, StudyModel]:
     end, low = 0.5 * axle_distance, -0.034
     small = [(x, low, 0.03) for x in (-0.07, 0.0, 0.07)]
     hybrid = ((-end, 0.0, 0.064), *small, (end, 0.0, 0.064))
+    four, four_touching = line(4), line(4, wheel_radius=touching)
     return {
         "belt": StudyModel(c2d.BeltTrack(), "ours"),
         "belt with grousers": StudyModel(c2d.GrouserBeltTrack(), "ours"),
@@ -75,7 +95,7 @@ def study_models() -> dict[str, StudyModel]:
         "force on skids": StudyModel(c2d.ForceTrack(), "2.1"),
         "force on wheels": StudyModel(c2d.ForceTrack(support="wheels"), "2.1"),
         "line of 3": StudyModel(line(3), "Fig. 3", LWA_ROUND),
-        "line of 4, touching": StudyModel(line(4, wheel_radius=touching), "Fig. 2", LWA_ROUND),
+        "line of 4, touching": StudyModel(four_touching, "Fig. 2", LWA_ROUND, four),
         "line of 5": StudyModel(line(5), "Fig. 1", LWA_ROUND),
         "line of 9": StudyModel(line(9), "Fig. 1", LWA_ROUND),
         "line of 3 gears": StudyModel(line(3, wheel=gear), "Figs. 11, 13", LWA_GEAR),
@@ -83,8 +103,10 @@ def study_models() -> dict[str, StudyModel]:
         "24 all round": StudyModel(around(24), "Figs. 5, 6", CWA_ROUND),
         "24 gears all round": StudyModel(around(24, wheel=gear), "Fig. 12", CWA_GEAR),
         "16 all round, spaced": StudyModel(around(16, wheel_radius=0.02), "Fig. 7", CWA_ROUND),
-        "hybrid": StudyModel(c2d.HybridWheels(hybrid), "Fig. 8"),
-        "hybrid gears": StudyModel(c2d.HybridWheels(hybrid, wheel=gear), "ours"),
+        "hybrid": StudyModel(c2d.HybridWheels(hybrid), "Fig. 8", arms=four),
+        "hybrid gears": StudyModel(
+            c2d.HybridWheels(hybrid, wheel=gear), "ours", arms=line(4, wheel=gear)
+        ),
     }
 
 

@@ -10,23 +10,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import crawler2d as c2d
+from research import models, stops
 from research import seizure_tables as tables
-from research import stops
-from research.models import (
-    FRICTION,
-    StudyModel,
-    gear_pairs,
-    study_models,
-    study_robot,
-    study_robots,
-)
+from research.models import FRICTION, StudyModel, study_models, study_robot
 from research.study import Job, Study
 from research.tables import in_mm
 
 if TYPE_CHECKING:
     import xarray
-
-    from crawler2d.parameters.terrain import Terrain
 
 _STRONG = "torque doubled"
 """The other robot whose gear wheels are compared with round ones, too."""
@@ -71,16 +62,8 @@ QUICK = Design(
 )
 
 
-def _obstacle(name: str, height: float) -> Terrain:
-    if name == "step":
-        return c2d.terrains.step(height, friction=FRICTION)
-    if name == "barrier":
-        return c2d.terrains.barrier(height, 0.1, friction=FRICTION)
-    return c2d.terrains.knife_edge(height, thickness=0.01, friction=FRICTION)
-
-
 def _base() -> c2d.Scenario:
-    return c2d.Scenario(study_robot(), _obstacle("step", 0.1), drive=c2d.Drive(speed=0.4))
+    return c2d.Scenario(study_robot(), models.obstacle("step", 0.1), drive=c2d.Drive(speed=0.4))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,7 +96,7 @@ class Sweeps:
     def on_obstacle(self, obstacle: str) -> xarray.Dataset:
         """Run every model over one obstacle: track, height, repeat; makes trials of every stop."""
         heights = self.design.heights[obstacle]
-        base = self.base.replace({"terrain": _obstacle(obstacle, heights[0])})
+        base = self.base.replace({"terrain": models.obstacle(obstacle, heights[0])})
         return self._sweep(base, {**self._tracks(), "terrain.height": heights}, self.design.repeats)
 
     def on_other_robots(self, names: Iterable[str] | None = None) -> xarray.Dataset:
@@ -124,7 +107,7 @@ class Sweeps:
         names : iterable of str, optional
             Some of `study_robots`; None takes all.
         """
-        robots = study_robots()
+        robots = models.study_robots()
         over = {
             "robot": robots if names is None else {name: robots[name] for name in names},
             **self._tracks(),
@@ -258,7 +241,7 @@ def _report_stops(
 ) -> str:
     """Write why runs stopped, with replays, as tables; returns the text."""
     endings = [row for name, table in runs.items() for row in stops.stops(table, name)]
-    pairs = gear_pairs(sweeps.models)
+    pairs = models.gear_pairs(sweeps.models)
     wheels = [
         *stops.compare_wheels(runs["step"], "step", pairs),
         *stops.compare_wheels(strong, "step", pairs, _STRONG),

@@ -46,16 +46,18 @@ def counts(names: Iterable[str]) -> str:
 
 
 def group_by(rows: Iterable[_Row], *names: str) -> dict[Any, list[_Row]]:
-    """Group rows by one or more of their fields, in the order of their appearance.
+    """Group rows by one or more of their fields or keys, in the order of their appearance.
 
     Returns
     -------
     dict of (str or tuple) to list
         By the value of the field, or by the values of several.
     """
-    key, groups = operator.attrgetter(*names), dict[Any, list[_Row]]()
+    of_field, of_key = operator.attrgetter(*names), operator.itemgetter(*names)
+    groups = dict[Any, list[_Row]]()
     for row in rows:
-        groups.setdefault(key(row), []).append(row)
+        key = of_key(row) if isinstance(row, dict) else of_field(row)
+        groups.setdefault(key, []).append(row)
     return groups
 
 

@@ -20,12 +20,12 @@ from benches.shared.measuring import quantiles, table
 from benches.shared.results import Results, progress, read, write
 from crawler2d import Scenario, Solver, Start, newcombe_paired
 from crawler2d.parameters.track import Track
-from research.models import FRICTION, study_models, study_robot
+from research import models
+from research.models import study_robot
 from research.seizure import FULL
-from research.tables import markdown_table
+from research.tables import group_by, markdown_table
 
 _ENGINES = ["own", "rapier"]
-_THICKNESS = {"barrier": 0.1, "knife edge": 0.01}  # [m] of the study
 
 
 def study(repeats: int, path: Path) -> None:
@@ -50,31 +50,20 @@ def read_cells(path: Path) -> list[dict[str, Any]]:
 
 def at_height(model: str, obstacle: str, height: float) -> Scenario:
     """Return the scenario of a cell, before its draws."""
-    robot = study_robot()
-    track = _tracks()[model]
-    return _on(robot.with_track(track), obstacle, height)
+    return _on(study_robot().with_track(_tracks()[model]), obstacle, height)
 
 
 def _on(robot: c2d.Robot, obstacle: str, height: float) -> Scenario:
-    return Scenario(robot, _ground(obstacle, height), drive=c2d.Drive(speed=0.4))
-
-
-def _ground(obstacle: str, height: float) -> Any:
-    if obstacle == "step":
-        return c2d.terrains.step(height, friction=FRICTION)
-    return c2d.terrains.barrier(height, _THICKNESS[obstacle], friction=FRICTION)
+    return Scenario(robot, models.obstacle(obstacle, height), drive=c2d.Drive(speed=0.4))
 
 
 def _tracks() -> dict[str, Track]:
     """List the models that rapier holds on one motor for all wheels, as the study has them."""
-    robot = study_robot()
-    in_rapier = c2d.Scenario(
-        robot, c2d.terrains.step(0.05), solver=c2d.Solver(engine="rapier")
-    ).replace
+    in_rapier = _on(study_robot(), "step", 0.05).replace({"solver": Solver(engine="rapier")})
     held = {}
-    for name, model in study_models().items():
+    for name, model in models.study_models().items():
         try:
-            in_rapier({"robot.track": model.track}).validate()
+            in_rapier.replace({"robot.track": model.track}).validate()
         except c2d.ScenarioError:
             continue
         held[name] = model.track
@@ -106,18 +95,16 @@ def _cells(obstacle: str, table: Any) -> list[dict[str, Any]]:
 def study_table(found: list[Any]) -> str:
     """Write how runs ended alike, and how far stops are apart, by model."""
     cells = [cell for part in found for cell in part]
-    models = list(dict.fromkeys(cell["model"] for cell in cells))
-    groups = [(model, [c for c in cells if c["model"] == model]) for model in models]
-    return table(_study_row(*group) for group in [*groups, ("all", cells)])
+    groups = group_by(cells, "model") | {"all": cells}
+    return table(_study_row(*group) for group in groups.items())
 
 
 def study_percentages(cells: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
     """Return by model in how many runs [%] each engine gets over, and how many end alike."""
     found = {}
-    for model in dict.fromkeys(cell["model"] for cell in cells):
+    for model, mine in group_by(cells, "model").items():
         own, other = (
-            np.array([e == "cleared" for c in cells if c["model"] == model for e in c["ends"][k]])
-            for k in (0, 1)
+            np.array([end == "cleared" for cell in mine for end in cell["ends"][k]]) for k in (0, 1)
         )
         percent = {
             "get over in crawler2d": own,
@@ -344,11 +331,9 @@ def pinched(starts: int, path: Path) -> None:
 
 
 def _on_knife_edge(height: float, speed: float, approach: float) -> Scenario:
-    robot = study_robot()
-    edge = c2d.terrains.knife_edge(height, thickness=0.01, friction=0.9)
-    start = c2d.Start(approach=approach)
-    small_wheels = robot.with_track(c2d.CircumferentialWheels(24))
-    return Scenario(small_wheels, edge, drive=c2d.Drive(speed=speed), start=start)
+    small_wheels = study_robot(track=c2d.CircumferentialWheels(24))
+    base = _on(small_wheels, "knife edge", height)
+    return base.replace({"drive.speed": speed, "start.approach": approach})
 
 
 def pinched_table(found: list[Any]) -> str:

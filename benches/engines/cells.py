@@ -19,6 +19,7 @@ import crawler2d as c2d
 from benches.shared.results import write_rows
 from crawler2d.parameters.terrain import RandomStepfield, Terrain
 from crawler2d.parameters.track import Track
+from research.models import obstacle
 
 _AHEAD = (0.026, 0.02)  # [m] 26 mm ahead of the preset's
 
@@ -100,7 +101,7 @@ STARTS = 16
 GROUNDS = ("step", "knife edge", "oblique edge", "one-sided edge", "step field")
 """The last three are not the same across the robot."""
 
-_THICK = 0.01  # [m] of edges
+_THICK = 0.01  # [m] of edges, as in a study
 _YAW = 0.35  # [rad] of oblique ones
 _SPEED = 0.2  # [m/s]
 _LENGTHS = 5.5  # axle distances at that speed: twice the longest way
@@ -190,19 +191,15 @@ class Cell:
 def terrain_of(ground: str, height: float, friction: float) -> Terrain:
     """Return a ground by its name; on one that is not the same across, roll and yaw are held."""
     match ground:
-        case "step":
-            return c2d.terrains.step(height, friction=friction)
-        case "knife edge":
-            return c2d.terrains.barrier(height, _THICK, friction=friction)
+        case "step" | "knife edge":
+            return obstacle(ground, height, friction)
         case "oblique edge":
             return c2d.terrains.diagonal_barrier(
                 _YAW, height=height, thickness=_THICK, friction=friction
             )
         case "one-sided edge":
-            edge = c2d.terrains.barrier(height, _THICK, friction=friction)
-            return c2d.terrains.lanes(
-                left=edge, right=c2d.terrains.flat(length=_THICK, friction=friction)
-            )
+            level = c2d.terrains.flat(length=_THICK, friction=friction)
+            return c2d.terrains.lanes(left=obstacle("knife edge", height, friction), right=level)
         case "step field":
             return c2d.terrains.random_stepfield(rise=height, friction=friction)
     raise ValueError(f"no ground {ground!r}; grounds: {', '.join(GROUNDS)}")

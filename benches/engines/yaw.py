@@ -18,8 +18,8 @@ from benches.engines.runs import run_in
 from benches.shared.measuring import rate
 from benches.shared.results import Results, progress
 from crawler2d import Diagnosis, Scenario, simulate_many
-from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
+from research.models import obstacle
 from research.tables import markdown_table
 
 Jam = Mapping[str, Any]
@@ -35,7 +35,7 @@ _MODELS: dict[str, Track] = {
     "24 all round": c2d.CircumferentialWheels(24),
 }
 _DRIVES = tuple(name for name in DRIVES if name != "6 N m, track")  # which takes gears in between
-_THICK = {"knife edge": 0.01, "barrier": 0.1}  # [m]
+_GROUNDS = ("step", "knife edge", "barrier")
 _SPEED = 0.2  # [m/s]
 _LENGTHS = 5.5  # axle distances at that speed: the longest time
 _ESCAPE = c2d.SeizureCriteria().escape_distance
@@ -154,16 +154,13 @@ def _draw(track: Track, draw: np.random.Generator) -> tuple[str, Scenario]:
     name, drive = str(draw.choice(list(ROBOTS))), str(draw.choice(_DRIVES))
     robot = with_motors(ROBOTS[name](track), drive)
     length, radius = robot.outline.axle_distance, robot.outline.front_radius
-    ground = str(draw.choice(["step", *_THICK]))
+    ground = str(draw.choice(_GROUNDS))
     height, friction = radius * draw.uniform(0.4, 1.6), draw.uniform(0.5, 1.0)
-    terrain: Terrain = c2d.terrains.step(height, friction=friction)
-    if ground in _THICK:
-        terrain = c2d.terrains.barrier(height, _THICK[ground], friction=friction)
     approach = length * draw.uniform(0.075, 0.325)
     phase = draw.uniform(0.0, 2.0 * np.pi * radius)
     scenario = Scenario(
         robot,
-        terrain,
+        obstacle(ground, height, friction),
         drive=c2d.Drive(speed=_SPEED),
         start=c2d.Start(approach=approach, track_phase=phase),
         duration=round(_LENGTHS * length / _SPEED, 2),

@@ -15,6 +15,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d.common.extras import extra
@@ -123,14 +124,25 @@ _DEFAULT = Drives(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DriveCell:
-    """One layout in one field, driven by one drive."""
+class Drive:
+    """What is tried: a drive on a ground."""
 
     torque: float
     """[N m] Of one sprocket."""
     inertia: float
     """[kg m^2] Of the rotor of one track, at its sprocket."""
     friction: float
+
+    @property
+    def label(self) -> str:
+        """Its name, without the ground."""
+        return f"{self.torque:g} N m, {self.inertia:g} kg m^2"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveCell(Drive):
+    """One layout in one field, driven by one drive."""
+
     obstacle: str
     """As in `FIELDS`."""
     model: str
@@ -140,12 +152,9 @@ class DriveCell:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
+class Verdict(Drive):
     """What the paper's table says of one drive."""
 
-    torque: float
-    inertia: float
-    friction: float
     reading: str
     """As in `TABLES`."""
     deviance: float
@@ -199,26 +208,8 @@ def _place(value: float, grid: tuple[float, ...]) -> float:
     return first + float(np.interp(math.log(value), logs, range(len(logs))))
 
 
-def _log_choices(hits: int) -> float:
-    return -math.log(PAPER_RUNS + 1) - _log_beta(hits + 1, PAPER_RUNS - hits + 1)
-
-
-def _log_beta(a: float, b: float) -> float:
-    return math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b)
-
-
-def _log_power(rate: float, hits: int) -> float:
-    return hits * math.log(rate) if hits else 0.0
-
-
-_EXACT = np.array(
-    [
-        _log_choices(hits)
-        + _log_power(hits / PAPER_RUNS, hits)
-        + _log_power(1.0 - hits / PAPER_RUNS, PAPER_RUNS - hits)
-        for hits in range(PAPER_RUNS + 1)
-    ]
-)
+_HITS_OF_PAPER = np.arange(PAPER_RUNS + 1)
+_EXACT = stats.binom.logpmf(_HITS_OF_PAPER, PAPER_RUNS, _HITS_OF_PAPER / PAPER_RUNS)
 """[-] The logarithm of the chance of 0 to 20 runs under the rate that they give."""
 
 
@@ -325,7 +316,7 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
     )
     table = []
     for (friction, reading), own in group_by(verdicts, "friction", "reading").items():
-        left = [_drive(each) for each in own if each.is_left]
+        left = [each.label for each in own if each.is_left]
         # With few runs p is larger, as they exclude less; cells that differ come first therefore.
         best = min(own, key=lambda each: (each.differing, -each.probability, each.deviance))
         table.append(
@@ -333,7 +324,7 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Verdict]) -> str:
                 f"{friction:g}",
                 reading,
                 f"{len(left)} of {len(own)}" + (f": {'; '.join(left)}" if left else ""),
-                _drive(best),
+                best.label,
                 f"{best.probability:.2g}",
                 f"{best.straight:.2g}",
                 f"{best.differing} of {best.cells}",
@@ -446,17 +437,9 @@ def _deviance(own: Mapping[tuple[str, str], DriveCell], table: Table) -> tuple[l
 def _chances(cleared: int, count: int) -> NDArray[np.float64]:
     """Return the chance of 0 to 20 of the paper's runs: beta-binomial, with Jeffreys' prior."""
     a, b = cleared + 0.5, count - cleared + 0.5
-    logs = [
-        _log_choices(hits) + _log_beta(a + hits, b + PAPER_RUNS - hits) - _log_beta(a, b)
-        for hits in range(PAPER_RUNS + 1)
-    ]
-    chances: NDArray[np.float64] = np.exp(logs)
+    chances: NDArray[np.float64] = stats.betabinom.pmf(_HITS_OF_PAPER, PAPER_RUNS, a, b)
     chances /= chances.sum()  # 1, but for rounding
     return chances
-
-
-def _drive(each: Verdict) -> str:
-    return f"{each.torque:g} N m, {each.inertia:g} kg m^2"
 
 
 def _name_inertias(ax: Axes, grid: _Grid, title: str) -> None:

@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import crawler2d as c2d
-from crawler2d.parameters.track import Track
 from crawler2d.studies.campaign import RateSampling, Sampling
 from research import paper
-from research.models import study_models, study_robot
+from research.models import StudyModel, study_models, study_robot
 
 if TYPE_CHECKING:
     from crawler2d.parameters.terrain import Terrain
@@ -173,23 +172,6 @@ SETTINGS = (PRESET, STRONG, PUBLIC)
 _SPACED_GEARS = "16 gears all round, spaced"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Layout:
-    """A model of the track of the Engineer with its flippers."""
-
-    track: Track
-    source: str
-    """Figure or section of the paper, or "ours"."""
-    arms: Track | None = None
-    """The track of the flippers; None takes the model of the robot's."""
-
-    def on(self, robot: c2d.Robot) -> c2d.Robot:
-        """Put it on a robot, and on its flippers if it has some."""
-        arms = robot.flippers
-        arms = None if arms is None else replace(arms, track=self.arms)
-        return replace(robot, track=self.track, flippers=arms)
-
-
 class Reading(NamedTuple):
     """Which layout stands for which row or column of the paper."""
 
@@ -235,27 +217,16 @@ READINGS = (
 """From the text; all other layouts are ours."""
 
 
-def layouts() -> dict[str, Layout]:
+def layouts() -> dict[str, StudyModel]:
     """List all layouts by name: the track models of the study, and small gears with spaces.
-
-    The flippers take the model of the robot. Wheels that touch on the robot, or are placed by hand,
-    have no place on an arm that tapers: there a line of four wheels takes theirs, which is about
-    where four touch.
 
     Examples
     --------
     >>> layouts()["16 all round, spaced"].source
     'Fig. 7'
     """
-    models = study_models()
-    four, gears = c2d.LineOfWheels(4), c2d.LineOfWheels(4, wheel=c2d.GearWheel())
-    arms = {"line of 4, touching": four, "hybrid": four, "hybrid gears": gears}
-    known = {
-        name: Layout(track=model.track, source=model.source, arms=arms.get(name))
-        for name, model in models.items()
-    }
     spaced = c2d.CircumferentialWheels(16, wheel_radius=0.02, wheel=c2d.GearWheel())
-    return known | {_SPACED_GEARS: Layout(track=spaced, source="Fig. 12")}
+    return study_models() | {_SPACED_GEARS: StudyModel(spaced, "Fig. 12")}
 
 
 def models_of(
