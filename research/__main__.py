@@ -1,7 +1,5 @@
 """The project's own studies, and the paper that introduced gear wheels, reproduced."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 

@@ -6,14 +6,17 @@ import math
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 import crawler2d as c2d
 from crawler2d import _core
 from crawler2d.errors import raise_first
 from crawler2d.parameters.fields import json_pointer
+from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
 from crawler2d.runs.progress import reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
@@ -23,12 +26,7 @@ from research.study import Job, Study
 from research.tables import aligned_table, group_by, mm
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from crawler2d.parameters.terrain import Terrain
 
 INERTIAS = (0.0, 0.005, 0.02, 0.04, 0.1, 0.2, 0.5)
 """[kg m^2] Rotor inertia of a track."""
@@ -202,12 +200,14 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
 
 def highest_edges_text(rows: Sequence[HighestEdge]) -> str:
     """Write one row per case and one column per drive."""
-    drives = list(group_by(rows, "drive"))
-    lines = []
-    for (model, obstacle, speed), case in group_by(rows, "model", "obstacle", "speed").items():
-        heights = {row.drive: f"{mm(row.height)} ({mm(row.low)} to {mm(row.high)})" for row in case}
-        lines.append((model, obstacle, f"{speed:g}", *(heights.get(each, "-") for each in drives)))
-    return aligned_table(("highest edge [mm]", "obstacle", "[m/s]", *drives), lines, left=[1])
+    missing = dict.fromkeys(group_by(rows, "drive"), "-")
+    lines = (
+        {"highest edge [mm]": model, "obstacle": obstacle, "[m/s]": f"{speed:g}"}
+        | missing
+        | {row.drive: f"{mm(row.height)} ({mm(row.low)} to {mm(row.high)})" for row in case}
+        for (model, obstacle, speed), case in group_by(rows, "model", "obstacle", "speed").items()
+    )
+    return aligned_table(lines, left=["obstacle"])
 
 
 def paired_text(rows: Sequence[HighestEdge]) -> str:
@@ -217,9 +217,9 @@ def paired_text(rows: Sequence[HighestEdge]) -> str:
     for drive, own in others:
         count = sum(len(row.heights) for row in own)
         higher, lower = sum(row.higher for row in own), sum(row.lower for row in own)
-        lines.append((drive, *map(str, (count, higher, count - higher - lower, lower))))
-    head = (f"draws beside {first}", "count", "higher", "equal", "lower")
-    return aligned_table(head, lines)
+        counts = {"count": count, "higher": higher, "equal": count - higher - lower, "lower": lower}
+        lines.append({f"draws beside {first}": drive} | {k: str(n) for k, n in counts.items()})
+    return aligned_table(lines)
 
 
 def plot_drive(rows: Sequence[HighestEdge]) -> Figure:

@@ -1,7 +1,5 @@
 """The robots and the track models of the studies; each model with its source in the paper."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Literal, NamedTuple

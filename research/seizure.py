@@ -1,13 +1,13 @@
 """The seizure study: which track models get the Engineer over an edge, how often, and why not."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray
 
 import crawler2d as c2d
 from research import models, stops
@@ -15,9 +15,6 @@ from research import seizure_tables as tables
 from research.models import FRICTION, StudyModel, study_models, study_robot
 from research.study import Job, Study
 from research.tables import in_mm
-
-if TYPE_CHECKING:
-    import xarray
 
 _STRONG = "torque doubled"
 """The other robot whose gear wheels are compared with round ones, too."""

@@ -5,25 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK
 from crawler2d.sweeps.rates import rates_of
 from research.figures import THREE, add_legend, draw_rates, make_panels, style
-from research.models import study_robot
+from research.models import StudyModel, study_robot
 from research.paper import RPM, TABLE_2, TABLE_3
 from research.tables import aligned_table, counts, gaps, group_by, in_mm, mm, percent
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import xarray
     from matplotlib.figure import Figure
-
-    from research.models import StudyModel
 
 _POST_THICKNESS = 0.020
 _POST_HEIGHTS = (0.03, 0.05, 0.08)
@@ -272,147 +269,144 @@ def posts(runs: Mapping[tuple[float, bool], c2d.Run]) -> list[Post]:
 
 def rates_text(cells: Iterable[Cell]) -> str:
     """Write how often each model cleared."""
-    rows = [
-        (
-            cell.model,
-            cell.obstacle,
-            mm(cell.height),
-            f"{cell.cleared}/{cell.count}",
-            f"{percent(cell.low)} to {percent(cell.high)} %",
-            str(cell.poses),
-            cell.others,
-        )
+    rows = (
+        {
+            "model": cell.model,
+            "obstacle": cell.obstacle,
+            "[mm]": mm(cell.height),
+            "cleared": f"{cell.cleared}/{cell.count}",
+            "95 % interval": f"{percent(cell.low)} to {percent(cell.high)} %",
+            "poses": str(cell.poses),
+            "other outcomes": cell.others,
+        }
         for cell in cells
-    ]
-    head = ("model", "obstacle", "[mm]", "cleared", "95 % interval", "poses", "other outcomes")
-    return aligned_table(head, rows, left=(1, 6))
+    )
+    return aligned_table(rows, left=("obstacle", "other outcomes"))
 
 
 def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
     """Write the greatest height that each model clears, one row per model."""
-    rows = []
     by_model = group_by(climbs, "model")
-    for name, model in models.items():
-        own = by_model[name]
-        penetration = f"{1e3 * max(climb.max_penetration for climb in own):.2f}"
-        rows.append((name, model.source, *map(_highest, own), _real_time_factor(own), penetration))
-    obstacles = group_by(climbs, "obstacle")
-    head = ("model", "paper", *obstacles, "RTF", "penetration")
+    rows = (
+        {
+            "model": name,
+            "paper": model.source,
+            **{climb.obstacle: _highest(climb) for climb in by_model[name]},
+            "RTF": _real_time_factor(by_model[name]),
+            "penetration": mm(max(climb.max_penetration for climb in by_model[name]), 2),
+        }
+        for name, model in models.items()
+    )
     return (
         "Greatest height [mm] cleared in at least half of the runs (in brackets: smaller heights\n"
         "that were not; +: the greatest height tried), real-time factor on one thread, largest\n"
         "penetration of all runs [mm]\n\n"
-    ) + aligned_table(head, rows, left=range(1, 2 + len(obstacles)))
+    ) + aligned_table(rows, left=("paper", *group_by(climbs, "obstacle")))
 
 
 def robots_text(cells: Sequence[Cell]) -> str:
     """Write how other estimates of the robot change the table."""
-    robots, by_place = group_by(cells, "robot"), group_by(cells, "model", "robot")
     heights = in_mm(group_by(cells, "height"))
-    rows = [
-        (
-            model,
-            *(" ".join(str(cell.cleared) for cell in by_place[model, robot]) for robot in robots),
-        )
-        for model in group_by(cells, "model")
-    ]
+    rows = (
+        {"model": model}
+        | {
+            robot: " ".join(str(cell.cleared) for cell in own)
+            for robot, own in group_by(of_model, "robot").items()
+        }
+        for model, of_model in group_by(cells, "model").items()
+    )
     note = f"Other robots: how many of {cells[0].count} runs cleared a step of {heights} mm"
-    return f"{note}\n\n{aligned_table(('model', *robots), rows)}"
+    return f"{note}\n\n{aligned_table(rows)}"
 
 
 def rides_text(rides: Iterable[Ride]) -> str:
     """Write odometry error and vibration on flat ground."""
-    rows = [
-        (
-            ride.model,
-            f"{round(100 * ride.over_reading, 2) + 0.0:.2f}",
-            f"{ride.vertical_acceleration:.2f}",
-            f"{ride.angular_velocity:.3f}",
-        )
+    rows = (
+        {
+            "model": ride.model,
+            "odometry [%]": f"{100 * ride.over_reading:z.2f}",
+            "acceleration [m/s^2]": f"{ride.vertical_acceleration:.2f}",
+            "angle rate [rad/s]": f"{ride.angular_velocity:.3f}",
+        }
         for ride in rides
-    ]
-    head = ("model", "odometry [%]", "acceleration [m/s^2]", "angle rate [rad/s]")
+    )
     return (
         "Flat ground: how much too far odometry reads, and vibration (root mean square of the\n"
         "vertical acceleration and of the rate of the chassis angle)\n\n"
-    ) + aligned_table(head, rows)
+    ) + aligned_table(rows)
 
 
 def phases_text(phases: Sequence[Phase]) -> str:
     """Write the vibration of lines of gear wheels over their phases."""
-    runs = group_by(phases, "count")
-    rows = [
-        (
-            f"{fraction:.3f}",
-            *(f"{phase.vertical_acceleration:.2f}" for phase in own),
-            *(f"{phase.angular_velocity:.3f}" for phase in own),
-        )
+    rows = (
+        {
+            "phase": f"{fraction:.3f}",
+            **{f"{phase.count} [m/s^2]": f"{phase.vertical_acceleration:.2f}" for phase in own},
+            **{f"{phase.count} [rad/s]": f"{phase.angular_velocity:.3f}" for phase in own},
+        }
         for fraction, own in group_by(phases, "phase_fraction").items()
-    ]
-    head = ("phase", *(f"{n} [m/s^2]" for n in runs), *(f"{n} [rad/s]" for n in runs))
+    )
     return (
         "Lines of gear wheels on flat ground: vibration over the phase fraction of eq. (1), which\n"
         "is 0.333 in the paper\n\n"
-    ) + aligned_table(head, rows)
+    ) + aligned_table(rows)
 
 
 def posts_text(posts: Iterable[Post]) -> str:
     """Write when the post was between two wheels of the public model."""
-    rows = [
-        (
-            mm(post.height),
-            "yes" if post.belly else "no",
-            ", ".join(filter(None, (post.outcome, post.mechanism))),
-            post.bodies,
-            f"{post.start:.2f} to {post.end:.2f}",
-            f"{1e3 * post.depth:.1f}",
-            f"{post.force:.0f}",
-        )
+    rows = (
+        {
+            "post [mm]": mm(post.height),
+            "belly": "yes" if post.belly else "no",
+            "outcome": ", ".join(filter(None, (post.outcome, post.mechanism))),
+            "between": post.bodies,
+            "time [s]": f"{post.start:.2f} to {post.end:.2f}",
+            "depth [mm]": mm(post.depth, 1),
+            "force [N]": f"{post.force:.0f}",
+        }
         for post in posts
-    ]
-    head = ("post [mm]", "belly", "outcome", "between", "time [s]", "depth [mm]", "force [N]")
+    )
     return (
         "The public wheel model, three wheels per side with gaps of 26 mm, against a post 20 mm\n"
         "thick: the time spans in which it was between two wheels\n\n"
-    ) + aligned_table(head, rows, left=(1, 2, 3))
+    ) + aligned_table(rows, left=("belly", "outcome", "between"))
 
 
 def paper_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
     """Write the paper's Tables 2 and 3, with our models below the rows of their kind."""
     places = ("barrier", "step", "knife edge")
-    success = [
-        (row.obstacle, percent(row.cwa), percent(row.lwa), percent(row.gear)) for row in TABLE_2
-    ]
-    head = ("model", *places, "RTF", "speed", "braking", "acceleration", "turning")
-    rows: list[tuple[str, ...]] = []
+    columns = {"CWA": "cwa", "LWA": "lwa", "gear wheels": "gear"}
+    success = (
+        {"obstacle": row.obstacle}
+        | {name: percent(getattr(row, column)) for name, column in columns.items()}
+        for row in TABLE_2
+    )
+    rows = []
     by_model = group_by(climbs, "model")
     for theirs in TABLE_3:
-        rows.append(
-            (
-                theirs.model,
-                mm(theirs.max_height),
-                *("", ""),
-                f"{theirs.real_time_factor:g}",
-                f"{theirs.max_speed:g}",
-                f"{theirs.braking_distance:g}",
-                f"{theirs.acceleration:g}",
-                f"{theirs.max_turn_rate / RPM:.1f}",
-            )
-        )
+        paper = {
+            "model": theirs.model,
+            **dict.fromkeys(places, ""),
+            "RTF": f"{theirs.real_time_factor:g}",
+            "speed": f"{theirs.max_speed:g}",
+            "braking": f"{theirs.braking_distance:g}",
+            "acceleration": f"{theirs.acceleration:g}",
+            "turning": f"{theirs.max_turn_rate / RPM:.1f}",
+        }
+        rows.append(paper | {places[0]: mm(theirs.max_height)})
         for name in (name for name, model in models.items() if model.row == theirs.model):
-            heights = {climb.obstacle: _highest(climb) for climb in by_model[name]}
-            own = (heights[place] for place in places)
-            factor = _real_time_factor(by_model[name])
-            rows.append((f"    ours: {name}", *own, factor, *("", "", "", "")))
+            own = {climb.obstacle: _highest(climb) for climb in by_model[name]}
+            own |= {"model": f"    ours: {name}", "RTF": _real_time_factor(by_model[name])}
+            rows.append(dict.fromkeys(paper, "") | own)
     return "\n\n".join(
         (
             "The paper's Table 2, successful runs of 20 [%]",
-            aligned_table(("obstacle", "CWA", "LWA", "gear wheels"), success),
+            aligned_table(success),
             "The paper's Table 3, with ours below. Only the order of the heights can be compared:\n"
             "the paper's 150 and 200 mm are those of a robot with flippers. A side view has no\n"
             "turning. Heights in mm, speed in m/s, braking in m, acceleration in m/s^2, turning\n"
             "in revolutions per minute.",
-            aligned_table(head, rows, left=(1, 2, 3)),
+            aligned_table(rows, left=places),
         )
     )
 

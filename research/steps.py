@@ -10,6 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray
 
 import crawler2d as c2d
 from crawler2d.sweeps.rates import rates_of
@@ -22,7 +23,6 @@ from research.study import Job, Study
 from research.tables import aligned_table, group_by, mm
 
 if TYPE_CHECKING:
-    import xarray
     from matplotlib.figure import Figure
 
 CHAINS_FULL = replace(
@@ -174,24 +174,21 @@ def chain_steps(
 
 def chain_steps_text(rows: Sequence[ChainStep], heights: Sequence[float] = _CHAIN_HEIGHTS) -> str:
     """Write one row per accuracy."""
-    lines = [
-        (
-            f"{1e6 * row.accuracy:g}",
-            f"{1e3 * row.step:.2f}",
-            f"{1e6 * row.flat_gap:.1f}",
-            f"{1e6 * row.gap:.0f}",
-            f"{1e3 * row.lowest:.2f} to {1e3 * row.highest:.2f}",
-            *(f"{rate:.2f} ({low:.2f} to {high:.2f})" for rate, low, high in row.cleared),
-            f"{1e3 * row.cost:.0f}",
-        )
+    return aligned_table(
+        {
+            "accuracy [um]": f"{1e6 * row.accuracy:g}",
+            "step [ms]": f"{1e3 * row.step:.2f}",
+            "gap, flat [um]": f"{1e6 * row.flat_gap:.1f}",
+            "gap, steps [um]": f"{1e6 * row.gap:.0f}",
+            "height, flat [mm]": f"{mm(row.lowest, 2)} to {mm(row.highest, 2)}",
+            **{
+                f"cleared {mm(height)} mm": f"{rate:.2f} ({low:.2f} to {high:.2f})"
+                for height, (rate, low, high) in zip(heights, row.cleared, strict=True)
+            },
+            "cost [ms/s]": f"{1e3 * row.cost:.0f}",
+        }
         for row in rows
-    ]
-    head = (
-        *("accuracy [um]", "step [ms]", "gap, flat [um]", "gap, steps [um]", "height, flat [mm]"),
-        *(f"cleared {mm(height)} mm" for height in heights),
-        "cost [ms/s]",
     )
-    return aligned_table(head, lines)
 
 
 def flipper_robots() -> dict[str, c2d.Robot]:
@@ -259,14 +256,19 @@ def highest_steps(
 
 def highest_steps_text(rows: Sequence[HighestStep]) -> str:
     """Write one row per model and one column per robot, with what limits each."""
-    lines = []
-    for model, own in group_by(rows, "model").items():
-        paper = "-" if own[0].paper is None else f"{100 * own[0].paper:.0f}"
-        heights = (f"{100 * row.height:.0f}{'*' * bool(row.gaps)} {row.limit}" for row in own)
-        lines.append((model, paper, *heights))
-    head = ("highest step [cm], then what limits it", "paper", *group_by(rows, "robot"))
+    lines = (
+        {
+            "highest step [cm], then what limits it": model,
+            "paper": "-" if own[0].paper is None else f"{100 * own[0].paper:.0f}",
+            **{
+                row.robot: f"{100 * row.height:.0f}{'*' * bool(row.gaps)} {row.limit}"
+                for row in own
+            },
+        }
+        for model, own in group_by(rows, "model").items()
+    )
     note = "* fewer than half of the runs clear some lower step; the paper's real robot: 20 cm"
-    return f"{aligned_table(head, lines)}\n{note}"
+    return f"{aligned_table(lines)}\n{note}"
 
 
 def _limit(above: xarray.Dataset) -> str:

@@ -1,27 +1,22 @@
 """Why the runs of the seizure study stopped, gear wheels compared with round ones, and replays."""
 
-from __future__ import annotations
-
 import math
 import re
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+import xarray
+from numpy.typing import NDArray
 
 import crawler2d as c2d
 from crawler2d.sweeps.axes import short_name
 from crawler2d.sweeps.statistics import clustered
 from research.tables import aligned_table, group_by, mm, percent
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import xarray
-    from numpy.typing import NDArray
 
 STOPS = tuple(str(outcome) for outcome in c2d.Outcome if outcome.is_stop)
 """Outcomes that are stops, by name."""
@@ -38,11 +33,14 @@ FIGURES = (
 )
 """Counts of `Stops` by which gear and round wheels are compared."""
 
-_PERCENTS = (
-    *("jammed", "unnatural_stops", "freed_by_torque"),
-    *("freed_by_friction", "freed_by_no_belly"),
-)
-"""Counts of `Stops` that are written as percentages of the stops."""
+_PERCENTS = {
+    "jammed": "jammed",
+    "closed": "unnatural_stops",
+    "torque": "freed_by_torque",
+    "friction": "freed_by_friction",
+    "no belly": "freed_by_no_belly",
+}
+"""Counts of `Stops` that are written as percentages of the stops, by the words for them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -264,28 +262,23 @@ def write_replays(
 
 def stops_text(stops: Iterable[Stops]) -> str:
     """Write how the runs of each model ended, and what held those that stopped."""
-    rows = [
-        (
-            row.model,
-            row.obstacle,
-            *(str(n) if n else "-" for n in (row.count, row.cleared)),
-            *(str(getattr(row, name) or "-") for name in STOPS),
-            f"{row.mechanism or 'none'}, {row.of_mechanism}" if row.stopped else "-",
-            *(
-                percent(getattr(row, name) / row.stopped) if row.stopped else "-"
-                for name in _PERCENTS
-            ),
-            str(row.unnatural_passes or "-"),
-            *("-" if math.isnan(d) else f"{1e3 * d:.1f}" for d in (row.depth, row.root_depth)),
-        )
+    rows = (
+        {
+            "model": row.model,
+            "obstacle": row.obstacle,
+            "runs": str(row.count or "-"),
+            "cleared": str(row.cleared or "-"),
+            **{name.replace("_", " "): str(getattr(row, name) or "-") for name in STOPS},
+            "mechanism": f"{row.mechanism or 'none'}, {row.of_mechanism}" if row.stopped else "-",
+            **{
+                f"{what} [%]": percent(getattr(row, name) / row.stopped) if row.stopped else "-"
+                for what, name in _PERCENTS.items()
+            },
+            "passes": str(row.unnatural_passes or "-"),
+            "depth [mm]": "-" if math.isnan(row.depth) else mm(row.depth, 1),
+            "roots [mm]": "-" if math.isnan(row.root_depth) else mm(row.root_depth, 1),
+        }
         for row in stops
-    ]
-    head = (
-        *("model", "obstacle", "runs", "cleared"),
-        *(name.replace("_", " ") for name in STOPS),
-        *("mechanism", "jammed [%]", "closed [%]", "torque [%]", "friction [%]", "no belly [%]"),
-        "passes",
-        *("depth [mm]", "roots [mm]"),
     )
     return (
         "How the runs ended, all heights together. Of those that stopped: the commonest\n"
@@ -294,23 +287,31 @@ def stops_text(stops: Iterable[Stops]) -> str:
         "torque, twice the friction and taking the belly off free, all by trial. Passes are\n"
         "unnatural ones: the belt of the same repeat did not clear. Depths are medians of the\n"
         "edges that seized, below the circumscribed circles and below the root circles.\n\n"
-    ) + aligned_table(head, rows, left=(1, 9))
+    ) + aligned_table(rows, left=("obstacle", "mechanism"))
 
 
 def wheels_text(rates: Sequence[WheelRate]) -> str:
     """Compare gear wheels with round ones, two rows per pair, with their intervals."""
-    rows = []
-    for (robot, model, wheel), own in group_by(rates, "robot", "model", "wheel").items():
-        texts = (f"{percent(row.rate)} ({percent(row.low)} to {percent(row.high)})" for row in own)
-        rows.append((model, robot, wheel, str(own[0].count), *texts))
-    figures = (name.replace("_", " ") for name in group_by(rates, "figure"))
-    head = ("model", "robot", "wheels", "runs", *figures)
-    obstacle = rates[0].obstacle
+    rows = (
+        {
+            "model": model,
+            "robot": robot,
+            "wheels": wheel,
+            "runs": str(own[0].count),
+            **{
+                row.figure.replace("_", " "): f"{percent(row.rate)}"
+                f" ({percent(row.low)} to {percent(row.high)})"
+                for row in own
+            },
+        }
+        for (robot, model, wheel), own in group_by(rates, "robot", "model", "wheel").items()
+    )
     return (
-        f"Gear wheels beside round ones on {obstacle}s, all heights together: shares of all runs\n"
+        f"Gear wheels beside round ones on {rates[0].obstacle}s, all heights together: shares of"
+        " all runs\n"
         "[%], with 95 % intervals of repeats. Freed by: twice the torque, twice the friction.\n"
         "Unnatural: stops that a closed track leaves, passes where the belt does not get over.\n\n"
-    ) + aligned_table(head, rows, left=(1, 2))
+    ) + aligned_table(rows, left=("robot", "wheels"))
 
 
 def replays_text(replays: Iterable[Replay], folder: str) -> str:

@@ -1,7 +1,5 @@
 """Tables for a terminal, for pages in Markdown, and as CSV."""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import operator
@@ -61,21 +59,44 @@ def group_by(rows: Iterable[_Row], *names: str) -> dict[Any, list[_Row]]:
     return groups
 
 
-def aligned_table(
-    head: Sequence[str], rows: Iterable[Sequence[str]], left: Iterable[int] = ()
-) -> str:
-    """Write rows as columns: the first one and those in `left` flush left, others flush right."""
-    lines = [list(head), *map(list, rows)]
+def aligned_table(rows: Iterable[Mapping[str, str]], left: Iterable[str] = ()) -> str:
+    """Write rows with the same keys as columns.
+
+    The first one and those whose names are in `left` are flush left, others flush right.
+
+    Examples
+    --------
+    >>> print(aligned_table([{"model": "belt", "rate": "1.0"}]))
+    model  rate
+    -----  ----
+    belt    1.0
+    """
+    rows = list(rows)
+    lines = [list(rows[0]), *(list(row.values()) for row in rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     lines.insert(1, ["-" * width for width in widths])
-    to_left = {0, *left}
+    to_left = [index == 0 or name in left for index, name in enumerate(rows[0])]
     return "\n".join(
         "  ".join(
-            cell.ljust(width) if index in to_left else cell.rjust(width)
-            for index, (cell, width) in enumerate(zip(line, widths, strict=True))
+            cell.ljust(width) if is_left else cell.rjust(width)
+            for cell, width, is_left in zip(line, widths, to_left, strict=True)
         ).rstrip()
         for line in lines
     )
+
+
+def table(rows: Iterable[Mapping[str, str]]) -> str:
+    """Write rows with the same keys, which are its head, as a table in Markdown.
+
+    Examples
+    --------
+    >>> print(table([{"model": "belt", "rate": "1.0"}]))
+    | model | rate |
+    |---|---|
+    | belt | 1.0 |
+    """
+    rows = list(rows)
+    return markdown_table(list(rows[0]), [list(row.values()) for row in rows]) if rows else "None."
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -8,8 +8,6 @@ command continues. The settings file names arguments of `Solver`, the finest las
 ``reference`` among them that all are compared with, and the ``default`` that gets the verdicts.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -3,12 +3,11 @@
 Robots are the Engineer with different track models, motors and flippers.
 """
 
-from __future__ import annotations
-
 import json
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
@@ -19,18 +18,21 @@ from benches.shared.results import write_rows
 from crawler2d import Robot, Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
+from research.models import study_models
 
+# What is drawn of each, between which bounds and to how many digits; or a whole number.
+_DRAWN: dict[str, dict[str, tuple[float, float, int] | tuple[int, int]]] = {
+    "step": {},
+    "barrier": {"thickness": (0.05, 0.3, 3)},
+    "knife edge": {"thickness": (0.002, 0.01, 3)},
+    "stairs": {"count": (2, 5), "run": (0.15, 0.35, 3)},
+    "two steps": {"lower": (0.3, 0.9, 2)},
+    "diagonal barrier": {"yaw": (0.2, 1.0, 2), "thickness": (0.05, 0.3, 3)},
+    "step field": {"seed": (0, 2**32)},
+}
 ONE_LANE = ("step", "barrier", "knife edge", "stairs")
 TWO_LANES = ("two steps", "diagonal barrier", "step field")
-
-# Their names, and those of their heights.
-_TERRAINS = {
-    "step": ("step", "height"),
-    "barrier": ("barrier", "height"),
-    "knife edge": ("knife_edge", "height"),
-    "stairs": ("stairs", "rise"),
-    "diagonal barrier": ("diagonal_barrier", "height"),
-}
+_MAY_BE_ROUNDED = ("step", "barrier", "stairs")
 
 # Share of the drawn obstacles with rounded edges.
 _ROUNDED = 0.3
@@ -51,30 +53,18 @@ def draw_obstacle(kind: str, random: np.random.Generator) -> dict[str, Any]:
     dict
         Plain numbers, for a file; lengths [m], angles [rad].
     """
-
-    def between(low: float, high: float, digits: int = 3) -> float:
-        return round(float(random.uniform(low, high)), digits)
-
+    if kind not in _DRAWN:
+        raise ValueError(f"kind must be one of {ONE_LANE + TWO_LANES}, got {kind!r}")
     drawn: dict[str, Any] = {"kind": kind}
-    match kind:
-        case "step":
-            pass
-        case "barrier":
-            drawn |= {"thickness": between(0.05, 0.3)}
-        case "knife edge":
-            drawn |= {"thickness": between(0.002, 0.01)}
-        case "stairs":
-            drawn |= {"count": int(random.integers(2, 5)), "run": between(0.15, 0.35)}
-        case "two steps":
-            drawn |= {"lower": between(0.3, 0.9, 2)}
-        case "diagonal barrier":
-            drawn |= {"yaw": between(0.2, 1.0, 2), "thickness": between(0.05, 0.3)}
-        case "step field":
-            drawn |= {"seed": int(random.integers(2**32)), "posts": 8, "levels": 4}
-        case _:
-            raise ValueError(f"kind must be one of {ONE_LANE + TWO_LANES}, got {kind!r}")
-    if kind in ("step", "barrier", "stairs") and random.random() < _ROUNDED:
-        drawn["edge_radius"] = between(0.001, 0.005)
+    for name, (low, high, *digits) in _DRAWN[kind].items():
+        if digits:
+            drawn[name] = round(float(random.uniform(low, high)), *digits)
+        else:
+            drawn[name] = int(random.integers(int(low), int(high)))
+    if kind == "step field":
+        drawn |= {"posts": 8, "levels": 4}
+    if kind in _MAY_BE_ROUNDED and random.random() < _ROUNDED:
+        drawn["edge_radius"] = round(float(random.uniform(0.001, 0.005)), 3)
     return drawn
 
 
@@ -99,9 +89,8 @@ def terrain_of(obstacle: Mapping[str, Any], height: float, friction: float) -> T
     if kind == "step field":
         rise = height / fields["levels"]
         return c2d.terrains.random_stepfield(rise=rise, friction=friction, **fields)
-    name, path = _TERRAINS[kind]
-    make: Callable[..., Terrain] = getattr(c2d.terrains, name)
-    return make(**{path: height}, friction=friction, **fields)
+    make: Callable[..., Terrain] = getattr(c2d.terrains, kind.replace(" ", "_"))
+    return make(**{"rise" if kind == "stairs" else "height": height}, friction=friction, **fields)
 
 
 def length_of(obstacle: Mapping[str, Any]) -> float:
@@ -120,9 +109,19 @@ def length_of(obstacle: Mapping[str, Any]) -> float:
 
 # [m] Axle distance of the Engineer; in a line of four, wheels of a sixth of it touch.
 _AXLES = 0.365
-_GEAR = c2d.GearWheel()
+_STUDIED = {name: model.track for name, model in study_models().items()}
+_CLOSED = {
+    "24 round all round": _STUDIED["24 all round"],
+    "24 gears all round": _STUDIED["24 gears all round"],
+    "belt": _STUDIED["belt"],
+    "belt with grousers": _STUDIED["belt with grousers"],
+}
+_OPEN = {
+    "belt": _STUDIED["belt"],
+    "line of 5 round": _STUDIED["line of 5"],
+    "line of 3 gears": _STUDIED["line of 3 gears"],
+}
 
-_SUPPORTS: tuple[Literal["skids", "wheels"], ...] = ("skids", "wheels")
 _MECHANISMS: tuple[Literal["guide", "sprocket"], ...] = ("guide", "sprocket")
 _GAITS: tuple[Literal["climb", "hold"], ...] = ("climb", "hold")
 
@@ -166,81 +165,49 @@ class Kind:
 
 
 def _lines() -> Iterator[Kind]:
-    for wheel, word in ((c2d.RoundWheel(), "round"), (_GEAR, "gears")):
+    for wheel, word in ((c2d.RoundWheel(), "round"), (c2d.GearWheel(), "gears")):
         for count in (3, 4, 5, 9):
             radius = _AXLES / 6.0 if count == 4 else None
             track = c2d.LineOfWheels(count, wheel_radius=radius, wheel=wheel)
-            name = f"line of {count} {word}"
-            model = f"lines of {'gear' if word == 'gears' else 'round'} wheels"
+            name, model = f"line of {count} {word}", f"lines of {wheel.kind} wheels"
             yield Kind(name=name, model=model, track=track)
             yield Kind(name=f"{name}, servos", model=model, track=track, sharing="wheel")
 
 
 def _closed() -> Iterator[Kind]:
-    small = c2d.CircumferentialWheels(24)
-    low = -0.034
-    middle = tuple((x, low, 0.03) for x in (-0.07, 0.0, 0.07))
-    ends = ((-0.5 * _AXLES, 0.0, 0.064), (0.5 * _AXLES, 0.0, 0.064))
-    hybrid = c2d.HybridWheels((ends[0], *middle, ends[1]))
-    tracks: dict[str, Track] = {
-        "24 round all round": small,
-        "24 gears all round": replace(small, wheel=_GEAR),
-        "belt": c2d.BeltTrack(),
-        "belt with grousers": c2d.GrouserBeltTrack(),
-    }
     for letter in "ab":
-        for name, track in tracks.items():
+        for name, track in _CLOSED.items():
             yield Kind(name=f"{name} ({letter})", model=name, track=track)
-    yield Kind(name="hybrid round", model="hybrid", track=hybrid)
-    yield Kind(name="hybrid gears", model="hybrid", track=replace(hybrid, wheel=_GEAR))
-    for support in _SUPPORTS:
-        yield Kind(
-            name=f"force on {support}",
-            model="force",
-            track=c2d.ForceTrack(support=support),
-            heights=(0.003, 0.2),
-        )
+    for name in ("hybrid", "hybrid gears"):
+        word = "" if "gears" in name else " round"
+        yield Kind(name=name + word, model="hybrid", track=_STUDIED[name])
+    for name in ("force on skids", "force on wheels"):
+        yield Kind(name=name, model="force", track=_STUDIED[name], heights=(0.003, 0.2))
 
 
 def _lanes() -> Iterator[Kind]:
-    tracks: dict[str, Track] = {
-        "belt": c2d.BeltTrack(),
-        "line of 5 round": c2d.LineOfWheels(5),
-        "line of 3 gears": c2d.LineOfWheels(3, wheel=_GEAR),
-        "belt with grousers": c2d.GrouserBeltTrack(),
-        "24 gears all round": c2d.CircumferentialWheels(24, wheel=_GEAR),
-    }
+    more = ("belt with grousers", "24 gears all round")
+    tracks = _OPEN | {name: _CLOSED[name] for name in more}
     for name, track in tracks.items():
         yield Kind(name=f"{name}, two lanes", model="two lanes", track=track, obstacles=TWO_LANES)
 
 
 def _chains() -> Iterator[Kind]:
-    for count in (22, 44):
-        for mechanism in _MECHANISMS:
-            yield Kind(
-                name=f"chain of {count}, {mechanism}",
-                model="chains",
-                track=c2d.SegmentalTrack(shoe_count=count, mechanism=mechanism),
-            )
+    for count, mechanism in product((22, 44), _MECHANISMS):
+        track = c2d.SegmentalTrack(shoe_count=count, mechanism=mechanism)
+        yield Kind(name=f"chain of {count}, {mechanism}", model="chains", track=track)
 
 
 def _arms() -> Iterator[Kind]:
-    tracks: dict[str, Track] = {
-        "belt": c2d.BeltTrack(),
-        "line of 5 round": c2d.LineOfWheels(5),
-        "line of 3 gears": c2d.LineOfWheels(3, wheel=_GEAR),
-    }
-    for name, track in tracks.items():
-        for ends, place in _ENDS.items():
-            for gait in _GAITS:
-                yield Kind(
-                    name=f"{name}, flippers {place}, {gait}",
-                    model=f"{name}, flippers",
-                    track=track,
-                    ends=ends,
-                    gait=gait,
-                    heights=(0.03, 0.45),
-                )
+    for (name, track), (ends, place), gait in product(_OPEN.items(), _ENDS.items(), _GAITS):
+        yield Kind(
+            name=f"{name}, flippers {place}, {gait}",
+            model=f"{name}, flippers",
+            track=track,
+            ends=ends,
+            gait=gait,
+            heights=(0.03, 0.45),
+        )
 
 
 KINDS = {kind.name: kind for part in (_lines, _closed, _lanes, _chains, _arms) for kind in part()}

@@ -3,10 +3,10 @@
 A verdict says whether a difference lies within a bound: of a cell, of a model, of all cells.
 """
 
-from __future__ import annotations
-
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -15,6 +15,7 @@ from benches.accuracy.cells import Cell, Setting
 from benches.accuracy.runs import FAILED, Row, Store
 from crawler2d import newcombe_paired
 from crawler2d.sweeps.statistics import Interval, bootstrap_mean, mcnemar
+from research.tables import group_by
 
 LOOKS = (400, 1600)
 """Runs of a cell at which it gets a verdict; it gets more only while its interval is open."""
@@ -81,10 +82,9 @@ class Pairs(NamedTuple):
 
 def pair(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Pairs:
     """Count the repeats that both have; a run without a result has not cleared."""
-    counts = {(True, True): 0, (True, False): 0, (False, True): 0, (False, False): 0}
-    for repeat in rows.keys() & reference.keys():
-        counts[_cleared(rows[repeat]), _cleared(reference[repeat])] += 1
-    return Pairs(*counts.values())
+    shared = rows.keys() & reference.keys()
+    counts = Counter((_cleared(rows[each]), _cleared(reference[each])) for each in shared)
+    return Pairs(*(counts[ours, theirs] for ours, theirs in product((True, False), repeat=2)))
 
 
 def path_error(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: float) -> float:
@@ -93,12 +93,12 @@ def path_error(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: flo
     Runs end at the same place beyond the obstacle, at different times; from there on both drive at
     the commanded speed. Where both stop, they end in the same equilibrium whatever happened before.
     """
-    apart = []
-    for repeat in rows.keys() & reference.keys():
-        ours, theirs = rows[repeat], reference[repeat]
-        if _cleared(ours) and _cleared(theirs):
-            lead = ours.x - theirs.x - speed * (ours.time - theirs.time)
-            apart.append(math.hypot(lead, ours.y - theirs.y))
+    both = ((rows[repeat], reference[repeat]) for repeat in rows.keys() & reference.keys())
+    apart = [
+        math.hypot(ours.x - theirs.x - speed * (ours.time - theirs.time), ours.y - theirs.y)
+        for ours, theirs in both
+        if _cleared(ours) and _cleared(theirs)
+    ]
     return float(np.median(apart)) if apart else math.nan
 
 
@@ -272,10 +272,7 @@ OfCell = TypeVar("OfCell", Finding, CellVerdict)
 
 def models(cells: Sequence[OfCell]) -> dict[str, list[OfCell]]:
     """Group cells by model, in the order of the kinds."""
-    groups: dict[str, list[OfCell]] = {}
-    for each in cells:
-        groups.setdefault(each.cell.what.model, []).append(each)
-    return groups
+    return group_by(cells, "cell.what.model")
 
 
 def model_difference(cells: Sequence[CellVerdict]) -> Interval:

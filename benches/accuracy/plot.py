@@ -1,7 +1,5 @@
 """The figures of the study: error against cost, of all cells and of each model."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The parts of the page docs/accuracy.md, and its table of all cells."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
@@ -25,8 +23,8 @@ from benches.accuracy.findings import (
     size_of_difference,
     verdict_of,
 )
-from benches.shared.measuring import table
 from crawler2d.sweeps.statistics import Interval
+from research.tables import table
 
 _MEANING = {"inside": "yes", "outside": "**no**", "open": "not decided"}
 

@@ -3,8 +3,6 @@
 All settings of the solver have the same draws. Nothing is lost on Ctrl-C, and no run is repeated.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import sqlite3

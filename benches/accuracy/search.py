@@ -1,7 +1,5 @@
 """Draw cells, and search the height of each: first at a coarse setting, then at a fine one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path

@@ -14,8 +14,6 @@ Box2D mixes friction by the geometric mean, so both materials have the scene's. 
 Single precision.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib.metadata import version
 

@@ -1,7 +1,5 @@
 """The ground in three dimensions, as boxes; those under one track and turned ones among them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

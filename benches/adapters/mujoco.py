@@ -10,8 +10,6 @@ impedance of 0.99 to 0.999 within 0.1 mm, and the elliptic cone with an `imprati
 sticking contacts from creeping. Newton's method is MuJoCo's default; the iterations are its limit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

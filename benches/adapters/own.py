@@ -6,8 +6,6 @@ than the run keeps runs from ending early, so that every engine simulates the sa
 no pins that could open.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from contextlib import suppress

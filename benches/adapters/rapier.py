@@ -9,8 +9,6 @@ from one cuboid to the next can catch on the seam. Sleeping is off, because slow
 would fall asleep.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """A robot for engines in three dimensions: a model file, its wheels, and rigid bodies as data."""
 
-from __future__ import annotations
-
 import json
 import tempfile
 from collections.abc import Iterator, Sequence

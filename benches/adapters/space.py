@@ -1,7 +1,5 @@
 """Engines in three dimensions, and Chipmunk in their side view: worlds, and a run by one rule."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Mapping, Sequence

@@ -5,25 +5,12 @@ Usage, from the repository root: ``python -m benches.agreement run``,
 ``table``.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Mapping
 from pathlib import Path
 
+from benches.agreement import study
 from benches.agreement.pairs import RESULTS, parts, read_pairs, run, run_third
-from benches.agreement.study import (
-    ensembles,
-    ensembles_table,
-    one_by_one,
-    one_by_one_table,
-    pinched,
-    pinched_table,
-    read_cells,
-    study,
-    study_percentages,
-    study_table,
-)
 from benches.shared.measuring import write_parts
 from benches.shared.results import read, table_of
 from research.figures import draw_dots
@@ -59,18 +46,18 @@ def main() -> None:
         case "third":
             run_third(files["pairs"], files["third"])
         case "study":
-            study(given.repeats, files["study"])
+            study.study(given.repeats, files["study"])
         case "one-by-one":
-            one_by_one(files["study"], files["one_by_one"])
+            study.one_by_one(files["study"], files["one_by_one"])
         case "ensembles":
-            ensembles(given.starts, files["study"], files["ensembles"])
+            study.ensembles(given.starts, files["study"], files["ensembles"])
         case "pinched":
-            pinched(given.starts, files["pinched"])
+            study.pinched(given.starts, files["pinched"])
         case _:
             is_kept = given.output == RESULTS
             write_parts(all_tables(files), _PAGE if is_kept else None)
             if is_kept:
-                over = study_percentages(read_cells(files["study"]))
+                over = study.study_percentages(study.read_cells(files["study"]))
                 draw_dots(over, "runs [%]", _PAGE.with_suffix(".svg"))
 
 
@@ -78,10 +65,10 @@ def all_tables(files: Mapping[str, Path]) -> dict[str, str]:
     """Return the tables by their names on the page."""
     return {
         **parts(read_pairs(files["pairs"]), read(files["third"], {})),
-        "study": table_of(files["study"], study_table),
-        "one by one": table_of(files["one_by_one"], one_by_one_table),
-        "ensembles": table_of(files["ensembles"], ensembles_table),
-        "pinched": table_of(files["pinched"], pinched_table),
+        "study": table_of(files["study"], study.study_table),
+        "one by one": table_of(files["one_by_one"], study.one_by_one_table),
+        "ensembles": table_of(files["ensembles"], study.ensembles_table),
+        "pinched": table_of(files["pinched"], study.pinched_table),
     }
 
 

@@ -1,10 +1,8 @@
 """Pairs of runs of random robots in both engines, and in Chipmunk where their ends differ."""
 
-from __future__ import annotations
-
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,12 +11,13 @@ import numpy as np
 
 import crawler2d as c2d
 from benches.adapters.space import drive, load
-from benches.shared.measuring import quantiles, table
+from benches.shared.measuring import quantiles
 from benches.shared.results import Results, progress, read
 from crawler2d import Run, Scenario, ScenarioError, Solver, wilson
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
 from crawler2d.results.findings import Balance
+from research.tables import group_by, table
 
 MODELS = ("line", "row", "gears", "small wheels", "placed wheels", "free wheels")
 """Lines with gaps; rows that touch or overlap; gear wheels; small round wheels all round; wheels of
@@ -131,7 +130,7 @@ def _pair(number: int) -> dict[str, Any]:
             "apart": check.distance,
             "turn": check.turn,
             "parted_at": check.parted_at,
-            "balances": [_holds(balance) for balance in check.balances],
+            "balances": held(check.balances),
         }
         if len({end["gets_over"] for end in pair["ends"]}) == 2:
             pair["finer"] = finer(scenario)
@@ -156,8 +155,14 @@ def finer(scenario: Scenario) -> dict[str, str]:
     }
 
 
-def _holds(balance: Balance | None) -> bool | None:
-    return None if balance is None else balance.holds
+def held(balances: Iterable[Balance | None]) -> list[bool | None]:
+    """Return which of the stops, where there are some, are equilibria."""
+    return [None if balance is None else balance.holds for balance in balances]
+
+
+def told(held: Iterable[bool | None]) -> str:
+    """Write what `held` returned."""
+    return ", ".join("yes" if holds else "no" for holds in held if holds is not None)
 
 
 _CHIPMUNK = {"time_step": 5e-5, "iterations": 100}
@@ -198,8 +203,8 @@ def parts(pairs: Sequence[Pair], third: Mapping[str, str]) -> dict[str, str]:
 
 
 def _by_model(pairs: Sequence[Pair]) -> str:
-    groups = [(model, [p for p in pairs if p["model"] == model]) for model in MODELS]
-    return table(_row(*group) for group in [*groups, ("all", list(pairs))])
+    groups = group_by(pairs, "model") | {"all": list(pairs)}
+    return table(_row(name, groups.get(name, [])) for name in (*MODELS, "all"))
 
 
 def _row(name: str, pairs: list[Pair]) -> dict[str, str]:
@@ -244,9 +249,7 @@ def _unlike(pairs: Sequence[Pair], third: Mapping[str, str]) -> str:
             "rapier": pair["ends"][1]["outcome"],
             "rapier, finer": pair["finer"]["rapier"],
             "Chipmunk": third.get(str(pair["number"]), ""),
-            "the stop is an equilibrium": ", ".join(
-                "yes" if holds else "no" for holds in pair["balances"] if holds is not None
-            ),
+            "the stop is an equilibrium": told(pair["balances"]),
             "rapier sinks in by [mm]": f"{1e3 * pair['ends'][1]['penetration']:.2g}",
         }
         for pair in pairs

@@ -4,8 +4,6 @@ Where their ends differ, round wheels are repeated one by one, gears and small w
 starts; and 24 wheels meet a knife edge.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -15,15 +13,15 @@ import numpy as np
 
 import crawler2d as c2d
 from benches.adapters.space import drive, load
-from benches.agreement.pairs import finer, in_chipmunk
-from benches.shared.measuring import quantiles, table
+from benches.agreement.pairs import finer, held, in_chipmunk, told
+from benches.shared.measuring import quantiles
 from benches.shared.results import Results, progress, read, write
 from crawler2d import Scenario, Solver, Start, newcombe_paired
 from crawler2d.parameters.track import Track
 from research import models
 from research.models import study_robot
 from research.seizure import FULL
-from research.tables import group_by, markdown_table
+from research.tables import group_by, markdown_table, table
 
 _ENGINES = ["own", "rapier"]
 
@@ -182,7 +180,7 @@ def _again(cell: dict[str, Any], number: int, scenario: Scenario) -> dict[str, A
             "rapier": str(check.other.outcome),
             "finer": finer(scenario),
             "Chipmunk": in_chipmunk(scenario),
-            "holds": [None if each is None else each.holds for each in check.balances],
+            "holds": held(check.balances),
         }
 
 
@@ -192,17 +190,16 @@ def one_by_one_table(found: list[Any]) -> str:
         *("model", "obstacle", "mm", "own", "own, finer", "own, steps of 0.05 ms", "rapier"),
         *("rapier, finer", "Chipmunk", "the stop is an equilibrium"),
     )
-    return markdown_table(head, [_one_row(each) for each in found])
-
-
-def _one_row(each: dict[str, Any]) -> tuple[str, ...]:
-    held = [hold for hold in each["holds"] if hold is not None]
-    return (
-        *(each["model"], each["obstacle"], f"{1e3 * each['height']:.0f}"),
-        *(each["own"], each["finer"]["own"], each["finer"]["fixed"]),
-        *(each["rapier"], each["finer"]["rapier"], each["Chipmunk"]),
-        ", ".join("yes" if hold else "no" for hold in held),
-    )
+    rows = [
+        (
+            *(each["model"], each["obstacle"], f"{1e3 * each['height']:.0f}"),
+            *(each["own"], each["finer"]["own"], each["finer"]["fixed"]),
+            *(each["rapier"], each["finer"]["rapier"], each["Chipmunk"]),
+            told(each["holds"]),
+        )
+        for each in found
+    ]
+    return markdown_table(head, rows)
 
 
 _CHIPMUNK_USUAL = {"time_step": 5e-4, "iterations": 100}

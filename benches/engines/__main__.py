@@ -4,8 +4,6 @@ Usage, from the repository root: ``python -m benches.engines scan``, ``predict``
 ``converge``, ``refine``, ``speeds``, ``yaw``, ``costs`` or ``table``.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from concurrent.futures.process import BrokenProcessPool

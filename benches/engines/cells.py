@@ -3,8 +3,6 @@
 `find_cells` searches heights at which some runs clear and some do not.
 """
 
-from __future__ import annotations
-
 import json
 import zlib
 from collections.abc import Callable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """Predictions of crawler2d, and runs in engines: of the cells, finer, faster, and timed."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

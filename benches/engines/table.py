@@ -1,7 +1,5 @@
 """The tables of the page: rates by cell, agreement by model, poses of stops, costs."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -195,20 +193,21 @@ def _space(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     columns = {name: runs for name, runs in results.items() if ENGINES[name].in_space}
     rows = []
     for cell in sorted(cells, key=lambda cell: GROUNDS.index(cell.ground)):
-        row = [cell.ground, cell.model, f"{1e3 * cell.height:.4g}", f"{cell.friction:g}"]
-        row.append(rate_of(predicted[cell.label]))
-        rows.append([*row, *(rate_of(runs.get(cell.label, ())) for runs in columns.values())])
+        names = [cell.ground, cell.model, f"{1e3 * cell.height:.4g}", f"{cell.friction:g}"]
+        rows.append([*names, *_rates_of(cell, predicted, columns)])
     head = ["ground", "model", "mm", "friction", "crawler2d: no yaw, no roll"]
     return markdown_table([*head, *columns], rows)
 
 
 def _paper(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     """Return how many runs clear at the settings of the public simulation model."""
-    rows = []
-    for cell in cells:
-        row = [cell.model, f"{cell.ground} of {1e3 * cell.height:g} mm"]
-        row.append(rate_of(predicted[cell.label]))
-        rows.append([*row, *(rate_of(runs.get(cell.label, ())) for runs in results.values())])
+    rows = [
+        [
+            *(cell.model, f"{cell.ground} of {1e3 * cell.height:g} mm"),
+            *_rates_of(cell, predicted, results),
+        ]
+        for cell in cells
+    ]
     return markdown_table(["model", "ground", "crawler2d", *results], rows)
 
 
@@ -216,11 +215,16 @@ def _cells(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
     """Return a row for each cell with the rates of clearing."""
     rows = []
     for cell in cells:
-        row = [cell.robot, cell.model, cell.drive, cell.ground]
-        row += [f"{1e3 * cell.height:.4g}", f"{cell.friction:g}", rate_of(predicted[cell.label])]
-        rows.append([*row, *(rate_of(runs.get(cell.label, ())) for runs in results.values())])
+        names = [cell.robot, cell.model, cell.drive, cell.ground]
+        names += [f"{1e3 * cell.height:.4g}", f"{cell.friction:g}"]
+        rows.append([*names, *_rates_of(cell, predicted, results)])
     head = ["robot", "model", "motors", "ground", "mm", "friction", "crawler2d"]
     return markdown_table([*head, *results], rows)
+
+
+def _rates_of(cell: Cell, predicted: Runs, results: Results) -> list[str]:
+    """Return the rates of a cell: crawler2d's, and those of engines."""
+    return [rate_of(runs.get(cell.label, ())) for runs in (predicted, *results.values())]
 
 
 def _convergence(found: dict[str, Any]) -> str:

@@ -1,7 +1,5 @@
 """Jams of the side view, put into space before edges that are not square to the robot."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace

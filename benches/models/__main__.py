@@ -3,8 +3,6 @@
 Usage, from the repository root: ``python -m benches.models predict``, ``run`` or ``table``.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from itertools import product

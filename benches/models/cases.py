@@ -1,7 +1,5 @@
 """The cases: robots of public files with their flippers held, and what they drive over."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

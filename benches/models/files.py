@@ -1,7 +1,5 @@
 """The model files that the engines load: public, exported, patch_file, and changed ones."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Predictions of crawler2d, runs of all starts of all cells in the engines, and their tables."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Iterable, Sequence

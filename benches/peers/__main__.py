@@ -3,8 +3,6 @@
 Usage, from the repository root: ``python -m benches.peers [--quick] [--sections SECTION ...]``.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import time

@@ -16,8 +16,6 @@ The first accepted setting is the cheapest. If there is none, the engine has no 
 accuracy in the grid. crawler2d has to do with its one default accuracy in every scene.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass

@@ -8,8 +8,6 @@ those of the finest, in all but one of a hundred.
 Usage, from the repository root: ``python -m benches.peers.maps [--quick]``; it writes the page.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Sequence
@@ -22,9 +20,10 @@ import numpy as np
 import crawler2d as c2d
 from benches.adapters.own import nominal
 from benches.adapters.planar import Draw, Scene, Setting, load_engine, load_scene
-from benches.shared.measuring import machine, sentence, table, write_parts
+from benches.shared.measuring import machine, sentence, write_parts
 from benches.shared.results import progress
 from crawler2d import Scenario
+from research.tables import table
 
 _SCENE = "lwa5-round-step"
 _HEIGHT = ("terrain.points[2][1]", "terrain.points[3][1]")

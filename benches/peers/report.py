@@ -1,12 +1,10 @@
 """The parts of the report, some of which docs/studies/peers.md shows."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from benches.adapters.planar import ENGINES
-from benches.shared.measuring import millimetres, sentence, table
-from research.tables import markdown_table
+from benches.shared.measuring import millimetres, sentence
+from research.tables import markdown_table, table
 
 Rows = list[dict[str, Any]]
 

@@ -5,8 +5,6 @@ crawler2d and MuJoCo have thread pools of their own; the others get one process 
 A loop that only counts shows what the machine itself gains with a second thread.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -14,16 +12,7 @@ from functools import partial
 from itertools import product
 from typing import Any
 
-from benches.adapters.planar import (
-    ENGINES,
-    Draw,
-    Engine,
-    Scene,
-    Setting,
-    at,
-    load_engine,
-    load_scene,
-)
+from benches.adapters import planar
 from benches.peers.accuracy import measure, wall_times
 from benches.shared.measuring import interleaved, pools, spin, spread
 from benches.shared.results import progress
@@ -34,17 +23,19 @@ _COMMON_STEP = 2e-3
 _YARDSTICK_STEP = 1e-3
 
 
-def defaults(names: Sequence[str], engines: Sequence[Engine], repeats: int) -> list[dict[str, Any]]:
+def defaults(
+    names: Sequence[str], engines: Sequence[planar.Engine], repeats: int
+) -> list[dict[str, Any]]:
     """Time all engines and measure their errors, at their defaults and with steps of 2 ms."""
     rows = []
     for name in names:
         progress(f"defaults: {name}")
-        scene = load_scene(name)
+        scene = planar.load_scene(name)
         cases = {
             (each.name, kind): (each, scene, setting)
             for kind, time_step in (("own", None), ("common", _COMMON_STEP))
             for each in engines
-            for setting in [each.defaults if time_step is None else at(each, time_step)]
+            for setting in [each.defaults if time_step is None else planar.at(each, time_step)]
         }
         times = wall_times(cases, repeats)
         for key, (each, _, setting) in cases.items():
@@ -72,17 +63,19 @@ def yardstick(robots: Sequence[str], terrains: Sequence[str], repeats: int) -> l
     The bare engine takes steps of 1 ms with 4 substeps, with its default tolerances and with those
     that suit grousers; crawler2d has its default accuracy.
     """
-    own, bare = load_engine("crawler2d"), load_engine("rapier2d")
+    own, bare = planar.load_engine("crawler2d"), planar.load_engine("rapier2d")
     rows = []
     for robot, terrain in product(robots, terrains):
         progress(f"yardstick: {robot}, {terrain}")
-        gear, round_ = (load_scene(f"{robot}-{wheel}-{terrain}") for wheel in ("gear", "round"))
+        gear, round_ = (
+            planar.load_scene(f"{robot}-{wheel}-{terrain}") for wheel in ("gear", "round")
+        )
         cases = {
             "crawler2d gear": (own, gear, own.defaults),
             "crawler2d round": (own, round_, own.defaults),
-            "bare round": (bare, round_, at(bare, _YARDSTICK_STEP)),
-            "bare round, tuned": (bare, round_, at(bare, _YARDSTICK_STEP, tuned=True)),
-            "bare gear, tuned": (bare, gear, at(bare, _YARDSTICK_STEP, tuned=True)),
+            "bare round": (bare, round_, planar.at(bare, _YARDSTICK_STEP)),
+            "bare round, tuned": (bare, round_, planar.at(bare, _YARDSTICK_STEP, tuned=True)),
+            "bare gear, tuned": (bare, gear, planar.at(bare, _YARDSTICK_STEP, tuned=True)),
         }
         times = wall_times(cases, repeats)
         costs = {case: time.least / gear.duration for case, time in times.items()}
@@ -95,13 +88,13 @@ _THREADED = ("crawler2d", "MuJoCo")
 
 
 def batches(
-    names: Sequence[str], draws: list[Draw], engines: Sequence[str], repeats: int
+    names: Sequence[str], draws: list[planar.Draw], engines: Sequence[str], repeats: int
 ) -> list[dict[str, Any]]:
     """Time a batch of a scene's draws on one and on two threads or processes."""
     rows = []
     for name in names:
         progress(f"batches: {name}")
-        variants = [load_scene(name).vary(draw) for draw in draws]
+        variants = [planar.load_scene(name).vary(draw) for draw in draws]
         with pools((1, 2), _warm) as opened:
             jobs: dict[tuple[str, int], Callable[[], float]] = {}
             for count, pool in opened.items():
@@ -120,23 +113,23 @@ def batches(
 
 
 def _job(
-    name: str, variants: list[Scene], count: int, pool: ProcessPoolExecutor
+    name: str, variants: list[planar.Scene], count: int, pool: ProcessPoolExecutor
 ) -> Callable[[], float]:
-    setting = at(load_engine(name), _TIME_STEP, tuned=True)
+    setting = planar.at(planar.load_engine(name), _TIME_STEP, tuned=True)
     if name in _THREADED:
-        own: Any = load_engine(name)
+        own: Any = planar.load_engine(name)
         return partial(own.batch_time, variants, setting, count)
     tasks = [(name, scene, setting) for scene in variants]
     return partial(spread, pool, _one_world, tasks)
 
 
-def _one_world(task: tuple[str, Scene, Setting]) -> None:
+def _one_world(task: tuple[str, planar.Scene, planar.Setting]) -> None:
     name, scene, setting = task
-    load_engine(name).wall_time(scene, setting, scene.duration)
+    planar.load_engine(name).wall_time(scene, setting, scene.duration)
 
 
 def _warm(_: int) -> None:
-    for name in ENGINES:
+    for name in planar.ENGINES:
         if name not in _THREADED:
-            load_engine(name)
+            planar.load_engine(name)
     time.sleep(0.2)  # so that each process of the pool gets its turn

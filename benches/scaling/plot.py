@@ -1,7 +1,5 @@
 """The figures of the study."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,15 +1,13 @@
 """The parts of the report, some of which docs/studies/scaling.md shows: how cost and error grow."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from benches.scaling.scenes import BLOCKS, CUT, FLAT, LEVEL, STEP
-from benches.shared.measuring import sentence, table
-from research.tables import markdown_table
+from benches.shared.measuring import sentence
+from research.tables import group_by, table
 
 
 class Curve(NamedTuple):
@@ -34,15 +32,12 @@ class Curve(NamedTuple):
 
 def curves(rows: Sequence[dict[str, Any]], figure: str) -> list[Curve]:
     """Collect the curves of a figure, except those with only one point."""
-    keys = dict.fromkeys((row["panel"], row["curve"]) for row in rows if row["figure"] == figure)
-    found = []
-    for panel, name in keys:
-        own = [row for row in rows if (row["figure"], row["panel"]) == (figure, panel)]
-        own = [row for row in own if row["curve"] == name]
-        x, per_second = [row["x"] for row in own], [row["per_second"] for row in own]
-        if len(own) > 1:
-            found.append(Curve(figure, panel, name, x, per_second))
-    return found
+    mine = (row for row in rows if row["figure"] == figure)
+    return [
+        Curve(figure, panel, name, [row["x"] for row in own], [row["per_second"] for row in own])
+        for (panel, name), own in group_by(mine, "panel", "curve").items()
+        if len(own) > 1
+    ]
 
 
 def deviations(rows: Sequence[dict[str, Any]], curve: Curve) -> list[float]:
@@ -95,11 +90,9 @@ def _ends(curve: Curve | None) -> str:
 
 def _stopped(rows: Sequence[dict[str, Any]]) -> str:
     """Name the robots that the step stops; their cost is that of a stopped robot."""
-    held: dict[str, list[str]] = {}
-    for row in rows:
-        if row["figure"] == "wheels" and row["panel"] == STEP and row["final_x"] < 0.0:
-            held.setdefault(row["curve"], []).append(f"{row['x']:g}")
-    names = [f"{curve}, {', '.join(counts)}" for curve, counts in held.items()]
+    at_step = (row for row in rows if (row["figure"], row["panel"]) == ("wheels", STEP))
+    held = group_by((row for row in at_step if row["final_x"] < 0.0), "curve")
+    names = [", ".join((name, *(f"{row['x']:g}" for row in own))) for name, own in held.items()]
     return f"Still in front of the step at the end: {'; '.join(names) or 'none'}."
 
 
@@ -110,13 +103,15 @@ def _ratios(rows: Sequence[dict[str, Any]]) -> str:
     names = [name for name, x in own if x == 1]
     endings = {"level": f", {LEVEL}", "rough": ""}
     cuts = {kind: end for kind, end in endings.items() if (names[0] + end, most) in own}
-    rows_ = []
-    for name in names:
-        whole, costs = own[name, 1], [own[name + end, most] for end in cuts.values()]
-        ratios = [f"{cost / whole:.2f}" for cost in costs]
-        rows_.append([name, *(_short(cost * 1e3) for cost in (whole, *costs)), *ratios])
-    head = ["track", "whole", *cuts, *(f"{kind} / whole" for kind in cuts)]
-    return markdown_table(head, rows_)
+    return table(
+        {"track": name, "whole": _short(own[name, 1] * 1e3)}
+        | {kind: _short(own[name + end, most] * 1e3) for kind, end in cuts.items()}
+        | {
+            f"{kind} / whole": f"{own[name + end, most] / own[name, 1]:.2f}"
+            for kind, end in cuts.items()
+        }
+        for name in names
+    )
 
 
 def _speed_ups(rows: Sequence[dict[str, Any]]) -> str:

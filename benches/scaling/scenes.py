@@ -1,7 +1,5 @@
 """The scenes: the same robot throughout, and one number that grows along each curve."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -13,6 +11,7 @@ from crawler2d import Scenario
 from crawler2d.parameters.terrain import Lane
 from crawler2d.parameters.track import Track, Wheel
 from research.models import study_robot
+from research.tables import group_by
 
 WHEELS = (3, 6, 12, 24, 48, 96)
 GROUSERS = (6, 12, 24, 48)
@@ -64,10 +63,7 @@ def points() -> Iterator[Point]:
 
 def panels(points: Iterable[Point]) -> dict[tuple[str, str], list[Point]]:
     """Group points by figure and panel, in their order."""
-    groups: dict[tuple[str, str], list[Point]] = {}
-    for point in points:
-        groups.setdefault((point.figure, point.panel), []).append(point)
-    return groups
+    return group_by(points, "figure", "panel")
 
 
 def line_of_gears() -> Scenario:

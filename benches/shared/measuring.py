@@ -1,7 +1,5 @@
 """Timing of several jobs in turns, pools of processes, the machine, and the parts of a page."""
 
-from __future__ import annotations
-
 import datetime
 import os
 import platform
@@ -9,7 +7,7 @@ import statistics
 import sys
 import textwrap
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from multiprocessing import get_context
@@ -19,7 +17,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from crawler2d import wilson
-from research.tables import markdown_table, splice
+from research.tables import splice
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -134,12 +132,6 @@ def _wrapped(block: str) -> str:
     """Wrap a paragraph, because figures change its length."""
     is_paragraph = not block.startswith(("|", "#", "-", "!"))
     return textwrap.fill(block, 100, break_on_hyphens=False) if is_paragraph else block
-
-
-def table(rows: Iterable[Mapping[str, str]]) -> str:
-    """Write a table of rows with the same keys, which are its head."""
-    rows = list(rows)
-    return markdown_table(list(rows[0]), [list(row.values()) for row in rows]) if rows else "None."
 
 
 def rate(count: int, of: int) -> str:

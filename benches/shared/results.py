@@ -3,8 +3,6 @@
 ``python -m benches.shared.results`` writes the list again after a program has added results.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import lzma

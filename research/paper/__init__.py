@@ -4,8 +4,6 @@ The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosil
 -m research paper` reproduces it. Nothing here enters a simulation.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

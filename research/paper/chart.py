@@ -15,6 +15,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
@@ -33,7 +34,6 @@ from research.tables import group_by, markdown_table, percent
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
 LEVEL = 0.05
 """[-] One less the confidence of the region."""

@@ -1,27 +1,22 @@
 """All claims of the paper, each with the experiment that settles it here, or why none can."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import crawler2d as c2d
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.sweeps.figure_dataset import FigureDataset
 from research.models import study_robot
 from research.paper import TABLE_1
-from research.paper.design import PRESET, STRONG, climb, layouts, models_of
+from research.paper.design import PRESET, STRONG, Setting, Work, climb, layouts, models_of
+from research.paper.figures import Shaking
 from research.paper.performance import measure_factors
 from research.tables import markdown_table, mm
-
-if TYPE_CHECKING:
-    from crawler2d.parameters.terrain import Terrain
-    from crawler2d.sweeps.figure_dataset import FigureDataset
-    from research.paper.design import Setting, Work
-    from research.paper.figures import Shaking
 
 _OFTEN, _SELDOM = 0.9, 0.1
 """[-] A model clears an obstacle from the first rate on, and does not up to the second."""

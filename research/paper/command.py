@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import crawler2d as c2d
+from crawler2d.sweeps.figure_dataset import FigureDataset
 from research.paper import GEAR_MODEL_OTHERWISE, figures, performance, table_2
 from research.paper.claims import checks_text, claims, claims_text
 from research.paper.design import FULL, QUICK, Setting, Work, layouts
@@ -23,8 +24,6 @@ from research.tables import splice
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from crawler2d.sweeps.figure_dataset import FigureDataset
 
 STORE = "paper.sqlite"
 """The file that keeps every run."""

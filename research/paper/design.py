@@ -3,24 +3,19 @@
 Which layout stands for which row follows from the text of the paper, not from what comes out.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import crawler2d as c2d
+from crawler2d.parameters.terrain import Terrain
 from crawler2d.studies.campaign import RateSampling, Sampling
+from crawler2d.sweeps.figure_dataset import FigureDataset
 from research import paper
 from research.models import StudyModel, study_models, study_robot
-
-if TYPE_CHECKING:
-    from crawler2d.parameters.terrain import Terrain
-    from crawler2d.sweeps.figure_dataset import FigureDataset
-
 
 # [-] No interval is so narrow: the number of runs decides.
 _NO_WIDTH = 1e-9

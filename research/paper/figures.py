@@ -4,31 +4,27 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK, BLUE, ORANGE, Scene
 from crawler2d.parameters.track import Track
+from crawler2d.sweeps.figure_dataset import FigureDataset
 from research.figures import make_panels
 from research.models import study_robot
 from research.paper import CWA_ROUND, LWA_ROUND, TABLE_1
-from research.paper.design import READINGS, layouts
+from research.paper.design import READINGS, Work, layouts
 from research.tables import markdown_table, mm
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike
-
-    from crawler2d.sweeps.figure_dataset import FigureDataset
-    from research.paper.design import Work
 
 _PHASED: dict[str, Track] = {
     **{

@@ -1,21 +1,16 @@
 """The paper's Tables 1 and 3: speed, highest obstacle, braking, acceleration, slope, computing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import crawler2d as c2d
+from crawler2d.sweeps.figure_dataset import FigureDataset
 from research.models import study_robot
 from research.paper import REAL_ROBOT, RPM, TABLE_1, TABLE_3
-from research.paper.design import PRESET, READINGS, SETTINGS, climb, models_of
+from research.paper.design import PRESET, READINGS, SETTINGS, Work, climb, models_of
 from research.tables import gaps, group_by, markdown_table, mm, percent
-
-if TYPE_CHECKING:
-    from crawler2d.sweeps.figure_dataset import FigureDataset
-    from research.paper.design import Work
 
 _PAPER = {row.model: row for row in TABLE_3}
 ROWS = {reading.row: reading.layout for reading in READINGS if reading.row in _PAPER}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,20 +13,16 @@ import numpy as np
 import crawler2d as c2d
 from crawler2d.drawings.scene import BLACK
 from crawler2d.parameters.terrain import RandomStepfield
+from crawler2d.results.record import Row
+from crawler2d.sweeps.figure_dataset import FigureDataset
 from crawler2d.sweeps.store import Store
 from research.figures import THREE, add_legend, make_panels, style
 from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
-from research.paper.design import READINGS, SETTINGS, Setting, climb, layouts, models_of
+from research.paper.design import READINGS, SETTINGS, Setting, Work, climb, layouts, models_of
 from research.tables import counts, group_by, markdown_table, percent
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.figure import Figure
-
-    from crawler2d.results.record import Row
-    from crawler2d.sweeps.figure_dataset import FigureDataset
-    from research.paper.design import Work
 
 FIELDS: Mapping[str, RandomStepfield] = {
     "random RSE": c2d.terrains.random_stepfield(),
