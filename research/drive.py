@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d import _core
@@ -362,11 +362,7 @@ def _row(case: Case, drive: str, units: Sequence[int], first: Sequence[int]) -> 
 
 def _rank(count: int) -> int:
     """Return which of so many values, from 0, bounds their median from below at 97.5 %."""
-    tail, rank = 0.5**count, 0
-    while tail + math.comb(count, rank + 1) * 0.5**count <= 0.025:
-        rank += 1
-        tail += math.comb(count, rank) * 0.5**count
-    return rank
+    return max(int(stats.binom.ppf(0.025, count, 0.5)) - 1, 0)
 
 
 def _run_drive(job: Job) -> None:

@@ -193,7 +193,6 @@ def compare_wheels(
         runs = [sum(rows[each].count for each in own) for rows in repeats]
         for figure in FIGURES:
             times = [sum(getattr(rows[each], figure) for each in own) for rows in repeats]
-            rate, low, high = clustered(times, runs)
             rates.append(
                 WheelRate(
                     robot=robot,
@@ -203,9 +202,7 @@ def compare_wheels(
                     figure=figure,
                     found=sum(times),
                     count=sum(runs),
-                    rate=rate,
-                    low=low,
-                    high=high,
+                    **clustered(times, runs)._asdict(),
                 )
             )
     return rates

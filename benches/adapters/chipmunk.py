@@ -19,7 +19,7 @@ import pymunk
 
 from benches.adapters import planar, space
 from benches.adapters.planar import Array, Setting
-from crawler2d.model_tree import Pose
+from crawler2d.model_tree import Pose, from_rpy
 
 if TYPE_CHECKING:
     from benches.peers.chains import ChainRobot
@@ -247,8 +247,7 @@ class ChipmunkWorld(space.World):
         x, z = self._chassis.position
         x -= cos * self._center[0] - sin * self._center[1]
         z -= sin * self._center[0] + cos * self._center[1]
-        turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
-        return Pose(place=np.array([x, 0.0, z]), turn=turn)
+        return from_rpy((0.0, -self._chassis.angle, 0.0), (x, 0.0, z))
 
 
 def _corners(box: dict[str, Any]) -> Array:

@@ -237,11 +237,8 @@ def load_scene(name: str) -> Scene:
 def _body(data: dict[str, Any]) -> Body:
     shapes = data["shapes"]
     return Body(
-        x=data["x"],
-        y=data["y"],
+        **{name: data[name] for name in ("x", "y", "mass", "inertia")},
         angle=data["a"],
-        mass=data["mass"],
-        inertia=data["inertia"],
         radius=max((shape["r"] for shape in shapes if shape["kind"] == "circle"), default=0.0),
         polygons=tuple(np.array(s["pts"], float) for s in shapes if s["kind"] == "poly"),
     )

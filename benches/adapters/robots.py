@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from crawler2d import Robot, Scenario
-from crawler2d.model_tree import Array, Joint, Link, Pose, Shape, Tree, from_quaternion
+from crawler2d.model_tree import Array, Joint, Link, Pose, Shape, Tree, from_quaternion, from_rpy
 from crawler2d.parameters.terrain import Flat
 from crawler2d.reading.wheels import subtrees
 from crawler2d.writing.carriers import across_of
@@ -278,8 +278,7 @@ def _shape(shape: Shape) -> dict[str, Any]:
 
 
 def _low(shape: dict[str, Any], axle: Array, angle: float) -> float:
-    cos, sin = np.cos(angle), np.sin(angle)
-    about_y = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+    about_y = from_rpy((0.0, angle, 0.0)).turn
     place = axle + about_y @ (np.array(shape["place"]) - axle)
     if shape["kind"] == "cylinder":
         return float(place[2]) - float(shape["radius"])

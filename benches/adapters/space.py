@@ -2,6 +2,7 @@
 
 import math
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -12,7 +13,7 @@ import numpy as np
 from benches.adapters.ground import Box, blocks_of, goal_of
 from benches.adapters.robots import RobotModel, model_of_robot
 from crawler2d import Scenario
-from crawler2d.model_tree import Array, Pose
+from crawler2d.model_tree import Array, Pose, from_rpy
 from crawler2d.parameters.terrain import Lanes
 
 _LOOK = 0.01  # [s] between two looks at a run
@@ -49,8 +50,7 @@ class Scene:
 
     def root(self) -> Array:
         """[m] Return where the frame of the model is."""
-        cos, sin = math.cos(self.angle), math.sin(self.angle)
-        turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+        turn = from_rpy((0.0, -self.angle, 0.0)).turn
         place: Array = np.array([self.x, 0.0, self.z]) - turn @ self.robot.origin
         return place
 
@@ -84,16 +84,16 @@ class Touch:
         }
 
 
-class World:
+class World(ABC):
     """A robot on its ground; without touches and flippers unless an engine has them."""
 
+    @abstractmethod
     def advance(self, speeds: Sequence[float]) -> None:
         """Take a step for each set-point of the speed of all surfaces [m/s]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def pose(self) -> Pose:
         """Return the pose of the chassis frame."""
-        raise NotImplementedError
 
     def touches(self) -> list[Touch]:
         """Return the contacts with the ground."""
@@ -103,7 +103,7 @@ class World:
         """[rad] Return the largest deviation of a flipper from its angle."""
         return 0.0
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 - most engines have nothing to free
         """Free what the world occupies."""
 
 

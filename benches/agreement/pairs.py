@@ -120,8 +120,7 @@ def run(robots: int, path: Path) -> None:
 def _pair(number: int) -> dict[str, Any]:
     """Run a pair; one with unequal ends is run again, finer."""
     model, scenario = random_scenario(number)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+    with warnings.catch_warnings(action="ignore", category=c2d.ScenarioWarning):
         check = c2d.simulate(scenario, record="summary", trials=None).cross_check()
         pair: dict[str, Any] = {
             "number": number,

@@ -170,8 +170,7 @@ def _draws(base: Scenario, height: float, repeats: int) -> dict[str, list[float]
 
 
 def _again(cell: dict[str, Any], number: int, scenario: Scenario) -> dict[str, Any]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+    with warnings.catch_warnings(action="ignore", category=c2d.ScenarioWarning):
         check = c2d.simulate(scenario, record="summary", trials=None).cross_check()
         return {
             **{name: cell[name] for name in ("model", "obstacle", "height")},
@@ -223,8 +222,7 @@ def counts(gets_over: Mapping[str, list[bool]]) -> dict[str, str]:
 
 
 def _gets_over(scenario: Scenario) -> bool:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+    with warnings.catch_warnings(action="ignore", category=c2d.ScenarioWarning):
         run = c2d.simulate(scenario, record="summary", trials=None)
     return run.outcome is c2d.Outcome.CLEARED
 

@@ -271,6 +271,18 @@ def _runner(name: str) -> tuple[Callable[[Scenario], dict[str, Any]], str]:
     return partial(run_in, loaded), loaded.version
 
 
+def _complete(
+    results: Results,
+    keys: Sequence[str],
+    scenarios: Sequence[Scenario],
+    one_run: Callable[[Scenario], dict[str, Any]],
+) -> None:
+    """Add the runs of some scenarios that are missing under some keys."""
+    runs = results.at(*keys)
+    results.add([(keys, scenario) for scenario in scenarios[len(runs) :]], one_run)
+    progress(f"{', '.join(keys)}: {cleared(runs)} of {len(runs)} clear")
+
+
 def converge(
     name: str, cells: Sequence[Cell], starts: int, path: Path, *, is_jam: bool = False
 ) -> None:
@@ -279,11 +291,8 @@ def converge(
     results = Results(path)
     for setting, keywords in settings.items():
         for cell in cells:
-            runs = results.at(name, setting, cell.label)
-            missing = cell.scenarios(starts)[len(runs) :]
-            jobs = [((name, setting, cell.label), scenario) for scenario in missing]
-            results.add(jobs, partial(run_in, load(engine, **keywords)))
-            progress(f"{name}, {setting}: {cleared(runs)} of {len(runs)} clear, {cell.label}")
+            one_run = partial(run_in, load(engine, **keywords))
+            _complete(results, (name, setting, cell.label), cell.scenarios(starts), one_run)
 
 
 SPEEDS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4)
@@ -298,13 +307,10 @@ def accelerate(cell: Cell, engines: Sequence[str], starts: int, path: Path) -> N
     results = Results(path)
     for name in ("crawler2d", *engines):
         for speed in SPEEDS:
-            keys = cell.label, name, f"{speed:g}"
-            runs = results.at(*keys)
             change = {"drive.speed": speed, "duration": round(_DISTANCE / speed + _WAIT, 1)}
-            missing = cell.scenarios(starts)[len(runs) :]
-            jobs = [(keys, scenario.replace(change)) for scenario in missing]
-            results.add(jobs, partial(_run_by_name, name))
-            progress(f"{name}, {speed:g} m/s: {cleared(runs)} of {len(runs)} clear")
+            scenarios = [scenario.replace(change) for scenario in cell.scenarios(starts)]
+            keys = cell.label, name, f"{speed:g}"
+            _complete(results, keys, scenarios, partial(_run_by_name, name))
 
 
 _ACCURACY = 3e-8  # [m] a tenth of the default

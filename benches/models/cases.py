@@ -77,8 +77,7 @@ class Case:
 
     def reading(self) -> Reading:
         """Read the public file without its warnings, which are in its audit."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ScenarioWarning)
+        with warnings.catch_warnings(action="ignore", category=ScenarioWarning):
             return read_robot(ROBOTS / self.file, **self.how)
 
     def robot(self) -> Robot:

@@ -38,7 +38,7 @@ from benches.adapters.planar import (
     load_scene,
     to_world,
 )
-from benches.shared.measuring import Key, Time, interleaved
+from benches.shared.measuring import Key, interleaved
 from benches.shared.results import progress
 from crawler2d import wilson
 
@@ -320,7 +320,9 @@ def _verdict(
     return {**worst, "accepted": accepted, "cleared": cleared, "count": count}
 
 
-def wall_times(cases: Mapping[Key, tuple[Engine, Scene, Setting]], repeats: int) -> dict[Key, Time]:
+def wall_times(
+    cases: Mapping[Key, tuple[Engine, Scene, Setting]], repeats: int
+) -> dict[Key, float]:
     """Time whole runs of several engines, scenes and settings in turns."""
     jobs = {
         key: partial(engine.wall_time, scene, setting, scene.duration)
@@ -341,7 +343,7 @@ def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, An
     for each, search in found.items():
         row = {"scene": name, "engine": each, **search}
         if each in times:
-            row["per_second"] = times[each].least / scene.duration
+            row["per_second"] = times[each] / scene.duration
             row["setting"] = str(settings[each])
         rows.append(row)
     return rows

@@ -386,7 +386,7 @@ def side_by_side(
         times = interleaved(jobs, repeats)
         for name, setting in SETTINGS.items():
             row = {"shoes": count, "terrain": terrain, "engine": name}
-            cost = {"per_second": times[name].least / _BLOCK}
+            cost = {"per_second": times[name] / _BLOCK}
             rows.append(row | cost | _errors(name, place, setting))
     return rows
 
@@ -420,7 +420,7 @@ def _costs(
     jobs["crawler2d"] = partial(_blocks, "crawler2d", place, SETTINGS["crawler2d"])
     times = interleaved(jobs, 3)
     row: dict[str, Any] = {
-        "per_second": {name: time.least / _BLOCK for name, time in times.items()},
+        "per_second": {name: time / _BLOCK for name, time in times.items()},
         "found": {name: str(setting) for name, setting in settings.items()},
     }
     if len(settings) < len(found):
@@ -443,7 +443,7 @@ def engineer(repeats: int) -> list[dict[str, Any]]:
         for ground, terrain in grounds.items()
     }
     return [
-        {"track": name, "terrain": ground, "per_second": time.least / _BLOCK}
+        {"track": name, "terrain": ground, "per_second": time / _BLOCK}
         for (name, ground), time in interleaved(jobs, repeats).items()
     ]
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from benches.adapters.planar import ENGINES
 from benches.shared.measuring import millimetres, sentence
-from research.tables import markdown_table, table
+from research.tables import group_by, table
 
 Rows = list[dict[str, Any]]
 
@@ -20,8 +20,8 @@ def render(result: dict[str, Any]) -> dict[str, str]:
     if "accuracy" in result:
         rows = result["accuracy"]
         parts["speeds"] = _by_scene(rows, _speed_cell)
-        table = _by_scene(rows, _accuracy_cell)
-        parts["equal accuracy"] = f"{_ACCURACY}\n\n{table}\n\n{_standing(rows)}"
+        cells = _by_scene(rows, _accuracy_cell)
+        parts["equal accuracy"] = f"{_ACCURACY}\n\n{cells}\n\n{_standing(rows)}"
         parts["limits"] = f"{_ENGINE_LIMITS}\n\n{_by_scene(rows, _limit_cell)}"
     if "yardstick" in result:
         parts["yardstick"] = _yardstick(result["yardstick"])
@@ -114,20 +114,15 @@ def _limit_cell(row: dict[str, Any]) -> str:
 
 
 def _yardstick(rows: Rows) -> str:
-    cases = list(rows[0]["per_second"])
-    table = [
-        [
-            f"{row['robot']}, {row['terrain']}",
-            *(f"{row['per_second'][case] * 1e3:.1f}" for case in cases),
-            *(
-                f"{row['per_second']['crawler2d gear'] / row['per_second'][bare]:.2f}"
-                for bare in ("bare round", "bare round, tuned")
-            ),
-        ]
+    return table(
+        {"scene": f"{row['robot']}, {row['terrain']}"}
+        | {case: f"{cost * 1e3:.1f}" for case, cost in row["per_second"].items()}
+        | {
+            f"gear / {bare}": f"{row['per_second']['crawler2d gear'] / row['per_second'][bare]:.2f}"
+            for bare in ("bare round", "bare round, tuned")
+        }
         for row in rows
-    ]
-    head = ["scene", *cases, "gear / bare round", "gear / bare round, tuned"]
-    return markdown_table(head, table)
+    )
 
 
 def _batches(rows: Rows) -> str:
@@ -152,10 +147,10 @@ def _short(length: float) -> str:
 
 
 def _by_scene(rows: Rows, cell: Any) -> str:
-    scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    cells = {(row["scene"], row["engine"]): cell(row) for row in rows}
-    table = [[scene, *(cells.get((scene, name), "") for name in ENGINES)] for scene in scenes]
-    return markdown_table(["scene", *ENGINES], table)
+    return table(
+        {"scene": scene} | dict.fromkeys(ENGINES, "") | {row["engine"]: cell(row) for row in own}
+        for scene, own in group_by(rows, "scene").items()
+    )
 
 
 # [ms] Largest time for a simulated second, and the better aim.
@@ -179,14 +174,10 @@ def chain_parts(result: dict[str, Any]) -> dict[str, str]:
 
 
 def _side_by_side(rows: Rows) -> str:
-    engines = list(dict.fromkeys(row["engine"] for row in rows))
-    cells = {(row["shoes"], row["terrain"], row["engine"]): _chain_cell(row) for row in rows}
-    places = dict.fromkeys((row["shoes"], row["terrain"]) for row in rows)
-    table = [
-        [f"{shoes}, {terrain}", *(cells[shoes, terrain, engine] for engine in engines)]
-        for shoes, terrain in places
-    ]
-    return markdown_table(["shoes, ground", *engines], table)
+    return table(
+        {"shoes, ground": f"{shoes}, {terrain}"} | {row["engine"]: _chain_cell(row) for row in own}
+        for (shoes, terrain), own in group_by(rows, "shoes", "terrain").items()
+    )
 
 
 def _chain_standing(rows: Rows) -> str:
@@ -221,40 +212,38 @@ def _chain_cell(row: dict[str, Any]) -> str:
 
 
 def _equal_gaps(rows: Rows) -> str:
-    table = []
-    for row in rows:
-        own = row["per_second"]["crawler2d"]
-        table.append(
-            [
-                f"{row['shoes']}, {row['terrain']}",
-                f"{millimetres(row['gap'])} mm<br>{1e3 * own:.1f} ms",
-                _equal_gap_cell(row, "allowed", own),
-                _equal_gap_cell(row, "own", own),
-            ]
-        )
-    head = ["shoes, ground", "crawler2d", "pymunk, 0.2 mm", "pymunk, as crawler2d"]
-    return markdown_table(head, table)
+    return table(
+        {
+            "shoes, ground": f"{row['shoes']}, {row['terrain']}",
+            "crawler2d": f"{millimetres(row['gap'])} mm"
+            f"<br>{1e3 * row['per_second']['crawler2d']:.1f} ms",
+            "pymunk, 0.2 mm": _equal_gap_cell(row, "allowed"),
+            "pymunk, as crawler2d": _equal_gap_cell(row, "own"),
+        }
+        for row in rows
+    )
 
 
-def _equal_gap_cell(row: dict[str, Any], aim: str, own: float) -> str:
+def _equal_gap_cell(row: dict[str, Any], aim: str) -> str:
     if aim not in row["found"]:
         setting, gap = row["finest"]
         return f"none in the grid: {millimetres(gap)} mm at {setting}"
-    cost = row["per_second"][aim]
+    cost, own = row["per_second"][aim], row["per_second"]["crawler2d"]
     return f"{row['found'][aim]}<br>{1e3 * cost:.1f} ms, **{cost / own:.2g} times**"
 
 
 def _engineer(rows: Rows) -> str:
-    grounds = list(dict.fromkeys(row["terrain"] for row in rows))
-    times = {(row["track"], row["terrain"]): row["per_second"] for row in rows}
-    table = []
-    for track in dict.fromkeys(row["track"] for row in rows):
-        own = [times[track, ground] for ground in grounds]
+    written = []
+    for track, own in group_by(rows, "track").items():
         must, should = _AIMS[track]
-        most = max(own)
-        aim = f"{must}, better {should}" if should < must else f"{must}"
+        most = max(row["per_second"] for row in own)
         is_better = should < must and most <= 1e-3 * should
-        is_met = "no" if most > 1e-3 * must else "yes, the better" if is_better else "yes"
-        times_of = (f"{1e3 * time:.1f}" for time in own)
-        table.append([track, *times_of, aim, is_met])
-    return markdown_table(["track", *grounds, "aim", "met"], table)
+        written.append(
+            {"track": track}
+            | {row["terrain"]: f"{1e3 * row['per_second']:.1f}" for row in own}
+            | {
+                "aim": f"{must}, better {should}" if should < must else f"{must}",
+                "met": "no" if most > 1e-3 * must else "yes, the better" if is_better else "yes",
+            }
+        )
+    return table(written)

@@ -87,7 +87,7 @@ def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
     times = interleaved(jobs, repeats)
     return [
         {name: value for name, value in point._asdict().items() if name != "scenario"}
-        | {"per_second": times[index].least, "final_x": ends[index]}
+        | {"per_second": times[index], "final_x": ends[index]}
         for index, point in enumerate(points)
     ]
 
@@ -133,7 +133,7 @@ def threads(worlds: int, loops: int, repeats: int) -> list[dict[str, Any]]:
         for count, pool in opened.items():
             jobs["worlds", count] = partial(_wall_time, batch, count)
             jobs["loops", count] = partial(spin, pool, loops)
-        least = {job: time.least for job, time in interleaved(jobs, repeats).items()}
+        least = interleaved(jobs, repeats)
     simulated = sum(run.metrics["time"] for run in c2d.simulate_many(batch, record="summary"))
     return [
         {

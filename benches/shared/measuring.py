@@ -3,7 +3,6 @@
 import datetime
 import os
 import platform
-import statistics
 import sys
 import textwrap
 import time
@@ -12,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -24,15 +23,10 @@ Key = TypeVar("Key", bound=Hashable)
 _SPINS = 2_000_000
 
 
-class Time(NamedTuple):
-    """[s] Times of several repeats of a job."""
+def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[Key, float]:
+    """[s] Time all jobs once, then all of them again: the least time of each.
 
-    least: float
-    median: float
-
-
-def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[Key, Time]:
-    """Time all jobs once, then all of them again, so that disturbances affect all of them.
+    Disturbances affect all of them.
 
     Parameters
     ----------
@@ -42,10 +36,7 @@ def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[K
         Number of rounds.
     """
     rounds = [{key: job() for key, job in jobs.items()} for _ in range(repeats)]
-    return {
-        key: Time(min(r[key] for r in rounds), statistics.median(r[key] for r in rounds))
-        for key in jobs
-    }
+    return {key: min(times[key] for times in rounds) for key in jobs}
 
 
 @contextmanager

@@ -359,8 +359,7 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
             ),
         ]
     runs = _drive_level(work, c2d.studies.ride, [*_PAIRS, *_PAIRS.values(), "belt with grousers"])
-    vibration = runs["vibration"]
-    shakes = {name: vibration.sel(model=name).item() for name in vibration["model"].to_numpy()}
+    shakes = runs["vibration"].to_series().to_dict()
     rough = tuple(
         Check(
             what=f"{gears} shake the robot on level ground",
@@ -445,16 +444,7 @@ def _cross(
 ) -> FigureDataset:
     """Drive layouts without flippers over some grounds."""
     models = models_of(names, setting, flippers=False)
-    return _success(work, grounds, models, work.design.claim_repeats)
-
-
-def _success(
-    work: Work, grounds: Mapping[str, Any], models: Mapping[str, Any], repeats: int
-) -> FigureDataset:
-    base = climb(next(iter(grounds.values())))
-    return work.count(
-        c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
-    )
+    return work.success(grounds, models, work.design.claim_repeats)
 
 
 def _count(runs: FigureDataset, model: str, ground: str, label: str = "") -> _Count:
@@ -492,7 +482,7 @@ def _mass_sticks(work: Work) -> Claim:
 def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> FigureDataset:
     """Drive robots over as many fields as Table 2 has, and the same ones."""
     field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
-    return _success(work, field, models, work.design.field_repeats)
+    return work.success(field, models, work.design.field_repeats)
 
 
 def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:
@@ -515,8 +505,7 @@ def _odometry_of_gears(work: Work) -> Claim:
     runs = _drive_level(
         work, c2d.studies.odometry, [name for pair in _PAIRS.items() for name in pair]
     )
-    error = runs["odometry_error"]
-    errors = {name: error.sel(model=name).item() for name in error["model"].to_numpy()}
+    errors = runs["odometry_error"].to_series().to_dict()
     return Claim(
         section="3",
         text="the protrusions of gears complicate odometry",

@@ -5,7 +5,7 @@ Which layout stands for which row follows from the text of the paper, not from w
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -99,6 +99,13 @@ class Work:
         """Return the keywords of a study of rates whose cells all have the same number of runs."""
         until = c2d.Until(width=_NO_WIDTH, least=repeats, most=repeats)
         return RateSampling(**self.sampling, until=until)
+
+    def success(
+        self, grounds: Mapping[str, Terrain], models: Mapping[str, Any], repeats: int
+    ) -> FigureDataset:
+        """Drive robots over some grounds, each as often."""
+        base, options = climb(next(iter(grounds.values()))), self.sampling_of(repeats)
+        return self.count(c2d.studies.success(base, terrains=grounds, models=models, **options))
 
     def count(self, figures: FigureDataset) -> FigureDataset:
         """Count what a study has tried, and return it; what two studies try counts twice."""

@@ -18,7 +18,7 @@ from crawler2d.sweeps.figure_dataset import FigureDataset
 from crawler2d.sweeps.store import Store
 from research.figures import THREE, add_legend, make_panels, style
 from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
-from research.paper.design import READINGS, SETTINGS, Setting, Work, climb, layouts, models_of
+from research.paper.design import READINGS, SETTINGS, Setting, Work, layouts, models_of
 from research.tables import counts, group_by, markdown_table, percent
 
 if TYPE_CHECKING:
@@ -122,11 +122,7 @@ def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Fi
 def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) -> FigureDataset:
     """Drive some layouts over the fields in one setting; see `cross_fields`."""
     grounds = {name: replace(field, friction=setting.friction) for name, field in FIELDS.items()}
-    base = climb(next(iter(grounds.values())))
-    models = models_of(names, setting)
-    return work.count(
-        c2d.studies.success(base, terrains=grounds, models=models, **work.sampling_of(repeats))
-    )
+    return work.success(grounds, models_of(names, setting), repeats)
 
 
 def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:
@@ -137,7 +133,6 @@ def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:
             own = runs.sel(model=model, terrain=obstacle)
             outcomes = own["outcome"].to_numpy().tolist()
             cleared, count = outcomes.count("cleared"), own["count"].item()
-            rate, low, high = c2d.wilson(cleared, count)
             rows.append(
                 FieldCell(
                     setting=setting.name,
@@ -146,9 +141,7 @@ def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:
                     column=COLUMNS.get(model, ""),
                     cleared=cleared,
                     count=count,
-                    rate=rate,
-                    low=low,
-                    high=high,
+                    **c2d.wilson(cleared, count)._asdict(),
                     others=counts(each for each in outcomes if each != "cleared"),
                     computing_time=own["wall_time"].sum().item(),
                 )
