@@ -11,7 +11,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
-from types import TracebackType
 from typing import NamedTuple, Self
 
 import crawler2d as c2d
@@ -46,7 +45,6 @@ class Row(NamedTuple):
 
 
 _METRICS = ("final_x", "final_y", "final_angle", "time", "solves")
-_FAILED = Row(0, FAILED, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Interrupted(KeyboardInterrupt):
@@ -94,27 +92,24 @@ def simulate(plans: Sequence[Passed], repeats: Sequence[int], threads: int | Non
     begin = time.process_time()
     try:
         with Collector((), threads=thread_count(threads)) as collector:
-            rows = collector.rows(collector.batch(chosen), lambda _: None)
+            runs = collector.rows(collector.batch(chosen), lambda _: None)
     except RowsInterrupted as stopped:
-        spent = time.process_time() - begin
-        kept = _rows(repeats, stopped.rows, spent, interrupted=True)
-        raise Interrupted(kept) from None
-    return _rows(repeats, rows, time.process_time() - begin, interrupted=False)
+        kept = _rows(repeats, stopped.rows, time.process_time() - begin)
+        raise Interrupted([row for row in kept if row.outcome != FAILED]) from None
+    return _rows(repeats, runs, time.process_time() - begin)
 
 
-def _rows(
-    repeats: Sequence[int], runs: Sequence[SweepRow], spent: float, *, interrupted: bool
-) -> list[Row]:
+def _rows(repeats: Sequence[int], runs: Sequence[SweepRow], spent: float) -> list[Row]:
     """Return what is stored; the processor time of the batch is split by wall time."""
     total = sum(run.wall_time for run in runs if run.error is None)
     rows = []
     for repeat, run in zip(repeats, runs, strict=True):
+        row = Row(repeat, FAILED, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if run.error is None:
             x, y, angle, duration, solves = (run.metrics[name] for name in _METRICS)
             processor = spent * run.wall_time / total
-            rows.append(Row(repeat, run.outcome, x, y, angle, duration, solves, processor))
-        elif not interrupted:
-            rows.append(_FAILED._replace(repeat=repeat))
+            row = Row(repeat, run.outcome, x, y, angle, duration, solves, processor)
+        rows.append(row)
     return rows
 
 
@@ -150,12 +145,7 @@ class Store:
         """Return itself."""
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Close the file."""
         self._file.close()
 

@@ -107,7 +107,11 @@ class BulletWorld(World):
         self._hold([info[0] for info in infos if info[2] == pybullet.JOINT_REVOLUTE])
         self._place(scene)
         mass = sum(self._call("getDynamicsInfo", self._body, i)[0] for i in (-1, *joints))
-        check(robot, mass, self._axles())
+        axles = {
+            wheel.link: self._call("getLinkState", self._body, joint)[4]
+            for joint, wheel in self._wheels
+        }
+        check(robot, mass, axles, self.pose())
         for joint, wheel in self._wheels:
             self._call("resetJointState", self._body, joint, wheel.turn(scene.phase))
 
@@ -155,16 +159,6 @@ class BulletWorld(World):
             tilt = pybullet.getQuaternionFromEuler((0.0, -scene.angle, 0.0))
             middle, turned = pybullet.multiplyTransforms(root.tolist(), tilt, offset, inner)
         self._call("resetBasePositionAndOrientation", self._body, middle, turned)
-
-    def _axles(self) -> dict[str, Any]:
-        """[m] Return the axles in the chassis frame."""
-        frame = self.pose()
-        return {
-            wheel.link: (
-                np.array(self._call("getLinkState", self._body, joint)[4]) - frame.place
-            ).dot(frame.turn)
-            for joint, wheel in self._wheels
-        }
 
     def resolve_overlap(self) -> tuple[float, float]:
         """[m] Move the robot forward and up until it overlaps no ground; return how far.

@@ -90,14 +90,11 @@ class DartWorld(World):
                 joint.setForceLowerLimit(0, -wheel.torque)
                 joint.setForceUpperLimit(0, wheel.torque)
         self._root.getParentJoint().setPositions([0.0, -scene.angle, 0.0, *scene.root()])
-        frame = self.pose()
         axles = {
-            wheel.link: (joint.getChildBodyNode().getTransform().translation() - frame.place).dot(
-                frame.turn
-            )
+            wheel.link: joint.getChildBodyNode().getTransform().translation()
             for joint, wheel in self._motors
         }
-        check(robot, skeleton.getMass(), axles)
+        check(robot, skeleton.getMass(), axles, self.pose())
         for joint, wheel in self._motors:
             joint.setPosition(0, wheel.turn(scene.phase))
         self._world.addSkeleton(skeleton)

@@ -149,7 +149,12 @@ def load(name: str, **setting: Any) -> Engine:
     return engine
 
 
-def check(robot: RobotModel, mass: float, axles: Mapping[str, Sequence[float]]) -> None:
+_ORIGIN = Pose()
+
+
+def check(
+    robot: RobotModel, mass: float, axles: Mapping[str, Sequence[float]], frame: Pose = _ORIGIN
+) -> None:
     """Compare what an engine has loaded with the model.
 
     Parameters
@@ -159,7 +164,9 @@ def check(robot: RobotModel, mass: float, axles: Mapping[str, Sequence[float]]) 
     mass : float
         [kg] Of the robot in the engine.
     axles : mapping of str to sequence of float
-        [m] Axles in the engine, flippers held, in the chassis frame.
+        [m] Axles in the engine, flippers held.
+    frame : Pose
+        The chassis frame there.
 
     Raises
     ------
@@ -170,7 +177,7 @@ def check(robot: RobotModel, mass: float, axles: Mapping[str, Sequence[float]]) 
         raise ValueError(f"{robot.file}: {mass:g} kg were loaded, the robot has {robot.mass:g}")
     for wheel in robot.wheels:
         # Where along its axle the frame of a wheel lies is free.
-        x, _, z = axles[wheel.link]
+        x, _, z = (np.asarray(axles[wheel.link]) - frame.place).dot(frame.turn)
         off = max(abs(wheel.axle[0] - x), abs(wheel.axle[2] - z))
         if off > 1e-5:
             raise ValueError(f"{robot.file}: {wheel.link} is {1e3 * off:.2f} mm off")

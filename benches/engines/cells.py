@@ -108,7 +108,7 @@ _SEEDS = 1000
 _HEIGHT, _FRICTION = 0.03, 0.05  # [-] by which they vary, either way
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Cell:
     """What the runs of a cell have in common.
 
@@ -132,8 +132,8 @@ class Cell:
     model: str
     drive: str
     ground: str
-    height: float
-    friction: float
+    height: float = 0.0
+    friction: float = 0.0
 
     @property
     def label(self) -> str:
@@ -254,14 +254,14 @@ def _wanted() -> Iterator[Cell]:
     usual = [model for model in MODELS if model != "public 3"]
     for model, robot in product(usual, ("engineer", "engineer, ahead")):
         for drive in ("6 N m, track", "6 N m, servos", "60 N m, track", "60 N m, servos"):
-            yield _open("plane", robot, model, drive, "step")
+            yield Cell("plane", robot, model, drive, "step")
         for drive in ("6 N m, servos", "60 N m, servos"):
-            yield _open("plane", robot, model, drive, "knife edge")
+            yield Cell("plane", robot, model, drive, "knife edge")
     for robot, model, ground in product(("absolem", "marv"), _OTHERS, ("step", "knife edge")):
-        yield _open("plane", robot, model, "60 N m, servos", ground)
+        yield Cell("plane", robot, model, "60 N m, servos", ground)
     for model, ground in product(usual, ("oblique edge", "one-sided edge")):
         drive = "60 N m, track" if model == _SLOW else "60 N m, servos"
-        yield _open("space", "engineer", model, drive, ground)
+        yield Cell("space", "engineer", model, drive, ground)
 
 
 def _paper() -> Iterator[Cell]:
@@ -273,7 +273,7 @@ def _paper() -> Iterator[Cell]:
     for model in MODELS:
         drive = "60 N m, track" if model == _SLOW else "100 N m a wheel"
         for ground, height in _PAPER_GROUNDS:
-            cell = _open("paper", "engineer", model, drive, ground)
+            cell = Cell("paper", "engineer", model, drive, ground)
             yield replace(cell, height=height, friction=1.0)
 
 
@@ -295,12 +295,6 @@ def find_cells() -> Iterator[tuple[Cell, float]]:
         yield min(found, key=lambda each: abs(each[1] - 0.5))
     for cell in _paper():
         yield cell, _rate(cell)
-
-
-def _open(group: str, robot: str, model: str, drive: str, ground: str) -> Cell:
-    return Cell(
-        group=group, robot=robot, model=model, drive=drive, ground=ground, height=0.0, friction=0.0
-    )
 
 
 def _search(cell: Cell) -> tuple[Cell, float]:

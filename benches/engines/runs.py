@@ -390,15 +390,7 @@ def time_engines(path: Path) -> None:
     """
     results = Results(path)
     for model in MODELS_TIMED:
-        cell = Cell(
-            group="plane",
-            robot="engineer",
-            model=model,
-            drive="60 N m, servos",
-            ground="step",
-            height=0.04,
-            friction=1.0,
-        )
+        cell = Cell("plane", "engineer", model, "60 N m, servos", "step", height=0.04, friction=1.0)
         (scenario,) = cell.scenarios(1)
         for name in ("crawler2d", *ENGINES):
             try:

@@ -6,7 +6,7 @@ Usage, from the repository root: ``python -m benches.peers [--quick] [--sections
 import argparse
 import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -96,14 +96,15 @@ def full(names: Sequence[str], chosen: Sequence[str]) -> Iterator[dict[str, Any]
     """Run the chosen sections; `names` are the scenes for the first two sections."""
     robots, terrains = ["lwa3", "lwa5", "cwa24"], ["step", "field"]
     lines = ["lwa5-gear-step", "lwa3-gear-step"]
-    if "chains" in chosen:
-        yield {"chains": measure_chains(_SHOES, chains.TERRAINS, _REPEATS)}
-    if "defaults" in chosen:
-        yield {"defaults": defaults(names, load_engines(), _REPEATS)}
-    if "yardstick" in chosen:
-        yield {"yardstick": yardstick(robots, terrains, _REPEATS)}
-    if "batches" in chosen:
-        yield {"batches": batches(lines, draws(_WORLDS), ENGINES, 3)}
+    sections: dict[str, Callable[[], Any]] = {
+        "chains": lambda: measure_chains(_SHOES, chains.TERRAINS, _REPEATS),
+        "defaults": lambda: defaults(names, load_engines(), _REPEATS),
+        "yardstick": lambda: yardstick(robots, terrains, _REPEATS),
+        "batches": lambda: batches(lines, draws(_WORLDS), ENGINES, 3),
+    }
+    for section, measure in sections.items():
+        if section in chosen:
+            yield {section: measure()}
     rows: list[dict[str, Any]] = []
     for name in names if "accuracy" in chosen else ():
         rows += equal_accuracy(name, Effort(3, _ENSEMBLE), _REPEATS)

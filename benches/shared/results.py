@@ -133,17 +133,10 @@ class Results:
         executor : Executor, optional
             Runs several jobs at a time.
         """
-        results: Iterable[tuple[Sequence[str], Any]]
-        if executor is None:
-            results = ((keys, run(job)) for keys, job in jobs)
-        else:
-            places, tasks = [], []
-            for keys, job in jobs:
-                places.append(keys)
-                tasks.append(job)
-            results = zip(places, executor.map(run, tasks), strict=True)
+        jobs = list(jobs)
+        made = (map if executor is None else executor.map)(run, [job for _, job in jobs])
         try:
-            for number, (keys, result) in enumerate(results, 1):
+            for number, ((keys, _), result) in enumerate(zip(jobs, made, strict=True), 1):
                 self.at(*keys).append(result)
                 if time.monotonic() - self._written > _INTERVAL:
                     self.save()
