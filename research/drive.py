@@ -19,7 +19,7 @@ from crawler2d.parameters.fields import json_pointer
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
 from crawler2d.runs.progress import reporter, thread_count
-from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
+from crawler2d.sweeps.collect import Collector, RowsInterrupted
 from research.figures import add_legend, make_panels, style
 from research.models import study_models
 from research.study import Job, Study
@@ -193,8 +193,7 @@ def highest_edges(asked: Sequence[Case], plan: Plan) -> list[HighestEdge]:
                         rows.append(_row(case, name, units, first))
                         report(1)
     except RowsInterrupted as interrupt:
-        kept = "" if plan.store is None else str(plan.store)
-        raise c2d.BatchInterrupted(runs_of(interrupt.rows), kept) from None
+        raise interrupt.as_batch(plan.store) from None
     return rows
 
 
@@ -375,7 +374,7 @@ def _run_drive(job: Job) -> None:
     rotors, drives = highest_edges(asked, plan), highest_edges(others, plan)
     tables = (highest_edges_text(rotors), paired_text(rotors), highest_edges_text(drives))
     job.report("drive", "\n\n\n".join(tables))
-    job.write_rows({"drive": [*rotors, *drives]})
+    job.write_rows(drive=[*rotors, *drives])
     job.draw({"drive": partial(plot_drive, rotors)})
 
 

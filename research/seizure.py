@@ -175,7 +175,7 @@ def header(sweeps: Sweeps) -> str:
 def _run_seizure(job: Job) -> None:
     begin = time.perf_counter()
     sweeps = Sweeps(design=FULL if job.full else QUICK, **job.sampling)
-    runs, head = _cross_obstacles(sweeps)
+    runs, head = cross_obstacles(sweeps)
     climbs = [row for name, table in runs.items() for row in tables.climbs(table, name)]
     heights = tables.climbs_text(sweeps.models, climbs)
     print(f"\n{heights}", flush=True)
@@ -204,15 +204,7 @@ def _run_seizure(job: Job) -> None:
     job.report("study", "\n\n\n".join(text), head, heights)
     for obstacle, table in runs.items():
         tables.write_runs(table, job.out / f"runs_{obstacle.replace(' ', '_')}.csv")
-    job.write_rows(
-        {
-            "rates": [*cells, *others],
-            "heights": climbs,
-            "flat": rides,
-            "phases": phases,
-            "posts": posts,
-        }
-    )
+    job.write_rows(rates=[*cells, *others], heights=climbs, flat=rides, phases=phases, posts=posts)
     job.draw(
         {
             "rates": partial(tables.plot_rates, cells),
@@ -226,7 +218,7 @@ def _run_seizure(job: Job) -> None:
         print("This was a look at few heights; the whole study: make study ARGS=--full (minutes)")
 
 
-def _cross_obstacles(sweeps: Sweeps) -> tuple[dict[str, xarray.Dataset], str]:
+def cross_obstacles(sweeps: Sweeps) -> tuple[dict[str, xarray.Dataset], str]:
     """Run every model over every obstacle; returns the runs, and the header, which is printed."""
     head = header(sweeps)
     print(head, flush=True)
@@ -244,7 +236,7 @@ def _report_stops(
         *stops.compare_wheels(strong, "step", pairs, _STRONG),
     ]
     replays = stops.write_replays(runs, job.out / "replays", threads=sweeps.threads)
-    job.write_rows({"stops": endings, "gear_against_round": wheels, "replays": replays})
+    job.write_rows(stops=endings, gear_against_round=wheels, replays=replays)
     return "\n\n\n".join(
         (
             stops.stops_text(endings),
@@ -256,7 +248,7 @@ def _report_stops(
 
 def _run_stops(job: Job) -> None:
     sweeps = Sweeps(design=FULL if job.full else QUICK, **job.sampling)
-    runs, head = _cross_obstacles(sweeps)
+    runs, head = cross_obstacles(sweeps)
     strong = sweeps.on_other_robots([_STRONG]).sel(robot=_STRONG)
     job.report("stops", _report_stops(job, sweeps, runs, strong), head)
 

@@ -290,14 +290,13 @@ def _run_chains(job: Job) -> None:
     design = CHAINS_FULL if job.full else CHAINS_QUICK
     sweeps = seizure.Sweeps(design=design, models=chain_models(), **job.sampling)
     begin = time.perf_counter()
-    head = seizure.header(sweeps)
-    print(head, flush=True)
-    table = sweeps.on_obstacle("step")
+    runs, head = seizure.cross_obstacles(sweeps)
+    table = runs["step"]
     took = time.perf_counter() - begin
     rows = cells(table, "step")
     job.report("chains", rates_text(rows), head)
     write_runs(table, job.out / "runs_chains.csv")
-    job.write_rows({"chains": rows})
+    job.write_rows(chains=rows)
     job.draw({"chains": partial(plot_chains, rows)})
     print(f"{table['outcome'].size} runs in {took:.0f} s; table and picture are in {job.out}")
 

@@ -45,7 +45,7 @@ class Job:
         whole = "\n\n\n".join((*printed, text))
         (self.out / f"{name}.txt").write_text(f"{whole}\n", encoding="utf-8")
 
-    def write_rows(self, tables: Mapping[str, Sequence[Any]]) -> None:
+    def write_rows(self, **tables: Sequence[Any]) -> None:
         """Write rows of dataclasses as NAME.csv; a table without rows is left out."""
         for name, rows in tables.items():
             if rows:

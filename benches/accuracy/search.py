@@ -1,6 +1,6 @@
 """Draw cells, and search the height of each: first at a coarse setting, then at a fine one."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -126,17 +126,11 @@ def _rate(cell: Cell, setting: Setting, count: int, threads: int | None) -> tupl
     # Not the draws of the study: a cell that was found by chance must not keep that chance.
     planned = plan(cell, setting, count, cell.seed + 1)
     cleared: list[bool] = []
-    for part in _parts(count):
+    for part in filter(None, (range(min(_FIRST, count)), range(_FIRST, count))):
         cleared += [row.outcome == "cleared" for row in simulate(planned, part, threads)]
         if len(set(cleared)) == 1:
             break
     return sum(cleared) / len(cleared), len(cleared)
-
-
-def _parts(count: int) -> Iterator[range]:
-    yield range(min(_FIRST, count))
-    if count > _FIRST:
-        yield range(_FIRST, count)
 
 
 def complete_cells(path: Path, seed: int, names: Iterable[str], threads: int | None) -> list[str]:

@@ -4,7 +4,7 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -203,16 +203,14 @@ def _limited(tree: Tree) -> Tree:
     return replace(tree, joints=joints)
 
 
-def _moved(link: Link, by: np.ndarray) -> Link:
-    def shape(each: Shape) -> Shape:
-        return replace(each, pose=replace(each.pose, place=each.pose.place + by))
+_Part = TypeVar("_Part", Link, Shape)
 
-    return replace(
-        link,
-        pose=replace(link.pose, place=link.pose.place + by),
-        center=link.center + by,
-        shapes=tuple(shape(each) for each in link.shapes),
-    )
+
+def _moved(link: Link, by: np.ndarray) -> Link:
+    def moved(part: _Part) -> _Part:
+        return replace(part, pose=replace(part.pose, place=part.pose.place + by))
+
+    return replace(moved(link), center=link.center + by, shapes=tuple(map(moved, link.shapes)))
 
 
 VARIANTS: dict[str, tuple[Callable[[Reading], Tree], ...]] = {

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from benches.scaling.report import Curve, curves, deviations
 from research.figures import FIVE, GREY, add_legend, light_grid, make_panels, save_svg, style
+from research.tables import group_by
 
 _LABELS = {
     "wheels": "wheels a side",
@@ -30,12 +31,10 @@ def plot(result: dict[str, Any], folder: Path) -> None:
 
 def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
     """Draw the cost of a simulated second, one panel per scene, with a line of slope 1."""
-    panels = list(dict.fromkeys(curve.panel for curve in drawn))
-    labels = list(dict.fromkeys(curve.name for curve in drawn))
-    styles = {label: _style(index) for index, label in enumerate(labels)}
+    panels = group_by(drawn, "panel")
+    styles = {name: _style(index) for index, name in enumerate(group_by(drawn, "name"))}
     figure, (axes,) = make_panels(1, len(panels), (8.0, 3.8), sharex=True, sharey=True)
-    for panel, ax in zip(panels, axes, strict=True):
-        own = [curve for curve in drawn if curve.panel == panel]
+    for (panel, own), ax in zip(panels.items(), axes, strict=True):
         for curve in own:
             heights = [value * 1e3 for value in curve.per_second]
             ax.loglog(curve.x, heights, label=curve.name, **styles[curve.name])

@@ -42,13 +42,10 @@ def curves(rows: Sequence[dict[str, Any]], figure: str) -> list[Curve]:
 
 def deviations(rows: Sequence[dict[str, Any]], curve: Curve) -> list[float]:
     """[m] How far the robot gets from where it does at the first point, at least a nanometre."""
-    own = {row["x"]: row["final_x"] for row in rows if _is_on(row, curve)}
+    mine = group_by(rows, "figure", "panel", "curve")[curve.figure, curve.panel, curve.name]
+    own = {row["x"]: row["final_x"] for row in mine}
     first, *others = (own[x] for x in curve.x)
     return [max(abs(other - first), 1e-9) for other in others]
-
-
-def _is_on(row: dict[str, Any], curve: Curve) -> bool:
-    return (row["figure"], row["panel"], row["curve"]) == (curve.figure, curve.panel, curve.name)
 
 
 def render(result: dict[str, Any]) -> dict[str, str]:

@@ -98,7 +98,7 @@ class Pages:
 
     def write_rows(self, **tables: Sequence[Any]) -> None:
         """Write rows of dataclasses as paper_NAME.csv."""
-        self.job.write_rows({f"paper_{name}": rows for name, rows in tables.items()})
+        self.job.write_rows(**{f"paper_{name}": rows for name, rows in tables.items()})
 
     def draw(self, **drawings: Callable[[], Figure]) -> None:
         """Draw figures as paper_NAME.png, also next to the other page if that shows them."""
