@@ -303,9 +303,9 @@ def wheels_text(rates: Sequence[WheelRate]) -> str:
         }
         for (robot, model, wheel), own in group_by(rates, "robot", "model", "wheel").items()
     )
+    obstacle = rates[0].obstacle
     return (
-        f"Gear wheels beside round ones on {rates[0].obstacle}s, all heights together: shares of"
-        " all runs\n"
+        f"Gear wheels beside round ones on {obstacle}s, all heights together: shares of all runs\n"
         "[%], with 95 % intervals of repeats. Freed by: twice the torque, twice the friction.\n"
         "Unnatural: stops that a closed track leaves, passes where the belt does not get over.\n\n"
     ) + aligned_table(rows, left=("robot", "wheels"))

@@ -7,6 +7,7 @@ import json
 import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Literal
@@ -21,13 +22,11 @@ from research.models import obstacle
 
 _AHEAD = (0.026, 0.02)  # [m] 26 mm ahead of the preset's
 
-ROBOTS: dict[str, Callable[[Track], c2d.Robot]] = {
-    "engineer": lambda track: c2d.robots.engineer(flippers=None, track=track),
-    "engineer, ahead": lambda track: c2d.robots.engineer(
-        flippers=None, center_of_mass=_AHEAD, track=track
-    ),
-    "absolem": lambda track: c2d.robots.absolem(flippers=None, track=track),
-    "marv": lambda track: c2d.robots.marv(flippers=None, track=track),
+ROBOTS: dict[str, Callable[..., c2d.Robot]] = {
+    "engineer": partial(c2d.robots.engineer, flippers=None),
+    "engineer, ahead": partial(c2d.robots.engineer, flippers=None, center_of_mass=_AHEAD),
+    "absolem": partial(c2d.robots.absolem, flippers=None),
+    "marv": partial(c2d.robots.marv, flippers=None),
 }
 """Robots without flippers; "ahead" has its centre of mass 26 mm farther ahead."""
 
@@ -70,7 +69,7 @@ def robot_of(robot: str, model: str, drive: str) -> c2d.Robot:
     >>> robot_of("marv", "line of 5", "6 N m, servos").drivetrain.torque_sharing
     'wheel'
     """
-    return with_motors(ROBOTS[robot](MODELS[model]), drive)
+    return with_motors(ROBOTS[robot](track=MODELS[model]), drive)
 
 
 def with_motors(base: c2d.Robot, drive: str) -> c2d.Robot:
@@ -286,12 +285,11 @@ def find_cells() -> Iterator[tuple[Cell, float]]:
             yield given, _rate(given)
             continue
         first = number % len(_FRICTIONS)
-        order = _FRICTIONS[first:] + _FRICTIONS[:first]
-        found = [_search(replace(cell, friction=friction)) for friction in order[:1]]
-        for friction in order[1:]:
+        found = []
+        for friction in _FRICTIONS[first:] + _FRICTIONS[:first]:
+            found.append(_search(replace(cell, friction=friction)))
             if _FEW <= found[-1][1] <= _MANY:
                 break
-            found.append(_search(replace(cell, friction=friction)))
         yield min(found, key=lambda each: abs(each[1] - 0.5))
     for cell in _paper():
         yield cell, _rate(cell)

@@ -150,7 +150,7 @@ def _row(jams: Sequence[Jam], counts: Callable[[Jam, int], bool]) -> list[str]:
 
 def _draw(track: Track, draw: np.random.Generator) -> tuple[str, Scenario]:
     name, drive = str(draw.choice(list(ROBOTS))), str(draw.choice(_DRIVES))
-    robot = with_motors(ROBOTS[name](track), drive)
+    robot = with_motors(ROBOTS[name](track=track), drive)
     length, radius = robot.outline.axle_distance, robot.outline.front_radius
     ground = str(draw.choice(_GROUNDS))
     height, friction = radius * draw.uniform(0.4, 1.6), draw.uniform(0.5, 1.0)

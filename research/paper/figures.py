@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -26,17 +26,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_GEAR = c2d.GearWheel()
+_SMALL = c2d.CircumferentialWheels(16, wheel_radius=0.02, wheel=_GEAR)
 _PHASED: dict[str, Track] = {
-    **{
-        f"line of {count}": c2d.LineOfWheels(count, wheel=c2d.GearWheel())
-        for count in (2, 3, 4, 5, 9)
-    },
-    **{
-        f"{count} all round": c2d.CircumferentialWheels(
-            count, wheel_radius=0.02, wheel=c2d.GearWheel()
-        )
-        for count in (16, 24)
-    },
+    **{f"line of {count}": c2d.LineOfWheels(count, wheel=_GEAR) for count in (2, 3, 4, 5, 9)},
+    **{f"{count} all round": replace(_SMALL, count=count) for count in (16, 24)},
 }
 """Gears whose angles are compared with the formula; those of the flippers are, too."""
 
