@@ -5,7 +5,7 @@ starts; and 24 wheels meet a knife edge.
 """
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -205,15 +205,16 @@ _CHIPMUNK_USUAL = {"time_step": 5e-4, "iterations": 100}
 
 
 def who_gets_over(
-    scenarios: Iterable[Scenario], solvers: Mapping[str, Solver]
+    scenarios: Sequence[Scenario], solvers: Mapping[str, Solver]
 ) -> dict[str, list[bool]]:
     """Return in which scenarios the robot clears with each solver, and in Chipmunk."""
-    gets: dict[str, list[bool]] = {name: [] for name in (*solvers, "Chipmunk")}
-    for scenario in scenarios:
-        for name, solver in solvers.items():
-            gets[name].append(_gets_over(scenario.replace({"solver": solver})))
-        gets["Chipmunk"].append(_gets_over_in_chipmunk(scenario))
-    return gets
+    gets = {
+        name: [_gets_over(scenario.replace({"solver": solver})) for scenario in scenarios]
+        for name, solver in solvers.items()
+    }
+    chipmunk = load("Chipmunk", **_CHIPMUNK_USUAL)
+    ends = [drive(chipmunk, scenario)["end"] for scenario in scenarios]
+    return gets | {"Chipmunk": [end == "cleared" for end in ends]}
 
 
 def counts(gets_over: Mapping[str, list[bool]]) -> dict[str, str]:
@@ -225,10 +226,6 @@ def _gets_over(scenario: Scenario) -> bool:
     with warnings.catch_warnings(action="ignore", category=c2d.ScenarioWarning):
         run = c2d.simulate(scenario, record="summary", trials=None)
     return run.outcome is c2d.Outcome.CLEARED
-
-
-def _gets_over_in_chipmunk(scenario: Scenario) -> bool:
-    return bool(drive(load("Chipmunk", **_CHIPMUNK_USUAL), scenario)["end"] == "cleared")
 
 
 _ENSEMBLE_SOLVERS = {
@@ -255,7 +252,7 @@ def ensembles(starts: int, study: Path, path: Path) -> None:
         spread = _PITCH * (np.arange(starts) + 0.5) / starts
         over = [base.replace({"start": Start(approach=float(a))}) for a in _APPROACH + spread]
         gets = who_gets_over(over, _ENSEMBLE_SOLVERS)
-        results.data.append({**dict(zip(_KEY, _key(cell), strict=True)), "gets_over": gets})
+        results.data.append({**{name: cell[name] for name in _KEY}, "gets_over": gets})
         results.save()
         progress(f"{_key(cell)}: {[sum(each) for each in gets.values()]} of {starts}")
 

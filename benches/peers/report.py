@@ -56,12 +56,10 @@ _EQUAL_GAPS = (
 
 def speeds(rows: Rows) -> dict[str, dict[str, float]]:
     """Return the real-time factors at equal accuracy, by scene and engine."""
-    found: dict[str, dict[str, float]] = {}
-    for row in rows:
-        factors = found.setdefault(row["scene"], {})
-        if row["found"]:
-            factors[row["engine"]] = 1.0 / row["per_second"]
-    return found
+    return {
+        scene: {row["engine"]: 1.0 / row["per_second"] for row in own if row["found"]}
+        for scene, own in group_by(rows, "scene").items()
+    }
 
 
 def _speed_cell(row: dict[str, Any]) -> str:

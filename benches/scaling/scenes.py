@@ -1,6 +1,8 @@
 """The scenes: the same robot throughout, and one number that grows along each curve."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +27,8 @@ LEVEL = "level"
 """Suffix of the curve whose pieces lie level and so are read as one piece."""
 
 _SHAPES: tuple[Wheel, ...] = (c2d.RoundWheel(), c2d.GearWheel())
-# [m] Of circumferential wheels: three of them just carry the Engineer, and 96 overlap.
-_WHEEL_RADIUS = 0.016
+# Three of such wheels just carry the Engineer, and 96 overlap.
+_SMALL = c2d.CircumferentialWheels(24, wheel_radius=0.016)
 # [m] Thin enough for 48 grousers on such a wheel.
 _TIP_THICKNESS = 1e-3
 
@@ -72,27 +74,27 @@ def line_of_gears() -> Scenario:
 
 
 def _wheels() -> Iterator[Point]:
-    for panel in (FLAT, STEP):
-        for wheel in _SHAPES:
-            for count in WHEELS:
-                line = c2d.LineOfWheels(count, wheel=wheel)
-                yield Point("wheels", panel, f"line, {wheel.kind}", count, _over(line, panel))
-            for count in WHEELS:
-                around = c2d.CircumferentialWheels(count, wheel_radius=_WHEEL_RADIUS, wheel=wheel)
-                name = f"circumferential, {wheel.kind}"
-                yield Point("wheels", panel, name, count, _over(around, panel))
+    for panel, wheel in product((FLAT, STEP), _SHAPES):
+        lines = {count: c2d.LineOfWheels(count, wheel=wheel) for count in WHEELS}
+        yield from _curve("wheels", panel, f"line, {wheel.kind}", lines)
+        small = replace(_SMALL, wheel=wheel)
+        around = {count: replace(small, count=count) for count in WHEELS}
+        yield from _curve("wheels", panel, f"circumferential, {wheel.kind}", around)
 
 
 def _grousers() -> Iterator[Point]:
+    gears = {count: c2d.GearWheel(grouser_count=count) for count in GROUSERS}
+    thin = {count: replace(gear, tip_thickness=_TIP_THICKNESS) for count, gear in gears.items()}
+    lines = {count: c2d.LineOfWheels(3, wheel=gear) for count, gear in gears.items()}
+    around = {count: replace(_SMALL, wheel=gear) for count, gear in thin.items()}
     for panel in (FLAT, STEP):
-        for count in GROUSERS:
-            gear = c2d.GearWheel(grouser_count=count)
-            line = c2d.LineOfWheels(3, wheel=gear)
-            yield Point("grousers", panel, "line of 3", count, _over(line, panel))
-        for count in GROUSERS:
-            gear = c2d.GearWheel(grouser_count=count, tip_thickness=_TIP_THICKNESS)
-            around = c2d.CircumferentialWheels(24, wheel_radius=_WHEEL_RADIUS, wheel=gear)
-            yield Point("grousers", panel, "24 circumferential", count, _over(around, panel))
+        yield from _curve("grousers", panel, "line of 3", lines)
+        yield from _curve("grousers", panel, "24 circumferential", around)
+
+
+def _curve(figure: str, panel: str, name: str, tracks: Mapping[int, Track]) -> Iterator[Point]:
+    for count, track in tracks.items():
+        yield Point(figure, panel, name, count, _over(track, panel))
 
 
 def _pieces() -> Iterator[Point]:

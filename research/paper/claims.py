@@ -275,31 +275,27 @@ def force_is_flat(work: Work) -> Claim:
 
 def geometry() -> Claim:
     """Compare how far the lower runs of the layouts lie within the track as built; no run."""
-    known, bare = layouts(), study_robot()
-    names = ("16 all round, spaced", "24 all round", "line of 3", "line of 5", "line of 9")
-    uneven = {name: unevenness(known[name].on(bare)) for name in names}
-
-    def nearer(all_round: str, line: str) -> Check:
-        (deep, mean), (other_deep, other_mean) = uneven[all_round], uneven[line]
-        return Check(
-            what=f"the wheels {all_round} are nearer to the track than the {line}",
-            result=f"{mm(mean, 1)} mm off on average, {mm(deep)} mm at most; {line}"
-            f" {mm(other_mean, 1)} mm, {mm(other_deep)} mm",
-            holds=mean < other_mean,
+    known, bare, checks = layouts(), study_robot(), []
+    for all_round, line in (
+        ("16 all round, spaced", "line of 3"),
+        ("24 all round", "line of 5"),
+        ("24 all round", "line of 9"),
+    ):
+        deep, mean = unevenness(known[all_round].on(bare))
+        other_deep, other_mean = unevenness(known[line].on(bare))
+        checks.append(
+            Check(
+                what=f"the wheels {all_round} are nearer to the track than the {line}",
+                result=f"{mm(mean, 1)} mm off on average, {mm(deep)} mm at most; {line}"
+                f" {mm(other_mean, 1)} mm, {mm(other_deep)} mm",
+                holds=mean < other_mean,
+            )
         )
-
     return Claim(
         section="2.2",
         text="small wheels all round have the greater similarity in geometry",
         experiment="mean gap between the wheels and the lower run of the track as built; no run",
-        checks=tuple(
-            nearer(*pair)
-            for pair in (
-                ("16 all round, spaced", "line of 3"),
-                ("24 all round", "line of 5"),
-                ("24 all round", "line of 9"),
-            )
-        ),
+        checks=tuple(checks),
     )
 
 
@@ -564,21 +560,19 @@ def _lines_are_flat(work: Work) -> tuple[Claim, Claim]:
 def _costs(work: Work) -> list[Claim]:
     """Compare real-time factors: gears and round wheels, all round and in a line, and a chain."""
     names = {name for *_, pairs in _COSTS for pair in pairs for name in pair}
-    models, base = (
-        models_of(sorted(names), flippers=False),
-        climb(c2d.terrains.flat(), flippers=False),
-    )
+    models = models_of(sorted(names), flippers=False)
+    base = climb(c2d.terrains.flat(), flippers=False)
     solvers = {
         "default accuracy": base,
         "steps of 1 ms": base.replace({"solver.time_step": _STEP}),
     }
-    factors = {
-        name: measure_factors(work, scenario, models)["factor"].sel(motion="driving")
-        for name, scenario in solvers.items()
-    }
+    factors = {}
+    for name, scenario in solvers.items():
+        measured = measure_factors(work, scenario, models)["factor"].sel(motion="driving")
+        factors[name] = measured.to_series().to_dict()
 
     def compare(one: str, other: str, solver: str, relation: str) -> Check:
-        ours, theirs = (factors[solver].sel(model=name).item() for name in (one, other))
+        ours, theirs = factors[solver][one], factors[solver][other]
         return Check(
             what=f"{one} is {relation} {other} ({solver})",
             result=f"{ours:.0f} and {theirs:.0f}",

@@ -105,11 +105,8 @@ def driving(work: Work) -> list[Driving]:
     """Measure speed, braking and acceleration of every row of Table 3."""
     print("Table 3, driving", flush=True)
     base = climb(c2d.terrains.flat(friction=PRESET.friction))
-    options: Any = {
-        "models": models_of(ROWS.values()),
-        "repeats": work.design.driving_repeats,
-        **work.sampling,
-    }
+    models, repeats = models_of(ROWS.values()), work.design.driving_repeats
+    options: Any = {"models": models, "repeats": repeats, **work.sampling}
     command: Any = {"speed": TABLE_1.max_speed, **options}
     studies = {
         "full_speed": ("speed", c2d.studies.max_speed(base, **options)),
