@@ -149,6 +149,12 @@ def splice(page: str, parts: Mapping[str, str]) -> str:
     return page
 
 
+def splice_into(page: Path, parts: Mapping[str, str]) -> None:
+    """Put parts between their marks in the file of a page."""
+    text = splice(page.read_text(encoding="utf-8"), parts)
+    page.write_text(text, encoding="utf-8", newline="\n")
+
+
 def write_csv(path: Path, rows: Sequence[Any]) -> None:
     """Write rows of one dataclass, with the names of its fields as the header."""
     names = [column.name for column in dataclasses.fields(rows[0])]

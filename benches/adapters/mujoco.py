@@ -17,7 +17,8 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
-from benches.adapters.planar import Body, Scene, Setting, Started, SteppedEngine, seconds
+from benches.adapters.planar import Body, Scene, Setting, Started, SteppedEngine
+from benches.shared.measuring import seconds
 
 # [N m s/rad] 10 N m at an error of 0.01 rad/s.
 _SERVO_GAIN = 1000.0
@@ -64,7 +65,7 @@ class MuJoCo(SteppedEngine):
         batch.set_models(list(models))
         batch.bind("ctrl")[:] = [each.ctrl for each in data]
         steps = setting.steps(variants[0].duration)
-        return seconds(lambda count: batch.step(nstep=count), steps)
+        return seconds(lambda: batch.step(nstep=steps))
 
 
 def build(scene: Scene, setting: Setting) -> tuple[mujoco.MjModel, mujoco.MjData]:

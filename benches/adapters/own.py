@@ -16,6 +16,7 @@ import numpy as np
 
 import crawler2d as c2d
 from benches.adapters.planar import Motion, Scene, Setting, to_world
+from benches.shared.measuring import seconds
 from crawler2d import Scenario, ScenarioError, SimulationDiverged, Solver, simulate_many
 
 _SCENARIOS = Path(__file__).parents[2] / "tests" / "scenarios"
@@ -65,9 +66,7 @@ class Crawler2D:
     def batch_time(self, variants: Sequence[Scene], setting: Setting, threads: int) -> float:
         """[s] Time worlds on several threads."""
         ready = [scenario(scene, setting, scene.duration) for scene in variants]
-        start = time.perf_counter()
-        simulate_many(ready, threads=threads, record="summary")
-        return time.perf_counter() - start
+        return seconds(lambda: simulate_many(ready, threads=threads, record="summary"))
 
 
 def scenario(scene: Scene, setting: Setting, duration: float) -> Scenario:

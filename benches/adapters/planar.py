@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -15,6 +14,8 @@ from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from benches.shared.measuring import seconds
 
 Array = NDArray[np.float64]
 
@@ -335,7 +336,8 @@ class SteppedEngine(ABC):
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
         """[s] Time a run."""
         advance, _ = self.start(scene, setting)
-        return seconds(advance, setting.steps(duration))
+        steps = setting.steps(duration)
+        return seconds(lambda: advance(steps))
 
     def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
         """Run and sample all poses."""
@@ -348,13 +350,6 @@ class SteppedEngine(ABC):
             times.append(sample * stride * setting.time_step)
             samples.append(poses())
         return Motion.of(times, samples)
-
-
-def seconds(advance: Callable[[int], object], steps: int) -> float:
-    """[s] Time a number of steps."""
-    start = time.perf_counter()
-    advance(steps)
-    return time.perf_counter() - start
 
 
 _CLASSES = {

@@ -36,9 +36,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import crawler2d as c2d
-from benches.adapters.planar import Array, Setting, load_engine, load_scene, seconds
+from benches.adapters.planar import Array, Setting, load_engine, load_scene
 from benches.peers.accuracy import JOINT_GAP
-from benches.shared.measuring import interleaved, machine
+from benches.shared.measuring import interleaved, machine, seconds
 from benches.shared.results import progress
 from crawler2d import Scenario, Solver
 from crawler2d.parameters.terrain import Points, Terrain
@@ -501,7 +501,8 @@ def _widest(place: Place, setting: Setting, most: float) -> float:
 def _seconds(place: Place, setting: Setting) -> float:
     """[s] Wall time of 0.1 s of simulated time in pymunk."""
     world = place.world(setting)
-    return seconds(world.advance, setting.steps(0.1))
+    steps = setting.steps(0.1)
+    return seconds(lambda: world.advance(steps))
 
 
 def _blocks(engine: str, place: Place, setting: Setting) -> float:
@@ -510,7 +511,7 @@ def _blocks(engine: str, place: Place, setting: Setting) -> float:
         return _of_simulation(place.scenario(setting))
     world = place.world(setting)
     steps = setting.steps(_BLOCK)
-    return _lower_quartile(lambda: seconds(world.advance, steps))
+    return _lower_quartile(lambda: seconds(lambda: world.advance(steps)))
 
 
 def _own_blocks(track: Track, terrain: Terrain) -> float:
@@ -523,7 +524,7 @@ def _own_blocks(track: Track, terrain: Terrain) -> float:
 
 def _of_simulation(scenario: Scenario) -> float:
     simulation = c2d.Simulation(scenario)
-    return _lower_quartile(lambda: seconds(lambda _: simulation.advance(_BLOCK), 1))
+    return _lower_quartile(lambda: seconds(lambda: simulation.advance(_BLOCK)))
 
 
 def _lower_quartile(block: Callable[[], float]) -> float:

@@ -15,7 +15,7 @@ from typing import Any
 import crawler2d as c2d
 from benches.scaling import plot, report, scenes
 from benches.scaling.scenes import Point, line_of_gears
-from benches.shared.measuring import interleaved, machine, pools, spin, write_parts
+from benches.shared.measuring import interleaved, machine, pools, seconds, spin, write_parts
 from benches.shared.results import progress
 from crawler2d import Scenario
 
@@ -96,9 +96,7 @@ def _drive(point: Point, index: int, ends: dict[int, float]) -> float:
     """[s] Run to the scenario's end, and return the mean wall time of a simulated second."""
     scenario = point.scenario
     simulation = c2d.Simulation(scenario)
-    start = time.perf_counter()
-    simulation.advance(scenario.duration)
-    wall = time.perf_counter() - start
+    wall = seconds(lambda: simulation.advance(scenario.duration))
     ends[index] = float(simulation.state().position[0])
     return wall / scenario.duration
 
@@ -148,9 +146,7 @@ def threads(worlds: int, loops: int, repeats: int) -> list[dict[str, Any]]:
 
 def _wall_time(batch: Sequence[Scenario], count: int) -> float:
     """[s] Wall time of a batch, from the scenarios to the runs."""
-    start = time.perf_counter()
-    c2d.simulate_many(batch, threads=count, record="summary")
-    return time.perf_counter() - start
+    return seconds(lambda: c2d.simulate_many(batch, threads=count, record="summary"))
 
 
 def _warm(_: int) -> None:

@@ -16,11 +16,18 @@ from typing import Any, TypeVar
 import numpy as np
 
 from crawler2d import wilson
-from research.tables import splice
+from research.tables import splice_into
 
 Key = TypeVar("Key", bound=Hashable)
 
 _SPINS = 2_000_000
+
+
+def seconds(job: Callable[[], object]) -> float:
+    """[s] Time a job."""
+    start = time.perf_counter()
+    job()
+    return time.perf_counter() - start
 
 
 def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[Key, float]:
@@ -54,9 +61,7 @@ def pools(
 
 def spread(pool: ProcessPoolExecutor, work: Callable[[Any], None], tasks: Sequence[Any]) -> float:
     """[s] Run all tasks in a pool."""
-    start = time.perf_counter()
-    list(pool.map(work, tasks))
-    return time.perf_counter() - start
+    return seconds(lambda: list(pool.map(work, tasks)))
 
 
 def spin(pool: ProcessPoolExecutor, loops: int) -> float:
@@ -115,8 +120,7 @@ def write_parts(
     if report is not None:
         report.write_text(text, encoding="utf-8", newline="\n")
     if page is not None:
-        written = splice(page.read_text(encoding="utf-8"), parts)
-        page.write_text(written, encoding="utf-8", newline="\n")
+        splice_into(page, parts)
 
 
 def _wrapped(block: str) -> str:

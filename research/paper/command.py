@@ -20,7 +20,7 @@ from research.paper import GEAR_MODEL_OTHERWISE, figures, performance, table_2
 from research.paper.claims import checks_text, claims, claims_text
 from research.paper.design import FULL, QUICK, Setting, Work, layouts
 from research.study import Job, Study
-from research.tables import splice
+from research.tables import splice_into
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -93,8 +93,7 @@ class Pages:
     def splice(self, parts: Mapping[str, str]) -> None:
         """Put parts between their marks in the other page."""
         if self.into is not None:
-            page = self.into.read_text(encoding="utf-8")
-            self.into.write_text(splice(page, parts), encoding="utf-8")
+            splice_into(self.into, parts)
 
     def write_rows(self, **tables: Sequence[Any]) -> None:
         """Write rows of dataclasses as paper_NAME.csv."""
