@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -130,14 +131,10 @@ def cases(
     strong = replace(own, rotor_inertia=_FIRM_ROTOR, max_torque=_FIRM_TORQUE)
     tracks = study_models()
     asked = []
-    for model in models:
+    for model, obstacle, speed in product(models, obstacles, speeds):
         track = tracks[model].track
         firm = {} if isinstance(track, c2d.ForceTrack) else {FIRM: strong}
-        asked += [
-            Case(model, track, obstacle, speed, rotors | firm)
-            for obstacle in obstacles
-            for speed in speeds
-        ]
+        asked.append(Case(model, track, obstacle, speed, rotors | firm))
     return asked
 
 

@@ -17,7 +17,7 @@ from crawler2d.sweeps.rates import rates_of
 from research.figures import THREE, add_legend, draw_rates, make_panels, style
 from research.models import StudyModel, study_robot
 from research.paper import RPM, TABLE_2, TABLE_3
-from research.tables import aligned_table, counts, gaps, group_by, in_mm, mm, percent
+from research.tables import aligned_table, cells_of, counts, gaps, group_by, in_mm, mm, percent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -131,11 +131,6 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
         Names of the obstacle and of the robot.
     """
     rates = rates_of(table)
-    places = [
-        {"track": model, "height": height}
-        for model in table["track"].to_numpy().tolist()
-        for height in table["height"].to_numpy().tolist()
-    ]
     return [
         Cell(
             robot=robot,
@@ -147,7 +142,7 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
             poses=own["distinct"].item(),
             others=counts(each for each in outcomes if each != "cleared"),
         )
-        for place in places
+        for place in cells_of(table, "track", "height")
         for own, outcomes in [(rates.sel(place), table["outcome"].sel(place).to_numpy().tolist())]
     ]
 
@@ -193,12 +188,11 @@ def phases(table: xarray.Dataset) -> list[Phase]:
     """Average a sweep over robot_track_count and phase_fraction on flat ground."""
     return [
         Phase(
-            count=count,
-            phase_fraction=fraction,
-            **_vibration(table.sel(robot_track_count=count, phase_fraction=fraction)),
+            count=place["robot_track_count"],
+            phase_fraction=place["phase_fraction"],
+            **_vibration(table.sel(place)),
         )
-        for count in table["robot_track_count"].to_numpy().tolist()
-        for fraction in table["phase_fraction"].to_numpy().tolist()
+        for place in cells_of(table, "robot_track_count", "phase_fraction")
     ]
 
 

@@ -5,9 +5,12 @@ import dataclasses
 import operator
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
+
+import xarray
 
 _Row = TypeVar("_Row")
 
@@ -57,6 +60,12 @@ def group_by(rows: Iterable[_Row], *names: str) -> dict[Any, list[_Row]]:
         key = of_key(row) if isinstance(row, dict) else of_field(row)
         groups.setdefault(key, []).append(row)
     return groups
+
+
+def cells_of(table: xarray.Dataset, *dims: str) -> Iterator[dict[str, Any]]:
+    """Yield the coordinates of every cell along some dimensions, as `table.sel` takes them."""
+    for values in product(*(table[dim].to_numpy().tolist() for dim in dims)):
+        yield dict(zip(dims, values, strict=True))
 
 
 def aligned_table(rows: Iterable[Mapping[str, str]], left: Iterable[str] = ()) -> str:

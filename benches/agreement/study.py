@@ -21,7 +21,8 @@ from crawler2d.parameters.track import Track
 from research import models
 from research.models import study_robot
 from research.seizure import FULL
-from research.tables import group_by, markdown_table, table
+from research.stops import STOPS
+from research.tables import cells_of, group_by, markdown_table, table
 
 _ENGINES = ["own", "rapier"]
 
@@ -71,22 +72,18 @@ def _tracks() -> dict[str, Track]:
 def _cells(obstacle: str, table: Any) -> list[dict[str, Any]]:
     """Keep outcomes and last poses, by model and height."""
     cells = []
-    for model in table["track"].values.tolist():
-        for height in table["height"].values.tolist():
-            here = table.sel(track=model, height=height)
-            pair = [here.sel(engine=engine) for engine in _ENGINES]
-            poses = [
-                np.stack([each[name].values for name in ("final_x", "final_y")]) for each in pair
-            ]
-            cells.append(
-                {
-                    "obstacle": obstacle,
-                    "model": model,
-                    "height": height,
-                    "ends": [each["outcome"].values.tolist() for each in pair],
-                    "apart": np.hypot(*(poses[1] - poses[0])).tolist(),
-                }
-            )
+    for place in cells_of(table, "track", "height"):
+        pair = [table.sel(place | {"engine": engine}) for engine in _ENGINES]
+        poses = [np.stack([each[name].values for name in ("final_x", "final_y")]) for each in pair]
+        cells.append(
+            {
+                "obstacle": obstacle,
+                "model": place["track"],
+                "height": place["height"],
+                "ends": [each["outcome"].values.tolist() for each in pair],
+                "apart": np.hypot(*(poses[1] - poses[0])).tolist(),
+            }
+        )
     return cells
 
 
@@ -119,7 +116,7 @@ def _study_row(name: str, cells: list[dict[str, Any]]) -> dict[str, str]:
         for cell in cells
         for own, other, apart in zip(*cell["ends"], cell["apart"], strict=True)
     ]
-    stops = [1e3 * apart for own, other, apart in runs if _stops(own) and _stops(other)]
+    stops = [1e3 * apart for own, other, apart in runs if own in STOPS and other in STOPS]
     gets = [(own == "cleared", other == "cleared") for own, other, _ in runs]
     return {
         "model": name,
@@ -131,10 +128,6 @@ def _study_row(name: str, cells: list[dict[str, Any]]) -> dict[str, str]:
         "both stop": str(len(stops)),
         "apart [mm]: median, 90th": quantiles(stops),
     }
-
-
-def _stops(outcome: str) -> bool:
-    return outcome in ("seized", "stalled", "slipping", "hung_up", "cycling")
 
 
 def one_by_one(study: Path, path: Path) -> None:

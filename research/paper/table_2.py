@@ -19,7 +19,7 @@ from crawler2d.sweeps.store import Store
 from research.figures import THREE, add_legend, make_panels, style
 from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
 from research.paper.design import READINGS, SETTINGS, Setting, Work, layouts, models_of
-from research.tables import counts, group_by, markdown_table, percent
+from research.tables import cells_of, counts, group_by, markdown_table, percent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,24 +128,23 @@ def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) ->
 def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:
     """Count how the runs of `cross_fields` ended, one row per layout and field."""
     rows = []
-    for model in runs["model"].to_numpy().tolist():
-        for obstacle in runs["terrain"].to_numpy().tolist():
-            own = runs.sel(model=model, terrain=obstacle)
-            outcomes = own["outcome"].to_numpy().tolist()
-            cleared, count = outcomes.count("cleared"), own["count"].item()
-            rows.append(
-                FieldCell(
-                    setting=setting.name,
-                    obstacle=obstacle,
-                    model=model,
-                    column=COLUMNS.get(model, ""),
-                    cleared=cleared,
-                    count=count,
-                    **c2d.wilson(cleared, count)._asdict(),
-                    others=counts(each for each in outcomes if each != "cleared"),
-                    computing_time=own["wall_time"].sum().item(),
-                )
+    for place in cells_of(runs, "model", "terrain"):
+        own = runs.sel(place)
+        outcomes = own["outcome"].to_numpy().tolist()
+        cleared, count = outcomes.count("cleared"), own["count"].item()
+        rows.append(
+            FieldCell(
+                setting=setting.name,
+                obstacle=place["terrain"],
+                model=place["model"],
+                column=COLUMNS.get(place["model"], ""),
+                cleared=cleared,
+                count=count,
+                **c2d.wilson(cleared, count)._asdict(),
+                others=counts(each for each in outcomes if each != "cleared"),
+                computing_time=own["wall_time"].sum().item(),
             )
+        )
     return rows
 
 
