@@ -92,10 +92,9 @@ def draw_dots(
     """
     figure, ((ax,),) = make_panels(1, 1, (7.0, 1.2 + 0.28 * len(rows)))
     series = list(dict.fromkeys(name for values in rows.values() for name in values))
-    for name, look in zip(series, FIVE, strict=False):
+    for name, (color, marker) in zip(series, FIVE, strict=False):
         points = [(values[name], y) for y, values in enumerate(rows.values()) if name in values]
         x, y = zip(*points, strict=True)
-        color, marker = look
         ax.plot(x, y, marker, color=color, label=name, markersize=6, alpha=0.8)
     ax.set(xlabel=label, xscale=scale, yticks=range(len(rows)), yticklabels=list(rows))
     ax.invert_yaxis()

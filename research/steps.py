@@ -275,12 +275,10 @@ def _limit(above: xarray.Dataset) -> str:
     """Say how most runs end that do not clear the first of some heights."""
     if not above.sizes["height"]:
         return "none up to here"
-    runs = above.isel(height=0)
+    columns = (above[name].isel(height=0).to_numpy().tolist() for name in ("outcome", "mechanism"))
     endings = Counter(
         " ".join(filter(None, (outcome, mechanism)))
-        for outcome, mechanism in zip(
-            runs["outcome"].to_numpy().tolist(), runs["mechanism"].to_numpy().tolist(), strict=True
-        )
+        for outcome, mechanism in zip(*columns, strict=True)
         if outcome != "cleared"
     )
     return endings.most_common(1)[0][0].replace("_", " ")

@@ -79,9 +79,9 @@ def table_of_cells(study: Study) -> str:
 
 
 def _runs(study: Study, machine: dict[str, Any]) -> str:
-    runs = sum(f.runs for each in study.findings for f in each.by_setting.values())
-    spent = sum(f.processor for each in study.findings for f in each.by_setting.values())
-    failed = sum(f.failed for each in study.findings for f in each.by_setting.values())
+    figures = [own for each in study.findings for own in each.by_setting.values()]
+    runs, failed = sum(own.runs for own in figures), sum(own.failed for own in figures)
+    spent = sum(own.processor for own in figures)
     looks, curve = " or ".join(map(str, study.looks)), min(CURVE, study.looks[0])
     return f"""
 Set {study.number} (`benches/accuracy/sets/{study.number}.json`): {len(study.findings)} cells,
