@@ -13,7 +13,7 @@ from tests.shared import ROBOT, SOAK
 # A process that a shell starts in the background ignores Ctrl-C, and so would those that it starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-hypothesis.settings.register_profile("test", max_examples=100, deadline=None, derandomize=True)
+hypothesis.settings.register_profile("test", max_examples=50, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("soak", max_examples=10_000, deadline=None)
 hypothesis.settings.load_profile("soak" if SOAK else "test")
 
