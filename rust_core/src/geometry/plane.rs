@@ -58,6 +58,14 @@ impl Disc {
             radius: 0.0,
         }
     }
+
+    /// The disc about the same centre whose radius is larger by a length [m], or smaller if that is below 0.
+    pub(crate) fn grown(self, by: f64) -> Self {
+        Self {
+            radius: self.radius + by,
+            ..self
+        }
+    }
 }
 
 impl From<[f64; 3]> for Disc {

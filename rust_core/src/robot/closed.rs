@@ -1,9 +1,8 @@
 //! A closed belt in place of a track, to see what a track without gaps would do in the same pose.
 
-use std::sync::Arc;
-
+use super::track::with_grousers;
 use super::{BodyKind, Model, Mount, Part, Shape};
-use crate::geometry::{Disc, Envelope, Grouser, Vector};
+use crate::geometry::{Disc, Envelope, Vector};
 use crate::scenario::{ClosedSurface, ScenarioError, TrackOutline};
 
 impl Model {
@@ -20,7 +19,7 @@ impl Model {
         let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
         let has_belt = self.has_track(Mount::Chassis);
         let belt = has_belt.then(|| Envelope::new(&round(Mount::Chassis)));
-        // A closed belt covers a belly that lies inside it.
+        // A closed belt covers what of the belly lies inside it.
         let is_covered = |corners: &[Vector]| {
             let inside = |belt: &Envelope| corners.iter().all(|c| belt.depth(*c) >= 0.0);
             belt.as_ref().is_some_and(inside)
@@ -46,14 +45,12 @@ impl Model {
                     ClosedSurface::Own => self.grouser_height(mount, outline),
                     ClosedSurface::Smooth => 0.0,
                 };
-                let shapes = shapes(round(mount), height, outline)?;
-                parts.extend(shapes.into_iter().map(|(kind, shape)| Part {
-                    kind,
-                    shape,
+                let (belt, _) = with_grousers(round(mount), height, None, outline)?;
+                parts.extend(belt.into_iter().map(|part| Part {
                     drive: Some(lane),
-                    friction_limit: f64::INFINITY,
                     lane,
                     mount,
+                    ..part
                 }));
             }
         }
@@ -90,31 +87,4 @@ impl Model {
         // Wheels of several sizes have several heights; the smallest fits all of them.
         heights.reduce(f64::min).unwrap_or(0.0)
     }
-}
-
-/// The hull of the circumscribed circles, and the grousers that travel along it.
-fn shapes(
-    tips: Vec<Disc>,
-    height: f64,
-    outline: &TrackOutline,
-) -> Result<Vec<(BodyKind, Shape)>, ScenarioError> {
-    let discs: Vec<Disc> = tips
-        .into_iter()
-        .map(|tip| Disc {
-            radius: tip.radius - height,
-            ..tip
-        })
-        .collect();
-    let mut shapes = Vec::new();
-    if height > 0.0 {
-        let line = Arc::new(Envelope::new(&discs));
-        let grousers = Grouser::along(&line, None, height, outline)?;
-        shapes.extend(grousers.map(|g| (BodyKind::Grouser, Shape::Grouser(g))));
-    }
-    let hull = Shape::Hull {
-        discs,
-        grouser_height: height,
-    };
-    shapes.insert(0, (BodyKind::Belt, hull));
-    Ok(shapes)
 }

@@ -54,6 +54,18 @@ pub enum Shape {
 }
 
 impl Part {
+    /// A part on the chassis over one lane, whose friction is that of the ground.
+    pub(super) fn new(kind: BodyKind, shape: Shape, drive: Option<usize>) -> Self {
+        Self {
+            kind,
+            shape,
+            drive,
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            mount: Mount::Chassis,
+        }
+    }
+
     /// Circumscribed and root circle of each disc whose hull it fills; none for a polygon.
     pub(crate) fn discs(&self) -> impl Iterator<Item = (Disc, Disc)> {
         let round = |center, radius| {
@@ -65,13 +77,10 @@ impl Part {
             Shape::Hull {
                 discs,
                 grouser_height,
-            } => {
-                let tip = |d: &Disc| Disc {
-                    radius: d.radius + grouser_height,
-                    ..*d
-                };
-                discs.iter().map(|d| (tip(d), *d)).collect()
-            }
+            } => discs
+                .iter()
+                .map(|d| (d.grown(*grouser_height), *d))
+                .collect(),
             Shape::Gear { center, gear } => {
                 let (tip, _) = round(*center, gear.radius);
                 let (root, _) = round(*center, gear.root_radius);

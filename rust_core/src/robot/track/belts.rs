@@ -10,42 +10,23 @@ use std::sync::Arc;
 use super::TrackModel;
 use super::wheels::passive;
 use crate::geometry::{Disc, Envelope, Grouser, outline_discs};
-use crate::robot::{BodyKind, Mount, Part, Shape};
+use crate::robot::{BodyKind, Part, Shape};
 use crate::scenario::{
     ForceSupport, ForceTrack, GrouserBeltTrack, Robot, ScenarioError, TrackOutline,
 };
 
 /// One hull round the discs, with one speed all over its surface.
 pub(super) fn belt(robot: &Robot) -> TrackModel {
-    let part = hull(robot, BodyKind::Belt, Some(0), f64::INFINITY);
-    TrackModel {
-        parts: vec![part],
-        drives: 1,
-        motors: 1,
-        pushes_chassis: false,
-        chains: Vec::new(),
-    }
+    TrackModel::driven(vec![hull(robot, BodyKind::Belt, Some(0))], 1)
 }
 
 /// The outline as one shape.
-pub(super) fn hull(
-    robot: &Robot,
-    kind: BodyKind,
-    drive: Option<usize>,
-    friction_limit: f64,
-) -> Part {
+fn hull(robot: &Robot, kind: BodyKind, drive: Option<usize>) -> Part {
     let shape = Shape::Hull {
         discs: outline_discs(&robot.outline),
         grouser_height: 0.0,
     };
-    Part {
-        kind,
-        shape,
-        drive,
-        friction_limit,
-        lane: 0,
-        mount: Mount::Chassis,
-    }
+    Part::new(kind, shape, drive)
 }
 
 /// The belt, which is one hull round the discs at the roots, and its grousers.
@@ -64,62 +45,57 @@ pub(super) fn grouser_belt(
             return error(&format!("outline.{field}"), value, rule);
         }
     }
-    let discs: Vec<Disc> = outline_discs(outline)
-        .iter()
-        .map(|disc| Disc {
-            radius: disc.radius - height,
-            ..*disc
-        })
-        .collect();
-    let line = Arc::new(Envelope::new(&discs));
-    let grousers: Vec<Grouser> =
-        Grouser::along(&line, track.grouser_count, height, outline)?.collect();
-    let length = line.length();
-    if length <= thickness * grousers.len() as f64 {
+    let tips = outline_discs(outline);
+    let (parts, length) = with_grousers(tips, height, track.grouser_count, outline)?;
+    let grousers = (parts.len() - 1) as f64;
+    if length <= thickness * grousers {
         let rule = format!(
             "must be few enough to fit: the belt is {length} m long, a grouser {thickness} m thick"
         );
-        return error("track.grouser_count", grousers.len() as f64, rule);
+        return error("track.grouser_count", grousers, rule);
     }
-    let part = |kind, shape| Part {
-        kind,
-        shape,
-        drive: Some(0),
-        friction_limit: f64::INFINITY,
-        lane: 0,
-        mount: Mount::Chassis,
-    };
+    Ok(TrackModel::driven(parts, 1))
+}
+
+/// A belt whose grousers of a height [m] reach to the hull of discs, then these grousers, and [m] its length.
+///
+/// # Errors
+/// The outline's pitch makes more grousers than a belt may have.
+pub(in crate::robot) fn with_grousers(
+    tips: Vec<Disc>,
+    height: f64,
+    count: Option<u32>,
+    outline: &TrackOutline,
+) -> Result<(Vec<Part>, f64), ScenarioError> {
+    let part = |kind, shape| Part::new(kind, shape, Some(0));
+    let discs: Vec<Disc> = tips.into_iter().map(|tip| tip.grown(-height)).collect();
+    let line = Arc::new(Envelope::new(&discs));
     let surface = Shape::Hull {
         discs,
         grouser_height: height,
     };
-    let grousers = grousers
-        .into_iter()
-        .map(|grouser| part(BodyKind::Grouser, Shape::Grouser(grouser)));
-    Ok(TrackModel {
-        parts: std::iter::once(part(BodyKind::Belt, surface))
-            .chain(grousers)
-            .collect(),
-        drives: 1,
-        motors: 1,
-        pushes_chassis: false,
-        chains: Vec::new(),
-    })
+    let mut parts = vec![part(BodyKind::Belt, surface)];
+    if height > 0.0 {
+        let grousers = Grouser::along(&line, count, height, outline)?;
+        parts.extend(grousers.map(|each| part(BodyKind::Grouser, Shape::Grouser(each))));
+    }
+    Ok((parts, line.length()))
 }
 
 /// The force acts along the x axis of the chassis frame, in the air, too; skids or free wheels carry the robot.
 pub(super) fn force(robot: &Robot, track: &ForceTrack) -> Result<TrackModel, ScenarioError> {
     let parts = match track.support {
-        ForceSupport::Skids => vec![hull(robot, BodyKind::Skid, None, track.skid_friction)],
+        ForceSupport::Skids => vec![Part {
+            friction_limit: track.skid_friction,
+            ..hull(robot, BodyKind::Skid, None)
+        }],
         ForceSupport::Wheels => passive(robot, 1)?,
     };
     let free = parts.iter().filter(|part| part.drive.is_some()).count();
     Ok(TrackModel {
-        parts,
         drives: 1 + free,
-        motors: 1,
         pushes_chassis: true,
-        chains: Vec::new(),
+        ..TrackModel::driven(parts, 1)
     })
 }
 

@@ -11,6 +11,8 @@ mod belts;
 mod segmental;
 mod wheels;
 
+pub(super) use belts::with_grousers;
+
 /// What a track model adds to the chassis.
 pub(crate) struct TrackModel {
     /// Shapes that meet the ground.
@@ -23,6 +25,19 @@ pub(crate) struct TrackModel {
     pub pushes_chassis: bool,
     /// Chains of shoes, which have all of the track's mass.
     pub chains: Vec<ChainOfShoes>,
+}
+
+impl TrackModel {
+    /// Parts on drives with a motor each.
+    fn driven(parts: Vec<Part>, drives: usize) -> Self {
+        Self {
+            parts,
+            drives,
+            motors: drives,
+            pushes_chassis: false,
+            chains: Vec::new(),
+        }
+    }
 }
 
 /// Builds the track model of a robot, including those of its flippers; of a closed track, the one that is to be closed.

@@ -23,11 +23,8 @@ const PRESSED_IN: f64 = 0.07;
 pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
     let outline = &robot.outline;
     let discs = |inside: f64| -> Vec<Disc> {
-        let within = |disc: Disc| Disc {
-            radius: disc.radius - inside,
-            ..disc
-        };
-        outline_discs(outline).into_iter().map(within).collect()
+        let discs = outline_discs(outline).into_iter();
+        discs.map(|disc| disc.grown(-inside)).collect()
     };
     let roots = Envelope::new(&discs(outline.grouser_height));
     let count = match track.shoe_count {
@@ -80,57 +77,45 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             (gear.ends, [gear.road_wheels, gear.rollers].concat())
         }
     };
+    let chain = ChainOfShoes {
+        number: 0,
+        shoes: 0..count,
+        tensioner,
+        plate_thickness,
+        shoe_mass,
+        // A thin plate between its pins.
+        shoe_inertia: shoe_mass * path.pitch * path.pitch / 12.0,
+        hull: match track.mechanism {
+            ChainMechanism::Guide => Envelope::new(&guide),
+            ChainMechanism::Sprocket => Envelope::new(&ends),
+        },
+        ends,
+        between,
+        sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius()),
+        path,
+    };
     Ok(TrackModel {
-        parts,
-        drives: 1,
-        motors: 1,
-        pushes_chassis: false,
-        chains: vec![ChainOfShoes {
-            number: 0,
-            shoes: 0..count,
-            tensioner,
-            plate_thickness,
-            shoe_mass,
-            // A thin plate between its pins.
-            shoe_inertia: shoe_mass * path.pitch * path.pitch / 12.0,
-            hull: match track.mechanism {
-                ChainMechanism::Guide => Envelope::new(&guide),
-                ChainMechanism::Sprocket => Envelope::new(&ends),
-            },
-            ends,
-            between,
-            sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius()),
-            path,
-        }],
+        chains: vec![chain],
+        ..TrackModel::driven(parts, 1)
     })
 }
 
 /// The parts of one shoe.
 fn of_shoe(shoe: usize, pieces: &[(BodyKind, Vec<Vector>)]) -> impl Iterator<Item = Part> {
     pieces.iter().cloned().map(move |(kind, corners)| Part {
-        kind,
-        shape: Shape::Polygon { corners },
-        drive: Some(0),
-        friction_limit: f64::INFINITY,
-        lane: 0,
         mount: Mount::Shoe(shoe),
+        ..Part::new(kind, Shape::Polygon { corners }, Some(0))
     })
 }
 
 /// The guide as the ground meets it: where it is built. Its front end may be pressed in, and it must not touch
 /// ground under plates that are in place, so it lies so far [m] `inside`.
 fn guide_of(discs: &[Disc], inside: f64, beyond: f64) -> Part {
-    Part {
-        kind: BodyKind::Guide,
-        shape: Shape::Hull {
-            discs: discs.iter().map(|disc| shrunk(*disc, inside)).collect(),
-            grouser_height: beyond + inside,
-        },
-        drive: None,
-        friction_limit: f64::INFINITY,
-        lane: 0,
-        mount: Mount::Chassis,
-    }
+    let hull = Shape::Hull {
+        discs: discs.iter().map(|disc| shrunk(*disc, inside)).collect(),
+        grouser_height: beyond + inside,
+    };
+    Part::new(BodyKind::Guide, hull, None)
 }
 
 /// [kg] Mass of a shoe in a chain of `count`.
@@ -260,10 +245,7 @@ impl RunningGear {
         track: &SegmentalTrack,
     ) -> Self {
         let of_path = path.ends(path.pitch);
-        let ends = [of_path[0], of_path[1]].map(|end| Disc {
-            radius: end.radius - 0.5 * plate_thickness,
-            ..end
-        });
+        let ends = [of_path[0], of_path[1]].map(|end| end.grown(-0.5 * plate_thickness));
         let [rear, front] = ends;
         let smaller = rear.radius.min(front.radius);
         let distance = (front.center - rear.center).length();
@@ -312,16 +294,15 @@ impl RunningGear {
     /// with what they touch.
     pub(super) fn parts(&self, beyond: f64) -> impl Iterator<Item = Part> {
         let of = |kind, discs: Vec<Disc>| {
-            discs.into_iter().map(move |disc| Part {
-                kind,
-                shape: Shape::Hull {
+            discs.into_iter().map(move |disc| {
+                let hull = Shape::Hull {
                     discs: vec![disc],
                     grouser_height: beyond,
-                },
-                drive: None,
-                friction_limit: 0.0,
-                lane: 0,
-                mount: Mount::Chassis,
+                };
+                Part {
+                    friction_limit: 0.0,
+                    ..Part::new(kind, hull, None)
+                }
             })
         };
         let [rear, front] = self.ends;

@@ -6,7 +6,7 @@
 use super::TrackModel;
 use crate::geometry::search::zero;
 use crate::geometry::{Disc, Envelope, Gear, Vector, end_discs, outline_discs};
-use crate::robot::{BodyKind, Mount, Part, Shape};
+use crate::robot::{BodyKind, Part, Shape};
 use crate::scenario::{
     CircumferentialWheels, ForceSupport, HybridWheels, LineOfWheels, Robot, ScenarioError,
     TorqueSharing, Track, TrackOutline, Wheel,
@@ -15,52 +15,32 @@ use crate::scenario::{
 /// Wheels driven by motors, together or each by itself.
 pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, ScenarioError> {
     let own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
-    let parts = discs_of_wheels(robot)?
-        .iter()
-        .enumerate()
-        .map(|(i, disc)| {
-            let shape = match wheel {
-                Wheel::Round => Shape::Disc {
-                    center: disc.center,
-                    radius: disc.radius,
-                },
-                Wheel::Gear(wheel) => Shape::Gear {
-                    center: disc.center,
-                    gear: Gear::new(wheel, &robot.outline, disc.radius, i)?,
-                },
-            };
-            Ok(part(shape, if own_motors { i } else { 0 }))
-        })
-        .collect::<Result<Vec<Part>, ScenarioError>>()?;
+    let part = |(i, disc): (usize, Disc)| {
+        let shape = match wheel {
+            Wheel::Round => round(disc),
+            Wheel::Gear(wheel) => Shape::Gear {
+                center: disc.center,
+                gear: Gear::new(wheel, &robot.outline, disc.radius, i)?,
+            },
+        };
+        let drive = if own_motors { i } else { 0 };
+        Ok(Part::new(BodyKind::Wheel, shape, Some(drive)))
+    };
+    let discs = discs_of_wheels(robot)?.into_iter().enumerate();
+    let parts: Vec<Part> = discs.map(part).collect::<Result<_, ScenarioError>>()?;
     let drives = if own_motors { parts.len() } else { 1 };
-    Ok(TrackModel {
-        parts,
-        drives,
-        motors: drives,
-        pushes_chassis: false,
-        chains: Vec::new(),
-    })
+    Ok(TrackModel::driven(parts, drives))
 }
 
 /// Round wheels that turn freely and independently, with drives numbered from `first`.
 pub(super) fn passive(robot: &Robot, first: usize) -> Result<Vec<Part>, ScenarioError> {
-    let discs = discs_of_wheels(robot)?;
-    let parts = discs.iter().enumerate().map(|(i, disc)| {
-        let (center, radius) = (disc.center, disc.radius);
-        part(Shape::Disc { center, radius }, first + i)
-    });
-    Ok(parts.collect())
+    let discs = discs_of_wheels(robot)?.into_iter().zip(first..);
+    let part = |(disc, drive)| Part::new(BodyKind::Wheel, round(disc), Some(drive));
+    Ok(discs.map(part).collect())
 }
 
-fn part(shape: Shape, drive: usize) -> Part {
-    Part {
-        kind: BodyKind::Wheel,
-        shape,
-        drive: Some(drive),
-        friction_limit: f64::INFINITY,
-        lane: 0,
-        mount: Mount::Chassis,
-    }
+fn round(Disc { center, radius }: Disc) -> Shape {
+    Shape::Disc { center, radius }
 }
 
 /// The wheels of one side, in the order of eq. (1); empty for a model without wheels.
@@ -76,13 +56,9 @@ pub(crate) fn discs_of_wheels(robot: &Robot) -> Result<Vec<Disc>, ScenarioError>
             ..
         }) => Ok(line(outline, *count, *wheel_radius)),
         Track::Circumferential(wheels) => circumferential(outline, wheels),
-        Track::Hybrid(HybridWheels { placements, .. }) => Ok(placements
-            .iter()
-            .map(|[x, y, radius]| Disc {
-                center: Vector::new(*x, *y),
-                radius: *radius,
-            })
-            .collect()),
+        Track::Hybrid(HybridWheels { placements, .. }) => {
+            Ok(placements.iter().copied().map(Disc::from).collect())
+        }
         Track::Force(force) if force.support == ForceSupport::Wheels => {
             Ok(line(outline, force.wheel_count, None))
         }
@@ -163,10 +139,6 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
 
 /// The path of the centres of wheels that touch the outline from inside.
 fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
-    let inside = |disc: Disc| Disc {
-        radius: disc.radius - radius,
-        ..disc
-    };
-    let discs: Vec<Disc> = outline_discs(outline).into_iter().map(inside).collect();
-    Envelope::new(&discs)
+    let discs = outline_discs(outline).into_iter();
+    Envelope::new(&discs.map(|disc| disc.grown(-radius)).collect::<Vec<_>>())
 }
