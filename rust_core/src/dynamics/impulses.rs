@@ -70,7 +70,7 @@ impl Dynamics {
         }
         self.loaded = impulses.contacts;
         self.identity = impulses.identity;
-        // As in `Model::in_order`, a model without the belly has one part less.
+        // As in `Model::in_order`, a model without the belly lacks the last parts only.
         let parts = self.model.parts.len();
         self.loaded.retain(|l| l.part < parts);
         self.identity.keep_parts(parts);

@@ -46,15 +46,9 @@ impl Model {
     /// Wheels that do not fit the robot; shoes and arms that leave nothing for the chassis.
     pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
         let track = track::build(robot)?;
-        let belly = robot.belly.as_ref().map(|corners| Part {
-            kind: BodyKind::Belly,
-            shape: Shape::Polygon {
-                corners: corners.iter().map(|p| Vector::new(p[0], p[1])).collect(),
-            },
-            drive: None,
-            friction_limit: f64::INFINITY,
-            lane: 0,
-            mount: Mount::Chassis,
+        let belly = robot.belly_polygons().map(|corners| {
+            let corners = corners.iter().copied().map(Vector::from).collect();
+            Part::new(BodyKind::Belly, Shape::Polygon { corners }, None)
         });
         let parts = Self::in_order(track.parts, belly);
         let radius = robot.outline.rear_radius();
@@ -106,7 +100,10 @@ impl Model {
     }
 
     /// Parts in their order: the belly is the last, so that without it the others keep their numbers.
-    pub(super) fn in_order(of_tracks: Vec<Part>, belly: Option<Part>) -> Vec<Part> {
+    pub(super) fn in_order(
+        of_tracks: Vec<Part>,
+        belly: impl IntoIterator<Item = Part>,
+    ) -> Vec<Part> {
         let mut parts = of_tracks;
         parts.extend(belly);
         parts
@@ -119,9 +116,11 @@ impl Model {
             .filter(|part| part.kind != BodyKind::Belly)
     }
 
-    /// The belly.
-    pub(super) fn belly(&self) -> Option<&Part> {
-        self.parts.iter().find(|part| part.kind == BodyKind::Belly)
+    /// The parts of the belly.
+    pub(super) fn belly(&self) -> impl Iterator<Item = &Part> {
+        self.parts
+            .iter()
+            .filter(|part| part.kind == BodyKind::Belly)
     }
 
     /// The drives with a motor; the others turn freely.

@@ -365,7 +365,7 @@ fn variant_of(scenario: &Scenario, change: Change) -> Option<(Scenario, Start)> 
             Start::Continued
         }
         Change::NoBelly => {
-            robot.belly.take()?;
+            *robot = robot.without_belly()?;
             Start::Continued
         }
         Change::FlippersLevel => {

@@ -69,6 +69,19 @@ impl Robot {
         Ok(robot)
     }
 
+    /// [m] The convex polygons of its belly, counter-clockwise; none if it has no belly.
+    pub(crate) fn belly_polygons(&self) -> impl Iterator<Item = &[[f64; 2]]> {
+        self.belly.iter().map(Vec::as_slice)
+    }
+
+    /// The same robot without its belly; `None` if it has none.
+    pub(crate) fn without_belly(&self) -> Option<Self> {
+        self.belly.is_some().then(|| Self {
+            belly: None,
+            ..self.clone()
+        })
+    }
+
     /// Checks rules that involve several fields.
     fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
         if self.track_mass >= self.mass {
