@@ -10,6 +10,7 @@ from typing import Any
 import xarray
 
 import crawler2d as c2d
+from crawler2d.common.bodies import belly_corners
 from research import models, stops
 from research import seizure_tables as tables
 from research.models import FRICTION, StudyModel, study_models, study_robot
@@ -155,7 +156,8 @@ def header(sweeps: Sweeps) -> str:
     """Say what is simulated, what is estimated and what is drawn."""
     base, design = sweeps.base, sweeps.design
     robot, outline = base.robot, base.robot.outline
-    clearance = outline.rear_radius + min((y for _, y in robot.belly or ()), default=math.inf)
+    belly = belly_corners(robot.belly)[:, 1]
+    clearance = outline.rear_radius + belly.min(initial=math.inf)
     build = ", ".join(f"{name} {value}" for name, value in c2d.build_info().items())
     obstacles = "; ".join(f"{name} {in_mm(h)} mm" for name, h in design.heights.items())
     return (

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import crawler2d as c2d
+from crawler2d.common.bodies import belly_corners
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.sweeps.figure_dataset import FigureDataset
 from research.models import study_robot
@@ -325,8 +326,8 @@ def unevenness(robot: c2d.Robot) -> tuple[float, float]:
     outline, wheels = robot.outline, robot.wheels()
     half = 0.5 * outline.axle_distance
     x = np.linspace(-half, half, 20001)
-    belly = min((y for _, y in robot.belly or ()), default=math.inf)
-    lowest = np.full_like(x, belly)
+    belly = belly_corners(robot.belly)[:, 1]
+    lowest = np.full_like(x, belly.min(initial=math.inf))
     for at, height, radius in zip(wheels["x"], wheels["y"], wheels["radius"], strict=True):
         inside = radius**2 - (x - at) ** 2
         bottom = height - np.sqrt(np.maximum(inside, 0.0))

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crawler2d.common.bodies import belly_corners
 from crawler2d.model_tree import Joint, Link, Where
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
@@ -190,8 +191,8 @@ def _gyration_of_robot(robot: Robot) -> Iterator[_Break]:
     """Compare the radius of gyration with the farthest that any part can be from the middle."""
     length, height = _length_and_height(robot)
     arms = 0.0 if robot.flippers is None else robot.flippers.length + robot.flippers.tip_radius
-    corners = [abs(y) for _, y in robot.belly or ()] + [0.5 * height]
-    farthest = math.hypot(0.5 * length + arms, max(corners))
+    tallest = np.abs(belly_corners(robot.belly)[:, 1]).max(initial=0.5 * height)
+    farthest = math.hypot(0.5 * length + arms, tallest)
     gyration = math.sqrt(robot.moment_of_inertia / robot.mass)
     if gyration > farthest:
         yield _Break(

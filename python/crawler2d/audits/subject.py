@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import lint
+from crawler2d.common.bodies import BELLY_HEIGHTS
 from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.outline import TrackOutline
 from crawler2d.parameters.robot import Robot
@@ -269,7 +270,7 @@ def unknown_of_file(
     if reading.robot.belly is not None:
         height = shifted(-0.05, 0.05, of="robot.outline.front_radius")
         source = f"{stated['robot.belly']}; a twentieth of the radius"
-        ranges["robot.belly[*][1]"] = height, source
+        ranges[BELLY_HEIGHTS] = height, source
     if with_friction:
         low, high = (0.0, 0.0) if floors is None else (min(floors.values()), max(floors.values()))
         if high - low <= _MOST_FROM_FLOORS * reading.friction:

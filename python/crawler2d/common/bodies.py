@@ -1,4 +1,4 @@
-"""The bodies of a robot: kinds, outlines and poses; the discs of its tracks."""
+"""The bodies of a robot: kinds, outlines and poses; the discs of its tracks, and its belly."""
 
 from __future__ import annotations
 
@@ -15,10 +15,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
+    "BELLY_HEIGHTS",
     "POSE_COLUMNS",
+    "Belly",
     "BodyKind",
     "Disc",
     "Lane",
+    "belly_corners",
+    "belly_polygons",
     "bodies_of",
     "body_poses",
     "discs_in",
@@ -68,6 +72,31 @@ def is_centered_pair(discs: Sequence[Disc]) -> bool:
         return False
     (rear, rear_y, _), (front, front_y, _) = discs
     return rear < 0.0 and front == -rear and rear_y == 0.0 and front_y == 0.0
+
+
+Belly = tuple[tuple[float, float], ...]
+"""[m] The underside of the chassis: a convex polygon in its frame, counter-clockwise."""
+
+BELLY_HEIGHTS = "robot.belly[*][1]"
+"""Path of the heights of all corners of a belly."""
+
+
+def belly_polygons(belly: Any) -> list[NDArray[np.float64]]:
+    """[m] List the convex polygons of a belly, of a robot or in JSON: none if that is None."""
+    return [] if belly is None else [np.array(belly, dtype=np.float64)]
+
+
+def belly_corners(belly: Any) -> NDArray[np.float64]:
+    """[m] Return all corners of a belly, shape (n, 2).
+
+    Examples
+    --------
+    >>> belly_corners(((-0.1, 0.0), (0.1, 0.0), (0.0, 0.1)))[:, 1].tolist()
+    [0.0, 0.0, 0.1]
+    >>> belly_corners(None).shape
+    (0, 2)
+    """
+    return np.vstack([np.empty((0, 2)), *belly_polygons(belly)])
 
 
 POSE_COLUMNS = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")

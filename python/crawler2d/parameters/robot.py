@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from crawler2d import _core
 from crawler2d.common.arrays import Table, real_number
+from crawler2d.common.bodies import Belly
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.drivetrain import Drivetrain
@@ -76,7 +77,7 @@ class Robot(Parameters, path="robot"):
     moment_of_inertia: float
     track_mass: float
     outline: TrackOutline
-    belly: tuple[tuple[float, float], ...] | None = None
+    belly: Belly | None = None
     flippers: Flippers | None = None
     gauge: float
     drivetrain: Drivetrain

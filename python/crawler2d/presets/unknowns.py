@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from crawler2d.common.bodies import BELLY_HEIGHTS
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import SegmentalTrack
@@ -45,7 +46,6 @@ RUN_UP = (0.016, 0.1)
 _X, _Y = "robot.center_of_mass[0]", "robot.center_of_mass[1]"
 _MASS, _TORQUE = "robot.mass", "robot.drivetrain.max_torque"
 
-BELLY = "robot.belly[*][1]"
 ROTOR, ROTOR_OF_ARM = "robot.drivetrain.rotor_inertia", "robot.flippers.rotor_inertia"
 _ARMS = "robot.flippers.torque_limit"
 OF_ARMS = (_ARMS, ROTOR_OF_ARM)
@@ -59,7 +59,7 @@ GENERAL: Mapping[str, Range] = {
     _X: (shifted(-0.1, 0.1, of="robot.outline.axle_distance"), "a tenth of the axle distance"),
     _Y: (shifted(-0.05, 0.05, of="robot.outline.axle_distance"), "a twentieth of it"),
     _TORQUE: (scaled(0.5, 2.0), "half to twice"),
-    BELLY: (shifted(-0.1, 0.1, of="robot.outline.front_radius"), "a tenth of the radius"),
+    BELLY_HEIGHTS: (shifted(-0.1, 0.1, of="robot.outline.front_radius"), "a tenth of the radius"),
 }
 """Of a robot that is no preset: general estimates."""
 
@@ -75,7 +75,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
             "the preset's is an estimate; the arm raised or lowered by 48 mm moves the whole so",
         ),
         _TORQUE: (scaled(0.5, 2.0), _MOTORS),
-        BELLY: (
+        BELLY_HEIGHTS: (
             shifted(-0.014, 0.010),
             "the preset's is an estimate: 20 to 44 mm above level ground",
         ),
@@ -95,7 +95,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
         _Y: (shifted(-0.01, 0.01), _OF_FILE),
         _TORQUE: (scaled(0.5, 2.0), "an estimate, or 30 N m rated (ROUGH): half to twice"),
         _ARMS: (scaled(0.66, 1.5), "published twice: 20 N m (SubT) and 30 N m rated (ROUGH)"),
-        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        BELLY_HEIGHTS: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
         ROTOR: (LogUniform(0.069, 0.43), _BY_ROUGH),
         ROTOR_OF_ARM: (
             LogUniform(0.069, 2.5),
@@ -113,7 +113,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
         ),
         _TORQUE: (scaled(0.5, 2.0), "an estimate, or 50 N m rated (ROUGH): half to twice"),
         _ARMS: (scaled(0.66, 1.5), "published twice: 120 N m (SubT) and 180 N m rated (ROUGH)"),
-        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        BELLY_HEIGHTS: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
         ROTOR: (LogUniform(0.10, 0.63), f"{_BY_ROUGH}; of two motors"),
         ROTOR_OF_ARM: (LogUniform(2.6, 16.0), _BY_ROUGH),
     },
@@ -121,7 +121,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
         _X: (shifted(-0.01, 0.01), _OF_FILE),
         _Y: (shifted(-0.01, 0.01), _OF_FILE),
         _TORQUE: (scaled(0.5, 2.0), _MOTORS),
-        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        BELLY_HEIGHTS: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
     },
 }
 """Of the presets, by name."""
@@ -180,7 +180,7 @@ def of_robot(robot: Robot) -> Ranges:
     if not isinstance(robot, Robot):
         raise ScenarioError("robot", robot, "must be a Robot")
     known = RANGES.get(robot.name)
-    missing = [] if robot.belly is not None else [BELLY]
+    missing = [] if robot.belly is not None else [BELLY_HEIGHTS]
     if robot.flippers is None:
         missing += OF_ARMS
     if known is None:

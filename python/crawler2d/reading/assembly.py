@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from crawler2d.common.bodies import Belly
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Pose, Tree, Where
 from crawler2d.parameters.outline import TrackOutline
@@ -208,9 +209,7 @@ class Assembly:
             self.log.doubt(path, float(f"{moving:.4g}"), reason)
         return moving
 
-    def belly(
-        self, gear: RunningGear, driven: list[Pair]
-    ) -> tuple[tuple[float, float], ...] | None:
+    def belly(self, gear: RunningGear, driven: list[Pair]) -> Belly | None:
         """Return the belly, counter-clockwise; doubt one that touches level ground."""
         moving = list(dict.fromkeys(link.name for _, link, _ in gear.moving))
         if moving:

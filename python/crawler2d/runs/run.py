@@ -145,8 +145,8 @@ class Run(Record):
             [-] Another friction of the ground.
         max_torque : float, optional
             [N m] Another torque of one sprocket, see `Drivetrain`.
-        belly : array_like, shape (n, 2), optional
-            [m] Another belly, see `Robot`; None takes it off, "built" leaves it as it is.
+        belly : array_like, optional
+            [m] Another belly, as `Robot` has it; None takes it off, "built" leaves it as it is.
         drive : Drive, optional
             Another command.
         push : tuple of two floats, optional

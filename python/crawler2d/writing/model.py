@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from crawler2d.common.bodies import discs_in, end_discs
+from crawler2d.common.bodies import belly_corners, belly_polygons, discs_in, end_discs
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import NOWHERE, Array, Joint, Link, Pose, Shape, Tree
 from crawler2d.writing.carriers import (
@@ -170,10 +170,11 @@ class _Model:
         if left is None:
             rule = "must, as the mass, be more than that of tracks and flippers where they are"
             raise ScenarioError("robot.moment_of_inertia", robot["moment_of_inertia"], rule)
-        belly = None if robot["belly"] is None else np.array(robot["belly"])
-        sizes = np.ptp(belly, axis=0) if belly is not None else (self.length, self.radius)
+        corners = belly_corners(robot["belly"])
+        sizes = np.ptp(corners, axis=0) if len(corners) else (self.length, self.radius)
         width, has_hulls = self.across.chassis_width, self.target.has_hulls
         solids = self.solids(CHASSIS, 0.0, width)
+        belly = belly_shapes(belly_polygons(robot["belly"]), solids, hulls=has_hulls)
         self.links.append(
             Link(
                 name=CHASSIS,
@@ -181,7 +182,7 @@ class _Model:
                 mass=left.mass,
                 center=in_space(left.center, 0.0),
                 inertia=tensor(left, length=sizes[0], height=sizes[1], width=width),
-                shapes=() if belly is None else tuple(belly_shapes(belly, solids, hulls=has_hulls)),
+                shapes=tuple(belly),
             )
         )
         for side, sign in _SIDES:

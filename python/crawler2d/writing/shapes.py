@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -224,7 +225,7 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
     return shapes
 
 
-def belly_shapes(corners: Array, solids: Solids, *, hulls: bool) -> list[Shape]:
+def belly_shapes(polygons: Sequence[Array], solids: Solids, *, hulls: bool) -> list[Shape]:
     """Return the parts of the belly.
 
     Boxes lie inside it and along its edges. A corner sharper than a right angle is cut off to make
@@ -232,21 +233,27 @@ def belly_shapes(corners: Array, solids: Solids, *, hulls: bool) -> list[Shape]:
 
     Parameters
     ----------
-    corners : ndarray, shape (n, 2)
+    polygons : sequence of ndarray, each of shape (n, 2)
         [m] Convex, counter-clockwise.
     solids : Solids
         Builds the shapes.
     hulls : bool
         Whether the format has convex hulls.
     """
-    edges = [_Edge(corners, number) for number in range(len(corners))]
-    if len(corners) == 4 and all(edge.is_square for edge in edges):
-        return [edges[0].box(0, edges[0].height, solids)]
-    if hulls:
-        return [solids.prism(0, corners)]
-    most = max(edges, key=lambda edge: edge.largest[0])
-    boxes = [most.box(0, most.largest[1], solids)]
-    return boxes + [edge.box(n, edge.depth, solids) for n, edge in enumerate(edges, 1)]
+    shapes: list[Shape] = []
+    for corners in polygons:
+        first = len(shapes)
+        edges = [_Edge(corners, number) for number in range(len(corners))]
+        if len(corners) == 4 and all(edge.is_square for edge in edges):
+            shapes.append(edges[0].box(first, edges[0].height, solids))
+        elif hulls:
+            shapes.append(solids.prism(first, corners))
+        else:
+            most = max(edges, key=lambda edge: edge.largest[0])
+            shapes.append(most.box(first, most.largest[1], solids))
+            along = enumerate(edges, first + 1)
+            shapes += [edge.box(number, edge.depth, solids) for number, edge in along]
+    return shapes
 
 
 def _bottom(shape: Shape) -> float:

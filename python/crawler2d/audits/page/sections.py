@@ -12,6 +12,7 @@ from crawler2d.audits import words
 from crawler2d.audits.candidates import left_wheels
 from crawler2d.audits.page.drawings import draw_pockets, draw_robot
 from crawler2d.audits.record import command_of, names_of
+from crawler2d.common.bodies import BELLY_HEIGHTS
 from crawler2d.drawings.svg import escape
 from crawler2d.parameters.fields import read_path
 from crawler2d.variation.distributions import Ranges
@@ -61,7 +62,7 @@ _NAMES = {
     "robot.center_of_mass": "centre of mass",
     "robot.center_of_mass[0]": "centre of mass, x",
     "robot.center_of_mass[1]": "centre of mass, y",
-    "robot.belly[*][1]": "belly, height",
+    BELLY_HEIGHTS: "belly, height",
 }
 
 _LONG = re.compile(r"\d+\.\d{4,}")
