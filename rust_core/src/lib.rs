@@ -23,6 +23,7 @@ mod engine;
 mod error;
 mod geometry;
 mod limits;
+mod names;
 mod observe;
 mod robot;
 mod run;

@@ -2,6 +2,7 @@
 
 use crate::contact::Intrusion;
 use crate::geometry::Vector;
+use crate::names::named;
 use crate::observe::Outcome;
 use crate::robot::BodyKind;
 use crate::scenario::SeizureCriteria;
@@ -101,46 +102,26 @@ pub struct StopContact {
     pub in_pocket: bool,
 }
 
-/// How the ground inside the track is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mechanism {
-    /// Two bodies bear on it.
-    Straddled,
-    /// One body alone bears on it and slides at its friction limit.
-    Undercut,
-    /// The motors are at their limit.
-    Blocked,
-    /// The motors are at their limit, with the flank of a grouser against it.
-    Interlocked,
-    /// It is in the gap between two shoes of a chain, which closes as they move on.
-    Pinched,
-    /// It has got through a chain of shoes to the guide or wheels that the chain runs on.
-    Fouled,
+named! {
+    /// How the ground inside the track is held.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Mechanism {
+        /// Two bodies bear on it.
+        Straddled = "straddled",
+        /// One body alone bears on it and slides at its friction limit.
+        Undercut = "undercut",
+        /// The motors are at their limit.
+        Blocked = "blocked",
+        /// The motors are at their limit, with the flank of a grouser against it.
+        Interlocked = "interlocked",
+        /// It is in the gap between two shoes of a chain, which closes as they move on.
+        Pinched = "pinched",
+        /// It has got through a chain of shoes to the guide or wheels that the chain runs on.
+        Fouled = "fouled",
+    }
 }
 
 impl Mechanism {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Straddled,
-        Self::Undercut,
-        Self::Blocked,
-        Self::Interlocked,
-        Self::Pinched,
-        Self::Fouled,
-    ];
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Straddled => "straddled",
-            Self::Undercut => "undercut",
-            Self::Blocked => "blocked",
-            Self::Interlocked => "interlocked",
-            Self::Pinched => "pinched",
-            Self::Fouled => "fouled",
-        }
-    }
-
     /// The first mechanism that the facts show; `None` if one body sticks to the ground and turns with it.
     pub(super) fn of(facts: &Facts, criteria: &SeizureCriteria, weight: f64) -> Option<Self> {
         let on_it = || facts.contacts.iter().filter(|c| c.in_pocket);
@@ -191,84 +172,48 @@ pub(super) struct Facts {
     pub pinched: bool,
 }
 
-/// What a trial changes in the pose of a stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change {
-    /// Nothing: the run goes on.
-    Nothing,
-    /// Nothing, but the track is built again, as for other changes.
-    Rebuilt,
-    /// A closed track, with the grousers of the model where it has some.
-    ClosedTrack,
-    /// The same, at rest in the nearest pose in which no ground is inside it.
-    ClosedTrackClear,
-    /// A closed track without grousers.
-    ClosedSmoothTrack,
-    /// A belt along the outlines of the robot and its arms, wherever the model has its bodies.
-    Belt,
-    /// The same from the start of the run on.
-    BeltFromStart,
-    /// A closed track, with the grousers of the model, from the start of the run on.
-    ClosedTrackFromStart,
-    /// One motor for each track in place of one for each wheel.
-    OneMotor,
-    /// Twice the torque.
-    TwiceTheTorque,
-    /// Ten times the torque.
-    TenTimesTheTorque,
-    /// Twice the friction.
-    TwiceTheFriction,
-    /// No belly.
-    NoBelly,
-    /// The arms turn to angle 0.
-    FlippersLevel,
+named! {
+    /// What a trial changes in the pose of a stop.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Change {
+        /// Nothing: the run goes on.
+        Nothing = "unchanged",
+        /// Nothing, but the track is built again, as for other changes.
+        Rebuilt = "rebuilt",
+        /// A closed track, with the grousers of the model where it has some.
+        ClosedTrack = "closed track",
+        /// The same, at rest in the nearest pose in which no ground is inside it.
+        ClosedTrackClear = "closed track, clear of the ground",
+        /// A closed track without grousers.
+        ClosedSmoothTrack = "closed smooth track",
+        /// A belt along the outlines of the robot and its arms, wherever the model has its bodies.
+        Belt = "belt",
+        /// The same from the start of the run on.
+        BeltFromStart = "belt, from the start",
+        /// A closed track, with the grousers of the model, from the start of the run on.
+        ClosedTrackFromStart = "closed track, from the start",
+        /// One motor for each track in place of one for each wheel.
+        OneMotor = "one motor",
+        /// Twice the torque.
+        TwiceTheTorque = "torque x 2",
+        /// Ten times the torque.
+        TenTimesTheTorque = "torque x 10",
+        /// Twice the friction.
+        TwiceTheFriction = "friction x 2",
+        /// No belly.
+        NoBelly = "no belly",
+        /// The arms turn to angle 0.
+        FlippersLevel = "flippers level",
+    }
 }
 
 impl Change {
-    /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::Nothing,
-        Self::Rebuilt,
-        Self::ClosedTrack,
-        Self::ClosedTrackClear,
-        Self::ClosedSmoothTrack,
-        Self::Belt,
-        Self::BeltFromStart,
-        Self::ClosedTrackFromStart,
-        Self::OneMotor,
-        Self::TwiceTheTorque,
-        Self::TenTimesTheTorque,
-        Self::TwiceTheFriction,
-        Self::NoBelly,
-        Self::FlippersLevel,
-    ];
-
     /// Those that change nothing.
     pub const CONTROLS: [Self; 2] = [Self::Nothing, Self::Rebuilt];
 
     /// Whether the robot starts again where its run began, in place of going on from the stop.
     pub fn is_from_the_start(self) -> bool {
         matches!(self, Self::ClosedTrackFromStart | Self::BeltFromStart)
-    }
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Nothing => "unchanged",
-            Self::Rebuilt => "rebuilt",
-            Self::ClosedTrack => "closed track",
-            Self::ClosedTrackClear => "closed track, clear of the ground",
-            Self::ClosedSmoothTrack => "closed smooth track",
-            Self::Belt => "belt",
-            Self::BeltFromStart => "belt, from the start",
-            Self::ClosedTrackFromStart => "closed track, from the start",
-            Self::OneMotor => "one motor",
-            Self::TwiceTheTorque => "torque x 2",
-            Self::TenTimesTheTorque => "torque x 10",
-            Self::TwiceTheFriction => "friction x 2",
-            Self::NoBelly => "no belly",
-            Self::FlippersLevel => "flippers level",
-        }
     }
 
     /// The change of this name.

@@ -8,24 +8,17 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Intrusion;
+use crate::names::named;
 use crate::terrain::{Profile, Side};
 
-/// The kind of an event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum EventKind {
-    /// A span of time without progress although a speed is commanded.
-    Stop,
-    /// A span of time in which an edge was inside the envelope of the track.
-    Intrusion,
-}
-
-impl EventKind {
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stop => "stop",
-            Self::Intrusion => "intrusion",
-        }
+named! {
+    /// The kind of an event.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum EventKind {
+        /// A span of time without progress although a speed is commanded.
+        Stop = "stop",
+        /// A span of time in which an edge was inside the envelope of the track.
+        Intrusion = "intrusion",
     }
 }
 
@@ -71,16 +64,27 @@ impl Event {
 
     /// A stop, with the intrusion present.
     pub(crate) fn stop(start: f64, end: f64, inside: Option<&Self>) -> Self {
+        let nothing = || Self::new(start, Side::Both, -1, None);
         Self {
             kind: EventKind::Stop,
             start,
             end,
-            side: inside.map_or(Side::Both, |e| e.side),
-            edge: inside.map_or(-1, |e| e.edge),
-            bodies: inside.and_then(|e| e.bodies),
-            depth: inside.map_or(0.0, |e| e.depth),
-            root_depth: inside.map_or(0.0, |e| e.root_depth),
-            force: inside.map_or(0.0, |e| e.force),
+            ..inside.cloned().unwrap_or_else(nothing)
+        }
+    }
+
+    /// An intrusion that begins, of no depth yet.
+    fn new(start: f64, side: Side, edge: i32, bodies: Option<[usize; 2]>) -> Self {
+        Self {
+            kind: EventKind::Intrusion,
+            start,
+            end: start,
+            side,
+            edge,
+            bodies,
+            depth: 0.0,
+            root_depth: 0.0,
+            force: 0.0,
         }
     }
 }
@@ -163,19 +167,11 @@ impl IntrusionWatch {
 
 impl OngoingIntrusion {
     fn new(time: f64, intrusion: &Intrusion) -> Self {
-        let event = Event {
-            kind: EventKind::Intrusion,
-            start: time,
-            end: time,
-            side: intrusion.side,
-            edge: intrusion.edge,
-            bodies: Some(intrusion.bodies),
-            depth: 0.0,
-            root_depth: 0.0,
-            force: 0.0,
-        };
+        let Intrusion {
+            side, edge, bodies, ..
+        } = *intrusion;
         Self {
-            event,
+            event: Event::new(time, side, edge, Some(bodies)),
             edges: Vec::new(),
             looks: 0.0,
             is_present: false,
@@ -195,62 +191,34 @@ impl OngoingIntrusion {
     }
 }
 
-/// The outcome of a run; if several apply, the first in this list counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Outcome {
-    /// The chain of the track has come off its guide.
-    Detracked,
-    /// The chassis turned past its balance point.
-    TippedOver,
-    /// An end axle left the terrain.
-    LeftTerrain,
-    /// The robot is past the goal.
-    Cleared,
-    /// Stopped by ground in a pocket of the track: a closed track gets free.
-    Seized,
-    /// The robot moves to and fro without progress.
-    Cycling,
-    /// Stopped with weight on the belly.
-    HungUp,
-    /// Stopped by the torque limit.
-    Stalled,
-    /// Stopped with the surfaces turning.
-    Slipping,
-    /// The time ran out while the robot was still moving.
-    TimedOut,
+named! {
+    /// The outcome of a run; if several apply, the first in this list counts.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Outcome {
+        /// The chain of the track has come off its guide.
+        Detracked = "detracked",
+        /// The chassis turned past its balance point.
+        TippedOver = "tipped_over",
+        /// An end axle left the terrain.
+        LeftTerrain = "left_terrain",
+        /// The robot is past the goal.
+        Cleared = "cleared",
+        /// Stopped by ground in a pocket of the track: a closed track gets free.
+        Seized = "seized",
+        /// The robot moves to and fro without progress.
+        Cycling = "cycling",
+        /// Stopped with weight on the belly.
+        HungUp = "hung_up",
+        /// Stopped by the torque limit.
+        Stalled = "stalled",
+        /// Stopped with the surfaces turning.
+        Slipping = "slipping",
+        /// The time ran out while the robot was still moving.
+        TimedOut = "timed_out",
+    }
 }
 
 impl Outcome {
-    /// All outcomes; if several apply, the first counts.
-    pub const ALL: [Self; 10] = [
-        Self::Detracked,
-        Self::TippedOver,
-        Self::LeftTerrain,
-        Self::Cleared,
-        Self::Seized,
-        Self::Cycling,
-        Self::HungUp,
-        Self::Stalled,
-        Self::Slipping,
-        Self::TimedOut,
-    ];
-
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Detracked => "detracked",
-            Self::TippedOver => "tipped_over",
-            Self::LeftTerrain => "left_terrain",
-            Self::Cleared => "cleared",
-            Self::Seized => "seized",
-            Self::Cycling => "cycling",
-            Self::HungUp => "hung_up",
-            Self::Stalled => "stalled",
-            Self::Slipping => "slipping",
-            Self::TimedOut => "timed_out",
-        }
-    }
-
     /// Whether the robot made no progress although a speed was commanded.
     pub fn is_stop(self) -> bool {
         matches!(

@@ -2,6 +2,7 @@
 
 use super::Mounted;
 use crate::geometry::{Disc, Gear, Grouser, Motion, Pose, Rotation, Vector};
+use crate::names::named;
 
 /// A shape on a body of the robot that can meet the ground.
 #[derive(Clone, Debug)]
@@ -152,66 +153,36 @@ impl Part {
     }
 }
 
-/// What a body represents; its code is the `body_kind` of the contact table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodyKind {
-    /// A wheel.
-    Wheel = 0,
-    /// A moving belt.
-    Belt = 1,
-    /// A skid runner.
-    Skid = 2,
-    /// The underside of the chassis.
-    Belly = 3,
-    /// A grouser of a moving belt or of a shoe.
-    Grouser = 4,
-    /// The plate of a shoe.
-    Shoe = 5,
-    /// The guide that a chain slides on.
-    Guide = 6,
-    /// The toothed wheel that drives a chain.
-    Sprocket = 7,
-    /// The front wheel of a chain, on the tensioner.
-    Idler = 8,
-    /// A wheel that runs on the lower run of a chain.
-    RoadWheel = 9,
-    /// A return roller, which carries the upper run.
-    Roller = 10,
+named! {
+    /// What a body represents; its code is the `body_kind` of the contact table.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum BodyKind {
+        /// A wheel.
+        Wheel = "wheel",
+        /// A moving belt.
+        Belt = "belt",
+        /// A skid runner.
+        Skid = "skid",
+        /// The underside of the chassis.
+        Belly = "belly",
+        /// A grouser of a moving belt or of a shoe.
+        Grouser = "grouser",
+        /// The plate of a shoe.
+        Shoe = "shoe",
+        /// The guide that a chain slides on.
+        Guide = "guide",
+        /// The toothed wheel that drives a chain.
+        Sprocket = "sprocket",
+        /// The front wheel of a chain, on the tensioner.
+        Idler = "idler",
+        /// A wheel that runs on the lower run of a chain.
+        RoadWheel = "road_wheel",
+        /// A return roller, which carries the upper run.
+        Roller = "roller",
+    }
 }
 
 impl BodyKind {
-    /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 11] = [
-        Self::Wheel,
-        Self::Belt,
-        Self::Skid,
-        Self::Belly,
-        Self::Grouser,
-        Self::Shoe,
-        Self::Guide,
-        Self::Sprocket,
-        Self::Idler,
-        Self::RoadWheel,
-        Self::Roller,
-    ];
-
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Wheel => "wheel",
-            Self::Belt => "belt",
-            Self::Skid => "skid",
-            Self::Belly => "belly",
-            Self::Grouser => "grouser",
-            Self::Shoe => "shoe",
-            Self::Guide => "guide",
-            Self::Sprocket => "sprocket",
-            Self::Idler => "idler",
-            Self::RoadWheel => "road_wheel",
-            Self::Roller => "roller",
-        }
-    }
-
     /// Whether a chain of shoes runs round it.
     pub(crate) fn is_in_chain(self) -> bool {
         match self {
