@@ -4,11 +4,11 @@ mod batch;
 mod metrics;
 mod poses;
 mod record;
-#[cfg(test)]
-mod scale;
 mod simulate;
 mod simulation;
 mod step_length;
+#[cfg(test)]
+mod tests;
 mod trials;
 mod valid_scenario;
 

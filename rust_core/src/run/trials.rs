@@ -6,7 +6,7 @@
 mod tests;
 
 use super::{Simulation, ValidScenario};
-use crate::diagnosis::{Change, Diagnosis, LoadedIntrusion, Trial, Wanted};
+use crate::diagnosis::{Change, Diagnosis, Trial, Wanted};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::observe::Outcome;
@@ -155,18 +155,6 @@ struct TrialSeries<'a> {
     cancel: &'a Cancel,
 }
 
-/// What came of one start.
-#[derive(Clone)]
-struct TrialRun {
-    distance: f64,
-    time: f64,
-    outcome: Outcome,
-    jammed: bool,
-    intrusion: Option<LoadedIntrusion>,
-    pose: [f64; 3],
-    flipper_angles: [f64; 2],
-}
-
 impl<'a> TrialSeries<'a> {
     fn new(stop: &Simulation, found: &Diagnosis, cancel: &'a Cancel) -> Self {
         Self {
@@ -208,34 +196,26 @@ impl<'a> TrialSeries<'a> {
     ) -> Result<Option<Trial>, Error> {
         let most = if self.rattles { most } else { 1 };
         let enough = ENOUGH.min(most);
-        let mut runs: [Vec<TrialRun>; 2] = Default::default();
+        let mut runs: [Vec<Trial>; 2] = Default::default();
         for i in 0..most {
             let Some(started) = start(self.start(i as usize)?)? else {
                 return Ok(None);
             };
-            let run = self.follow(started, duration)?;
-            runs[usize::from(run.time.is_finite())].push(run);
+            let run = self.follow(started, name, duration)?;
+            runs[usize::from(run.freed)].push(run);
             let [stays, frees] = [0, 1].map(|k| runs[k].len() as u32);
             if frees == enough || stays > most - enough {
                 break;
             }
         }
-        let [starts, freeing] = [runs.concat().len(), runs[1].len()].map(|n| n as u32);
+        let [stays, freeing] = [0, 1].map(|k| runs[k].len() as u32);
         let freed = freeing >= enough;
         let first = runs[usize::from(freed)].drain(..).next();
         Ok(first.map(|run| Trial {
-            name,
             freed,
-            starts,
+            starts: stays + freeing,
             freeing,
-            distance: run.distance,
-            time: run.time,
-            outcome: run.outcome,
-            jammed: run.jammed,
-            intrusion: run.intrusion,
-            duration,
-            pose: run.pose,
-            flipper_angles: run.flipper_angles,
+            ..run
         }))
     }
 
@@ -251,8 +231,13 @@ impl<'a> TrialSeries<'a> {
         Ok(&self.starts[i])
     }
 
-    /// Lets a start run for a time [s]; a change of the command changes neither that nor what is ahead.
-    fn follow(&self, mut simulation: Simulation, duration: f64) -> Result<TrialRun, Error> {
+    /// Lets one start run for a time [s]; a change of the command changes neither that nor what is ahead.
+    fn follow(
+        &self,
+        mut simulation: Simulation,
+        name: &'static str,
+        duration: f64,
+    ) -> Result<Trial, Error> {
         let begin = simulation.time();
         let end = begin + duration;
         let criteria = simulation.scenario().criteria.clone();
@@ -283,12 +268,18 @@ impl<'a> TrialSeries<'a> {
         for (kept, angle) in flipper_angles.iter_mut().zip(simulation.flipper_angles()) {
             *kept = angle;
         }
-        Ok(TrialRun {
+        let freed = time.is_finite();
+        Ok(Trial {
+            name,
+            freed,
+            starts: 1,
+            freeing: u32::from(freed),
             distance,
             time,
             outcome: ended.unwrap_or(symptom),
             jammed,
             intrusion: stop.and_then(|d| d.intrusion),
+            duration,
             pose: [now.position.x, now.position.y, now.chassis_angle],
             flipper_angles,
         })
