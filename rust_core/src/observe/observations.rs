@@ -17,7 +17,7 @@ use crate::units::Seconds;
 pub(super) const LOOK: Seconds = Seconds(0.01);
 
 /// What a monitor has observed of a run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Observations {
     pub(super) looks: u64,
     pub(super) last_time: f64,
@@ -64,27 +64,10 @@ impl Observations {
         Self {
             looks: (time / LOOK.value()).ceil() as u64,
             last_time: time,
-            progress: Progress::default(),
-            signals: Signals::default(),
-            loads: Loads::default(),
-            intrusions: IntrusionWatch::default(),
-            anchor: None,
-            goal_since: None,
-            beyond: 0.0,
-            ended: None,
-            stays: false,
             time_to_clear: f64::INFINITY,
-            max_penetration: 0.0,
             max_angle: f64::NEG_INFINITY,
             min_angle: f64::INFINITY,
-            drive_work: 0.0,
-            path_length: 0.0,
-            shaking: Shaking::default(),
-            max_track_tension: 0.0,
-            max_pin_gap: 0.0,
-            max_guide_penetration: 0.0,
-            max_sprocket_slip: 0.0,
-            effort: Effort::default(),
+            ..Self::default()
         }
     }
 
