@@ -285,23 +285,7 @@ impl<'a> Fields<'a> {
         columns: [(&str, Range); N],
         most: usize,
     ) -> Result<Vec<[f64; N]>, ScenarioError> {
-        let value = self.value(name)?;
-        let names = columns.map(|(column, _)| column).join(", ");
-        let Value::Array(rows) = value else {
-            return Err(self.error(name, value, format!("must be a list of [{names}]")));
-        };
-        if rows.len() > most {
-            return Err(self.error(
-                name,
-                format!("{} rows", rows.len()),
-                format!("must have at most {most} rows"),
-            ));
-        }
-        let path = self.path(name);
-        rows.iter()
-            .enumerate()
-            .map(|(i, given)| row(&format!("{path}[{i}]"), given, columns))
-            .collect()
+        rows(&self.path(name), self.value(name)?, columns, most)
     }
 
     /// Reads a list of points.
@@ -337,6 +321,27 @@ impl<'a> Fields<'a> {
             )),
         }
     }
+}
+
+/// Reads a list of rows of numbers at a path; that of an error includes the index, from 0.
+pub(super) fn rows<const N: usize>(
+    path: &str,
+    value: &Value,
+    columns: [(&str, Range); N],
+    most: usize,
+) -> Result<Vec<[f64; N]>, ScenarioError> {
+    let names = columns.map(|(column, _)| column).join(", ");
+    let Value::Array(rows) = value else {
+        let rule = format!("must be a list of [{names}]");
+        return Err(ScenarioError::new(path, value, rule));
+    };
+    if rows.len() > most {
+        let (count, rule) = (rows.len(), format!("must have at most {most} rows"));
+        return Err(ScenarioError::new(path, format!("{count} rows"), rule));
+    }
+    let rows = rows.iter().enumerate();
+    rows.map(|(i, given)| row(&format!("{path}[{i}]"), given, columns))
+        .collect()
 }
 
 fn row<const N: usize>(

@@ -1,12 +1,13 @@
 //! The robot as built, with masses, outline, belly and drivetrain, and the model of its track.
 
 use serde::Serialize;
+use serde_json::Value;
 
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
 use super::fields::{
     COORDINATE, Fields, INERTIA, LEAST_FRACTION, MASS, ROTOR, Range, SIZE, TORQUE, is_false,
-    is_zero,
+    is_zero, rows,
 };
 use super::outline::TrackOutline;
 use super::track::Track;
@@ -179,31 +180,30 @@ impl Robot {
     }
 }
 
-/// Reads a convex counter-clockwise polygon of non-zero area.
+/// Reads the polygon of a belly, if there is one.
 fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
-    const MOST: usize = 64;
-    if f.value("belly")?.is_null() {
-        return Ok(None);
+    match f.value("belly")? {
+        Value::Null => Ok(None),
+        polygon => read_polygon(&f.path("belly"), polygon).map(Some),
     }
-    let points = f.points("belly", COORDINATE, MOST)?;
+}
+
+/// Reads a convex counter-clockwise polygon of non-zero area.
+fn read_polygon(path: &str, value: &Value) -> Result<Vec<[f64; 2]>, ScenarioError> {
+    const MOST: usize = 64;
+    let points = rows(path, value, [("x", COORDINATE), ("y", COORDINATE)], MOST)?;
     let n = points.len();
+    let refuse = |rule| Err(ScenarioError::new(path, format!("{n} points"), rule));
     if n < 3 {
-        return Err(f.error(
-            "belly",
-            format!("{n} points"),
-            "must have at least 3 points",
-        ));
+        return refuse("must have at least 3 points");
     }
     for i in 0..n {
         let ([ax, ay], [bx, by], [cx, cy]) = (points[i], points[(i + 1) % n], points[(i + 2) % n]);
         let turn = (bx - ax) * (cy - by) - (by - ay) * (cx - bx);
         if turn <= 0.0 {
-            let corner = format!("belly[{}]", (i + 1) % n);
-            return Err(f.error(
-                &corner,
-                format!("[{bx}, {by}]"),
-                "must be a corner of a convex counter-clockwise polygon",
-            ));
+            let corner = format!("{path}[{}]", (i + 1) % n);
+            let rule = "must be a corner of a convex counter-clockwise polygon";
+            return Err(ScenarioError::new(corner, format!("[{bx}, {by}]"), rule));
         }
     }
     // A polygon with left turns only may still go round more than once, as a pentagram does.
@@ -212,10 +212,9 @@ fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
         (by, bx) > (ay, ax)
     };
     if (0..n).filter(|i| !is_up(*i) && is_up(i + 1)).count() != 1 {
-        let rule = "must be a convex counter-clockwise polygon that goes round once";
-        return Err(f.error("belly", format!("{n} points"), rule));
+        return refuse("must be a convex counter-clockwise polygon that goes round once");
     }
-    Ok(Some(points))
+    Ok(points)
 }
 
 /// [rad] Angle of an arm relative to the chassis: up to a full turn either way.
