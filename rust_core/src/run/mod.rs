@@ -1,6 +1,7 @@
 //! Runs: scenarios are checked and built, then simulated step by step or to the end, alone or in batches.
 
 mod batch;
+mod escape_force;
 mod metrics;
 mod poses;
 mod record;
@@ -13,13 +14,11 @@ mod trials;
 mod valid_scenario;
 
 pub use batch::{Finished, Progress, simulate_many};
+pub use escape_force::{EscapeForce, escape_force};
 pub use metrics::{Metric, Metrics};
 pub use poses::{Poses, poses};
 pub use record::{ContactTable, Record, Trace};
-pub use simulate::{
-    Run, TipOver, balance, branch, diagnose, escape_force, make_trials, outcome_of, run_of_trial,
-    simulate, tip_over, what_if,
-};
+pub use simulate::{Run, TipOver, balance, branch, run_of_trial, simulate, tip_over};
 pub use simulation::Simulation;
-pub use trials::EscapeForce;
+pub use trials::{diagnose, make_trials, outcome_of, what_if};
 pub use valid_scenario::ValidScenario;

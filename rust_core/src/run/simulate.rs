@@ -4,10 +4,9 @@ use std::time::Instant;
 
 use super::metrics::Sinkage;
 use super::record::{ContactTable, Record, Recorder, Trace, batch_budget};
-use super::step_length::SAME_TIME;
-use super::trials::{self, EscapeForce};
+use super::trials;
 use super::{Metrics, Simulation, ValidScenario};
-use crate::diagnosis::{Balance, Change, Diagnosis, Trial, Wanted};
+use crate::diagnosis::{Balance, Change, Diagnosis};
 use crate::error::Error;
 use crate::geometry::Vector;
 use crate::limits::Cancel;
@@ -82,39 +81,11 @@ pub fn branch(
 ) -> Result<Run, Error> {
     let begin = Instant::now();
     let budget = batch_budget(std::slice::from_ref(variant), record, 1)?;
-    let trunk = replay(scenario, at, cancel)?;
+    let trunk = Simulation::replayed(scenario, at, cancel)?;
     let mut simulation = trunk.branch(variant);
     simulation.raise_push(push.0, push.1)?;
     let end = simulation.time() + variant.scenario().duration;
     advance(&mut simulation, end, record, (&budget, cancel), begin)
-}
-
-/// Simulates `scenario` up to the time `at` [s], where it has stopped, and makes trials there; those that make no sense
-/// for the robot are left out.
-///
-/// # Errors
-/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
-pub fn make_trials(
-    scenario: &ValidScenario,
-    at: f64,
-    wanted: Wanted,
-    cancel: &Cancel,
-) -> Result<Vec<Trial>, Error> {
-    trials::make_trials(&replay(scenario, at, cancel)?, wanted, cancel)
-}
-
-/// Simulates `scenario` up to the time `at` [s], where it has stopped, and tries to continue as `variant` with a push
-/// that rises to a force [N] in a time [s]; `None` if it has not stopped.
-///
-/// # Errors
-/// As [`branch`].
-pub fn what_if(
-    scenario: &ValidScenario,
-    at: f64,
-    changes: (&ValidScenario, (f64, f64)),
-    cancel: &Cancel,
-) -> Result<Option<Trial>, Error> {
-    trials::what_if(&replay(scenario, at, cancel)?, changes, cancel)
 }
 
 /// The scenario of a trial made at a stop of `scenario` at the time `at` [s], and its run; `None` if the change makes no
@@ -130,7 +101,7 @@ pub fn run_of_trial(
     cancel: &Cancel,
 ) -> Result<Option<(Scenario, Run)>, Error> {
     let begin = Instant::now();
-    let stop = replay(scenario, at, cancel)?;
+    let stop = Simulation::replayed(scenario, at, cancel)?;
     let Some(mut started) = trials::start(&stop, change)? else {
         return Ok(None);
     };
@@ -138,18 +109,6 @@ pub fn run_of_trial(
     let end = started.time() + trials::duration(&stop, change);
     let run = advance(&mut started, end, record, (&budget, cancel), begin)?;
     Ok(Some((started.scenario().clone(), run)))
-}
-
-/// Simulates `scenario` up to the time `at` [s], where it has stopped, and measures the push that moves it on.
-///
-/// # Errors
-/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
-pub fn escape_force(
-    scenario: &ValidScenario,
-    at: f64,
-    cancel: &Cancel,
-) -> Result<EscapeForce, Error> {
-    trials::escape_force(&replay(scenario, at, cancel)?, cancel)
 }
 
 /// Simulates `scenario` up to the time `at` [s], where it has stopped, and says whether forces could hold it there; `None`
@@ -162,42 +121,7 @@ pub fn balance(
     at: f64,
     cancel: &Cancel,
 ) -> Result<Option<Balance>, Error> {
-    Ok(replay(scenario, at, cancel)?.balance())
-}
-
-/// Diagnoses a simulation's stop; `None` if it has not stopped.
-///
-/// # Errors
-/// [`Error::Simulation`] if the state of a trial became non-finite, [`Error::Interrupted`] once `cancel` is asked.
-pub fn diagnose(
-    simulation: &Simulation,
-    wanted: Wanted,
-    cancel: &Cancel,
-) -> Result<Option<Diagnosis>, Error> {
-    trials::judge(simulation, wanted, cancel)
-}
-
-/// The outcome if a simulation ended now.
-///
-/// # Errors
-/// As [`diagnose`].
-pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, Error> {
-    if let Some(outcome) = simulation.monitor().ended_as() {
-        return Ok(outcome);
-    }
-    let found = diagnose(simulation, Wanted::default(), cancel)?;
-    Ok(found.map_or(Outcome::TimedOut, |found| found.outcome))
-}
-
-/// The simulation of a scenario at the end of its first step that reaches a time [s].
-fn replay(scenario: &ValidScenario, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
-    let mut simulation = Simulation::new(scenario);
-    let end = scenario.scenario().duration.max(at);
-    while simulation.time() < at - SAME_TIME.value() {
-        simulation.step_until(end)?;
-        cancel.check()?;
-    }
-    Ok(simulation)
+    Ok(Simulation::replayed(scenario, at, cancel)?.balance())
 }
 
 /// Limits of a run: memory, and a request to end.
@@ -228,7 +152,7 @@ fn advance(
     let recorded = recorder.map(|recorder| recorder.finish(simulation));
     let (trace, contacts) = recorded.transpose()?.unwrap_or_default();
     let events = simulation.events();
-    let diagnosis = trials::judge(simulation, record.trials, cancel)?;
+    let diagnosis = trials::diagnose(simulation, record.trials, cancel)?;
     let ended = simulation.monitor().ended_as().unwrap_or(Outcome::TimedOut);
     let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
     let mut metrics = Metrics::of(simulation, &start, &events);

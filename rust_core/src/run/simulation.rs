@@ -22,6 +22,7 @@ use crate::dynamics::{ChainReading, DriveState, Dynamics, Shoe, State};
 use crate::engine::EngineWorld;
 use crate::error::Error;
 use crate::geometry::{Pose, Vector, direction};
+use crate::limits::Cancel;
 use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Mount, Running, start_position};
 use crate::scenario::{Drive, End, Engine, Flippers, Gait, Scenario, ScenarioError};
@@ -59,6 +60,21 @@ impl Simulation {
         let ground = Arc::clone(checked.ground());
         let model = checked.model().clone();
         Self::at_rest(checked.scenario(), ground, model, checked.position())
+    }
+
+    /// The simulation of a scenario at the end of its first step that reaches a time [s].
+    pub(super) fn replayed(
+        scenario: &ValidScenario,
+        at: f64,
+        cancel: &Cancel,
+    ) -> Result<Self, Error> {
+        let mut simulation = Self::new(scenario);
+        let end = scenario.scenario().duration.max(at);
+        while simulation.time < at - SAME_TIME.value() {
+            simulation.step_until(end)?;
+            cancel.check()?;
+        }
+        Ok(simulation)
     }
 
     /// The same on a ground given by the caller in place of the scenario's.

@@ -21,7 +21,10 @@ const STARTS: u32 = 5;
 const ENOUGH: u32 = 4;
 
 /// Diagnoses a simulation's stop; `None` if it has not stopped.
-pub(super) fn judge(
+///
+/// # Errors
+/// [`Error::Simulation`] if the state of a trial became non-finite, [`Error::Interrupted`] once `cancel` is asked.
+pub fn diagnose(
     stop: &Simulation,
     wanted: Wanted,
     cancel: &Cancel,
@@ -72,29 +75,52 @@ pub(super) fn judge(
     Ok(Some(found))
 }
 
-/// Makes trials of a stop; those that make no sense for the robot are left out.
-pub(super) fn make_trials(
-    stop: &Simulation,
+/// The outcome if a simulation ended now.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, Error> {
+    if let Some(outcome) = simulation.monitor().ended_as() {
+        return Ok(outcome);
+    }
+    let found = diagnose(simulation, Wanted::default(), cancel)?;
+    Ok(found.map_or(Outcome::TimedOut, |found| found.outcome))
+}
+
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and makes trials there; those that make no sense
+/// for the robot are left out.
+///
+/// # Errors
+/// As [`simulate`](super::simulate), and [`Error::Interrupted`] once `cancel` is asked.
+pub fn make_trials(
+    scenario: &ValidScenario,
+    at: f64,
     wanted: Wanted,
     cancel: &Cancel,
 ) -> Result<Vec<Trial>, Error> {
+    let stop = Simulation::replayed(scenario, at, cancel)?;
     let Some(found) = stop.examine() else {
         return Ok(Vec::new());
     };
-    let mut series = TrialSeries::new(stop, &found, cancel);
+    let mut series = TrialSeries::new(&stop, &found, cancel);
     for change in wanted.changes() {
         series.frees(change)?;
     }
     Ok(series.trials)
 }
 
-/// Tries a variant of the scenario from a stop, and a push that rises to a force [N] in a time [s]; `None` if it has not
-/// stopped.
-pub(super) fn what_if(
-    stop: &Simulation,
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and tries to continue as `variant` with a push
+/// that rises to a force [N] in a time [s]; `None` if it has not stopped.
+///
+/// # Errors
+/// As [`branch`](super::branch).
+pub fn what_if(
+    scenario: &ValidScenario,
+    at: f64,
     (variant, push): (&ValidScenario, (f64, f64)),
     cancel: &Cancel,
 ) -> Result<Option<Trial>, Error> {
+    let stop = Simulation::replayed(scenario, at, cancel)?;
     let Some(found) = stop.examine() else {
         return Ok(None);
     };
@@ -103,7 +129,8 @@ pub(super) fn what_if(
         branch.raise_push(push.0, push.1)?;
         Ok(Some(branch))
     };
-    TrialSeries::new(stop, &found, cancel).attempt("changed", (STARTS, pose_duration(stop)), &start)
+    let mut series = TrialSeries::new(&stop, &found, cancel);
+    series.attempt("changed", (STARTS, pose_duration(&stop)), &start)
 }
 
 /// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
@@ -385,87 +412,4 @@ fn closed(robot: &Robot, surface: ClosedSurface) -> Option<Track> {
 fn any_track(robot: &Robot, is_so: fn(&Track) -> bool) -> bool {
     let arms = robot.flippers.as_ref().and_then(|f| f.track.as_ref());
     is_so(&robot.track) || arms.is_some_and(is_so)
-}
-
-/// First level of the push and the last, in weights, and from one to the next.
-const LEVELS: (f64, f64, f64) = (0.01, 10.0, 1.1);
-/// [s] For how long a level is held at least, and how long it takes to rise to it.
-const HOLD: f64 = 0.5;
-const RISE: f64 = 0.1;
-/// [m] A robot that moves by more in the last half of a hold is still on its way, and the level is held again, as
-/// often as this: just beyond what it can bear, it takes seconds to leave.
-const SETTLED: f64 = 5e-5;
-const HOLDS: usize = 10;
-/// [s] How long the push goes on once the robot is on its way, to see whether it tips over.
-const AFTERWARDS: f64 = 2.0;
-
-/// A measured escape force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EscapeForce {
-    /// [N] The last level that did not move the robot on; 0 if the first did.
-    pub low: f64,
-    /// [N] The first level that moved it on, by `criteria.escape_distance` beyond where it had come before; infinite if
-    /// none did.
-    pub high: f64,
-    /// That push tipped it over.
-    pub tips: bool,
-}
-
-/// Measures the escape force of a stop, along the command.
-pub(crate) fn escape_force(stop: &Simulation, cancel: &Cancel) -> Result<EscapeForce, Error> {
-    let weight = stop.weight();
-    let mut robot = stop.copy();
-    let (direction, greatest) = (robot.direction(), stop.monitor().best_advance());
-    let far = stop.scenario().criteria.escape_distance;
-    let is_on = |robot: &Simulation| {
-        let ahead = direction * robot.reading().position.x - greatest;
-        ahead > far || robot.monitor().ended_as().is_some()
-    };
-    let tips = |robot: &Simulation| robot.monitor().ended_as() == Some(Outcome::TippedOver);
-    let begin = robot.reading().position;
-    let way = |robot: &Simulation| (robot.reading().position - begin).length();
-    let (first, last, ratio) = LEVELS;
-    let (mut low, mut level) = (0.0, first * weight);
-    while level <= last * weight {
-        robot.raise_push(direction * level, RISE)?;
-        for _ in 0..HOLDS {
-            let mut leaves = advance_until(&mut robot, 0.5 * HOLD, &is_on, cancel)?;
-            let half_way = way(&robot);
-            leaves = leaves || advance_until(&mut robot, 0.5 * HOLD, &is_on, cancel)?;
-            if leaves {
-                return Ok(EscapeForce {
-                    low,
-                    high: level,
-                    tips: advance_until(&mut robot, AFTERWARDS, &tips, cancel)?,
-                });
-            }
-            if (way(&robot) - half_way).abs() < SETTLED {
-                break;
-            }
-        }
-        (low, level) = (level, level * ratio);
-    }
-    Ok(EscapeForce {
-        low,
-        high: f64::INFINITY,
-        tips: false,
-    })
-}
-
-/// Goes on for a time [s], or until something is so; returns whether it is.
-fn advance_until(
-    robot: &mut Simulation,
-    time: f64,
-    until: &dyn Fn(&Simulation) -> bool,
-    cancel: &Cancel,
-) -> Result<bool, Error> {
-    let end = robot.time() + time;
-    while robot.time() < end {
-        robot.step_until(end)?;
-        cancel.check()?;
-        if until(robot) {
-            return Ok(true);
-        }
-    }
-    Ok(false)
 }

@@ -1,0 +1,98 @@
+//! The push that moves a robot on from a stop.
+
+use super::{Simulation, ValidScenario};
+use crate::error::Error;
+use crate::limits::Cancel;
+use crate::observe::Outcome;
+
+/// First level of the push and the last, in weights, and from one to the next.
+const LEVELS: (f64, f64, f64) = (0.01, 10.0, 1.1);
+/// [s] For how long a level is held at least, and how long it takes to rise to it.
+const HOLD: f64 = 0.5;
+const RISE: f64 = 0.1;
+/// [m] A robot that moves by more in the last half of a hold is still on its way, and the level is held again, as
+/// often as this: just beyond what it can bear, it takes seconds to leave.
+const SETTLED: f64 = 5e-5;
+const HOLDS: usize = 10;
+/// [s] How long the push goes on once the robot is on its way, to see whether it tips over.
+const AFTERWARDS: f64 = 2.0;
+
+/// A measured escape force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EscapeForce {
+    /// [N] The last level that did not move the robot on; 0 if the first did.
+    pub low: f64,
+    /// [N] The first level that moved it on, by `criteria.escape_distance` beyond where it had come before; infinite if
+    /// none did.
+    pub high: f64,
+    /// That push tipped it over.
+    pub tips: bool,
+}
+
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and measures the push that moves it on, along the
+/// command.
+///
+/// # Errors
+/// As [`simulate`](super::simulate), and [`Error::Interrupted`] once `cancel` is asked.
+pub fn escape_force(
+    scenario: &ValidScenario,
+    at: f64,
+    cancel: &Cancel,
+) -> Result<EscapeForce, Error> {
+    let stop = Simulation::replayed(scenario, at, cancel)?;
+    let weight = stop.weight();
+    let mut robot = stop.copy();
+    let (direction, greatest) = (robot.direction(), stop.monitor().best_advance());
+    let far = stop.scenario().criteria.escape_distance;
+    let is_on = |robot: &Simulation| {
+        let ahead = direction * robot.reading().position.x - greatest;
+        ahead > far || robot.monitor().ended_as().is_some()
+    };
+    let tips = |robot: &Simulation| robot.monitor().ended_as() == Some(Outcome::TippedOver);
+    let begin = robot.reading().position;
+    let way = |robot: &Simulation| (robot.reading().position - begin).length();
+    let (first, last, ratio) = LEVELS;
+    let (mut low, mut level) = (0.0, first * weight);
+    while level <= last * weight {
+        robot.raise_push(direction * level, RISE)?;
+        for _ in 0..HOLDS {
+            let mut leaves = advance_until(&mut robot, 0.5 * HOLD, &is_on, cancel)?;
+            let half_way = way(&robot);
+            leaves = leaves || advance_until(&mut robot, 0.5 * HOLD, &is_on, cancel)?;
+            if leaves {
+                return Ok(EscapeForce {
+                    low,
+                    high: level,
+                    tips: advance_until(&mut robot, AFTERWARDS, &tips, cancel)?,
+                });
+            }
+            if (way(&robot) - half_way).abs() < SETTLED {
+                break;
+            }
+        }
+        (low, level) = (level, level * ratio);
+    }
+    Ok(EscapeForce {
+        low,
+        high: f64::INFINITY,
+        tips: false,
+    })
+}
+
+/// Goes on for a time [s], or until something is so; returns whether it is.
+fn advance_until(
+    robot: &mut Simulation,
+    time: f64,
+    until: &dyn Fn(&Simulation) -> bool,
+    cancel: &Cancel,
+) -> Result<bool, Error> {
+    let end = robot.time() + time;
+    while robot.time() < end {
+        robot.step_until(end)?;
+        cancel.check()?;
+        if until(robot) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
