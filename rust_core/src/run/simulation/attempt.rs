@@ -1,5 +1,7 @@
 //! What a step tries, and what is kept of the last one.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::{Contact, Dents};
 use crate::dynamics::{State, Trend};
 use crate::robot::Running;
@@ -24,7 +26,7 @@ pub(super) struct Attempt {
 }
 
 /// The last step that was kept.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct LastStep {
     /// The state at its beginning.
     pub before: State,

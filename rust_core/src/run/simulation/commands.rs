@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
 
 /// What the robot is to do.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Commands {
     /// [m/s] Speed of the drives.
     pub speed: f64,
@@ -43,7 +43,7 @@ pub(crate) struct DriverView {
 }
 
 /// Where a driver wants the flippers at one end.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Target {
     /// [rad] Angle relative to the chassis, upwards > 0.
     pub angle: f64,

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::Simulation;
 use super::attempt::LastStep;
-use super::commands::{Commands, Driver, Push};
+use super::commands::Commands;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
@@ -38,14 +38,9 @@ struct SavedState {
     time: f64,
     steps: u64,
     step_control: StepControl,
-    before: State,
-    free: f64,
-    sight: f64,
-    command: f64,
-    driver: Driver,
+    last: LastStep,
+    commands: Commands,
     set_point: f64,
-    push: Push,
-    follow_scenario: bool,
     state: State,
     impulses: Impulses,
     dents: Dents,
@@ -68,14 +63,9 @@ impl Simulation {
             time: self.time,
             steps: self.steps,
             step_control: self.step_control,
-            before: self.last.before.clone(),
-            free: self.last.free,
-            sight: self.last.sight,
-            command: self.commands.speed,
-            driver: self.commands.driver,
+            last: self.last.clone(),
+            commands: self.commands,
             set_point: self.set_point,
-            push: self.commands.push,
-            follow_scenario: self.commands.follow_scenario,
             state: self.state.clone(),
             impulses: self.dynamics.impulses(),
             dents: self.dents.clone(),
@@ -120,33 +110,23 @@ impl Simulation {
             ));
         }
         let saved: SavedState = postcard::from_bytes(&payload.rest).map_err(|_| damaged())?;
-        let mut simulation = Self::new(&ValidScenario::from_json(&saved.scenario)?);
+        let simulation = Self::new(&ValidScenario::from_json(&saved.scenario)?);
         if !simulation.fits(&saved) {
             let rule = "must hold a state that its own robot and ground can reach";
             return Err(refused("an impossible state", rule));
         }
-        simulation.time = saved.time;
-        simulation.steps = saved.steps;
-        simulation.step_control = saved.step_control;
-        simulation.last = LastStep {
-            before: saved.before,
-            began: saved.time,
-            length: 0.0,
-            free: saved.free,
+        let mut simulation = Self {
+            time: saved.time,
+            steps: saved.steps,
+            step_control: saved.step_control,
+            last: saved.last,
+            commands: saved.commands,
             set_point: saved.set_point,
-            sight: saved.sight,
+            state: saved.state,
+            dents: saved.dents,
+            ..simulation
         };
-        simulation.commands = Commands {
-            speed: saved.command,
-            driver: saved.driver,
-            push: saved.push,
-            follow_scenario: saved.follow_scenario,
-            ..simulation.commands
-        };
-        simulation.set_point = saved.set_point;
-        simulation.state = saved.state;
         simulation.dynamics.start_from(saved.impulses);
-        simulation.dents = saved.dents;
         simulation.monitor.observed = saved.observed;
         Ok(simulation)
     }
@@ -170,15 +150,15 @@ impl Simulation {
         (0.0..LATEST).contains(&time)
             && saved.steps <= MOST_STEPS
             && saved.step_control.fits()
-            && (0.0..LATEST).contains(&saved.free)
-            && saved.before.fits(model)
-            && (0.0..FAR).contains(&saved.sight)
+            && (0.0..LATEST).contains(&saved.last.free)
+            && saved.last.before.fits(model)
+            && (0.0..FAR).contains(&saved.last.sight)
             && (low - FAR..=high + FAR).contains(&x)
             && y < FAR + self.ground.highest()
-            && saved.command.abs() <= fastest
+            && saved.commands.speed.abs() <= fastest
             && saved.set_point.abs() <= fastest
-            && saved.push.fits()
-            && saved.driver.fits(&self.scenario.drive)
+            && saved.commands.push.fits()
+            && saved.commands.driver.fits(&self.scenario.drive)
             && saved.state.fits(model)
             && self.dynamics.fits(&saved.impulses, lanes)
             && saved.dents.fits(saved.impulses.contacts())

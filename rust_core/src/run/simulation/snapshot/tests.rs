@@ -255,15 +255,17 @@ type Spoil = fn(&mut SavedState);
 const SPOILS: [(&str, Spoil); 16] = [
     ("time", |m| m.time += 1.0),
     ("step_control", |m| m.step_control = StepControl::never()),
-    ("last step", |m| m.free = f64::NAN),
-    ("velocity before it", |m| m.before.velocity.x = f64::NAN),
+    ("last step", |m| m.last.free = f64::NAN),
+    ("velocity before it", |m| {
+        m.last.before.velocity.x = f64::NAN
+    }),
     ("x", |m| m.state.center.x = f64::NAN),
     ("y", |m| m.state.center.y = f64::NAN),
     ("endless height", |m| m.state.center.y = f64::INFINITY),
     ("endless depth", |m| m.state.center.y = f64::NEG_INFINITY),
-    ("command", |m| m.command = f64::NAN),
+    ("command", |m| m.commands.speed = f64::NAN),
     ("set point", |m| m.set_point = f64::NAN),
-    ("driver", |m| m.driver.hold(0, f64::NAN)),
+    ("driver", |m| m.commands.driver.hold(0, f64::NAN)),
     ("velocity", |m| m.state.velocity.x = f64::NAN),
     ("a flipper less", |m| m.state.flippers.clear()),
     ("impulses of a robot without flippers", |m| {
@@ -341,7 +343,7 @@ fn a_moment_fits_up_to_the_speed_of_the_drivetrain_either_way() {
     let fastest = genuine.simulation.scenario.robot.drivetrain.max_speed;
     for side in [1.0, -1.0] {
         let both = |speed: f64| {
-            let command = genuine.fits(|m| m.command = side * speed);
+            let command = genuine.fits(|m| m.commands.speed = side * speed);
             let set_point = genuine.fits(|m| m.set_point = side * speed);
             [command, set_point]
         };
