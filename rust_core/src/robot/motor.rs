@@ -94,12 +94,11 @@ impl MotorRule {
         Self {
             force: share(self.force),
             rotor_mass: share(self.rotor_mass),
-            curve: self.curve.clone(),
             correction: self.correction.map(|correction| Correction {
                 gain: share(correction.gain),
                 integral: share(correction.integral),
             }),
-            self_locking: self.self_locking,
+            ..self.clone()
         }
     }
 

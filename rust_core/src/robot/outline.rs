@@ -61,15 +61,8 @@ impl Model {
     }
 
     fn outline(&self, index: usize, part: &Part) -> Body {
-        let mut body = Body {
-            part: Some(index),
-            kind: part.kind,
-            lane: part.lane,
-            mount: part.mount,
-            radius: None,
-            outline: Vec::new(),
-            turning: Turning::AsPart(index),
-        };
+        let mut body = Body::beside(part, part.kind, Turning::AsPart(index));
+        body.part = Some(index);
         match &part.shape {
             Shape::Disc { radius, .. } => body.round(*radius),
             Shape::Gear { gear, .. } => body.outline = gear.outline(ARC_POINTS),
@@ -120,15 +113,7 @@ impl Model {
             } else {
                 BodyKind::Idler
             };
-            let mut body = Body {
-                part: None,
-                kind,
-                lane: part.lane,
-                mount: part.mount,
-                radius: None,
-                outline: Vec::new(),
-                turning: Turning::With { drive, disc: *disc },
-            };
+            let mut body = Body::beside(part, kind, Turning::With { drive, disc: *disc });
             body.round(disc.radius);
             body
         };
@@ -137,6 +122,19 @@ impl Model {
 }
 
 impl Body {
+    /// A body without an outline yet, over the lane and on the mount of a part.
+    fn beside(part: &Part, kind: BodyKind, turning: Turning) -> Self {
+        Self {
+            part: None,
+            kind,
+            lane: part.lane,
+            mount: part.mount,
+            radius: None,
+            outline: Vec::new(),
+            turning,
+        }
+    }
+
     fn round(&mut self, radius: f64) {
         let corner = |i: u32| direction(TAU * f64::from(i) / f64::from(CIRCLE)) * radius;
         self.radius = Some(radius);

@@ -60,9 +60,6 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Bytes of a row of the contact table.
-    pub(crate) const BYTES_A_CONTACT: u64 = 15 * 8;
-
     pub(crate) fn of(model: &Model) -> Self {
         Self {
             parts: model.parts.len(),
@@ -73,88 +70,77 @@ impl Columns {
     }
 }
 
-/// Samples of the state; every column has one entry per sample (two for x, y pairs).
-#[derive(Clone, Debug, Default)]
-pub struct Trace {
-    /// [s] Time at the end of the step.
-    pub time: Vec<f64>,
-    /// [m] Origin of the chassis frame, x and y.
-    pub position: Vec<f64>,
-    /// [m/s] Velocity of that point, x and y.
-    pub velocity: Vec<f64>,
-    /// [rad] Nose up > 0.
-    pub chassis_angle: Vec<f64>,
-    /// [rad/s] Its rate of change.
-    pub angular_velocity: Vec<f64>,
-    /// [m/s] Set-point of the drivetrain.
-    pub commanded_speed: Vec<f64>,
-    /// [m/s] Surface speed of the track, mean over the drives.
-    pub track_speed: Vec<f64>,
-    /// [m] How far the track surface has run, mean over the drives.
-    pub track_position: Vec<f64>,
-    /// 1 - v / track speed; 0 where the track stands still.
-    pub slip_ratio: Vec<f64>,
-    /// [N] Force of the ground on the robot along its driven surfaces, mean of the interval.
-    pub tractive_effort: Vec<f64>,
-    /// [N] Force of all motors at the surface, mean of the interval.
-    pub drive_force: Vec<f64>,
-    /// [m/s] Surface speed of each drive.
-    pub drive_speeds: Vec<f64>,
-    /// [m] How far the surface of each drive has run.
-    pub drive_positions: Vec<f64>,
-    /// [N] Force of each motor, mean of the interval.
-    pub drive_forces: Vec<f64>,
-    /// [N] Largest force in a pin of a chain; 0 without chains.
-    pub track_tension: Vec<f64>,
-    /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
-    pub shoe_poses: Vec<f64>,
-    /// [rad] Angle of the flippers at each end relative to the chassis, upwards > 0.
-    pub flipper_angles: Vec<f64>,
-    /// [N m] Torque of their motors, mean of the interval.
-    pub flipper_torques: Vec<f64>,
+/// Makes a table of its columns; each has a type, and a number of entries per row of a robot.
+macro_rules! table {
+    ($(#[$about:meta])* pub struct $Table:ident for $robot:ident {
+        $($(#[$meaning:meta])* $column:ident: $Number:ty [$entries:expr],)*
+    }) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, Default)]
+        pub struct $Table {
+            $($(#[$meaning])* pub $column: Vec<$Number>,)*
+        }
+
+        impl $Table {
+            /// Bytes of a row.
+            fn bytes($robot: Columns) -> u64 {
+                let entries: usize = [$($entries),*].iter().sum();
+                8 * entries as u64
+            }
+
+            /// Reserves room in every column for a total number of rows.
+            fn reserve(&mut self, $robot: Columns, rows: usize) -> Result<(), TryReserveError> {
+                $(reserve(&mut self.$column, $entries * rows)?;)*
+                Ok(())
+            }
+
+            /// Releases room that no row uses.
+            fn shrink(&mut self) {
+                $(self.$column.shrink_to_fit();)*
+            }
+        }
+    };
 }
 
-impl Trace {
-    /// Every column, with its number of entries per sample.
-    fn columns(&mut self, robot: Columns) -> [(&mut Vec<f64>, usize); 18] {
-        let Columns {
-            drives,
-            shoes,
-            flippers,
-            ..
-        } = robot;
-        [
-            (&mut self.time, 1),
-            (&mut self.position, 2),
-            (&mut self.velocity, 2),
-            (&mut self.chassis_angle, 1),
-            (&mut self.angular_velocity, 1),
-            (&mut self.commanded_speed, 1),
-            (&mut self.track_speed, 1),
-            (&mut self.track_position, 1),
-            (&mut self.slip_ratio, 1),
-            (&mut self.tractive_effort, 1),
-            (&mut self.drive_force, 1),
-            (&mut self.drive_speeds, drives),
-            (&mut self.drive_positions, drives),
-            (&mut self.drive_forces, drives),
-            (&mut self.track_tension, 1),
-            (&mut self.shoe_poses, 3 * shoes),
-            (&mut self.flipper_angles, flippers),
-            (&mut self.flipper_torques, flippers),
-        ]
-    }
-}
-
-impl Columns {
-    /// Bytes per sample without its contacts.
-    pub(crate) fn bytes(self) -> u64 {
-        let entries: usize = Trace::default()
-            .columns(self)
-            .iter()
-            .map(|(_, entries)| entries)
-            .sum();
-        8 * entries as u64
+table! {
+    /// Samples of the state; every column has one entry per sample (two for x, y pairs).
+    pub struct Trace for robot {
+        /// [s] Time at the end of the step.
+        time: f64 [1],
+        /// [m] Origin of the chassis frame, x and y.
+        position: f64 [2],
+        /// [m/s] Velocity of that point, x and y.
+        velocity: f64 [2],
+        /// [rad] Nose up > 0.
+        chassis_angle: f64 [1],
+        /// [rad/s] Its rate of change.
+        angular_velocity: f64 [1],
+        /// [m/s] Set-point of the drivetrain.
+        commanded_speed: f64 [1],
+        /// [m/s] Surface speed of the track, mean over the drives.
+        track_speed: f64 [1],
+        /// [m] How far the track surface has run, mean over the drives.
+        track_position: f64 [1],
+        /// 1 - v / track speed; 0 where the track stands still.
+        slip_ratio: f64 [1],
+        /// [N] Force of the ground on the robot along its driven surfaces, mean of the interval.
+        tractive_effort: f64 [1],
+        /// [N] Force of all motors at the surface, mean of the interval.
+        drive_force: f64 [1],
+        /// [m/s] Surface speed of each drive.
+        drive_speeds: f64 [robot.drives],
+        /// [m] How far the surface of each drive has run.
+        drive_positions: f64 [robot.drives],
+        /// [N] Force of each motor, mean of the interval.
+        drive_forces: f64 [robot.drives],
+        /// [N] Largest force in a pin of a chain; 0 without chains.
+        track_tension: f64 [1],
+        /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
+        shoe_poses: f64 [3 * robot.shoes],
+        /// [rad] Angle of the flippers at each end relative to the chassis, upwards > 0.
+        flipper_angles: f64 [robot.flippers],
+        /// [N m] Torque of their motors, mean of the interval.
+        flipper_torques: f64 [robot.flippers],
     }
 }
 
@@ -227,9 +213,9 @@ impl<'a> Recorder<'a> {
             },
             columns,
             trace: Trace::default(),
-            samples: Rows::new(budget, columns.bytes()),
+            samples: Rows::new(budget, Trace::bytes(columns)),
             contacts: ContactTable::default(),
-            contact_rows: Rows::new(budget, Columns::BYTES_A_CONTACT),
+            contact_rows: Rows::new(budget, ContactTable::bytes(columns)),
             state: simulation.now().state.clone(),
         };
         recorder.taken = (recorder.until / recorder.every).floor() as u64;
@@ -262,9 +248,7 @@ impl<'a> Recorder<'a> {
         if !self.trace.time.last().is_some_and(is_taken) {
             self.sample(simulation, end)?;
         }
-        for (column, _) in self.trace.columns(self.columns) {
-            column.shrink_to_fit();
-        }
+        self.trace.shrink();
         self.samples.shrink(self.trace.time.len());
         self.contacts.shrink();
         self.contact_rows.shrink(self.contacts.time.len());
@@ -273,13 +257,12 @@ impl<'a> Recorder<'a> {
 
     fn make_room(&mut self) -> Result<(), LimitError> {
         let (trace, contacts, columns) = (&mut self.trace, &mut self.contacts, self.columns);
-        self.samples.make_room(trace.time.len() + 1, |room| {
-            let mut all = trace.columns(columns).into_iter();
-            all.try_for_each(|(column, entries)| reserve(column, entries * room))
-        })?;
+        let rows = trace.time.len() + 1;
+        self.samples
+            .make_room(rows, |room| trace.reserve(columns, room))?;
         let rows = contacts.time.len() + self.sums.loads.count();
         self.contact_rows
-            .make_room(rows, |room| contacts.reserve(room))
+            .make_room(rows, |room| contacts.reserve(columns, room))
     }
 
     fn sample(&mut self, simulation: &Simulation, time: f64) -> Result<(), LimitError> {
@@ -329,25 +312,26 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Contacts of all samples.
-#[derive(Clone, Debug, Default)]
-#[allow(missing_docs)] // the columns are described in docs/conventions.md
-pub struct ContactTable {
-    pub time: Vec<f64>,
-    pub contact: Vec<i64>,
-    pub lane: Vec<i64>,
-    pub body: Vec<i64>,
-    pub body_kind: Vec<i64>,
-    pub segment: Vec<i64>,
-    pub edge: Vec<i64>,
-    pub x: Vec<f64>,
-    pub y: Vec<f64>,
-    pub normal_x: Vec<f64>,
-    pub normal_y: Vec<f64>,
-    pub normal_force: Vec<f64>,
-    pub friction_force: Vec<f64>,
-    pub surface_speed: Vec<f64>,
-    pub penetration: Vec<f64>,
+table! {
+    /// Contacts of all samples.
+    #[allow(missing_docs)] // the columns are described in docs/conventions.md
+    pub struct ContactTable for _robot {
+        time: f64 [1],
+        contact: i64 [1],
+        lane: i64 [1],
+        body: i64 [1],
+        body_kind: i64 [1],
+        segment: i64 [1],
+        edge: i64 [1],
+        x: f64 [1],
+        y: f64 [1],
+        normal_x: f64 [1],
+        normal_y: f64 [1],
+        normal_force: f64 [1],
+        friction_force: f64 [1],
+        surface_speed: f64 [1],
+        penetration: f64 [1],
+    }
 }
 
 impl Simulation {
@@ -362,44 +346,6 @@ impl Simulation {
 }
 
 impl ContactTable {
-    /// All columns.
-    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 6]) {
-        let numbers = [
-            &mut self.time,
-            &mut self.x,
-            &mut self.y,
-            &mut self.normal_x,
-            &mut self.normal_y,
-            &mut self.normal_force,
-            &mut self.friction_force,
-            &mut self.surface_speed,
-            &mut self.penetration,
-        ];
-        let codes = [
-            &mut self.contact,
-            &mut self.lane,
-            &mut self.body,
-            &mut self.body_kind,
-            &mut self.segment,
-            &mut self.edge,
-        ];
-        (numbers, codes)
-    }
-
-    /// Reserves room in every column for a total number of rows.
-    pub(super) fn reserve(&mut self, rows: usize) -> Result<(), TryReserveError> {
-        let (numbers, codes) = self.columns();
-        numbers.into_iter().try_for_each(|c| reserve(c, rows))?;
-        codes.into_iter().try_for_each(|c| reserve(c, rows))
-    }
-
-    /// Releases room that no row uses.
-    pub(super) fn shrink(&mut self) {
-        let (numbers, codes) = self.columns();
-        numbers.into_iter().for_each(Vec::shrink_to_fit);
-        codes.into_iter().for_each(Vec::shrink_to_fit);
-    }
-
     /// Appends the loads of the interval that ends at `time` [s].
     pub(crate) fn append(&mut self, simulation: &Simulation, time: f64, loads: &mut Loads) {
         for r in loads.drain() {
@@ -475,5 +421,5 @@ fn described(scenarios: &[ValidScenario], record: Record) -> String {
 fn bytes_of_sample(model: &Model) -> u64 {
     let columns = Columns::of(model);
     let touching = (columns.parts / 2).max(2);
-    columns.bytes() + touching as u64 * Columns::BYTES_A_CONTACT
+    Trace::bytes(columns) + touching as u64 * ContactTable::bytes(columns)
 }
