@@ -41,10 +41,9 @@ impl Scene<'_> {
     /// Ground inside the track that carries weight, with the force on it. Inside a single smooth body there is none:
     /// a robot that moves has only been there at different times.
     pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
-        let pose = Pose::new(stance.position, stance.angle);
         let least = self.criteria.intrusion_load * self.model.mass * self.gravity;
         let found = self.envelopes.iter().flat_map(|envelope| {
-            let pose = self.running.mounted(envelope.mount, pose);
+            let pose = self.running.mounted(envelope.mount, stance.pose());
             envelope.intrusions(&self.lanes[envelope.lane], pose)
         });
         let is_inside = |i: &Intrusion| {
@@ -90,37 +89,35 @@ impl Scene<'_> {
         speed.abs() > self.criteria.sliding_speed * self.set_point.abs()
     }
 
-    fn slides(&self, bearing: &Bearing) -> bool {
+    fn slides(&self, contact: &Contact) -> bool {
         /// Share of the friction cone that a rattling contact must use, on average.
         const AT_LIMIT: f64 = 0.95;
 
-        let contact = &bearing.contact;
         let limit = self.friction(contact.part) * contact.normal_force;
         self.is_moving(contact.surface_speed) && contact.friction_force.abs() >= AT_LIMIT * limit
     }
 
     /// The facts from which the mechanism follows.
     pub(super) fn facts(&self, stance: &Stance, pocket: Option<&LoadedIntrusion>) -> Facts {
-        let contacts: Vec<StopContact> = stance
-            .bearings
-            .iter()
-            .filter(|b| b.contact.normal_force > 0.0)
-            .map(|b| StopContact {
-                number: b.contact.number,
-                body: b.contact.part,
-                kind: self.model.parts[b.contact.part].kind,
-                segment: b.contact.facet,
-                edge: b.contact.edge,
-                point: b.contact.point,
-                normal: b.contact.normal,
-                normal_force: b.contact.normal_force,
-                friction_force: b.contact.friction_force,
-                surface_speed: b.contact.surface_speed,
-                slides: self.slides(b),
-                in_pocket: pocket.is_some_and(|p| self.bears_on(&p.place, &b.contact)),
-                side: self.lanes[self.model.parts[b.contact.part].lane].side,
-            })
-            .collect();
+        let of_stop = |Bearing { contact, .. }: &Bearing| {
+            let part = &self.model.parts[contact.part];
+            StopContact {
+                number: contact.number,
+                body: contact.part,
+                kind: part.kind,
+                segment: contact.facet,
+                edge: contact.edge,
+                point: contact.point,
+                normal: contact.normal,
+                normal_force: contact.normal_force,
+                friction_force: contact.friction_force,
+                surface_speed: contact.surface_speed,
+                slides: self.slides(contact),
+                in_pocket: pocket.is_some_and(|p| self.bears_on(&p.place, contact)),
+                side: self.lanes[part.lane].side,
+            }
+        };
+        let contacts: Vec<StopContact> = stance.loaded().map(of_stop).collect();
         let sum = |of: &dyn Fn(&StopContact) -> f64| contacts.iter().map(of).sum::<f64>();
         let normal = sum(&|c| c.normal_force).max(f64::MIN_POSITIVE);
         let lift = |c: &StopContact| {
@@ -158,24 +155,17 @@ impl Scene<'_> {
         /// Share of the surface speed that is along the normal; zero for a round wheel, except for rounding.
         const INTO_GROUND: f64 = 0.05;
 
-        let bearing = stance
-            .bearings
-            .iter()
-            .filter(|b| b.contact.normal_force > 0.0);
-        bearing.zip(contacts).any(|(bearing, contact)| {
+        stance.loaded().zip(contacts).any(|(bearing, contact)| {
             // A surface speed of 1 moves the surface by -spin_lever / drive_radius along the normal.
-            let into_ground = self.levers(stance, &bearing.contact).normal.spin_lever;
+            let levers = self.levers(stance.pose(), &bearing.contact);
+            let into_ground = levers.normal.spin_lever;
             contact.in_pocket
                 && self.direction() * into_ground > INTO_GROUND * self.model.drive_radius
         })
     }
 
-    fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
-        self.levers_at(Pose::new(stance.position, stance.angle), contact)
-    }
-
     /// Levers of a contact of the robot, taken as one body, in a pose.
-    fn levers_at(&self, pose: Pose, contact: &Contact) -> Levers {
+    fn levers(&self, pose: Pose, contact: &Contact) -> Levers {
         let origin = self.model.center_of_mass;
         let body = Carrier {
             center: pose.transform_point(origin),
@@ -188,33 +178,28 @@ impl Scene<'_> {
 
     /// The statics of a stop; `None` without a weight.
     pub(super) fn statics(&self, stance: &Stance) -> Option<Statics> {
-        let slides = |b: &Bearing| self.slides(b);
-        self.statics_where(stance, &slides)
+        self.statics_where(stance, &|contact| self.slides(contact))
     }
 
     /// The same by the motion of the surfaces alone: what moves on the ground slides, whatever force was found there.
     pub(super) fn statics_of_surfaces(&self, stance: &Stance) -> Option<Statics> {
-        let slides = |b: &Bearing| self.is_moving(b.contact.surface_speed);
-        self.statics_where(stance, &slides)
+        self.statics_where(stance, &|contact| self.is_moving(contact.surface_speed))
     }
 
-    fn statics_where(&self, stance: &Stance, slides: &dyn Fn(&Bearing) -> bool) -> Option<Statics> {
+    fn statics_where(&self, stance: &Stance, slides: &dyn Fn(&Contact) -> bool) -> Option<Statics> {
         let weight = self.model.mass * self.gravity;
         if weight <= 0.0 {
             return None;
         }
-        let pose = Pose::new(stance.position, stance.angle);
-        let supports = stance.bearings.iter().map(|b| {
-            let slides = if slides(b) {
-                b.contact.surface_speed.signum()
-            } else {
-                0.0
-            };
-            self.support(pose, &b.contact, slides)
+        let pose = stance.pose();
+        let supports = stance.bearings.iter().map(|Bearing { contact, .. }| {
+            let slip = contact.surface_speed.signum();
+            let slides = if slides(contact) { slip } else { 0.0 };
+            self.support(pose, contact, slides)
         });
         let of_drive = |k: usize| {
-            self.bounds(stance.drives.get(k))
-                .map(|bound| bound / weight)
+            let bounds = self.bounds(stance.drives.get(k));
+            bounds.map(|bound| bound / weight)
         };
         Some(Statics::new(
             self.model,
@@ -242,7 +227,7 @@ impl Scene<'_> {
 
     /// A contact as a support; `slides` is the sign of its slip, 0 while it sticks.
     fn support(&self, pose: Pose, contact: &Contact, slides: f64) -> Support {
-        let levers = self.levers_at(pose, contact);
+        let levers = self.levers(pose, contact);
         let part = &self.model.parts[contact.part];
         let directions = [levers.normal, levers.tangent];
         let (hinge, [normal, tangent]) = self.hung(part.mount, pose, contact.point, directions);
@@ -380,12 +365,8 @@ impl Scene<'_> {
     /// Whether two neighbouring shoes bear on the ground inside the track where the gap between them is closing: bent
     /// apart, as round an end of the track, and about to be straightened, as at the leading end.
     pub(super) fn pinches(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
-        let bearing = stance
-            .bearings
-            .iter()
-            .filter(|b| b.contact.normal_force > 0.0);
         let mut durations = vec![0.0; self.running.shoes.len()];
-        for (bearing, contact) in bearing.zip(contacts).filter(|(_, c)| c.in_pocket) {
+        for (bearing, contact) in stance.loaded().zip(contacts).filter(|(_, c)| c.in_pocket) {
             if let Some(shoe) = self.model.parts[contact.body].mount.shoe() {
                 durations[shoe] += bearing.duration;
             }

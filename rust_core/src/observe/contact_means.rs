@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::Reading;
 use crate::contact::Contact;
 use crate::dynamics::DriveState;
-use crate::geometry::{Vector, plausible};
+use crate::geometry::{Pose, Vector, plausible};
 use crate::robot::Model;
 use crate::terrain::Profile;
 use crate::units::Metres;
@@ -82,6 +82,20 @@ pub(crate) struct Stance {
     pub bearings: Vec<Bearing>,
     /// One for each drive.
     pub drives: Vec<DriveMean>,
+}
+
+impl Stance {
+    /// Pose of the chassis frame.
+    pub(crate) fn pose(&self) -> Pose {
+        Pose::new(self.position, self.angle)
+    }
+
+    /// Contacts that carry a load.
+    pub(crate) fn loaded(&self) -> impl Iterator<Item = &Bearing> {
+        self.bearings
+            .iter()
+            .filter(|b| b.contact.normal_force > 0.0)
+    }
 }
 
 impl Signals {

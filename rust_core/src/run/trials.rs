@@ -138,9 +138,10 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
     if change == Change::Nothing {
         return Ok(Some(stop.copy()));
     }
-    let Some((scenario, start)) = variant_of(stop.scenario(), change) else {
+    let Some(scenario) = variant_of(stop.scenario(), change) else {
         return Ok(None);
     };
+    let start = Start::of(change);
     if start == Start::Anew {
         // Only the run of a scenario can be had again: nothing is known of commands by hand, or of a trunk.
         let again = stop
@@ -326,27 +327,41 @@ enum Start {
     Anew,
 }
 
+impl Start {
+    /// That of a change.
+    fn of(change: Change) -> Self {
+        match change {
+            Change::Nothing
+            | Change::TwiceTheTorque
+            | Change::TenTimesTheTorque
+            | Change::TwiceTheFriction
+            | Change::NoBelly
+            | Change::FlippersLevel => Self::Continued,
+            Change::Rebuilt
+            | Change::ClosedTrack
+            | Change::ClosedSmoothTrack
+            | Change::Belt
+            | Change::OneMotor => Self::Rebuilt,
+            Change::ClosedTrackClear => Self::Clear,
+            Change::BeltFromStart | Change::ClosedTrackFromStart => Self::Anew,
+        }
+    }
+}
+
 /// The variant that a change makes of a scenario; `None` if it makes no sense for its robot.
-fn variant_of(scenario: &Scenario, change: Change) -> Option<(Scenario, Start)> {
+fn variant_of(scenario: &Scenario, change: Change) -> Option<Scenario> {
     let mut variant = scenario.clone();
     // Trials of another engine's stops are made by our own dynamics, at its time step.
     variant.solver.engine = Engine::Own;
     let robot = &mut variant.robot;
-    let start = match change {
-        Change::Nothing => Start::Continued,
-        Change::Rebuilt => Start::Rebuilt,
+    match change {
+        Change::Nothing | Change::Rebuilt => {}
         Change::ClosedTrack | Change::ClosedTrackClear | Change::ClosedTrackFromStart => {
             robot.track = closed(robot, ClosedSurface::Own)?;
-            match change {
-                Change::ClosedTrack => Start::Rebuilt,
-                Change::ClosedTrackClear => Start::Clear,
-                _ => Start::Anew,
-            }
         }
         Change::ClosedSmoothTrack => {
             any_track(robot, Track::has_grousers).then_some(())?;
             robot.track = closed(robot, ClosedSurface::Smooth)?;
-            Start::Rebuilt
         }
         Change::Belt | Change::BeltFromStart => {
             any_track(robot, Track::has_pockets).then_some(())?;
@@ -355,47 +370,30 @@ fn variant_of(scenario: &Scenario, change: Change) -> Option<(Scenario, Start)> 
             if let Some(flippers) = &mut robot.flippers {
                 flippers.track = None;
             }
-            if change == Change::Belt {
-                Start::Rebuilt
-            } else {
-                Start::Anew
-            }
         }
         Change::OneMotor => {
             let sharing = &mut robot.drivetrain.torque_sharing;
             (*sharing == TorqueSharing::Wheel).then_some(())?;
             *sharing = TorqueSharing::Track;
-            Start::Rebuilt
         }
-        Change::TwiceTheTorque => {
-            robot.drivetrain.max_torque *= 2.0;
-            Start::Continued
-        }
-        Change::TenTimesTheTorque => {
-            robot.drivetrain.max_torque *= 10.0;
-            Start::Continued
-        }
+        Change::TwiceTheTorque => robot.drivetrain.max_torque *= 2.0,
+        Change::TenTimesTheTorque => robot.drivetrain.max_torque *= 10.0,
         Change::TwiceTheFriction => {
             variant.terrain.scale_friction(2.0);
             if let Track::Force(force) = &mut robot.track {
                 force.skid_friction *= 2.0;
             }
-            Start::Continued
         }
-        Change::NoBelly => {
-            *robot = robot.without_belly()?;
-            Start::Continued
-        }
+        Change::NoBelly => *robot = robot.without_belly()?,
         Change::FlippersLevel => {
             robot.flippers.as_ref()?;
             variant.drive.gait = Some(Gait::Hold(Hold {
                 angle: 0.0,
                 schedule: None,
             }));
-            Start::Continued
         }
-    };
-    Some((variant, start))
+    }
+    Some(variant)
 }
 
 /// The robot's track, closed; `None` if it has no pockets that could be closed.
