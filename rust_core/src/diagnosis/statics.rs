@@ -174,8 +174,8 @@ impl Statics {
             }
         };
         for (j, force) in forces.iter().enumerate() {
-            at_most(j, -1.0, -force.least);
-            at_most(j, 1.0, force.most);
+            at_most(j, -1.0, -force.bounds[0]);
+            at_most(j, 1.0, force.bounds[1]);
         }
         at_most(n, -1.0, 0.0);
         rows
@@ -186,11 +186,8 @@ impl Statics {
         let mut forces = Vec::new();
         for support in &self.supports {
             for side in support.sides() {
-                forces.push(Force {
-                    effect: self.of_support(support, side * support.friction),
-                    least: 0.0,
-                    most: f64::INFINITY,
-                });
+                let effect = self.of_support(support, side * support.friction);
+                forces.push(Force::pushing(effect));
             }
         }
         for (k, _) in self.motors.iter().enumerate().filter(|(_, bears)| **bears) {
@@ -198,12 +195,8 @@ impl Statics {
             let mut effect = self.nothing();
             effect[MOMENT] = self.radius / self.lever;
             effect[Self::of_drive(k)] = -1.0;
-            let [least, most] = self.bounds[k];
-            forces.push(Force {
-                effect,
-                least,
-                most,
-            });
+            let bounds = self.bounds[k];
+            forces.push(Force { effect, bounds });
         }
         for (k, hinge) in self.hinges.iter().enumerate() {
             let mut effect = self.nothing();
@@ -261,26 +254,25 @@ impl Statics {
 #[derive(Clone)]
 struct Force {
     effect: Vec<f64>,
-    least: f64,
-    most: f64,
+    bounds: [f64; 2],
 }
 
 impl Force {
-    /// A force of the same line the other way.
-    fn reversed(&self) -> Self {
-        Self {
-            effect: self.effect.iter().map(|share| -share).collect(),
-            least: 0.0,
-            most: f64::INFINITY,
-        }
+    /// A force of one direction.
+    fn pushing(effect: Vec<f64>) -> Self {
+        let bounds = [0.0, f64::INFINITY];
+        Self { effect, bounds }
     }
 
+    /// A force of the same line the other way.
+    fn reversed(&self) -> Self {
+        Self::pushing(self.effect.iter().map(|share| -share).collect())
+    }
+
+    /// A force of both directions.
     fn within(effect: Vec<f64>, most: f64) -> Self {
-        Self {
-            effect,
-            least: -most,
-            most,
-        }
+        let bounds = [-most, most];
+        Self { effect, bounds }
     }
 }
 

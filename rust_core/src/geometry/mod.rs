@@ -17,7 +17,7 @@ pub use gear::Gear;
 pub use plane::{Disc, Vector};
 pub(crate) use plane::{
     Pose, Rotation, cross, direction, end_discs, left_of, lower_tangent, outline_discs, plausible,
-    plausible_vectors, right_of,
+    plausible_vectors, right_of, turned_by,
 };
 pub use shoes::ShoeLoop;
 pub use teeth::Teeth;

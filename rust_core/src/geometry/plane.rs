@@ -28,6 +28,12 @@ pub(crate) fn direction(angle: f64) -> Vector {
     Vector::new(cosine, sine)
 }
 
+/// Turns points about the origin by an angle [rad]; bit-identical on every platform.
+pub(crate) fn turned_by(angle: f64) -> impl Fn(Vector) -> Vector + Copy {
+    let (sine, cosine) = libm::sincos(angle);
+    move |p| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y)
+}
+
 /// In any SI unit: a thousand times the weight of the heaviest robot. What is formed of such numbers is finite.
 const MOST: f64 = 1e18;
 

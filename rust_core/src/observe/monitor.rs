@@ -9,7 +9,7 @@ use super::observations::{Anchor, LOOK, Observations};
 use super::{Event, Outcome, Reading, Signals, Stance};
 use crate::contact::{Contact, TrackEnvelope};
 use crate::dynamics::{ChainReading, DriveState};
-use crate::geometry::{Pose, Vector, end_discs};
+use crate::geometry::{Pose, Vector, end_discs, turned_by};
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::solver::Effort;
@@ -138,15 +138,8 @@ impl Monitor {
         if now.chassis_angle.abs() > self.criteria.tip_over_angle {
             return Some(Outcome::TippedOver);
         }
-        let (sine, cosine) = libm::sincos(now.chassis_angle);
-        let place = |axle: Vector| {
-            let turned = Vector::new(
-                cosine * axle.x - sine * axle.y,
-                sine * axle.x + cosine * axle.y,
-            );
-            now.position + turned
-        };
-        let [rear_axle, front_axle] = self.axles.map(place);
+        let turned = turned_by(now.chassis_angle);
+        let [rear_axle, front_axle] = self.axles.map(|axle| now.position + turned(axle));
         let (rear, front) = (rear_axle.x, front_axle.x);
         let lower_axle = rear_axle.y.min(front_axle.y);
         let (low, high) = self.ground.extent();

@@ -5,7 +5,7 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::Vector;
+use crate::geometry::{Vector, direction};
 
 /// The state as users see it.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +31,7 @@ pub struct Reading {
 impl Reading {
     /// [m/s] Speed along the chassis.
     pub(crate) fn forward_speed(&self) -> f64 {
-        let (sine, cosine) = libm::sincos(self.chassis_angle);
-        self.velocity.x * cosine + self.velocity.y * sine
+        self.velocity.dot(direction(self.chassis_angle))
     }
 }
 

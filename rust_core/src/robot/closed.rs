@@ -2,7 +2,7 @@
 
 use super::track::with_grousers;
 use super::{BodyKind, Model, Mount, Part, Shape};
-use crate::geometry::{Disc, Envelope, Vector};
+use crate::geometry::{Disc, Envelope};
 use crate::scenario::{ClosedSurface, ScenarioError, TrackOutline};
 
 impl Model {
@@ -20,15 +20,13 @@ impl Model {
         let has_belt = self.has_track(Mount::Chassis);
         let belt = has_belt.then(|| Envelope::new(&round(Mount::Chassis)));
         // A closed belt covers what of the belly lies inside it.
-        let is_covered = |corners: &[Vector]| {
-            let inside = |belt: &Envelope| corners.iter().all(|c| belt.depth(*c) >= 0.0);
-            belt.as_ref().is_some_and(inside)
-        };
-        let tracks = self.tracks();
-        let is_bare = |part: &&Part| match &part.shape {
-            Shape::Polygon { corners } => !is_covered(corners),
+        let is_bare = |part: &&Part| match (&part.shape, &belt) {
+            (Shape::Polygon { corners }, Some(belt)) => {
+                corners.iter().any(|corner| belt.depth(*corner) < 0.0)
+            }
             _ => true,
         };
+        let tracks = self.tracks();
         let belly = self.belly().filter(is_bare).cloned();
         // Wheels that no track runs round stay, all of a side on its motor.
         let wheels = self

@@ -45,11 +45,7 @@ impl Model {
                 drive + motors + side * free
             }
         };
-        let shoes = self
-            .chains
-            .iter()
-            .map(|chain| chain.path.count)
-            .sum::<usize>();
+        let shoes = self.shoes();
         let mut parts = Vec::new();
         for lane in 0..2 {
             parts.extend(self.track_parts().map(|part| Part {

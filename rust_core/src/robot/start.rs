@@ -1,7 +1,7 @@
 //! Position of the robot at time 0.
 
 use super::{Model, Part, Shape};
-use crate::geometry::{Disc, Envelope, Pose, Vector, lower_tangent, outline_discs};
+use crate::geometry::{Disc, Envelope, Pose, Vector, lower_tangent, outline_discs, turned_by};
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::{Ground, Profile};
 
@@ -11,8 +11,7 @@ pub(crate) fn start_position(
     model: &Model,
     ground: &Ground,
 ) -> Result<Vector, ScenarioError> {
-    let (sine, cosine) = libm::sincos(scenario.start.angle);
-    let turned = |p: Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
+    let turned = turned_by(scenario.start.angle);
     let turned_disc = |d: Disc| Disc {
         center: turned(d.center),
         ..d

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::step_length::{FARTHEST_TURN, fastest_turn};
 use crate::engine;
-use crate::error::{Error, LimitError};
-use crate::geometry::{Vector, end_discs};
+use crate::error::Error;
+use crate::geometry::{Vector, end_discs, turned_by};
 use crate::limits::memory;
 use crate::robot::{Model, Part, start_position};
 use crate::scenario::{Doubt, Scenario, ScenarioError, Terrain, Track, parse};
@@ -39,7 +39,8 @@ fn check_text(text: &str) -> Result<(), Error> {
         let value = format!("{} MiB", text.len() >> 20);
         return Err(ScenarioError::new("scenario", value, rule).into());
     }
-    Ok(ask_for_text(text)?)
+    let bytes = text.len() as u64 * BYTES_A_CHARACTER;
+    Ok(memory::ask("reading a scenario", bytes)?)
 }
 
 impl ValidScenario {
@@ -139,7 +140,8 @@ impl ValidScenario {
         let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
             Arc::clone(&other.ground)
         } else {
-            ask_for_ground(&scenario.terrain)?;
+            let bytes = corners(&scenario.terrain) * BYTES_A_CORNER;
+            memory::ask("the ground", bytes)?;
             Arc::new(Ground::new(&scenario.terrain, robot.gauge)?)
         };
         let model = match (built, twin) {
@@ -149,8 +151,7 @@ impl ValidScenario {
         };
         let position = start_position(&scenario, &model, &ground)?;
         let [rear, _] = end_discs(&robot.outline);
-        let (sine, cosine) = libm::sincos(scenario.start.angle);
-        let axle = position.x + (cosine * rear.center.x - sine * rear.center.y);
+        let axle = position.x + turned_by(scenario.start.angle)(rear.center).x;
         let to_goal = ground.goal_of(&scenario) + rear.radius - axle;
         let doubts = scenario.doubts(to_goal, ground.extent().1);
         Ok(Self {
@@ -240,16 +241,6 @@ fn place_of<'a>(text: &'a mut Value, pointer: &str) -> Option<&'a mut Value> {
 pub(super) const BYTES_A_CORNER: u64 = 600;
 /// Largest number of bytes per character that a parsed text takes: `[0],` is a row of one number.
 const BYTES_A_CHARACTER: u64 = 40;
-
-/// Checks that the memory for reading a scenario is available.
-pub(crate) fn ask_for_text(text: &str) -> Result<(), LimitError> {
-    memory::ask("reading a scenario", text.len() as u64 * BYTES_A_CHARACTER)
-}
-
-/// Checks that the memory for building the ground of a scenario is available.
-pub(crate) fn ask_for_ground(terrain: &Terrain) -> Result<(), LimitError> {
-    memory::ask("the ground", corners(terrain) * BYTES_A_CORNER)
-}
 
 /// Largest possible number of corners of a ground, all lanes together, including facets of rounded edges.
 pub(super) fn corners(terrain: &Terrain) -> u64 {
