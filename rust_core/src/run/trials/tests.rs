@@ -101,7 +101,7 @@ fn a_belt_from_the_start_is_tried_where_the_run_can_begin_anew() {
     let checked = ValidScenario::new(&wheels(4, 0.075)).expect("the scenario is valid");
     let names = |simulation: &mut Simulation| -> Vec<&str> {
         simulation.advance(10.0).expect("the state stays finite");
-        let found = judge(simulation, Wanted::default(), &Cancel::default());
+        let found = diagnose(simulation, Wanted::default(), &Cancel::default());
         let found = found.expect("trials can be made").expect("it has stopped");
         assert_eq!(found.outcome, Outcome::Seized);
         found.trials.iter().map(|trial| trial.name).collect()
