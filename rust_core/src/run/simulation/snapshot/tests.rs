@@ -257,7 +257,7 @@ const SPOILS: [(&str, Spoil); 16] = [
     ("step_control", |m| m.step_control = StepControl::never()),
     ("last step", |m| m.last.free = f64::NAN),
     ("velocity before it", |m| {
-        m.last.before.velocity.x = f64::NAN
+        m.last.before.velocity.x = f64::NAN;
     }),
     ("x", |m| m.state.center.x = f64::NAN),
     ("y", |m| m.state.center.y = f64::NAN),
