@@ -33,7 +33,7 @@ pub struct EscapeForce {
 /// command.
 ///
 /// # Errors
-/// As [`simulate`](super::simulate), and [`Error::Interrupted`] once `cancel` is asked.
+/// As [`simulate`](crate::simulate), and [`Error::Interrupted`] once `cancel` is asked.
 pub fn escape_force(
     scenario: &ValidScenario,
     at: f64,

@@ -91,7 +91,7 @@ pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, E
 /// for the robot are left out.
 ///
 /// # Errors
-/// As [`simulate`](super::simulate), and [`Error::Interrupted`] once `cancel` is asked.
+/// As [`simulate`](crate::simulate), and [`Error::Interrupted`] once `cancel` is asked.
 pub fn make_trials(
     scenario: &ValidScenario,
     at: f64,
@@ -113,7 +113,7 @@ pub fn make_trials(
 /// that rises to a force [N] in a time [s]; `None` if it has not stopped.
 ///
 /// # Errors
-/// As [`branch`](super::branch).
+/// As [`branch`](crate::branch).
 pub fn what_if(
     scenario: &ValidScenario,
     at: f64,
