@@ -2,6 +2,7 @@
 
 mod attempt;
 mod branch;
+mod by_hand;
 mod clear;
 mod commands;
 mod observation;
@@ -13,7 +14,7 @@ mod tests;
 use std::sync::Arc;
 
 use self::attempt::{Attempt, LastStep, Scratch};
-use self::commands::{Commands, DriverView, Push, ramp_time, set_point};
+use self::commands::{Commands, DriverView, ramp_time, set_point};
 use super::ValidScenario;
 use super::step_length::{SAME_TIME, StepControl, StepRule};
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
@@ -25,7 +26,7 @@ use crate::geometry::{Pose, Vector, direction};
 use crate::limits::Cancel;
 use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Mount, Running, start_position};
-use crate::scenario::{Drive, End, Engine, Flippers, Gait, Scenario, ScenarioError};
+use crate::scenario::{End, Engine, Gait, Scenario};
 use crate::terrain::{Ground, Side};
 
 /// A simulation: what was built from the scenario, and the current state.
@@ -422,103 +423,5 @@ impl Simulation {
             let mount = model.parts[l.part].mount;
             beyond && l.normal_force > 0.0 && mount == Mount::Flipper(k)
         })
-    }
-
-    /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] if the speed exceeds the drivetrain's.
-    pub fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
-        let drive = Drive {
-            speed,
-            schedule: None,
-            gait: None,
-        };
-        drive.check(&self.scenario.robot.drivetrain)?;
-        self.commands.speed = speed;
-        self.commands.follow_scenario = false;
-        Ok(())
-    }
-
-    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on, overriding the
-    /// gait; they follow within their limits.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] if that end has none, or the angle is not finite or exceeds a full turn.
-    pub fn set_flipper_angle(&mut self, end: End, angle: f64) -> Result<(), Error> {
-        let path = match end {
-            End::Front => "flipper_angle",
-            End::Rear => "rear_flipper_angle",
-        };
-        let mut ends = self.scenario.robot.flippers.iter().flat_map(Flippers::ends);
-        if !ends.any(|has| has == end) {
-            let rule = "must not be given, because the robot has no flippers there";
-            return Err(ScenarioError::new(path, angle, rule).into());
-        }
-        if !(-6.3..=6.3).contains(&angle) {
-            let rule = "must be >= -6.3 rad and <= 6.3 rad";
-            return Err(ScenarioError::new(path, angle, rule).into());
-        }
-        self.commands
-            .driver
-            .hold(usize::from(end == End::Rear), angle);
-        self.commands.follow_scenario = false;
-        Ok(())
-    }
-
-    /// Gives commands of all kinds at once; if one is invalid, none takes effect.
-    ///
-    /// # Errors
-    /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
-    pub fn command_all(
-        &mut self,
-        speed: Option<f64>,
-        flipper_angles: [(End, Option<f64>); 2],
-        push: Option<f64>,
-    ) -> Result<(), Error> {
-        let before = self.commands;
-        let mut give = || {
-            push.map_or(Ok(()), |push| self.set_push(push))?;
-            for (end, angle) in flipper_angles {
-                angle.map_or(Ok(()), |angle| self.set_flipper_angle(end, angle))?;
-            }
-            speed.map_or(Ok(()), |speed| self.set_speed(speed))
-        };
-        let given = give();
-        if given.is_err() {
-            self.commands = before;
-        }
-        given
-    }
-
-    /// [N] The push at the centre of mass, along x.
-    pub fn push(&self) -> f64 {
-        self.commands.push.at(self.time)
-    }
-
-    /// Sets the push at the centre of mass to a force [N] along x, from now on.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] if the force is not finite or exceeds 1e15 N.
-    pub fn set_push(&mut self, force: f64) -> Result<(), Error> {
-        self.raise_push(force, 0.0)
-    }
-
-    /// Lets the push rise evenly to a force [N] in a time [s], from now on.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] if the force is not finite or exceeds 1e15 N, or the time is negative or exceeds 1e5 s.
-    pub fn raise_push(&mut self, force: f64, rise_time: f64) -> Result<(), Error> {
-        if !Push::may_be(force) {
-            let rule = "must be >= -1e15 N and <= 1e15 N";
-            return Err(ScenarioError::new("push", force, rule).into());
-        }
-        if !(0.0..=1e5).contains(&rise_time) {
-            let rule = "must be >= 0 s and <= 100000 s";
-            return Err(ScenarioError::new("push.rise_time", rise_time, rule).into());
-        }
-        self.commands.push = self.commands.push.raised(force, self.time, rise_time);
-        self.commands.follow_scenario = false;
-        Ok(())
     }
 }

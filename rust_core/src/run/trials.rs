@@ -292,10 +292,8 @@ impl<'a> TrialSeries<'a> {
         let symptom = stop.as_ref().map_or(Outcome::TimedOut, |d| d.symptom);
         let jammed = stop.as_ref().is_some_and(|d| d.jammed);
         let now = simulation.reading();
-        let mut flipper_angles = [f64::NAN; 2];
-        for (kept, angle) in flipper_angles.iter_mut().zip(simulation.flipper_angles()) {
-            *kept = angle;
-        }
+        let mut angles = simulation.flipper_angles();
+        let flipper_angles = std::array::from_fn(|_| angles.next().unwrap_or(f64::NAN));
         let freed = time.is_finite();
         Ok(Trial {
             name,
