@@ -55,10 +55,10 @@ pub use run::{
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,
     ContactMethod, Doubt, Drive, Drivetrain, End, Ends, Engine, FieldPattern, Flippers,
-    ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
-    MAX_POINTS, Pi, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria,
-    ShoeShape, Solver, Start, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline,
-    Wheel,
+    ForceSupport, ForceTrack, Friction, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels,
+    LineOfWheels, MAX_POINTS, Pi, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack,
+    SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Surface, Terrain, TorqueSharing, Track,
+    TrackOutline, Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

@@ -173,11 +173,12 @@ mod tests {
 
     use super::*;
     use crate::geometry::Vector;
+    use crate::scenario::Surface;
 
     #[test]
     fn a_disc_is_as_deep_as_the_shortest_way_out() {
         let step = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
-        let lane = Profile::new("terrain", &step, 0.0, 0.9, true).expect("a profile");
+        let lane = Profile::new("terrain", &step, Surface::sharp(0.9), true).expect("a profile");
         for (x, y, radius, depth) in [
             (-0.5, 0.06, 0.05, -0.01),
             (-0.5, 0.03, 0.05, 0.02),

@@ -81,7 +81,8 @@ impl Scene<'_> {
     /// Friction coefficient of a part on the ground.
     fn friction(&self, part: usize) -> f64 {
         let part = &self.model.parts[part];
-        part.friction_limit.min(self.lanes[part.lane].friction)
+        let friction = self.lanes[part.lane].friction;
+        friction.at_most(part.friction_limit).coefficient
     }
 
     /// Whether a surface speed [m/s] is more than the creep of a sticking contact.
@@ -91,10 +92,11 @@ impl Scene<'_> {
 
     fn slides(&self, contact: &Contact) -> bool {
         /// Share of the friction cone that a rattling contact must use, on average.
-        const AT_LIMIT: f64 = 0.95;
+        const WHILE_RATTLING: f64 = 0.95;
 
         let limit = self.friction(contact.part) * contact.normal_force;
-        self.is_moving(contact.surface_speed) && contact.friction_force.abs() >= AT_LIMIT * limit
+        self.is_moving(contact.surface_speed)
+            && contact.friction_force.abs() >= WHILE_RATTLING * limit
     }
 
     /// The facts from which the mechanism follows.

@@ -79,6 +79,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::scenario::Surface;
 
     const RADIUS: f64 = 0.05;
 
@@ -88,7 +89,7 @@ mod tests {
         let middle = Vector::new(0.1, 0.0);
         let points = [-slope(-0.2), Vector::ZERO, middle, middle + slope(-bend)];
         let points = points.map(|point| [point.x, point.y]);
-        let lane = Profile::new("terrain", &points, 0.0, 0.5, true).expect("a profile");
+        let lane = Profile::new("terrain", &points, Surface::sharp(0.5), true).expect("a profile");
         let point = middle - Vector::new(0.003, 0.0);
         let contact = Contact::new(0, (1, -1), (point, Vector::Y), 0.0);
         Face::of(&contact, &lane)

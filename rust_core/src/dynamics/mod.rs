@@ -48,7 +48,7 @@ use touch::{Touch, is_on_ground};
 use crate::contact::Contact;
 use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
-use crate::scenario::Solver;
+use crate::scenario::{Friction, Solver};
 use crate::solver::{Effort, Problem};
 use crate::terrain::Profile;
 
@@ -72,7 +72,7 @@ const SELF_STRESS_TIME: Seconds = Seconds(0.1);
 pub(crate) struct Dynamics {
     model: Model,
     /// Friction of each lane.
-    frictions: Vec<f64>,
+    frictions: Vec<Friction>,
     gravity: f64,
     solver: Solver,
     /// The robot's bodies, motors and contacts as the solver sees them, ...
@@ -97,7 +97,12 @@ pub(crate) struct Dynamics {
 }
 
 impl Dynamics {
-    pub(crate) fn new(model: Model, frictions: Vec<f64>, gravity: f64, solver: Solver) -> Self {
+    pub(crate) fn new(
+        model: Model,
+        frictions: Vec<Friction>,
+        gravity: f64,
+        solver: Solver,
+    ) -> Self {
         let moved = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);
         let arms: Vec<Arm> = model.flippers.iter().cloned().map(Arm::new).collect();
         let chains: Vec<Chain> = model.chains.iter().cloned().map(Chain::new).collect();
@@ -185,7 +190,7 @@ impl Dynamics {
                     Touch::new(contact, last, state, &self.model, half)
                 }
             };
-            solved.friction = solved.friction.min(self.frictions[part.lane]);
+            solved.friction = self.frictions[part.lane].at_most(part.friction_limit);
             touch.friction_guess *= fading;
             self.touches.push(touch);
             self.problem.contacts.push(solved);

@@ -18,7 +18,12 @@ pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
     (
-        Dynamics::new(model, vec![0.5], scenario.gravity, scenario.solver),
+        Dynamics::new(
+            model,
+            vec![Friction::dry(0.5)],
+            scenario.gravity,
+            scenario.solver,
+        ),
         state,
     )
 }

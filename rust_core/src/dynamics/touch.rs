@@ -96,7 +96,7 @@ impl Touch {
         touch.drive = part.drive;
         touch.gap = touch.gap_after(&solved, state, model, (part.mount, 0.0));
         touch.start = touch.gap;
-        touch.continued(solved, last, part.friction_limit)
+        touch.continued(solved, last)
     }
 
     /// The same with the forces and the grip of the last step.
@@ -104,9 +104,7 @@ impl Touch {
         mut self,
         mut solved: Contact,
         last: Option<crate::contact::Contact>,
-        friction: f64,
     ) -> (Self, Contact) {
-        solved.friction = friction;
         solved.grip = last.map_or(Grip::Open, |l| l.grip);
         self.normal_guess = last.map_or(0.0, |l| l.normal_guess);
         self.friction_guess = last.map_or(0.0, |l| l.friction_guess);

@@ -11,7 +11,7 @@ use crate::contact::solids_of;
 use crate::dynamics::State;
 use crate::geometry::{Disc, Envelope, Pose, Rotation, Vector};
 use crate::robot::{Model, Part, Running, Shape, WheelBody};
-use crate::scenario::Scenario;
+use crate::scenario::{Friction, Scenario};
 use crate::terrain::{Ground, Profile};
 
 /// Substeps of a step: in more than one, contacts are those of its beginning.
@@ -189,7 +189,9 @@ fn profile(lane: &Profile, number: usize) -> Collider {
 
 /// A part; mass and inertia are those of its body.
 fn collider(part: &Part, number: usize, ground: &Ground) -> ColliderBuilder {
-    let friction = ground.lanes[part.lane].friction.min(part.friction_limit);
+    let friction = ground.lanes[part.lane]
+        .friction
+        .at_most(part.friction_limit);
     let builder = ColliderBuilder::compound(pieces(part)).density(0.0);
     let sides = [Group::GROUP_2, Group::GROUP_1];
     on_lane(builder, friction, part.lane, sides).user_data(number as u128)
@@ -198,13 +200,13 @@ fn collider(part: &Part, number: usize, ground: &Ground) -> ColliderBuilder {
 /// What collides with the ground of one lane alone; `sides` are its own group of each lane and that of the others.
 fn on_lane(
     builder: ColliderBuilder,
-    friction: f64,
+    friction: Friction,
     lane: usize,
     sides: [Group; 2],
 ) -> ColliderBuilder {
     let [own, other] = sides.map(|side| Group::from(side.bits() << (2 * lane)));
     builder
-        .friction(friction)
+        .friction(friction.coefficient)
         .friction_combine_rule(CoefficientCombineRule::Min)
         .collision_groups(InteractionGroups::new(own, other, InteractionTestMode::And))
 }

@@ -118,7 +118,7 @@ impl EngineWorld {
             .parent()
             .unwrap_or_else(|| unreachable!("a part has a body"));
         let lane = &ground.lanes[model.parts[part].lane];
-        let friction = lane.friction.min(model.parts[part].friction_limit);
+        let friction = lane.friction.at_most(model.parts[part].friction_limit);
         pair.manifolds().iter().flat_map(move |manifold| {
             let (segment, normal) = if ground_first {
                 (manifold.subshape1, manifold.data.normal)
@@ -136,7 +136,7 @@ impl EngineWorld {
                 };
                 let contact = contact_at((lane, facet), (part, on_ground), normal, point.dist);
                 let (pressed, rubbed) = (point.data.impulse / h, -point.data.tangent_impulse.x / h);
-                self.loaded(contact, body, (pressed, rubbed), friction)
+                self.loaded(contact, body, (pressed, rubbed), friction.coefficient)
             })
         })
     }
@@ -163,12 +163,12 @@ impl EngineWorld {
 
 /// How a contact with these forces grips.
 fn grip(normal: f64, friction: f64, coefficient: f64) -> Grip {
-    /// Share of the limit from which it slides.
-    const AT_LIMIT: f64 = 1.0 - 1e-6;
+    /// Share of the limit from which it slides: all of it, but for what the engine's rounds leave.
+    const SLIDES_FROM: f64 = 1.0 - 1e-6;
 
     if normal <= 0.0 {
         Grip::Open
-    } else if friction.abs() < AT_LIMIT * coefficient * normal {
+    } else if friction.abs() < SLIDES_FROM * coefficient * normal {
         Grip::Sticks
     } else if friction > 0.0 {
         Grip::Forwards

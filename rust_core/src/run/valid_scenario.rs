@@ -324,7 +324,7 @@ mod tests {
         let mut variant = engineer();
         variant.robot.center_of_mass[1] = 0.03;
         if let Terrain::Step { surface, .. } = &mut variant.terrain {
-            surface.friction = 0.7;
+            surface.friction.coefficient = 0.7;
         }
         let moved = found[0].as_ref().expect("it is valid");
         assert_eq!(moved.scenario, variant);

@@ -26,7 +26,7 @@ pub use fields::ScenarioError;
 pub use outline::TrackOutline;
 pub use robot::{End, Ends, Flippers, Robot};
 pub use settings::{ContactMethod, Engine, SeizureCriteria, Solver, Start};
-pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Surface, Terrain};
+pub use terrain::{FieldPattern, Friction, MAX_POINTS, Stepfield, Surface, Terrain};
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ClosedSurface, ClosedTrack, ForceSupport,
     ForceTrack, GearWheel, GrouserBeltTrack, HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape,

@@ -8,35 +8,78 @@ use super::fields::{Fields, Range, SIZE, SMALLEST, one_of};
 /// Largest number of points of one profile; 100,000 are built in well under a second.
 pub const MAX_POINTS: usize = 200_000;
 
-const FRICTION: Range = Range::between(0.0, 100.0, "");
 const EDGE_RADIUS: Range = Range::between(0.0, 10.0, "m");
 const HEIGHT: Range = Range::above(0.0, 100.0, "m");
 /// 80 degrees; with more, a barrier would lie along the track.
 const YAW: Range = Range::between(-1.396_263, 1.396_263, "rad");
 const LENGTH: Range = Range::between(SMALLEST, 1e4, "m");
 
+/// How a terrain resists a robot that slides on it: all that the law of a contact takes from the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Friction {
+    /// Coulomb's coefficient.
+    #[serde(rename = "friction")]
+    pub coefficient: f64,
+}
+
+impl Friction {
+    /// Dry, as Coulomb has it.
+    pub const fn dry(coefficient: f64) -> Self {
+        Self { coefficient }
+    }
+
+    /// That of a part whose own coefficient is smaller, or of one without limit.
+    #[must_use]
+    pub const fn at_most(self, limit: f64) -> Self {
+        let coefficient = self.coefficient.min(limit);
+        Self {
+            coefficient,
+            ..self
+        }
+    }
+
+    /// The larger of two.
+    pub(crate) const fn or_larger(self, other: Self) -> Self {
+        Self {
+            coefficient: self.coefficient.max(other.coefficient),
+        }
+    }
+
+    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+        Ok(Self {
+            coefficient: f.number("friction", Range::between(0.0, 100.0, ""))?,
+        })
+    }
+}
+
 /// What the robot touches of a terrain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Surface {
     /// [m] Radius of every convex edge; 0 is sharp.
     pub edge_radius: f64,
-    /// Coulomb friction with the robot.
-    pub friction: f64,
+    /// With the robot.
+    #[serde(flatten)]
+    pub friction: Friction,
 }
 
 impl Surface {
-    /// With sharp edges.
+    /// With sharp edges and dry friction.
     pub const fn sharp(friction: f64) -> Self {
+        Self::rounded(0.0, friction)
+    }
+
+    /// With round edges and dry friction.
+    pub const fn rounded(edge_radius: f64, friction: f64) -> Self {
         Self {
-            edge_radius: 0.0,
-            friction,
+            edge_radius,
+            friction: Friction::dry(friction),
         }
     }
 
     fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
         Ok(Self {
             edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
-            friction: f.number("friction", FRICTION)?,
+            friction: Friction::read(f)?,
         })
     }
 }
@@ -49,8 +92,9 @@ pub enum Terrain {
     Flat {
         /// [m] Distance from x = 0 to the goal.
         length: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// With the robot.
+        #[serde(flatten)]
+        friction: Friction,
     },
     /// One step up with a vertical face at x = 0.
     Step {
@@ -116,8 +160,9 @@ pub enum Terrain {
     HalfRound {
         /// [m] Radius.
         radius: f64,
-        /// Coulomb friction with the robot.
-        friction: f64,
+        /// With the robot.
+        #[serde(flatten)]
+        friction: Friction,
     },
     /// A barrier whose front face is turned about the vertical, so that the tracks meet it one after the other.
     DiagonalBarrier {
@@ -211,7 +256,7 @@ impl Terrain {
         let terrain = match f.text("kind")? {
             "flat" => Self::Flat {
                 length: f.number("length", LENGTH)?,
-                friction: f.number("friction", FRICTION)?,
+                friction: Friction::read(&mut f)?,
             },
             "step" => Self::Step {
                 height: f.number("height", HEIGHT)?,
@@ -245,7 +290,7 @@ impl Terrain {
             },
             "half_round" => Self::HalfRound {
                 radius: f.number("radius", SIZE)?,
-                friction: f.number("friction", FRICTION)?,
+                friction: Friction::read(&mut f)?,
             },
             "diagonal_barrier" => Self::DiagonalBarrier {
                 yaw: f.number("yaw", YAW)?,
@@ -284,7 +329,9 @@ impl Terrain {
     /// Multiplies the friction of all its lanes.
     pub(crate) fn scale_friction(&mut self, factor: f64) {
         match self {
-            Self::Flat { friction, .. } | Self::HalfRound { friction, .. } => *friction *= factor,
+            Self::Flat { friction, .. } | Self::HalfRound { friction, .. } => {
+                friction.coefficient *= factor;
+            }
             Self::Step { surface, .. }
             | Self::Ramp { surface, .. }
             | Self::Barrier { surface, .. }
@@ -293,7 +340,7 @@ impl Terrain {
             | Self::Stairs { surface, .. }
             | Self::DiagonalBarrier { surface, .. }
             | Self::RandomStepfield(Stepfield { surface, .. })
-            | Self::Points { surface, .. } => surface.friction *= factor,
+            | Self::Points { surface, .. } => surface.friction.coefficient *= factor,
             Self::Lanes {
                 left,
                 right,

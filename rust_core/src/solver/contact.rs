@@ -8,6 +8,7 @@ use super::grip::Grip;
 use super::velocities::{ActsOn, HasVelocities, Velocities};
 use super::way::Way;
 use crate::geometry::Vector;
+use crate::scenario::Friction;
 
 /// [1/kg] Velocity along normal and tangent per unit impulse along them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,8 +25,7 @@ pub(crate) struct Contact {
     pub acts: ActsOn,
     pub normal: Direction,
     pub tangent: Direction,
-    /// Coefficient of friction.
-    pub friction: f64,
+    pub friction: Friction,
     /// Whether it can carry a load in this solve.
     pub bears: bool,
     /// [m/s] Speed at which it may close or, if negative, must open.
@@ -62,7 +62,7 @@ impl Contact {
             acts,
             normal,
             tangent,
-            friction: 0.0,
+            friction: Friction::dry(0.0),
             bears: false,
             bias: 0.0,
             compliance: 0.0,
@@ -100,7 +100,7 @@ impl Contact {
     /// is left out.
     pub(super) fn changes(&self, changes: &Velocities) -> [f64; 2] {
         let [n, t] = &self.actions;
-        let slip = if self.friction > 0.0 {
+        let slip = if self.friction.coefficient > 0.0 {
             self.acts.speed(t, changes)
         } else {
             0.0

@@ -23,7 +23,7 @@ impl Contact {
     pub(super) fn lead(&mut self, times: f64) {
         let (normal, friction) = self.center;
         self.normal_impulse = beyond(normal, self.normal_impulse, times).max(0.0);
-        let limit = self.friction * self.normal_impulse;
+        let limit = self.friction.coefficient * self.normal_impulse;
         self.friction_impulse = beyond(friction, self.friction_impulse, times).clamp(-limit, limit);
     }
 
@@ -73,7 +73,7 @@ impl Contact {
     pub(super) fn law(&self, [approach, slip]: [f64; 2]) -> (Grip, [f64; 2]) {
         let [n, t] = self.dampers;
         let (normal, friction) = (n.at(approach), t.at(slip));
-        let limit = self.friction * normal;
+        let limit = self.friction.coefficient * normal;
         let (grip, friction) = if normal <= 0.0 {
             (Grip::Open, 0.0)
         } else if friction > limit || limit == 0.0 {
@@ -94,8 +94,8 @@ impl Contact {
         match self.grip {
             Grip::Open => [0.0, 0.0],
             Grip::Sticks => [normal, t.at(slip)],
-            Grip::Forwards => [normal, self.friction * normal],
-            Grip::Backwards => [normal, -self.friction * normal],
+            Grip::Forwards => [normal, self.friction.coefficient * normal],
+            Grip::Backwards => [normal, -self.friction.coefficient * normal],
         }
     }
 
@@ -120,14 +120,20 @@ impl Contact {
                 found([normal; 2], n);
                 found([tangent; 2], t);
             }
-            Grip::Forwards => found([&normal.plus(tangent, self.friction), normal], n),
-            Grip::Backwards => found([&normal.plus(tangent, -self.friction), normal], n),
+            Grip::Forwards => found(
+                [&normal.plus(tangent, self.friction.coefficient), normal],
+                n,
+            ),
+            Grip::Backwards => found(
+                [&normal.plus(tangent, -self.friction.coefficient), normal],
+                n,
+            ),
         }
     }
 
     /// The way in which it starts to slide when it touches.
     pub(super) fn slides(&self, [_, slip]: [f64; 2]) -> Grip {
-        if self.friction > 0.0 && self.dampers[1].at(slip) < 0.0 {
+        if self.friction.coefficient > 0.0 && self.dampers[1].at(slip) < 0.0 {
             Grip::Backwards
         } else {
             Grip::Forwards
@@ -141,7 +147,7 @@ impl Contact {
             self.dampers[0].at(approach + lift),
             self.dampers[1].at(slip),
         );
-        let limit = self.friction * normal;
+        let limit = self.friction.coefficient * normal;
         if self.grip == Grip::Open {
             found(Grip::Sticks, -normal);
             return;
@@ -152,8 +158,12 @@ impl Contact {
                 found(Grip::Forwards, limit - friction);
                 found(Grip::Backwards, limit + friction);
             }
-            Grip::Forwards if self.friction > 0.0 => found(Grip::Sticks, friction - limit),
-            Grip::Backwards if self.friction > 0.0 => found(Grip::Sticks, -friction - limit),
+            Grip::Forwards if self.friction.coefficient > 0.0 => {
+                found(Grip::Sticks, friction - limit)
+            }
+            Grip::Backwards if self.friction.coefficient > 0.0 => {
+                found(Grip::Sticks, -friction - limit)
+            }
             _ => {}
         }
     }

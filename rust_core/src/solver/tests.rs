@@ -11,6 +11,7 @@ use approx::assert_relative_eq;
 
 use super::*;
 use crate::geometry::{Vector, cross, right_of};
+use crate::scenario::Friction;
 
 /// [m/s^2], and [s] the time of a solve here.
 const GRAVITY: f64 = 9.81;
@@ -40,7 +41,7 @@ fn contact(arm: Vector, normal: Vector, friction: f64) -> Contact {
         spin: None,
     };
     let mut contact = Contact::new(acts, directions);
-    (contact.friction, contact.bears) = (friction, true);
+    (contact.friction, contact.bears) = (Friction::dry(friction), true);
     contact
 }
 

@@ -102,11 +102,7 @@ impl Ground {
         let end = lanes[2].end();
         let profile = |skyline: &Skyline| {
             let points = skyline.points(-RUN_OUT.value(), end + RUN_OUT.value());
-            let Surface {
-                edge_radius,
-                friction,
-            } = surface;
-            Profile::new("terrain", &points, edge_radius, friction, true)
+            Profile::new("terrain", &points, surface, true)
         };
         if lanes[0] == lanes[1] {
             return Ok(Self::of(vec![profile(&lanes[0])?], 1, end));
@@ -206,13 +202,7 @@ impl Described {
     fn new(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {
         let obstacle = obstacle::of(terrain);
         let goal = obstacle.goal;
-        let profile = Profile::new(
-            path,
-            &obstacle.points,
-            obstacle.surface.edge_radius,
-            obstacle.surface.friction,
-            true,
-        )?;
+        let profile = Profile::new(path, &obstacle.points, obstacle.surface, true)?;
         let (low, high) = profile.extent();
         if !(low..=high).contains(&goal) {
             let rule = format!("must lie on the terrain, from {low} to {high} m");
@@ -262,7 +252,11 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
     // Before the first and behind the last there is no ground.
     points.remove(0);
     points.pop();
-    Profile::new(path, &points, 0.0, a.friction.max(b.friction), true)
+    let surface = Surface {
+        edge_radius: 0.0,
+        friction: a.friction.or_larger(b.friction),
+    };
+    Profile::new(path, &points, surface, true)
 }
 
 /// [m] Heights of a profile just before and just behind an x.
@@ -282,7 +276,7 @@ mod tests {
     use super::*;
 
     fn profile(points: &[[f64; 2]]) -> Profile {
-        Profile::new("terrain", points, 0.0, 0.5, true).expect("a profile")
+        Profile::new("terrain", points, Surface::sharp(0.5), true).expect("a profile")
     }
 
     fn points(profile: &Profile) -> Vec<[f64; 2]> {

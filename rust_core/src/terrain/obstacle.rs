@@ -21,7 +21,10 @@ pub(super) fn of(terrain: &Terrain) -> Obstacle {
         Terrain::Flat { length, friction } => Obstacle {
             points: vec![[-RUN_OUT.value(), 0.0], [length + RUN_OUT.value(), 0.0]],
             goal: *length,
-            surface: Surface::sharp(*friction),
+            surface: Surface {
+                edge_radius: 0.0,
+                friction: *friction,
+            },
         },
         Terrain::Step { height, surface } => {
             between_levels(&[[0.0, 0.0], [0.0, *height]], *surface)

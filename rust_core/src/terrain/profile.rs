@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::straight::{COLLINEAR, bends, without_collinear};
 use crate::geometry::{Vector, left_of};
-use crate::scenario::ScenarioError;
+use crate::scenario::{Friction, ScenarioError, Surface};
 use crate::units::Metres;
 
 /// [rad] Turn of one facet of a rounded edge; at a radius of 20 mm, it is 0.8 um below its true arc.
@@ -52,8 +52,8 @@ pub struct Profile {
     pub edge_of_point: Vec<i32>,
     /// Corners of the described ground.
     pub edges: Vec<Edge>,
-    /// Coulomb friction with the robot.
-    pub friction: f64,
+    /// With the robot.
+    pub friction: Friction,
     /// Number of points left out because they repeat or continue their neighbours.
     pub merged: usize,
     /// Indices of the points at which it bends.
@@ -89,8 +89,7 @@ impl Profile {
     pub fn new(
         path: &str,
         given: &[[f64; 2]],
-        radius: f64,
-        friction: f64,
+        surface: Surface,
         merge: bool,
     ) -> Result<Self, ScenarioError> {
         let mut points: Vec<(usize, Vector)> = given
@@ -125,11 +124,11 @@ impl Profile {
             points: Vec::new(),
             edge_of_point: Vec::new(),
             edges: Vec::new(),
-            friction,
+            friction: surface.friction,
             merged,
             bends: Vec::new(),
         };
-        profile.round(path, &points, radius)?;
+        profile.round(path, &points, surface.edge_radius)?;
         profile.bends = bends(&profile.points, |i| {
             let edge = usize::try_from(profile.edge_of_point[i]);
             edge.is_ok_and(|edge| profile.edges[edge].radius > 0.0)

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crawler2d_core::{Outcome, Record, Run, Scenario, Simulation, Terrain, Track, TrackOutline};
+use crawler2d_core::{
+    Friction, Outcome, Record, Run, Scenario, Simulation, Terrain, Track, TrackOutline,
+};
 
 use crate::common::*;
 use crate::drawn::drawn_on_discs;
@@ -35,7 +37,7 @@ fn triangle() -> Vec<[f64; 3]> {
 fn level(length: f64) -> Terrain {
     Terrain::Flat {
         length,
-        friction: 0.9,
+        friction: Friction::dry(0.9),
     }
 }
 

@@ -1,9 +1,10 @@
 //! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
 
 use crawler2d_core::{
-    ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Gait,
-    GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack, ShoeShape,
-    Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline, ValidScenario, Wheel,
+    ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Friction,
+    Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
+    ShoeShape, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline, ValidScenario,
+    Wheel,
 };
 
 use crate::common::*;
@@ -192,38 +193,26 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
         2 => Terrain::Ramp {
             angle: draw.between(-1.2, 1.2),
             length: draw.between(0.05, 2.0),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         3 => Terrain::Barrier {
             height,
             thickness: draw.between(0.005, 0.5),
-            surface: Surface {
-                edge_radius: 0.002,
-                friction,
-            },
+            surface: Surface::rounded(0.002, friction),
         },
         4 => Terrain::Ridge {
             height,
             edge_angle: draw.between(0.2, 3.0),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         5 => Terrain::Gap {
             width: draw.between(0.02, 1.0),
             depth: height,
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         6 => Terrain::HalfRound {
             radius: height,
-            friction,
+            friction: Friction::dry(friction),
         },
         _ => {
             let (mut x, mut points) = (0.0, vec![[-10.0, 0.0], [0.0, 0.0]]);
@@ -237,10 +226,7 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
             Terrain::Points {
                 points,
                 goal: x,
-                surface: Surface {
-                    edge_radius,
-                    friction,
-                },
+                surface: Surface::rounded(edge_radius, friction),
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Gear wheels: odometry, phases, ghosts, impacts, and another engine.
 
 use crawler2d_core::{
-    GearWheel, Ground, HybridWheels, Model, Profile, Scenario, Shape, Simulation, Terrain, Track,
-    Wheel,
+    Friction, GearWheel, Ground, HybridWheels, Model, Profile, Scenario, Shape, Simulation,
+    Surface, Terrain, Track, Wheel,
 };
 
 use crate::common::*;
@@ -13,7 +13,7 @@ pub(crate) fn rolling(track: Track) -> Scenario {
     scenario.robot.track = track;
     scenario.terrain = Terrain::Flat {
         length: 5.0,
-        friction: 1.5,
+        friction: Friction::dry(1.5),
     };
     scenario
 }
@@ -104,7 +104,7 @@ fn phases_of_a_third_shake_less_than_wheels_in_step() {
             scenario.robot.track = line_of(count, gear(phase_fraction));
             scenario.terrain = Terrain::Flat {
                 length: 20.0,
-                friction: 0.9,
+                friction: Friction::dry(0.9),
             };
             scenario.duration = 8.0;
             summary(&scenario).metrics.vertical_acceleration
@@ -126,7 +126,9 @@ fn pieces_of_flat_ground_leave_no_trace_under_grousers() {
             .map(|i| [-5.0 + 10.0 * i as f64 / pieces as f64, 0.0])
             .collect();
         Ground {
-            lanes: vec![Profile::new("ground", &points, 0.0, 0.9, false).expect("level")],
+            lanes: vec![
+                Profile::new("ground", &points, Surface::sharp(0.9), false).expect("level"),
+            ],
             tracks: 1,
             goal: 4.0,
             first_edge: 0.0,

@@ -20,7 +20,8 @@ fn cut(pieces: usize, jitter: f64, draw: &mut Draw) -> Ground {
             ]
         })
         .collect();
-    let profile = Profile::new("ground", &points, 0.0, 0.9, false).expect("a level profile");
+    let profile =
+        Profile::new("ground", &points, Surface::sharp(0.9), false).expect("a level profile");
     assert_eq!(profile.points.len(), pieces + 1, "nothing is merged");
     Ground {
         lanes: vec![profile],
@@ -192,8 +193,13 @@ fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
             assert!(off < 1e-9 + 10.0 * spread && upward < 1e-6 + 1.5 * fastest);
         }
         let mut far = level(1);
-        far.lanes[0] = Profile::new("ground", &[[95.0, 0.0], [105.0, 0.0]], 0.0, 0.9, false)
-            .expect("a level profile");
+        far.lanes[0] = Profile::new(
+            "ground",
+            &[[95.0, 0.0], [105.0, 0.0]],
+            Surface::sharp(0.9),
+            false,
+        )
+        .expect("a level profile");
         far.first_edge = 100.0;
         far.goal = 104.0;
         let (mut path, _) = two_seconds(&scenario, far);

@@ -46,7 +46,13 @@ fn run_finite_and_stay_out(seed: u64, cases: u32, drawn: fn(&mut Draw) -> Scenar
             Ground::new(&scenario.terrain, scenario.robot.gauge).expect("it was built before");
         for i in 0..run.contacts.time.len() {
             let lane = |lane: &&Profile| lane.side as i64 == run.contacts.lane[i];
-            let friction = ground.lanes.iter().find(lane).expect("a lane").friction;
+            let friction = ground
+                .lanes
+                .iter()
+                .find(lane)
+                .expect("a lane")
+                .friction
+                .coefficient;
             let (normal, tangent) = (run.contacts.normal_force[i], run.contacts.friction_force[i]);
             assert!(
                 normal >= 0.0 && tangent.abs() <= friction * normal * (1.0 + 1e-9) + 1e-9,

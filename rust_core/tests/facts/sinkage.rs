@@ -2,21 +2,25 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use crawler2d_core::{FieldPattern, Run, Scenario, Stepfield, Surface, Terrain, ValidScenario};
+use crawler2d_core::{
+    FieldPattern, Friction, Run, Scenario, Stepfield, Surface, Terrain, ValidScenario,
+};
 
 use crate::common::*;
 use crate::drawn::drawn;
 
 const FRICTION: f64 = 0.9;
 
+fn half_round(radius: f64, friction: f64) -> Terrain {
+    let friction = Friction::dry(friction);
+    Terrain::HalfRound { radius, friction }
+}
+
 fn points(points: &[[f64; 2]], edge_radius: f64) -> Terrain {
     Terrain::Points {
         points: points.to_vec(),
         goal: points[points.len() - 2][0],
-        surface: Surface {
-            edge_radius,
-            friction: FRICTION,
-        },
+        surface: Surface::rounded(edge_radius, FRICTION),
     }
 }
 
@@ -24,10 +28,7 @@ fn barrier(height: f64, thickness: f64, edge_radius: f64) -> Terrain {
     Terrain::Barrier {
         height,
         thickness,
-        surface: Surface {
-            edge_radius,
-            friction: FRICTION,
-        },
+        surface: Surface::rounded(edge_radius, FRICTION),
     }
 }
 
@@ -53,16 +54,13 @@ fn blocks(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
         ("barrier", barrier(size, 0.3, radius)),
         ("barrier of two arcs", barrier(size, 2.0 * size, radius)),
         ("bar", barrier(size, 0.5 * size, 0.25 * radius)),
-        ("half round", Terrain::HalfRound { radius, friction }),
+        ("half round", half_round(radius, friction)),
         (
             "gap",
             Terrain::Gap {
                 width: 0.15,
                 depth: size,
-                surface: Surface {
-                    edge_radius: radius,
-                    friction,
-                },
+                surface: Surface::rounded(radius, friction),
             },
         ),
         (
@@ -71,10 +69,7 @@ fn blocks(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
                 count: 3,
                 rise: size,
                 run: 0.25,
-                surface: Surface {
-                    edge_radius: radius,
-                    friction,
-                },
+                surface: Surface::rounded(radius, friction),
             },
         ),
         (
@@ -83,10 +78,7 @@ fn blocks(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
                 count: 3,
                 rise: size,
                 run: 0.8 * size,
-                surface: Surface {
-                    edge_radius: 0.8 * radius,
-                    friction,
-                },
+                surface: Surface::rounded(0.8 * radius, friction),
             },
         ),
     ]
@@ -113,10 +105,7 @@ fn slopes(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
             Terrain::Ramp {
                 angle: FRAC_PI_4,
                 length: size,
-                surface: Surface {
-                    edge_radius: of_slope(FRAC_PI_4),
-                    friction,
-                },
+                surface: Surface::rounded(of_slope(FRAC_PI_4), friction),
             },
         ),
         (
@@ -124,10 +113,7 @@ fn slopes(size: f64, radius: f64) -> Vec<(&'static str, Terrain)> {
             Terrain::Ridge {
                 height: size,
                 edge_angle: FRAC_PI_2,
-                surface: Surface {
-                    edge_radius: of_slope(FRAC_PI_2),
-                    friction,
-                },
+                surface: Surface::rounded(of_slope(FRAC_PI_2), friction),
             },
         ),
         (
@@ -166,10 +152,7 @@ fn two_lanes(size: f64, share: f64) -> Vec<(&'static str, Terrain)> {
                 barrier_height: 0.0,
                 barrier_thickness: 0.1,
                 barrier_yaw: 0.0,
-                surface: Surface {
-                    edge_radius: 0.025 * (1.0 - share),
-                    friction,
-                },
+                surface: Surface::rounded(0.025 * (1.0 - share), friction),
             }),
         ),
         (
@@ -178,16 +161,13 @@ fn two_lanes(size: f64, share: f64) -> Vec<(&'static str, Terrain)> {
                 yaw: 0.4,
                 height: size,
                 thickness: 0.2,
-                surface: Surface {
-                    edge_radius: radius,
-                    friction,
-                },
+                surface: Surface::rounded(radius, friction),
             },
         ),
         (
             "lanes",
             Terrain::Lanes {
-                left: Box::new(Terrain::HalfRound { radius, friction }),
+                left: Box::new(half_round(radius, friction)),
                 right: Box::new(barrier(size, 0.2, radius)),
                 middle: None,
             },
@@ -198,10 +178,7 @@ fn two_lanes(size: f64, share: f64) -> Vec<(&'static str, Terrain)> {
 fn step_of(height: f64, edge_radius: f64) -> Terrain {
     Terrain::Step {
         height,
-        surface: Surface {
-            edge_radius,
-            friction: FRICTION,
-        },
+        surface: Surface::rounded(edge_radius, FRICTION),
     }
 }
 

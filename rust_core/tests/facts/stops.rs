@@ -295,7 +295,7 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
     let mut loaded = 0;
     for friction in [0.5, 0.6, 0.7] {
         if let Terrain::Points { surface, .. } = &mut scenario.terrain {
-            surface.friction = friction;
+            surface.friction.coefficient = friction;
         }
         let (_, d) = why(&scenario);
         println!(

@@ -78,41 +78,26 @@ fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
     match kind {
         0 => Terrain::Step {
             height,
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         1 => Terrain::Barrier {
             height,
             thickness: draw.between(0.005, 0.2),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         2 => Terrain::Ridge {
             height,
             edge_angle: draw.between(0.3, 2.5),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         3 => Terrain::Gap {
             width: draw.between(0.05, 0.3),
             depth: height,
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         4 => Terrain::Step {
             height,
-            surface: Surface {
-                edge_radius: draw.between(0.002, 0.015),
-                friction,
-            },
+            surface: Surface::rounded(draw.between(0.002, 0.015), friction),
         },
         _ => {
             let mut x = -1.0;
@@ -125,10 +110,7 @@ fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
             Terrain::Points {
                 points,
                 goal: 0.0,
-                surface: Surface {
-                    edge_radius,
-                    friction,
-                },
+                surface: Surface::rounded(edge_radius, friction),
             }
         }
     }

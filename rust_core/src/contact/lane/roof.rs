@@ -85,6 +85,7 @@ impl Chord {
 mod tests {
     use super::*;
     use crate::contact::lane::Lane;
+    use crate::scenario::Surface;
     use crate::terrain::Profile;
 
     #[test]
@@ -101,7 +102,8 @@ mod tests {
             [3.0, 0.2],
         ];
         for edge_radius in [0.0, 0.02] {
-            let profile = Profile::new("ground", &points, edge_radius, 0.9, true).expect("valid");
+            let profile = Profile::new("ground", &points, Surface::rounded(edge_radius, 0.9), true)
+                .expect("valid");
             let lane = Lane::new(&profile);
             let count = lane.corners.len();
             for (first, last) in (0..count).flat_map(|i| (i..count).map(move |j| (i, j))) {

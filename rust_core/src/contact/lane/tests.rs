@@ -6,6 +6,7 @@ use std::cell::Cell;
 
 use super::*;
 use crate::draw::Draw;
+use crate::scenario::Surface;
 
 /// Half a metre of ground: flat, or with upright faces and jitter of this size [m]; edges are rounded where
 /// there is room.
@@ -19,9 +20,14 @@ fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profi
             [x, draw.between(-jitter, jitter)]
         })
         .collect();
-    let profile = Profile::new("terrain", &points, edge_radius, 0.9, false)
-        .or_else(|_| Profile::new("terrain", &points, 0.0, 0.9, false))
-        .unwrap();
+    let profile = Profile::new(
+        "terrain",
+        &points,
+        Surface::rounded(edge_radius, 0.9),
+        false,
+    )
+    .or_else(|_| Profile::new("terrain", &points, Surface::sharp(0.9), false))
+    .unwrap();
     let lane = Lane::new(&profile);
     (profile, lane)
 }
@@ -34,7 +40,13 @@ fn saw(points: usize) -> (Profile, Lane) {
         .collect();
     // Its faces slope by 45 degrees.
     let edge_radius = pitch * 2.0_f64.sqrt();
-    let profile = Profile::new("terrain", &points, edge_radius, 0.9, false).unwrap();
+    let profile = Profile::new(
+        "terrain",
+        &points,
+        Surface::rounded(edge_radius, 0.9),
+        false,
+    )
+    .unwrap();
     let lane = Lane::new(&profile);
     assert!(
         lane.faces[1..points.len() - 2]
@@ -144,7 +156,13 @@ fn nothing_rises_above_the_top_of_a_region() {
                 [0.2 + left, 0.0],
                 [2.0, 0.0],
             ];
-            let profile = Profile::new("terrain", &points, edge_radius, 0.9, false).unwrap();
+            let profile = Profile::new(
+                "terrain",
+                &points,
+                Surface::rounded(edge_radius, 0.9),
+                false,
+            )
+            .unwrap();
             let lane = Lane::new(&profile);
             let arc = &lane.corners[2];
             let top = lane.top(&lane.region(left - 0.1, left + 0.1));
@@ -181,7 +199,12 @@ fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
     let mut draw = Draw(20_270_123);
     for jitter in [3e-7, 1e-6, 1e-5] {
         let points = (0..100_000).map(|i| [5e-6 * f64::from(i), draw.between(-jitter, jitter)]);
-        let profile = Profile::new("terrain", &points.collect::<Vec<_>>(), 0.0, 0.9, false);
+        let profile = Profile::new(
+            "terrain",
+            &points.collect::<Vec<_>>(),
+            Surface::sharp(0.9),
+            false,
+        );
         let rough = Lane::new(&profile.unwrap());
         let arc = Vector::new(1e-3, 1.0).normalize();
         let bears = |i: &usize| rough.corners[*i].is_convex && rough.corners[*i].has_normal(arc);

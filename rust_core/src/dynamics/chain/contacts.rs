@@ -40,7 +40,7 @@ impl Touch {
             gap: contact.distance - solved.opening_speed(state) * time,
             ..Self::default()
         };
-        touch.continued(solved, last, part.friction_limit)
+        touch.continued(solved, last)
     }
 
     /// A place where a shoe rests on the guide, a wheel or a tooth, without friction.

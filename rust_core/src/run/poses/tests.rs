@@ -6,7 +6,9 @@ use crate::limits::memory::Budget;
 use crate::robot::{BodyKind, Part, Shape};
 use crate::run::record::Recorder;
 use crate::run::{Record, Simulation, ValidScenario};
-use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
+use crate::scenario::{
+    Friction, Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel,
+};
 
 /// Robots with all kinds of bodies, in front of a step, or of a step under one track only.
 fn scenarios() -> Vec<(String, Scenario)> {
@@ -43,7 +45,7 @@ fn scenarios() -> Vec<(String, Scenario)> {
         let left = Box::new(scenario.terrain.clone());
         let right = Box::new(Terrain::Flat {
             length: 3.0,
-            friction: 0.9,
+            friction: Friction::dry(0.9),
         });
         scenario.terrain = Terrain::Lanes {
             left,

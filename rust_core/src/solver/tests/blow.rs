@@ -164,7 +164,7 @@ fn no_blow_gives_back_more_energy_than_it_took() {
             "case {case}: {after} J of {before} J, share {share}"
         );
         for c in &problem.contacts {
-            let most = c.friction * c.normal_impulse;
+            let most = c.friction.coefficient * c.normal_impulse;
             assert!(c.normal_impulse >= 0.0 && c.friction_impulse.abs() <= most * (1.0 + 1e-9));
         }
     }

@@ -83,7 +83,7 @@ pub(super) fn by_interior_point(problem: &Problem) -> DVector<f64> {
         let spring = problem.mass_on_springs.expect("a mass").recip();
         let soft = c.compliance * spring;
         rows.push((row(&c.normal), -c.bias, soft, (0.0, f64::INFINITY)));
-        let most = c.friction * c.normal_impulse;
+        let most = c.friction.coefficient * c.normal_impulse;
         rows.push((row(&c.tangent), 0.0, 0.0, (-most, most)));
     }
     for motor in &problem.motors {

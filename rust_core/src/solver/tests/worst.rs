@@ -45,7 +45,7 @@ fn contact_of(entries: &[f64]) -> Contact {
     };
     let mut contact = Contact::new(acts, [along(&entries[2..8]), along(&entries[8..14])]);
     contact.bears = true;
-    contact.friction = entries[14];
+    contact.friction = Friction::dry(entries[14]);
     (contact.bias, contact.compliance) = (entries[15], entries[16]);
     (contact.normal_impulse, contact.friction_impulse) = (entries[17], entries[18]);
     contact.grip = GRIPS[entries[19] as usize];
@@ -113,7 +113,7 @@ fn breach(contact: &Contact, problem: &Problem) -> f64 {
     } else {
         (-opens).max(0.0)
     };
-    let sticks = t.abs() < contact.friction * n * (1.0 - 1e-9);
+    let sticks = t.abs() < contact.friction.coefficient * n * (1.0 - 1e-9);
     let helps = slip * t > 0.0;
     of_normal.max(if sticks || helps { slip.abs() } else { 0.0 })
 }
@@ -125,7 +125,7 @@ fn the_worst_hundred_problems_of_studies_obey_coulombs_law() {
         problem.solve();
         assert_eq!(problem.effort.unresolved, 0, "problem {number}");
         for contact in &problem.contacts {
-            let most = contact.friction * contact.normal_impulse;
+            let most = contact.friction.coefficient * contact.normal_impulse;
             assert!(contact.normal_impulse >= 0.0);
             assert!(contact.friction_impulse.abs() <= most * (1.0 + 1e-9));
             let breach = breach(contact, &problem);

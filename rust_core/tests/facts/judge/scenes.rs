@@ -36,7 +36,7 @@ impl Scene {
 
 fn friction(terrain: &Terrain) -> f64 {
     match terrain {
-        Terrain::Points { surface, .. } => surface.friction,
+        Terrain::Points { surface, .. } => surface.friction.coefficient,
         _ => panic!("a field of blocks is a list of points"),
     }
 }
@@ -126,27 +126,18 @@ pub(crate) fn drawn_scene(seed: u64) -> Scene {
         1 => Terrain::Barrier {
             height,
             thickness: draw.between(0.01, 0.2),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         2 => Terrain::Ridge {
             height,
             edge_angle: draw.between(0.6, 2.0),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         3 => Terrain::Stairs {
             count: 3,
             rise: 0.8 * height,
             run: draw.between(0.15, 0.3),
-            surface: Surface {
-                edge_radius,
-                friction,
-            },
+            surface: Surface::rounded(edge_radius, friction),
         },
         _ => {
             field = Some(height);

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::curve::{Curve, Extent};
 use crate::draw::Draw;
 use crate::geometry::{Vector, cross, left_of};
+use crate::scenario::Surface;
 use crate::terrain::Profile;
 
 /// [m] Level ground on both sides of the obstacle.
@@ -45,7 +46,8 @@ impl Ground {
     /// None if the radius does not fit.
     pub(super) fn new(corners: &[Vector], radius: f64) -> Option<Self> {
         let points: Vec<[f64; 2]> = corners.iter().map(|p| [p.x, p.y]).collect();
-        let profile = Profile::new("terrain", &points, radius, 0.9, false).ok()?;
+        let profile =
+            Profile::new("terrain", &points, Surface::rounded(radius, 0.9), false).ok()?;
         // Points on straight ground are none of its corners.
         let bends: HashSet<usize> = profile.bends().iter().map(|i| *i as usize).collect();
         let straight = (0..profile.points.len()).filter(|i| !bends.contains(i));

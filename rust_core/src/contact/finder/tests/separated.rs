@@ -10,6 +10,7 @@ use crate::contact::Contact;
 use crate::draw::Draw;
 use crate::geometry::{Disc, Pose, Vector, cross, left_of};
 use crate::robot::{Running, Shape};
+use crate::scenario::Surface;
 use crate::terrain::Profile;
 
 /// [m] Tolerance of the comparison.
@@ -112,7 +113,13 @@ fn a_rounded_edge_is_a_true_arc() {
     for _ in 0..10_000 {
         let (edge_radius, radius) = (draw.size(0.5e-3, 20e-3), draw.size(1e-3, 0.12));
         let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
-        let profile = Profile::new("terrain", &corners, edge_radius, 0.9, true).unwrap();
+        let profile = Profile::new(
+            "terrain",
+            &corners,
+            Surface::rounded(edge_radius, 0.9),
+            true,
+        )
+        .unwrap();
         let part = driven(Shape::Disc {
             center: Vector::ZERO,
             radius,
@@ -152,7 +159,7 @@ fn a_part_on_rough_ground_has_few_contacts_however_finely_it_is_cut() {
     for jitter in [1e-6, 1e-5, 1e-4] {
         let mut point = |i: u32| [1e-5 * f64::from(i) - 0.3, draw.between(-jitter, jitter)];
         let corners: Vec<[f64; 2]> = (0..60_000).map(&mut point).collect();
-        let profile = Profile::new("terrain", &corners, 0.0, 0.9, true).unwrap();
+        let profile = Profile::new("terrain", &corners, Surface::sharp(0.9), true).unwrap();
         for shape in [
             disc.clone(),
             Shape::Hull {
