@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import inspect
 import re
 import reprlib
 import sys
@@ -87,7 +88,7 @@ class Parameters(TakesKeywords):
         is.
         """
         arguments = []
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+        for field in fields_of(type(self)):
             for name in self.written_as.get(field.name, (field.name,)):
                 value = getattr(self, name)
                 is_model = isinstance(value, Parameters) and value.kind
@@ -163,14 +164,24 @@ def _remedy(value: Any, kinds: tuple[Any, ...]) -> str:
     return ", not a string" if isinstance(value, str) and not {float, int}.isdisjoint(kinds) else ""
 
 
+_FIELDS: dict[type[Parameters], list[dataclasses.Field[Any]]] = {}
 _HINTS: dict[type[Parameters], dict[str, Any]] = {}
+
+
+def fields_of(cls: type[Parameters]) -> list[dataclasses.Field[Any]]:
+    """List the fields in the order of JSON: those of the class, then those that it inherits."""
+    if cls not in _FIELDS:
+        fields = {field.name: field for field in dataclasses.fields(cls)}  # type: ignore[arg-type]
+        names = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
+        _FIELDS[cls] = [fields[name] for name in dict.fromkeys(names) if name in fields]
+    return _FIELDS[cls]
 
 
 def field_hints(cls: type[Parameters]) -> dict[str, Any]:
     """Resolve the annotations of the fields, in order, once per class."""
     if cls not in _HINTS:
         hints = typing.get_type_hints(cls)
-        _HINTS[cls] = {f.name: hints[f.name] for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
+        _HINTS[cls] = {field.name: hints[field.name] for field in fields_of(cls)}
     return _HINTS[cls]
 
 
@@ -201,7 +212,7 @@ def to_dict(parameters: Parameters) -> dict[str, Any]:
     """
     cls = type(parameters)
     values: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
-    for field in dataclasses.fields(parameters):  # type: ignore[arg-type]
+    for field in fields_of(cls):
         name = field.name
         if name not in cls.omitted_defaults or getattr(parameters, name) != field.default:
             for each in parameters.written_as.get(name, (name,)):

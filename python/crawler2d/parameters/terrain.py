@@ -12,6 +12,8 @@ __all__ = [
     "DiagonalBarrier",
     "Flat",
     "Gap",
+    "Ground",
+    "GroundWithEdges",
     "HalfRound",
     "Lane",
     "Lanes",
@@ -26,7 +28,35 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flat(Parameters, kind="flat", path="terrain"):
+class Ground(Parameters, path="terrain"):
+    """What the robot touches of any terrain but `Lanes`, whose lanes have it each.
+
+    Parameters
+    ----------
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroundWithEdges(Ground):
+    """The same of a terrain with edges of one radius.
+
+    Parameters
+    ----------
+    edge_radius : float
+        [m] Radius of every convex edge; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    edge_radius: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flat(Ground, kind="flat"):
     """Level ground.
 
     Parameters
@@ -38,11 +68,10 @@ class Flat(Parameters, kind="flat", path="terrain"):
     """
 
     length: float = 2.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Step(Parameters, kind="step", path="terrain"):
+class Step(GroundWithEdges, kind="step"):
     """One step up with a vertical face at x = 0 and a level top.
 
     Parameters
@@ -56,13 +85,10 @@ class Step(Parameters, kind="step", path="terrain"):
     """
 
     height: float
-    _: KW_ONLY
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Ramp(Parameters, kind="ramp", path="terrain"):
+class Ramp(GroundWithEdges, kind="ramp"):
     """A slope that begins at x = 0 and ends in a level top.
 
     Parameters
@@ -80,12 +106,10 @@ class Ramp(Parameters, kind="ramp", path="terrain"):
     angle: float
     _: KW_ONLY
     length: float = 1.0
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Barrier(Parameters, kind="barrier", path="terrain"):
+class Barrier(GroundWithEdges, kind="barrier"):
     """A parallelepiped on level ground, its front face at x = 0.
 
     Parameters
@@ -102,13 +126,10 @@ class Barrier(Parameters, kind="barrier", path="terrain"):
 
     height: float
     thickness: float
-    _: KW_ONLY
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Ridge(Parameters, kind="ridge", path="terrain"):
+class Ridge(GroundWithEdges, kind="ridge"):
     """A triangular prism on level ground that begins at x = 0, its edge on top.
 
     Parameters
@@ -125,13 +146,10 @@ class Ridge(Parameters, kind="ridge", path="terrain"):
 
     height: float
     edge_angle: float
-    _: KW_ONLY
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Gap(Parameters, kind="gap", path="terrain"):
+class Gap(GroundWithEdges, kind="gap"):
     """A trench with vertical walls that begins at x = 0.
 
     Parameters
@@ -149,12 +167,10 @@ class Gap(Parameters, kind="gap", path="terrain"):
     width: float
     _: KW_ONLY
     depth: float = 0.5
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stairs(Parameters, kind="stairs", path="terrain"):
+class Stairs(GroundWithEdges, kind="stairs"):
     """Steps up, the first face at x = 0, then a level top.
 
     The default rise and run are those of a public arena's stairs.
@@ -174,12 +190,10 @@ class Stairs(Parameters, kind="stairs", path="terrain"):
     count: int = 4
     rise: float = 0.20
     run: float = 0.233
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class HalfRound(Parameters, kind="half_round", path="terrain"):
+class HalfRound(Ground, kind="half_round"):
     """Half a pipe lying on level ground, starting at x = 0.
 
     Parameters
@@ -191,12 +205,10 @@ class HalfRound(Parameters, kind="half_round", path="terrain"):
     """
 
     radius: float
-    _: KW_ONLY
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class DiagonalBarrier(Parameters, kind="diagonal_barrier", path="terrain"):
+class DiagonalBarrier(GroundWithEdges, kind="diagonal_barrier"):
     """A parallelepiped on level ground whose front face is turned about the vertical.
 
     The tracks meet it `gauge` tan(`yaw`) apart, and each crosses `thickness` / cos(`yaw`) of it,
@@ -222,12 +234,10 @@ class DiagonalBarrier(Parameters, kind="diagonal_barrier", path="terrain"):
     _: KW_ONLY
     height: float = 0.05
     thickness: float = 0.1
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class RandomStepfield(Parameters, kind="random_stepfield", path="terrain"):
+class RandomStepfield(GroundWithEdges, kind="random_stepfield"):
     """Square posts of random heights from x = 0, a row under each track (Jacoff et al., 2008).
 
     Parameters
@@ -269,12 +279,10 @@ class RandomStepfield(Parameters, kind="random_stepfield", path="terrain"):
     barrier_height: float = 0.0
     barrier_thickness: float = 0.1
     barrier_yaw: float = 0.0
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Points(Parameters, kind="points", path="terrain"):
+class Points(GroundWithEdges, kind="points"):
     """A user-defined profile.
 
     Parameters
@@ -298,8 +306,6 @@ class Points(Parameters, kind="points", path="terrain"):
     points: tuple[tuple[float, float], ...]
     _: KW_ONLY
     goal: float
-    edge_radius: float = 0.0
-    friction: float = 0.9
 
 
 Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.parameters.fields import field_hints
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.terrain import Flat, Points, Ramp
+from crawler2d.parameters.terrain import Flat, Ground, Points, Ramp
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import Row
 from crawler2d.studies.campaign import Campaign, Cell, Tally
@@ -61,8 +62,9 @@ def on_plane(scenario: Scenario, speed: float | None) -> Scenario:
     angle = terrain.angle if isinstance(terrain, Ramp) else 0.0
     rise = _LENGTH * math.tan(angle)
     ends = ((-_LENGTH, -rise), (_LENGTH, rise))
+    surface = {name: getattr(terrain, name) for name in field_hints(Ground)}
     fields = {
-        "terrain": Points(ends, goal=0.0, friction=terrain.friction),
+        "terrain": Points(ends, goal=0.0, **surface),
         "start.angle": angle,
         "drive.speed": scenario.robot.drivetrain.max_speed if speed is None else speed,
         "drive.schedule": None,

@@ -15,7 +15,7 @@ import numpy as np
 from crawler2d.common.arrays import read_scalar
 from crawler2d.common.units import METRICS, unit_of
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.fields import Parameters
+from crawler2d.parameters.fields import Parameters, fields_of
 from crawler2d.results.outcome import TRIALS
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _text(value: Any) -> str:
     if not isinstance(value, Parameters):
         return str(value)
     shown = []
-    for field in dataclasses.fields(value):  # type: ignore[arg-type]
+    for field in fields_of(type(value)):
         inner = getattr(value, field.name)
         if inner != field.default and _matters(value, field):
             text = _text(inner)
