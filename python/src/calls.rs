@@ -23,43 +23,41 @@ pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Er
 
 /// The Python exception of an error.
 pub(crate) fn to_python(error: Error) -> PyErr {
-    Python::attach(|py| {
-        let details = PyDict::new(py);
-        let (class, filled) = match &error {
-            Error::Scenario(e) => {
-                return raise(py, "ScenarioError", (&e.path, &e.value, &e.rule), None);
-            }
-            Error::Interrupted => return pyo3::exceptions::PyKeyboardInterrupt::new_err(()),
-            Error::Simulation(e) => {
-                let step = details.set_item("step", e.step);
-                let filled = step.and_then(|()| details.set_item("body", &e.body));
-                ("SimulationDiverged", filled)
-            }
-            Error::Limit(LimitError::Memory { needed, left, .. }) => {
-                let filled = details.set_item("needed", needed);
-                (
-                    "LimitError",
-                    filled.and_then(|()| details.set_item("left", left)),
-                )
-            }
-            Error::Limit(LimitError::Setting(_)) => ("LimitError", Ok(())),
-            Error::Internal(_) => ("InternalError", Ok(())),
-        };
-        filled.map_or_else(
-            |failed| failed,
-            |()| raise(py, class, (error.to_string(),), Some(&details)),
-        )
-    })
+    Python::attach(|py| exception(py, &error).unwrap_or_else(|failed| failed))
 }
 
-/// An internal error of the program.
-pub(crate) fn internal(message: &str) -> PyErr {
-    Python::attach(|py| raise(py, "InternalError", (message,), None))
+fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let details = PyDict::new(py);
+    let class = match error {
+        Error::Scenario(e) => {
+            return Ok(raise(
+                py,
+                "ScenarioError",
+                (&e.path, &e.value, &e.rule),
+                None,
+            ));
+        }
+        Error::Interrupted => return Ok(pyo3::exceptions::PyKeyboardInterrupt::new_err(())),
+        Error::Simulation(e) => {
+            details.set_item("step", e.step)?;
+            details.set_item("body", &e.body)?;
+            "SimulationDiverged"
+        }
+        Error::Limit(limit) => {
+            if let LimitError::Memory { needed, left, .. } = limit {
+                details.set_item("needed", needed)?;
+                details.set_item("left", left)?;
+            }
+            "LimitError"
+        }
+        Error::Internal(_) => "InternalError",
+    };
+    Ok(raise(py, class, (error.to_string(),), Some(&details)))
 }
 
-/// A request for more than the machine can hold.
-pub(crate) fn limit(message: &str) -> PyErr {
-    Python::attach(|py| raise(py, "LimitError", (message,), None))
+/// An error without any other details than a message.
+pub(crate) fn failure(class: &str, message: &str) -> PyErr {
+    Python::attach(|py| raise(py, class, (message,), None))
 }
 
 /// A wrong argument that is not a field of the scenario.
@@ -105,20 +103,22 @@ fn raise<'py>(
 /// on must be its own, or locked.
 pub(crate) fn run_interruptible<T: Send + 'static>(
     py: Python<'_>,
-    cancel: &Cancel,
-    call: impl Send + 'static + FnOnce() -> Result<T, Error>,
+    call: impl Send + 'static + FnOnce(&Cancel) -> Result<T, Error>,
 ) -> PyResult<T> {
     /// Time between two checks.
     const PAUSE: Duration = Duration::from_millis(10);
 
+    let cancel = Cancel::default();
+    let asked = cancel.clone();
     let (sender, receiver) = sync_channel(1);
     let work = move || {
         // After Ctrl-C, nobody receives the result.
-        let _ = sender.send(caught(call));
+        let _ = sender.send(caught(|| call(&asked)));
     };
     let thread = std::thread::Builder::new().spawn(work);
     if let Err(error) = thread {
-        return Err(limit(&format!("a thread could not be started: {error}")));
+        let message = format!("a thread could not be started: {error}");
+        return Err(failure("LimitError", &message));
     }
     let result = py.detach(move || {
         loop {
@@ -130,7 +130,7 @@ pub(crate) fn run_interruptible<T: Send + 'static>(
                     Python::attach(|py| py.check_signals()).inspect_err(|_| cancel.ask())?;
                 }
                 Err(RecvTimeoutError::Disconnected) => {
-                    break Err(internal("a thread of the core failed"));
+                    break Err(failure("InternalError", "a thread of the core failed"));
                 }
             }
         }
@@ -150,5 +150,5 @@ pub(crate) fn build_interruptible<T: Send + 'static>(
     if text.len() <= SHORT {
         return guarded(|| call(&text));
     }
-    run_interruptible(py, &Cancel::default(), move || call(&text))
+    run_interruptible(py, move |_| call(&text))
 }

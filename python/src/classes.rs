@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{Cancel, ContactTable, End, Error, Outcome, ValidScenario};
+use crawler2d_core::{ContactTable, End, Error, Outcome, ValidScenario};
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
@@ -65,7 +65,7 @@ impl Simulation {
     /// Restores a simulation from a snapshot.
     #[staticmethod]
     fn from_snapshot(py: Python<'_>, snapshot: PyBackedBytes) -> PyResult<Self> {
-        let simulation = run_interruptible(py, &Cancel::default(), move || {
+        let simulation = run_interruptible(py, move |_| {
             crawler2d_core::Simulation::from_snapshot(&snapshot)
         })?;
         Ok(Self::of(simulation))
@@ -89,11 +89,10 @@ impl Simulation {
         trials: Vec<String>,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let wanted = convert::wanted(&trials)?;
-        let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
-        let asked = cancel.clone();
-        let why = run_interruptible(py, &cancel, move || {
+        let inner = Arc::clone(&self.inner);
+        let why = run_interruptible(py, move |cancel| {
             call(&inner, |simulation| {
-                crawler2d_core::diagnose(simulation, wanted, &asked)
+                crawler2d_core::diagnose(simulation, wanted, cancel)
             })
         })?;
         why.map(|d| convert::diagnosis(py, &d)).transpose()
@@ -118,16 +117,15 @@ impl Simulation {
         if time >= end {
             return Ok(());
         }
-        let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
-        let asked = cancel.clone();
-        let slowest = run_interruptible(py, &cancel, move || {
+        let inner = Arc::clone(&self.inner);
+        let slowest = run_interruptible(py, move |cancel| {
             call(&inner, |simulation| {
                 let mut slowest = Duration::ZERO;
                 while simulation.time() < end {
                     let begin = Instant::now();
                     simulation.step_until(end)?;
                     slowest = slowest.max(begin.elapsed());
-                    if asked.is_asked() {
+                    if cancel.is_asked() {
                         break;
                     }
                 }
@@ -221,11 +219,10 @@ impl Simulation {
         if found.is_some() || !self.with(py, |simulation| Ok(simulation.is_over()))? {
             return Ok(found);
         }
-        let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
-        let asked = cancel.clone();
-        let outcome = run_interruptible(py, &cancel, move || {
+        let inner = Arc::clone(&self.inner);
+        let outcome = run_interruptible(py, move |cancel| {
             call(&inner, |simulation| {
-                crawler2d_core::outcome_of(simulation, &asked)
+                crawler2d_core::outcome_of(simulation, cancel)
             })
         })?;
         Ok(Some(*known().get_or_insert(outcome)))

@@ -6,11 +6,21 @@ use crawler2d_core::{
     WheelBody,
 };
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use crate::calls;
+
+/// Puts fields of a struct into a dictionary under their names; with an interpreter, as arrays.
+macro_rules! put {
+    ($dict:ident, $of:ident: $($field:ident)+) => {
+        $($dict.set_item(stringify!($field), $of.$field)?;)+
+    };
+    ($dict:ident, $of:ident, $py:ident: $($field:ident)+) => {
+        $($dict.set_item(stringify!($field), $of.$field.into_pyarray($py))?;)+
+    };
+}
 
 /// What to record of a run, from the arguments; `trials` are names of what to try at a stop.
 pub(crate) fn record(sample_interval: f64, record: &str, trials: &[String]) -> PyResult<Record> {
@@ -54,14 +64,10 @@ pub(crate) fn change(name: &str) -> PyResult<Change> {
 /// What the tables of sweeps hold of a finished run.
 pub(crate) fn row<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    let metrics = PyDict::new(py);
-    for (name, value) in run.metrics.entries() {
-        metrics.set_item(name, value)?;
-    }
-    result.set_item("outcome", run.outcome.name())?;
     let why = run.diagnosis.as_ref();
+    result.set_item("outcome", run.outcome.name())?;
     result.set_item("diagnosis", why.map(|d| diagnosis(py, d)).transpose()?)?;
-    result.set_item("metrics", metrics)?;
+    result.set_item("metrics", run.metrics.entries().into_py_dict(py)?)?;
     result.set_item("wall_time", run.wall_time)?;
     Ok(result)
 }
@@ -69,49 +75,40 @@ pub(crate) fn row<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict
 /// A finished run.
 pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     let result = row(py, &run)?;
-    result.set_item(
-        "trace",
-        trace(py, run.trace, (run.drives, run.shoes, run.flippers))?,
-    )?;
+    let counts = (run.drives, run.shoes, run.flippers);
+    result.set_item("trace", trace(py, run.trace, counts)?)?;
     result.set_item("contacts", contacts(py, run.contacts)?)?;
     result.set_item("edges", edges(py, &run.edges)?)?;
     result.set_item("events", events(py, &run.events)?)?;
     Ok(result)
 }
 
+/// A column of a table, with a value of each row.
+pub(crate) fn column<'py, R, T: Element>(
+    py: Python<'py>,
+    rows: &[R],
+    value: impl Fn(&R) -> T,
+) -> Bound<'py, PyArray1<T>> {
+    rows.iter().map(value).collect::<Vec<T>>().into_pyarray(py)
+}
+
 fn events<'py>(py: Python<'py>, events: &[Event]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    let column = |value: fn(&Event) -> f64| {
-        events
-            .iter()
-            .map(value)
-            .collect::<Vec<_>>()
-            .into_pyarray(py)
-    };
-    let whole = |value: fn(&Event) -> i64| {
-        events
-            .iter()
-            .map(value)
-            .collect::<Vec<_>>()
-            .into_pyarray(py)
-    };
     let kinds: Vec<&str> = events.iter().map(|e| e.kind.name()).collect();
-    let bodies = events
-        .iter()
-        .map(|e| {
-            e.bodies
-                .map_or(Ok(PyTuple::empty(py)), |pair| PyTuple::new(py, pair))
-        })
-        .collect::<PyResult<Vec<_>>>()?;
+    let pair = |e: &Event| {
+        e.bodies
+            .map_or(Ok(PyTuple::empty(py)), |pair| PyTuple::new(py, pair))
+    };
+    let bodies = events.iter().map(pair).collect::<PyResult<Vec<_>>>()?;
     columns.set_item("kind", kinds)?;
-    columns.set_item("start", column(|e| e.start))?;
-    columns.set_item("end", column(|e| e.end))?;
-    columns.set_item("lane", whole(|e| e.side as i64))?;
-    columns.set_item("edge", whole(|e| i64::from(e.edge)))?;
+    columns.set_item("start", column(py, events, |e| e.start))?;
+    columns.set_item("end", column(py, events, |e| e.end))?;
+    columns.set_item("lane", column(py, events, |e| e.side as i64))?;
+    columns.set_item("edge", column(py, events, |e| i64::from(e.edge)))?;
     columns.set_item("bodies", bodies)?;
-    columns.set_item("depth", column(|e| e.depth))?;
-    columns.set_item("root_depth", column(|e| e.root_depth))?;
-    columns.set_item("force", column(|e| e.force))?;
+    columns.set_item("depth", column(py, events, |e| e.depth))?;
+    columns.set_item("root_depth", column(py, events, |e| e.root_depth))?;
+    columns.set_item("force", column(py, events, |e| e.force))?;
     Ok(columns)
 }
 
@@ -121,27 +118,17 @@ pub(crate) fn intrusions<'py>(
     found: &[Intrusion],
 ) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    let column =
-        |value: fn(&Intrusion) -> f64| found.iter().map(value).collect::<Vec<_>>().into_pyarray(py);
-    let lane: Vec<i64> = found.iter().map(|i| i.side as i64).collect();
-    let edge: Vec<i64> = found.iter().map(|i| i64::from(i.edge)).collect();
-    let edges = found
-        .iter()
-        .map(|i| PyTuple::new(py, &i.edges))
-        .collect::<PyResult<Vec<_>>>()?;
-    let bodies = found
-        .iter()
-        .map(|i| PyTuple::new(py, i.bodies))
-        .collect::<PyResult<Vec<_>>>()?;
-    columns.set_item("lane", lane.into_pyarray(py))?;
-    columns.set_item("edge", edge.into_pyarray(py))?;
-    columns.set_item("edges", edges)?;
-    columns.set_item("bodies", bodies)?;
-    columns.set_item("depth", column(|i| i.depth))?;
-    columns.set_item("root_depth", column(|i| i.root_depth))?;
-    columns.set_item("area", column(|i| i.area))?;
-    columns.set_item("x", column(|i| i.x))?;
-    columns.set_item("y", column(|i| i.y))?;
+    let edges = found.iter().map(|i| PyTuple::new(py, &i.edges));
+    let bodies = found.iter().map(|i| PyTuple::new(py, i.bodies));
+    columns.set_item("lane", column(py, found, |i| i.side as i64))?;
+    columns.set_item("edge", column(py, found, |i| i64::from(i.edge)))?;
+    columns.set_item("edges", edges.collect::<PyResult<Vec<_>>>()?)?;
+    columns.set_item("bodies", bodies.collect::<PyResult<Vec<_>>>()?)?;
+    columns.set_item("depth", column(py, found, |i| i.depth))?;
+    columns.set_item("root_depth", column(py, found, |i| i.root_depth))?;
+    columns.set_item("area", column(py, found, |i| i.area))?;
+    columns.set_item("x", column(py, found, |i| i.x))?;
+    columns.set_item("y", column(py, found, |i| i.y))?;
     Ok(columns)
 }
 
@@ -162,43 +149,23 @@ fn trace(
     if n == 0 {
         return Ok(columns);
     }
-    columns.set_item("time", trace.time.into_pyarray(py))?;
-    columns.set_item("position", trace.position.into_pyarray(py).reshape([n, 2])?)?;
-    columns.set_item("velocity", trace.velocity.into_pyarray(py).reshape([n, 2])?)?;
-    columns.set_item("chassis_angle", trace.chassis_angle.into_pyarray(py))?;
-    columns.set_item("angular_velocity", trace.angular_velocity.into_pyarray(py))?;
-    columns.set_item("commanded_speed", trace.commanded_speed.into_pyarray(py))?;
-    columns.set_item("track_speed", trace.track_speed.into_pyarray(py))?;
-    columns.set_item("track_position", trace.track_position.into_pyarray(py))?;
-    columns.set_item("slip_ratio", trace.slip_ratio.into_pyarray(py))?;
-    columns.set_item("tractive_effort", trace.tractive_effort.into_pyarray(py))?;
-    columns.set_item("drive_force", trace.drive_force.into_pyarray(py))?;
-    columns.set_item(
-        "drive_speeds",
-        trace.drive_speeds.into_pyarray(py).reshape([n, drives])?,
-    )?;
-    columns.set_item(
-        "drive_positions",
-        trace
-            .drive_positions
-            .into_pyarray(py)
-            .reshape([n, drives])?,
-    )?;
-    columns.set_item(
-        "drive_forces",
-        trace.drive_forces.into_pyarray(py).reshape([n, drives])?,
-    )?;
-    columns.set_item("track_tension", trace.track_tension.into_pyarray(py))?;
-    columns.set_item(
-        "shoe_poses",
-        trace.shoe_poses.into_pyarray(py).reshape([n, shoes, 3])?,
-    )?;
-    for (name, values) in [
-        ("flipper_angles", trace.flipper_angles),
-        ("flipper_torques", trace.flipper_torques),
-    ] {
-        columns.set_item(name, values.into_pyarray(py).reshape([n, flippers])?)?;
+    let rows = |values: Vec<f64>, width: usize| values.into_pyarray(py).reshape([n, width]);
+    put! { columns, trace, py: time }
+    columns.set_item("position", rows(trace.position, 2)?)?;
+    columns.set_item("velocity", rows(trace.velocity, 2)?)?;
+    put! {
+        columns, trace, py:
+        chassis_angle angular_velocity commanded_speed track_speed track_position
+        slip_ratio tractive_effort drive_force
     }
+    columns.set_item("drive_speeds", rows(trace.drive_speeds, drives)?)?;
+    columns.set_item("drive_positions", rows(trace.drive_positions, drives)?)?;
+    columns.set_item("drive_forces", rows(trace.drive_forces, drives)?)?;
+    put! { columns, trace, py: track_tension }
+    let shoe_poses = trace.shoe_poses.into_pyarray(py);
+    columns.set_item("shoe_poses", shoe_poses.reshape([n, shoes, 3])?)?;
+    columns.set_item("flipper_angles", rows(trace.flipper_angles, flippers)?)?;
+    columns.set_item("flipper_torques", rows(trace.flipper_torques, flippers)?)?;
     Ok(columns)
 }
 
@@ -238,36 +205,22 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 
 pub(crate) fn contacts(py: Python<'_>, table: ContactTable) -> PyResult<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
-    columns.set_item("time", table.time.into_pyarray(py))?;
-    columns.set_item("contact", table.contact.into_pyarray(py))?;
-    columns.set_item("lane", table.lane.into_pyarray(py))?;
-    columns.set_item("body", table.body.into_pyarray(py))?;
-    columns.set_item("body_kind", table.body_kind.into_pyarray(py))?;
-    columns.set_item("segment", table.segment.into_pyarray(py))?;
-    columns.set_item("edge", table.edge.into_pyarray(py))?;
-    columns.set_item("x", table.x.into_pyarray(py))?;
-    columns.set_item("y", table.y.into_pyarray(py))?;
-    columns.set_item("normal_x", table.normal_x.into_pyarray(py))?;
-    columns.set_item("normal_y", table.normal_y.into_pyarray(py))?;
-    columns.set_item("normal_force", table.normal_force.into_pyarray(py))?;
-    columns.set_item("friction_force", table.friction_force.into_pyarray(py))?;
-    columns.set_item("surface_speed", table.surface_speed.into_pyarray(py))?;
-    columns.set_item("penetration", table.penetration.into_pyarray(py))?;
+    put! {
+        columns, table, py:
+        time contact lane body body_kind segment edge x y normal_x normal_y
+        normal_force friction_force surface_speed penetration
+    }
     Ok(columns)
 }
 
 pub(crate) fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    let column =
-        |value: fn(&Edge) -> f64| edges.iter().map(value).collect::<Vec<_>>().into_pyarray(py);
-    let ids: Vec<i64> = edges.iter().map(|e| i64::from(e.id)).collect();
-    let lanes: Vec<i64> = edges.iter().map(|e| e.side as i64).collect();
-    columns.set_item("id", ids.into_pyarray(py))?;
-    columns.set_item("lane", lanes.into_pyarray(py))?;
-    columns.set_item("x", column(|e| e.x))?;
-    columns.set_item("y", column(|e| e.y))?;
-    columns.set_item("angle", column(|e| e.angle))?;
-    columns.set_item("radius", column(|e| e.radius))?;
+    columns.set_item("id", column(py, edges, |e| i64::from(e.id)))?;
+    columns.set_item("lane", column(py, edges, |e| e.side as i64))?;
+    columns.set_item("x", column(py, edges, |e| e.x))?;
+    columns.set_item("y", column(py, edges, |e| e.y))?;
+    columns.set_item("angle", column(py, edges, |e| e.angle))?;
+    columns.set_item("radius", column(py, edges, |e| e.radius))?;
     Ok(columns)
 }
 
@@ -280,27 +233,17 @@ pub(crate) fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py,
         .flat_map(|side| of_side().map(move |wheel| (*side, wheel)));
     let (side, wheels): (Vec<&str>, Vec<WheelBody>) = rows.unzip();
     let columns = PyDict::new(py);
-    let column = |value: fn(&WheelBody) -> f64| {
-        wheels
-            .iter()
-            .map(value)
-            .collect::<Vec<_>>()
-            .into_pyarray(py)
-    };
-    let body: Vec<i64> = wheels
-        .iter()
-        .filter_map(|w| i64::try_from(w.part).ok())
-        .collect();
     let carrier: Vec<&str> = wheels.iter().map(|w| model.carrier(w.mount)).collect();
     columns.set_item("side", side)?;
     columns.set_item("carrier", carrier)?;
-    columns.set_item("body", body.into_pyarray(py))?;
-    columns.set_item("x", column(|w| w.center.x))?;
-    columns.set_item("y", column(|w| w.center.y))?;
-    columns.set_item("radius", column(|w| w.radius))?;
-    columns.set_item("area", column(|w| w.area))?;
-    columns.set_item("mass", column(|w| w.mass))?;
-    columns.set_item("moment_of_inertia", column(|w| w.moment_of_inertia))?;
+    columns.set_item("body", column(py, &wheels, |w| w.part as i64))?;
+    columns.set_item("x", column(py, &wheels, |w| w.center.x))?;
+    columns.set_item("y", column(py, &wheels, |w| w.center.y))?;
+    columns.set_item("radius", column(py, &wheels, |w| w.radius))?;
+    columns.set_item("area", column(py, &wheels, |w| w.area))?;
+    columns.set_item("mass", column(py, &wheels, |w| w.mass))?;
+    let inertia = column(py, &wheels, |w| w.moment_of_inertia);
+    columns.set_item("moment_of_inertia", inertia)?;
     Ok(columns)
 }
 
@@ -320,19 +263,11 @@ pub(crate) fn pair(py: Python<'_>, x: f64, y: f64) -> Bound<'_, PyArray1<f64>> {
 pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);
     info.set_item("version", env!("CARGO_PKG_VERSION"))?;
-    info.set_item(
-        "profile",
-        if cfg!(debug_assertions) {
-            "debug"
-        } else {
-            "release"
-        },
-    )?;
+    let is_debug = cfg!(debug_assertions);
+    info.set_item("profile", if is_debug { "debug" } else { "release" })?;
     info.set_item("engine", crawler2d_core::ENGINE)?;
-    info.set_item(
-        "target",
-        format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
-    )?;
+    let target = format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS);
+    info.set_item("target", target)?;
     info.set_item("schema", crawler2d_core::SCHEMA)?;
     info.set_item("build_id", crawler2d_core::BUILD_ID)?;
     Ok(info)
@@ -342,70 +277,42 @@ pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 pub(crate) fn diagnosis<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let trials = d.trials.iter().map(|made| trial(py, made));
-    let place = d.intrusion.as_ref();
+    let trials = trials.collect::<PyResult<Vec<_>>>()?;
     result.set_item("outcome", d.outcome.name())?;
     result.set_item("symptom", d.symptom.name())?;
     result.set_item("passing", d.is_passing())?;
-    result.set_item(
-        "trials",
-        PyTuple::new(py, trials.collect::<PyResult<Vec<_>>>()?)?,
-    )?;
-    result.set_item("jammed", d.jammed)?;
+    result.set_item("trials", PyTuple::new(py, trials)?)?;
     result.set_item("mechanism", d.mechanism.map(Mechanism::name))?;
-    result.set_item("time", d.time)?;
-    result.set_item("since", d.since)?;
     result.set_item("position", PyTuple::new(py, d.position)?)?;
-    result.set_item("chassis_angle", d.chassis_angle)?;
-    result.set_item(
-        "intrusion",
-        place.map(|i| loaded_intrusion(py, i)).transpose()?,
-    )?;
+    result.set_item("intrusion", loaded_intrusion(py, d.intrusion.as_ref())?)?;
     result.set_item("contacts", stop_contacts(py, &d.contacts)?)?;
-    result.set_item("belly_share", d.belly_share)?;
-    result.set_item("sliding_share", d.sliding_share)?;
-    result.set_item("stalled_share", d.stalled_share)?;
-    result.set_item("progress", d.progress)?;
-    result.set_item("stationary", d.stationary)?;
-    result.set_item("imbalance", d.imbalance)?;
-    result.set_item("certified", d.certified)?;
+    put! {
+        result, d:
+        jammed time since chassis_angle belly_share sliding_share stalled_share progress
+        stationary imbalance certified
+    }
     Ok(result)
 }
 
 /// What came of a change at a stop.
 pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    result.set_item("name", trial.name)?;
-    result.set_item("freed", trial.freed)?;
-    result.set_item("starts", trial.starts)?;
-    result.set_item("freeing", trial.freeing)?;
-    result.set_item("distance", trial.distance)?;
-    result.set_item("time", trial.time)?;
-    result.set_item("outcome", trial.outcome.name())?;
-    result.set_item("jammed", trial.jammed)?;
-    let place = trial.intrusion.as_ref();
-    result.set_item(
-        "intrusion",
-        place.map(|i| loaded_intrusion(py, i)).transpose()?,
-    )?;
-    result.set_item("duration", trial.duration)?;
     let [x, y, angle] = trial.pose;
+    let arms = trial.flipper_angles.iter().filter(|angle| !angle.is_nan());
+    let arms = arms.collect::<Vec<_>>();
+    put! { result, trial: name freed starts freeing distance time jammed duration }
+    result.set_item("outcome", trial.outcome.name())?;
+    result.set_item("intrusion", loaded_intrusion(py, trial.intrusion.as_ref())?)?;
     result.set_item("position", PyTuple::new(py, [x, y])?)?;
     result.set_item("chassis_angle", angle)?;
-    let arms = trial.flipper_angles.iter().filter(|angle| !angle.is_nan());
-    result.set_item(
-        "flipper_angles",
-        PyTuple::new(py, arms.collect::<Vec<_>>())?,
-    )?;
+    result.set_item("flipper_angles", PyTuple::new(py, arms)?)?;
     Ok(result)
 }
 
 /// How a robot tipped over.
 pub(crate) fn tip_over<'py>(py: Python<'py>, found: &TipOver) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    result.set_item("backwards", found.backwards)?;
-    result.set_item("time", found.time)?;
-    result.set_item("end", found.end)?;
-    result.set_item("chassis_angle", found.chassis_angle)?;
+    put! { result, found: backwards time end chassis_angle }
     result.set_item("center_of_mass", PyTuple::new(py, found.center_of_mass)?)?;
     result.set_item("pivot", PyTuple::new(py, found.pivot)?)?;
     Ok(result)
@@ -415,47 +322,34 @@ pub(crate) fn tip_over<'py>(py: Python<'py>, found: &TipOver) -> PyResult<Bound<
 pub(crate) fn balance<'py>(py: Python<'py>, found: &Balance) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     result.set_item("holds", found.holds())?;
-    result.set_item("imbalance", found.imbalance)?;
-    result.set_item("tolerance", found.tolerance)?;
-    result.set_item("holds_between", found.holds_between)?;
+    put! { result, found: imbalance tolerance holds_between }
     let pulls = found.pulls.iter();
     let pulls = pulls.map(|pull| (pull.body, (pull.point.x, pull.point.y), pull.force));
     result.set_item("pulls", PyTuple::new(py, pulls.collect::<Vec<_>>())?)?;
     Ok(result)
 }
 
-fn loaded_intrusion<'py>(py: Python<'py>, i: &LoadedIntrusion) -> PyResult<Bound<'py, PyDict>> {
-    let result = PyDict::new(py);
-    result.set_item("edge", i.place.edge)?;
-    result.set_item("edges", PyTuple::new(py, &i.place.edges)?)?;
-    result.set_item("bodies", PyTuple::new(py, i.place.bodies)?)?;
-    let kinds = i.kinds.map(|kind| kind as i64);
+/// Ground inside the track with the force on it, if there is some.
+fn loaded_intrusion<'py>(
+    py: Python<'py>,
+    found: Option<&LoadedIntrusion>,
+) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let Some(found) = found else { return Ok(None) };
+    let (result, place) = (PyDict::new(py), &found.place);
+    let kinds = found.kinds.map(|kind| kind as i64);
+    put! { result, place: edge depth root_depth x y }
+    put! { result, found: carrier force }
+    result.set_item("edges", PyTuple::new(py, &place.edges)?)?;
+    result.set_item("bodies", PyTuple::new(py, place.bodies)?)?;
     result.set_item("body_kinds", PyTuple::new(py, kinds)?)?;
-    result.set_item("side", i.place.side.name())?;
-    result.set_item("carrier", i.carrier)?;
-    result.set_item("depth", i.place.depth)?;
-    result.set_item("root_depth", i.place.root_depth)?;
-    result.set_item("x", i.place.x)?;
-    result.set_item("y", i.place.y)?;
-    result.set_item("force", i.force)?;
-    Ok(result)
+    result.set_item("side", place.side.name())?;
+    Ok(Some(result))
 }
 
-#[allow(clippy::cast_possible_wrap)] // indices are small
 fn stop_contacts<'py>(py: Python<'py>, found: &[StopContact]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    let whole = |value: fn(&StopContact) -> i64| {
-        let column: Vec<i64> = found.iter().map(value).collect();
-        column.into_pyarray(py)
-    };
-    let number = |value: fn(&StopContact) -> f64| {
-        let column: Vec<f64> = found.iter().map(value).collect();
-        column.into_pyarray(py)
-    };
-    let is = |value: fn(&StopContact) -> bool| {
-        let column: Vec<bool> = found.iter().map(value).collect();
-        column.into_pyarray(py)
-    };
+    let whole = |value: fn(&StopContact) -> i64| column(py, found, value);
+    let number = |value: fn(&StopContact) -> f64| column(py, found, value);
     columns.set_item("contact", whole(|c| c.number as i64))?;
     columns.set_item("lane", whole(|c| c.side as i64))?;
     columns.set_item("body", whole(|c| c.body as i64))?;
@@ -469,7 +363,7 @@ fn stop_contacts<'py>(py: Python<'py>, found: &[StopContact]) -> PyResult<Bound<
     columns.set_item("normal_force", number(|c| c.normal_force))?;
     columns.set_item("friction_force", number(|c| c.friction_force))?;
     columns.set_item("surface_speed", number(|c| c.surface_speed))?;
-    columns.set_item("slides", is(|c| c.slides))?;
-    columns.set_item("in_pocket", is(|c| c.in_pocket))?;
+    columns.set_item("slides", column(py, found, |c| c.slides))?;
+    columns.set_item("in_pocket", column(py, found, |c| c.in_pocket))?;
     Ok(columns)
 }

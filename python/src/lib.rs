@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 mod _core {
     use std::collections::HashMap;
 
-    use crawler2d_core::{Cancel, Finished, Progress, Record, ValidScenario};
+    use crawler2d_core::{Finished, Progress, Record, ValidScenario};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -65,10 +65,8 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let trace = convert::moved(columns)?;
         let checked = build_interruptible(py, text, ValidScenario::from_json)?;
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
-            crawler2d_core::poses(&checked, &trace, &asked)
+        let found = run_interruptible(py, move |cancel| {
+            crawler2d_core::poses(&checked, &trace, cancel)
         })?;
         pictures::poses(py, found)
     }
@@ -132,7 +130,10 @@ mod _core {
                 convert::run(py, run)
             }
             Some((_, Err(error))) => Err(calls::to_python(error)),
-            None => Err(calls::internal("the run ended without a result")),
+            None => Err(calls::failure(
+                "InternalError",
+                "the run ended without a result",
+            )),
         }
     }
 
@@ -207,12 +208,10 @@ mod _core {
         record: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, record, &[])?;
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let run = run_interruptible(py, &cancel, move || {
+        let run = run_interruptible(py, move |cancel| {
             let scenario = ValidScenario::from_json(&text)?;
             let variant = ValidScenario::from_json_like(&variant, Some(&scenario))?;
-            crawler2d_core::branch(&scenario, at, (&variant, push), record, &asked)
+            crawler2d_core::branch(&scenario, at, (&variant, push), record, cancel)
         })?;
         convert::run(py, run)
     }
@@ -226,10 +225,8 @@ mod _core {
         names: Vec<String>,
     ) -> PyResult<Bound<'_, PyList>> {
         let wanted = convert::wanted(&names)?;
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
-            crawler2d_core::make_trials(&ValidScenario::from_json(&text)?, at, wanted, &asked)
+        let found = run_interruptible(py, move |cancel| {
+            crawler2d_core::make_trials(&ValidScenario::from_json(&text)?, at, wanted, cancel)
         })?;
         let found = found.iter().map(|trial| convert::trial(py, trial));
         PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)
@@ -244,12 +241,10 @@ mod _core {
         variant: PyBackedStr,
         push: (f64, f64),
     ) -> PyResult<Option<Bound<'_, PyDict>>> {
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
+        let found = run_interruptible(py, move |cancel| {
             let scenario = ValidScenario::from_json(&text)?;
             let variant = ValidScenario::from_json_like(&variant, Some(&scenario))?;
-            crawler2d_core::what_if(&scenario, at, (&variant, push), &asked)
+            crawler2d_core::what_if(&scenario, at, (&variant, push), cancel)
         })?;
         found.map(|trial| convert::trial(py, &trial)).transpose()
     }
@@ -266,15 +261,13 @@ mod _core {
     ) -> PyResult<Option<(String, Bound<'py, PyDict>)>> {
         let record = convert::record(sample_interval, record, &[])?;
         let change = convert::change(name)?;
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
+        let found = run_interruptible(py, move |cancel| {
             crawler2d_core::run_of_trial(
                 &ValidScenario::from_json(&text)?,
                 at,
                 change,
                 record,
-                &asked,
+                cancel,
             )
         })?;
         found
@@ -285,10 +278,8 @@ mod _core {
     /// Simulates up to a time at which it has stopped, and measures the push that moves it on.
     #[pyfunction]
     fn escape_force(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<(f64, f64, bool)> {
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
-            crawler2d_core::escape_force(&ValidScenario::from_json(&text)?, at, &asked)
+        let found = run_interruptible(py, move |cancel| {
+            crawler2d_core::escape_force(&ValidScenario::from_json(&text)?, at, cancel)
         })?;
         Ok((found.low, found.high, found.tips))
     }
@@ -296,10 +287,8 @@ mod _core {
     /// How a robot tipped over; None if it did not.
     #[pyfunction]
     fn tip_over(py: Python<'_>, text: PyBackedStr) -> PyResult<Option<Bound<'_, PyDict>>> {
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
-            crawler2d_core::tip_over(&ValidScenario::from_json(&text)?, &asked)
+        let found = run_interruptible(py, move |cancel| {
+            crawler2d_core::tip_over(&ValidScenario::from_json(&text)?, cancel)
         })?;
         found.map(|found| convert::tip_over(py, &found)).transpose()
     }
@@ -308,10 +297,8 @@ mod _core {
     /// how much each contact would have to pull.
     #[pyfunction]
     fn balance(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<Option<Bound<'_, PyDict>>> {
-        let cancel = Cancel::default();
-        let asked = cancel.clone();
-        let found = run_interruptible(py, &cancel, move || {
-            crawler2d_core::balance(&ValidScenario::from_json(&text)?, at, &asked)
+        let found = run_interruptible(py, move |cancel| {
+            crawler2d_core::balance(&ValidScenario::from_json(&text)?, at, cancel)
         })?;
         found.map(|found| convert::balance(py, &found)).transpose()
     }

@@ -5,7 +5,7 @@ use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::convert::{edges, rows};
+use crate::convert::{column, edges, rows};
 
 /// Ground, bodies of the robot, and the carriers of the track in front in a side view: of two tracks, the right one.
 pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Bound<'py, PyDict>> {
@@ -18,8 +18,10 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Boun
     for mount in model.mounts() {
         carriers.append(carrier(py, model, (mount, ground.tracks - 1))?)?;
     }
+    let frictions = ground.lanes.iter().map(|lane| lane.friction.coefficient);
     let result = PyDict::new(py);
     result.set_item("lanes", lanes)?;
+    result.set_item("frictions", frictions.collect::<Vec<f64>>())?;
     result.set_item("edges", edges(py, &ground.edges())?)?;
     result.set_item("goal", ground.goal_of(checked.scenario()))?;
     result.set_item("bodies", bodies(py, model, ground)?)?;
@@ -31,26 +33,18 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Boun
 /// The bodies as columns; bodies that are not parts have the number -1.
 fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Bound<'py, PyDict>> {
     let found = model.outlines();
-    let codes = |code: &dyn Fn(&Body) -> i64| found.iter().map(code).collect::<Vec<i64>>();
-    let number = |body: &Body| body.part.and_then(|part| i64::try_from(part).ok());
-    let radius = |body: &Body| body.radius.unwrap_or(f64::NAN);
+    let number = |index: Option<usize>| index.map_or(-1, |index| index as i64);
     let carriers: Vec<&str> = found.iter().map(|body| model.carrier(body.mount)).collect();
     let columns = PyDict::new(py);
-    columns.set_item(
-        "body",
-        codes(&|body| number(body).unwrap_or(-1)).into_pyarray(py),
-    )?;
-    columns.set_item("kind", codes(&|body| body.kind as i64).into_pyarray(py))?;
+    columns.set_item("body", column(py, &found, |body| number(body.part)))?;
+    columns.set_item("kind", column(py, &found, |body| body.kind as i64))?;
     let lane = |body: &Body| ground.lanes[body.lane].side as i64;
-    columns.set_item("lane", codes(&lane).into_pyarray(py))?;
+    columns.set_item("lane", column(py, &found, lane))?;
     columns.set_item("carrier", carriers)?;
-    let shoe = |body: &Body| body.mount.shoe().and_then(|shoe| i64::try_from(shoe).ok());
-    columns.set_item(
-        "shoe",
-        codes(&|body| shoe(body).unwrap_or(-1)).into_pyarray(py),
-    )?;
-    let radii: Vec<f64> = found.iter().map(radius).collect();
-    columns.set_item("radius", radii.into_pyarray(py))?;
+    let shoe = |body: &Body| number(body.mount.shoe());
+    columns.set_item("shoe", column(py, &found, shoe))?;
+    let radius = |body: &Body| body.radius.unwrap_or(f64::NAN);
+    columns.set_item("radius", column(py, &found, radius))?;
     let outlines = PyList::empty(py);
     for body in &found {
         outlines.append(points(py, &body.outline))?;
@@ -113,19 +107,12 @@ fn carrier<'py>(
 pub(crate) fn poses(py: Python<'_>, found: Poses) -> PyResult<Bound<'_, PyDict>> {
     let (n, bodies, arms) = (found.samples, found.count, found.flippers);
     let columns = PyDict::new(py);
-    columns.set_item(
-        "bodies",
-        found.bodies.into_pyarray(py).reshape([n, bodies, 3])?,
-    )?;
-    columns.set_item("arms", found.arms.into_pyarray(py).reshape([n, arms, 3])?)?;
-    columns.set_item(
-        "travels",
-        found.travels.into_pyarray(py).reshape([n, bodies])?,
-    )?;
-    columns.set_item(
-        "center_of_mass",
-        found.centers_of_mass.into_pyarray(py).reshape([n, 2])?,
-    )?;
+    let poses = |values: Vec<f64>, count| values.into_pyarray(py).reshape([n, count, 3]);
+    let rows = |values: Vec<f64>, width| values.into_pyarray(py).reshape([n, width]);
+    columns.set_item("bodies", poses(found.bodies, bodies)?)?;
+    columns.set_item("arms", poses(found.arms, arms)?)?;
+    columns.set_item("travels", rows(found.travels, bodies)?)?;
+    columns.set_item("center_of_mass", rows(found.centers_of_mass, 2)?)?;
     Ok(columns)
 }
 

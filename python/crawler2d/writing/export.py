@@ -186,19 +186,19 @@ def export_world(
     name = _FORMATS.get(Path(path).suffix.lower())
     if name is None:
         raise ScenarioError("path", os.fspath(path), "must end in .sdf, .world or .xml")
-    scene, scenario = Scene.at_start(text), json.loads(text)
-    frictions = _frictions(scenario["terrain"])
+    scene, geometry = Scene.at_start(text), _core.geometry(text)
+    lanes = list(zip(geometry["lanes"], geometry["frictions"], strict=True))
     widths = track_width, chassis_width
-    model = _build_model(alone, name, max(frictions.values()), widths)
+    model = _build_model(alone, name, max(geometry["frictions"]), widths)
     left, right, _, _ = scene.extent()
     length = right - left
     ends = (left - _BEHIND * length, max(right, scene.goal) + _BEYOND * length)
-    ground = _ground_of(_core.geometry(text)["lanes"], frictions, model.across, ends)
+    ground = _ground_of(lanes, model.across, ends)
     # A start is level unless it says otherwise.
     stand = Pose(place=in_space(scene.carriers[0].poses[0], 0.0))
     root = _WRITERS[name][1](model, stand)
     add_ground = _add_to_mjcf if name == "mjcf" else _add_to_sdf
-    return _save(add_ground(root, ground, scenario["gravity"]), model.comment, path)
+    return _save(add_ground(root, ground, json.loads(text)["gravity"]), model.comment, path)
 
 
 def _build_model(
@@ -270,19 +270,8 @@ def _save(root: XML, comment: str, path: str | os.PathLike[str] | None) -> Model
     return text
 
 
-def _frictions(terrain: dict[str, Any]) -> dict[int, float]:
-    """[-] Return the friction of each lane."""
-    if terrain["kind"] != "lanes":
-        return dict.fromkeys(Lane, float(terrain["friction"]))
-    left, right = (float(terrain[side]["friction"]) for side in ("left", "right"))
-    middle = terrain["middle"]
-    under = max(left, right) if middle is None else float(middle["friction"])
-    return {Lane.BOTH: left, Lane.LEFT: left, Lane.RIGHT: right, Lane.MIDDLE: under}
-
-
 def _ground_of(
-    lanes: list[tuple[int, Array]],
-    frictions: dict[int, float],
+    lanes: list[tuple[tuple[int, Array], float]],
     across: Across,
     ends: tuple[float, float],
 ) -> Ground:
@@ -290,17 +279,15 @@ def _ground_of(
 
     Parameters
     ----------
-    lanes : list of tuple of int and ndarray
-        Each lane with its profile [m], as the core has them.
-    frictions : dict of int to float
-        [-] Of each lane.
+    lanes : list of tuple
+        Each lane with its profile [m], as the core has them, and its friction [-].
     across : Across
         Widths and lateral positions of the robot.
     ends : tuple of float, shape (2,)
         [m] The range of the profiles; the plane is endless.
     """
-    profiles = [(lane, _between(points, *ends)) for lane, points in lanes]
-    level = min(float(points[:, 1].min()) for _, points in profiles)
+    profiles = [(lane, _between(points, *ends), each) for (lane, points), each in lanes]
+    level = min(float(points[:, 1].min()) for _, points, _ in profiles)
     half = 0.5 * _WIDTH * (across.gauge + across.track_width)
     inner = 0.5 * (across.gauge - across.track_width)
     strips = {
@@ -314,12 +301,13 @@ def _ground_of(
             corners=corners,
             across=0.5 * sum(strips[Lane(lane)]),
             width=float(np.ptp(strips[Lane(lane)])),
-            friction=frictions[lane],
+            friction=friction,
         )
-        for lane, points in profiles
+        for lane, points, friction in profiles
         for corners in _convex(points, level)
     ]
-    return Ground(level=level, friction=max(frictions.values()), pieces=tuple(pieces))
+    largest = max(friction for _, friction in lanes)
+    return Ground(level=level, friction=largest, pieces=tuple(pieces))
 
 
 def _between(points: Array, left: float, right: float) -> Array:
