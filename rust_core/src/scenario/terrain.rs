@@ -28,14 +28,16 @@ impl Friction {
         Self { coefficient }
     }
 
-    /// That of a part whose own coefficient is smaller, or of one without limit.
+    /// Whether sliding meets any resistance.
+    pub(crate) fn resists(self) -> bool {
+        self.coefficient > 0.0
+    }
+
+    /// That on a part whose own coefficient may be smaller.
     #[must_use]
-    pub const fn at_most(self, limit: f64) -> Self {
-        let coefficient = self.coefficient.min(limit);
-        Self {
-            coefficient,
-            ..self
-        }
+    pub const fn at_most(mut self, limit: f64) -> Self {
+        self.coefficient = self.coefficient.min(limit);
+        self
     }
 
     /// The larger of two.

@@ -100,7 +100,7 @@ impl Contact {
     /// is left out.
     pub(super) fn changes(&self, changes: &Velocities) -> [f64; 2] {
         let [n, t] = &self.actions;
-        let slip = if self.friction.coefficient > 0.0 {
+        let slip = if self.friction.resists() {
             self.acts.speed(t, changes)
         } else {
             0.0

@@ -133,7 +133,7 @@ impl Contact {
 
     /// The way in which it starts to slide when it touches.
     pub(super) fn slides(&self, [_, slip]: [f64; 2]) -> Grip {
-        if self.friction.coefficient > 0.0 && self.dampers[1].at(slip) < 0.0 {
+        if self.friction.resists() && self.dampers[1].at(slip) < 0.0 {
             Grip::Backwards
         } else {
             Grip::Forwards
@@ -158,12 +158,8 @@ impl Contact {
                 found(Grip::Forwards, limit - friction);
                 found(Grip::Backwards, limit + friction);
             }
-            Grip::Forwards if self.friction.coefficient > 0.0 => {
-                found(Grip::Sticks, friction - limit)
-            }
-            Grip::Backwards if self.friction.coefficient > 0.0 => {
-                found(Grip::Sticks, -friction - limit)
-            }
+            Grip::Forwards if self.friction.resists() => found(Grip::Sticks, friction - limit),
+            Grip::Backwards if self.friction.resists() => found(Grip::Sticks, -friction - limit),
             _ => {}
         }
     }
