@@ -124,7 +124,7 @@ impl ValidScenario {
     }
 
     fn of_value(value: &Value, other: Option<&Self>) -> Result<Self, Error> {
-        let scenario = Scenario::read(value)?;
+        let scenario = Scenario::of_value(value)?;
         let robot = &scenario.robot;
         scenario.drive.check(&robot.drivetrain)?;
         let twin = other.filter(|other| other.scenario.robot == *robot);

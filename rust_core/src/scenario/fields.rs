@@ -173,11 +173,7 @@ impl<'a> Fields<'a> {
         name: &'static str,
         range: Range,
     ) -> Result<f64, ScenarioError> {
-        if self.has(name) {
-            Ok(self.number(name, range)?.abs())
-        } else {
-            Ok(0.0)
-        }
+        self.if_given(name, |f, name| f.number(name, range))
     }
 
     pub(crate) fn optional_number(
@@ -185,10 +181,7 @@ impl<'a> Fields<'a> {
         name: &'static str,
         range: Range,
     ) -> Result<Option<f64>, ScenarioError> {
-        match self.value(name)? {
-            Value::Null => Ok(None),
-            value => in_range(&self.path(name), value, range).map(Some),
-        }
+        self.unless_null(name, |f, name| f.number(name, range))
     }
 
     pub(crate) fn integer(
@@ -217,10 +210,7 @@ impl<'a> Fields<'a> {
         low: u32,
         high: u32,
     ) -> Result<Option<u32>, ScenarioError> {
-        if self.value(name)?.is_null() {
-            return Ok(None);
-        }
-        self.integer(name, low, high).map(Some)
+        self.unless_null(name, |f, name| f.integer(name, low, high))
     }
 
     pub(crate) fn flag(&mut self, name: &'static str) -> Result<bool, ScenarioError> {
@@ -231,10 +221,31 @@ impl<'a> Fields<'a> {
 
     /// A flag that texts leave out if it is false, as those do that are older than the field.
     pub(crate) fn flag_or_false(&mut self, name: &'static str) -> Result<bool, ScenarioError> {
+        self.if_given(name, Self::flag)
+    }
+
+    /// Reads a field by a function, unless it is null.
+    pub(super) fn unless_null<T>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&mut Self, &'static str) -> Result<T, ScenarioError>,
+    ) -> Result<Option<T>, ScenarioError> {
+        if self.value(name)?.is_null() {
+            return Ok(None);
+        }
+        read(self, name).map(Some)
+    }
+
+    /// Reads a field by a function, or takes the default, as texts do that are older than the field.
+    pub(super) fn if_given<T: Default>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&mut Self, &'static str) -> Result<T, ScenarioError>,
+    ) -> Result<T, ScenarioError> {
         if self.has(name) {
-            self.flag(name)
+            read(self, name)
         } else {
-            Ok(false)
+            Ok(T::default())
         }
     }
 
@@ -253,20 +264,8 @@ impl<'a> Fields<'a> {
         Ok(text)
     }
 
-    /// Reads one of a fixed set of names.
-    pub(crate) fn choice<T: Copy>(
-        &mut self,
-        name: &'static str,
-        choices: &[(&str, T)],
-    ) -> Result<T, ScenarioError> {
-        let value = self.value(name)?;
-        let found = choices
-            .iter()
-            .find(|(choice, _)| value.as_str() == Some(choice));
-        found.map(|(_, choice)| *choice).ok_or_else(|| {
-            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-            self.error(name, value, one_of(value.as_str(), &names))
-        })
+    pub(crate) fn string(&mut self, name: &'static str) -> Result<String, ScenarioError> {
+        self.text(name).map(str::to_owned)
     }
 
     pub(crate) fn point(

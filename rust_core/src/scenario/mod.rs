@@ -6,6 +6,7 @@ mod doubts;
 mod drive;
 mod drivetrain;
 mod fields;
+mod objects;
 mod outline;
 mod robot;
 mod settings;
@@ -13,6 +14,7 @@ mod terrain;
 mod track;
 
 use fields::{Fields, GRAVITY, Range, joined};
+use objects::{FromJson, object};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserializer, Serialize};
 use serde_json::value::RawValue;
@@ -40,29 +42,30 @@ pub const SCHEMA: u32 = 2;
 const OF_VERSION_1: &str = "must be 2; in a file of version 1, solver.accuracy takes the place of solver.substeps, and \
                             is null where solver.time_step is kept";
 
-/// Everything that defines a run: the same scenario and build give the same bits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Scenario {
-    /// Version of the format.
-    pub schema: u32,
-    /// The robot.
-    pub robot: Robot,
-    /// The ground.
-    pub terrain: Terrain,
-    /// The command.
-    pub drive: Drive,
-    /// How the robot stands at time 0.
-    pub start: Start,
-    /// [m] The x that the whole robot must pass; `None` takes the terrain's.
-    pub goal: Option<f64>,
-    /// [m/s^2] Acceleration of gravity, downwards.
-    pub gravity: f64,
-    /// [s] Longest simulated time.
-    pub duration: f64,
-    /// How the equations are solved.
-    pub solver: Solver,
-    /// When a run ends, and what counts as a stop.
-    pub criteria: SeizureCriteria,
+object! {
+    /// Everything that defines a run: the same scenario and build give the same bits.
+    pub struct Scenario {
+        /// Version of the format.
+        schema: u32 = integer(SCHEMA, SCHEMA),
+        /// The robot.
+        robot: Robot = object(),
+        /// The ground.
+        terrain: Terrain = object(),
+        /// The command.
+        drive: Drive = object(),
+        /// How the robot stands at time 0.
+        start: Start = object(),
+        /// [m] The x that the whole robot must pass; `None` takes the terrain's.
+        goal: Option<f64> = optional_number(Range::between(-1e7, 1e7, "m")),
+        /// [m/s^2] Acceleration of gravity, downwards.
+        gravity: f64 = number(GRAVITY),
+        /// [s] Longest simulated time.
+        duration: f64 = number(Range::between(0.0, 1e5, "s")),
+        /// How the equations are solved.
+        solver: Solver = object(),
+        /// When a run ends, and what counts as a stop.
+        criteria: SeizureCriteria = object(),
+    }
 }
 
 impl Scenario {
@@ -79,25 +82,13 @@ impl Scenario {
             .fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
     }
 
-    /// Reads the fields; rules that need the built robot and ground are checked elsewhere.
-    pub(crate) fn read(value: &Value) -> Result<Self, ScenarioError> {
+    /// Reads all of it; rules that need the built robot and ground are checked elsewhere.
+    pub(crate) fn of_value(value: &Value) -> Result<Self, ScenarioError> {
         let mut f = Fields::new("", value)?;
         if value.get("schema").is_some_and(|version| version == 1) {
             return Err(ScenarioError::new("schema", 1, OF_VERSION_1));
         }
-        let schema = f.integer("schema", SCHEMA, SCHEMA)?;
-        let scenario = Self {
-            schema,
-            robot: Robot::read(f.child("robot")?)?,
-            terrain: Terrain::read(f.child("terrain")?)?,
-            drive: Drive::read(f.child("drive")?)?,
-            start: Start::read(f.child("start")?)?,
-            goal: f.optional_number("goal", Range::between(-1e7, 1e7, "m"))?,
-            gravity: f.number("gravity", GRAVITY)?,
-            duration: f.number("duration", Range::between(0.0, 1e5, "s"))?,
-            solver: Solver::read(f.child("solver")?)?,
-            criteria: SeizureCriteria::read(f.child("criteria")?)?,
-        };
+        let scenario = Self::read(&mut f)?;
         f.finish()?;
         Ok(scenario)
     }

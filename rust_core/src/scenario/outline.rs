@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::ScenarioError;
 use super::fields::{COORDINATE, Fields, SIZE, SIZE_OR_ZERO, SMALLEST};
+use super::objects::FromJson;
 
 /// What texts have in place of two discs.
 const SHORT: [&str; 3] = ["axle_distance", "front_radius", "rear_radius"];
@@ -159,8 +160,8 @@ impl Serialize for TrackOutline {
     }
 }
 
-impl TrackOutline {
-    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+impl FromJson for TrackOutline {
+    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
         let short = SHORT.into_iter().find(|name| f.has(name));
         let discs = match short {
             Some(name) if f.has("discs") => {
@@ -168,8 +169,8 @@ impl TrackOutline {
                 let value = f.value(name)?;
                 return Err(f.error(name, value, rule));
             }
-            Some(_) => read_ends(&mut f)?,
-            None => read_discs(&mut f)?,
+            Some(_) => read_ends(f)?,
+            None => read_discs(f)?,
         };
         let outline = Self {
             discs,
@@ -191,13 +192,14 @@ impl TrackOutline {
             return Err(f.error("grouser_thickness", outline.grouser_thickness, rule));
         }
         match short {
-            Some(_) => outline.check_enclosure(&f)?,
-            None => outline.check_ends(&f)?,
+            Some(_) => outline.check_enclosure(f)?,
+            None => outline.check_ends(f)?,
         }
-        f.finish()?;
         Ok(outline)
     }
+}
 
+impl TrackOutline {
     /// Checks that neither of two ends encloses the other.
     fn check_enclosure(&self, f: &Fields) -> Result<(), ScenarioError> {
         let [rear, front] = [self.discs[0], self.discs[1]];

@@ -9,67 +9,40 @@ use super::fields::{
     COORDINATE, Fields, INERTIA, LEAST_FRACTION, MASS, ROTOR, Range, SIZE, TORQUE, is_false,
     is_zero, rows,
 };
+use super::objects::{Choice, FromJson, choice, object};
 use super::outline::TrackOutline;
 use super::track::Track;
 
-/// A tracked robot with both tracks and with its arms at angle 0.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Robot {
-    /// Name shown in tables and plots.
-    pub name: String,
-    /// [kg] Total mass, including tracks and arms.
-    pub mass: f64,
-    /// [m] Centre of mass in the chassis frame.
-    pub center_of_mass: [f64; 2],
-    /// [kg m^2] Moment of inertia of the whole robot about its centre of mass.
-    pub moment_of_inertia: f64,
-    /// [kg] Mass of both tracks together, all of it moving at track speed.
-    pub track_mass: f64,
-    /// The side view of the track.
-    pub outline: TrackOutline,
-    /// [m] Convex polygon in the chassis frame, counter-clockwise; `None` if it never touches.
-    pub belly: Option<Vec<[f64; 2]>>,
-    /// Pivoting arms.
-    pub flippers: Option<Flippers>,
-    /// [m] Lateral distance between the tracks.
-    pub gauge: f64,
-    /// Motors and their limits.
-    pub drivetrain: Drivetrain,
-    /// How the track is modelled.
-    pub track: Track,
+object! {
+    /// A tracked robot with both tracks and with its arms at angle 0.
+    pub struct Robot {
+        /// Name shown in tables and plots.
+        name: String = string(),
+        /// [kg] Total mass, including tracks and arms.
+        mass: f64 = number(MASS),
+        /// [m] Centre of mass in the chassis frame.
+        center_of_mass: [f64; 2] = point(COORDINATE),
+        /// [kg m^2] Moment of inertia of the whole robot about its centre of mass.
+        moment_of_inertia: f64 = number(INERTIA),
+        /// [kg] Mass of both tracks together, all of it moving at track speed.
+        track_mass: f64 = number(MASS),
+        /// The side view of the track.
+        outline: TrackOutline = object(),
+        /// [m] Convex polygon in the chassis frame, counter-clockwise; `None` if it never touches.
+        belly: Option<Vec<[f64; 2]>> = unless_null(read_belly),
+        /// Pivoting arms.
+        flippers: Option<Flippers> = optional_object(),
+        /// [m] Lateral distance between the tracks.
+        gauge: f64 = number(SIZE),
+        /// Motors and their limits.
+        drivetrain: Drivetrain = object(),
+        /// How the track is modelled.
+        track: Track = object(),
+    }
+    check by check
 }
 
 impl Robot {
-    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let robot = Self {
-            name: f.text("name")?.to_owned(),
-            mass: f.number("mass", MASS)?,
-            center_of_mass: f.point("center_of_mass", COORDINATE)?,
-            moment_of_inertia: f.number("moment_of_inertia", INERTIA)?,
-            track_mass: f.number("track_mass", MASS)?,
-            outline: TrackOutline::read(f.child("outline")?)?,
-            belly: read_belly(&mut f)?,
-            flippers: if f.value("flippers")?.is_null() {
-                None
-            } else {
-                Some(Flippers::read(f.child("flippers")?)?)
-            },
-            gauge: f.number("gauge", SIZE)?,
-            drivetrain: Drivetrain::read(f.child("drivetrain")?)?,
-            track: Track::read(f.child("track")?)?,
-        };
-        robot.check(&f)?;
-        robot.track.check(robot.drivetrain.torque_sharing)?;
-        robot
-            .track
-            .check_discs("robot.track", robot.outline.discs.len())?;
-        if let Some(flippers) = &robot.flippers {
-            robot.check_flippers(flippers)?;
-        }
-        f.finish()?;
-        Ok(robot)
-    }
-
     /// [m] The convex polygons of its belly, counter-clockwise; none if it has no belly.
     pub(crate) fn belly_polygons(&self) -> impl Iterator<Item = &[[f64; 2]]> {
         self.belly.iter().map(Vec::as_slice)
@@ -112,7 +85,13 @@ impl Robot {
             let path = "robot.drivetrain.self_locking";
             return Err(ScenarioError::new(path, true, rule));
         }
-        Ok(())
+        self.track.check(self.drivetrain.torque_sharing)?;
+        self.track
+            .check_discs("robot.track", self.outline.discs.len())?;
+        match &self.flippers {
+            Some(flippers) => self.check_flippers(flippers),
+            None => Ok(()),
+        }
     }
 
     /// Checks that the digits of the chassis are not lost beside a motor's rotor.
@@ -180,12 +159,9 @@ impl Robot {
     }
 }
 
-/// Reads the polygon of a belly, if there is one.
-fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
-    match f.value("belly")? {
-        Value::Null => Ok(None),
-        polygon => read_polygon(&f.path("belly"), polygon).map(Some),
-    }
+/// Reads the polygon of a belly.
+fn read_belly(f: &mut Fields, name: &'static str) -> Result<Vec<[f64; 2]>, ScenarioError> {
+    read_polygon(&f.path(name), f.value(name)?)
 }
 
 /// Reads a convex counter-clockwise polygon of non-zero area.
@@ -220,46 +196,48 @@ fn read_polygon(path: &str, value: &Value) -> Result<Vec<[f64; 2]>, ScenarioErro
 /// [rad] Angle of an arm relative to the chassis: up to a full turn either way.
 pub(super) const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
 
-/// Identical arms at one end of the robot or at both, one on each side.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Flippers {
-    /// [m] Distance from the pivot to the axle at the tip.
-    pub length: f64,
-    /// [m] Radius at the pivot, measured to the grouser tips.
-    pub root_radius: f64,
-    /// [m] Radius at the tip, measured to the grouser tips.
-    pub tip_radius: f64,
-    /// [kg] Mass of one arm, spread evenly between pivot and tip axle.
-    pub mass: f64,
-    /// The ends of the robot that have arms.
-    pub ends: Ends,
-    /// [rad] Angle of the arms at time 0: 0 points away from the robot, upwards > 0.
-    pub angle: f64,
-    /// [rad/s] Largest turning rate relative to the chassis.
-    pub rate_limit: f64,
-    /// [N m] Largest torque of the motor of one arm.
-    pub torque_limit: f64,
-    /// [kg m^2] Moment of inertia of the motor of one arm as the pivot feels it: the rotor's own times the square of the
-    /// gear's ratio.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub rotor_inertia: f64,
-    /// The gear locks itself: no load turns an arm back.
-    #[serde(skip_serializing_if = "is_false")]
-    pub self_locking: bool,
-    /// How their tracks are modelled; `None` takes the robot's model.
-    pub track: Option<Track>,
+object! {
+    /// Identical arms at one end of the robot or at both, one on each side.
+    pub struct Flippers {
+        /// [m] Distance from the pivot to the axle at the tip.
+        length: f64 = number(SIZE),
+        /// [m] Radius at the pivot, measured to the grouser tips.
+        root_radius: f64 = number(SIZE),
+        /// [m] Radius at the tip, measured to the grouser tips.
+        tip_radius: f64 = number(SIZE),
+        /// [kg] Mass of one arm, spread evenly between pivot and tip axle.
+        mass: f64 = number(MASS),
+        /// The ends of the robot that have arms.
+        ends: Ends = choice(),
+        /// [rad] Angle of the arms at time 0: 0 points away from the robot, upwards > 0.
+        angle: f64 = number(ANGLE),
+        /// [rad/s] Largest turning rate relative to the chassis.
+        rate_limit: f64 = number(Range::above(0.0, 100.0, "rad/s")),
+        /// [N m] Largest torque of the motor of one arm.
+        torque_limit: f64 = number(TORQUE),
+        /// [kg m^2] Moment of inertia of the motor of one arm as the pivot feels it: the rotor's own times the square of the
+        /// gear's ratio.
+        #[serde(skip_serializing_if = "is_zero")]
+        rotor_inertia: f64 = number_or_zero(ROTOR),
+        /// The gear locks itself: no load turns an arm back.
+        #[serde(skip_serializing_if = "is_false")]
+        self_locking: bool = flag_or_false(),
+        /// How their tracks are modelled; `None` takes the robot's model.
+        track: Option<Track> = optional_object(),
+    }
+    check by check
 }
 
-/// Ends of a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ends {
-    /// The front.
-    Front,
-    /// The rear.
-    Rear,
-    /// Both ends.
-    Both,
+choice! {
+    /// Ends of a robot.
+    pub enum Ends {
+        /// The front.
+        "front" Front,
+        /// The rear.
+        "rear" Rear,
+        /// Both ends.
+        "both" Both,
+    }
 }
 
 /// One end of a robot.
@@ -282,35 +260,12 @@ impl End {
 }
 
 impl Flippers {
-    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let ends = [
-            ("front", Ends::Front),
-            ("rear", Ends::Rear),
-            ("both", Ends::Both),
-        ];
-        let flippers = Self {
-            length: f.number("length", SIZE)?,
-            root_radius: f.number("root_radius", SIZE)?,
-            tip_radius: f.number("tip_radius", SIZE)?,
-            mass: f.number("mass", MASS)?,
-            ends: f.choice("ends", &ends)?,
-            angle: f.number("angle", ANGLE)?,
-            rate_limit: f.number("rate_limit", Range::above(0.0, 100.0, "rad/s"))?,
-            torque_limit: f.number("torque_limit", TORQUE)?,
-            rotor_inertia: f.number_or_zero("rotor_inertia", ROTOR)?,
-            self_locking: f.flag_or_false("self_locking")?,
-            track: if f.value("track")?.is_null() {
-                None
-            } else {
-                Some(Track::read(f.child("track")?)?)
-            },
-        };
-        if (flippers.root_radius - flippers.tip_radius).abs() >= flippers.length {
+    fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
+        if (self.root_radius - self.tip_radius).abs() >= self.length {
             let rule = "must differ from root_radius by less than the length: otherwise one end would enclose the other";
-            return Err(f.error("tip_radius", flippers.tip_radius, rule));
+            return Err(f.error("tip_radius", self.tip_radius, rule));
         }
-        f.finish()?;
-        Ok(flippers)
+        Ok(())
     }
 
     /// The ends that have arms, the front first.
