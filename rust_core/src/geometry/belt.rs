@@ -52,13 +52,13 @@ impl Stretch {
     /// How a belt moves what it carries on this stretch.
     fn motion(&self) -> Motion {
         match self.curve {
-            Curve::Arc { center, radius, .. } => Motion {
-                center,
-                turn: 1.0 / radius,
+            Curve::Arc(arc) => Motion {
+                center: arc.center,
+                turn: 1.0 / arc.radius,
                 along: Vector::ZERO,
             },
-            Curve::Run { along, .. } => Motion {
-                along,
+            Curve::Run(run) => Motion {
+                along: run.along,
                 ..Motion::default()
             },
         }
@@ -72,8 +72,8 @@ impl Envelope {
         let stretch = self.stretch_at(position);
         let point = stretch.point_at(position - stretch.start);
         let outward = match stretch.curve {
-            Curve::Arc { center, radius, .. } => (point - center) / radius,
-            Curve::Run { outward, .. } => outward,
+            Curve::Arc(arc) => (point - arc.center) / arc.radius,
+            Curve::Run(run) => run.outward,
         };
         (point, outward)
     }
@@ -84,15 +84,15 @@ impl Envelope {
         // Not the floor of the quotient, which rounding may lift to the next round.
         let rounds = ((position - inside) / self.length()).round();
         let turned = |stretch: &Stretch| match stretch.curve {
-            Curve::Arc { sweep, .. } if inside > stretch.start => {
-                sweep * ((inside - stretch.start) / stretch.length).min(1.0)
+            Curve::Arc(arc) if inside > stretch.start => {
+                arc.sweep * ((inside - stretch.start) / stretch.length).min(1.0)
             }
             _ => 0.0,
         };
         let turns: f64 = self.stretches.iter().map(turned).sum();
         let outward = match self.stretches[0].curve {
-            Curve::Arc { from, .. } => from,
-            Curve::Run { outward, .. } => libm::atan2(outward.y, outward.x),
+            Curve::Arc(arc) => arc.from,
+            Curve::Run(run) => libm::atan2(run.outward.y, run.outward.x),
         };
         outward - FRAC_PI_2 - turns - TAU * rounds
     }

@@ -5,10 +5,9 @@
 
 use std::f64::consts::TAU;
 
-use super::Disc;
-use super::hull::{Arc, Curve, SAME_TURN, Stretch, arcs_round};
+use super::hull::{Arc, Curve, Run, SAME_TURN, Stretch, arcs_round};
 use super::search::maximise;
-use super::{Vector, direction};
+use super::{Disc, Vector};
 use crate::units::Metres;
 
 /// [m] Stretches whose distances differ by less count as equally near, whatever the rounding.
@@ -41,39 +40,26 @@ impl Envelope {
             stretches: Vec::new(),
         };
         for (i, arc) in arcs.iter().enumerate() {
-            envelope.push_arc(discs, arc);
+            envelope.push(arc.radius * arc.sweep, Curve::Arc(*arc));
             if count > 1 {
-                let next = &arcs[(i + 1) % count];
-                envelope.push_run(&discs[arc.disc], &discs[next.disc], arc.from - arc.sweep);
+                envelope.push_run(arc, &arcs[(i + 1) % count]);
             }
         }
         envelope
     }
 
-    fn push_arc(&mut self, discs: &[Disc], arc: &Arc) {
-        let Disc { center, radius } = discs[arc.disc];
-        let curve = Curve::Arc {
-            disc: arc.disc,
-            center,
-            radius,
-            from: arc.from,
-            sweep: arc.sweep,
-            ends: [direction(arc.from), direction(arc.from - arc.sweep)],
-        };
-        self.push(radius * arc.sweep, curve);
-    }
-
-    fn push_run(&mut self, from: &Disc, to: &Disc, outward: f64) {
-        let outward = direction(outward);
+    fn push_run(&mut self, from: &Arc, to: &Arc) {
+        let [_, outward] = from.ends;
         let begin = from.center + outward * from.radius;
-        let run = to.center + outward * to.radius - begin;
-        let length = run.length();
-        let curve = Curve::Run {
+        let way = to.center + outward * to.radius - begin;
+        let length = way.length();
+        let along = way / length;
+        let run = Run {
             begin,
-            along: run / length,
+            along,
             outward,
         };
-        self.push(length, curve);
+        self.push(length, Curve::Run(run));
     }
 
     fn push(&mut self, length: f64, curve: Curve) {
@@ -138,7 +124,7 @@ impl Envelope {
 
     /// [m] No point of a segment is deeper than this: the depth of its deeper end below a straight run.
     pub(super) fn depth_below_runs(&self, ends: [Vector; 2]) -> f64 {
-        let is_run = |s: &&Stretch| matches!(s.curve, Curve::Run { .. });
+        let is_run = |s: &&Stretch| matches!(s.curve, Curve::Run(_));
         let runs = self.stretches.iter().filter(is_run);
         let depths = runs.filter_map(|s| Some(s.depth(ends[0])?.max(s.depth(ends[1])?)));
         depths.fold(f64::INFINITY, f64::min)
@@ -155,24 +141,25 @@ impl Envelope {
         }
     }
 
+    fn curved(&self) -> impl Iterator<Item = &Arc> {
+        self.stretches
+            .iter()
+            .filter_map(|stretch| match &stretch.curve {
+                Curve::Arc(arc) => Some(arc),
+                Curve::Run(_) => None,
+            })
+    }
+
     /// The arcs of the hull: disc, outward direction [rad] at the start, and how far it turns clockwise.
     pub(crate) fn arcs(&self) -> Vec<(Disc, f64, f64)> {
-        let arc = |stretch: &Stretch| match stretch.curve {
-            Curve::Arc {
-                center,
-                radius,
-                from,
-                sweep,
-                ..
-            } => Some((Disc { center, radius }, from, sweep)),
-            Curve::Run { .. } => None,
-        };
-        self.stretches.iter().filter_map(arc).collect()
+        let disc = |&Arc { center, radius, .. }: &Arc| Disc { center, radius };
+        let arcs = self.curved().map(|arc| (disc(arc), arc.from, arc.sweep));
+        arcs.collect()
     }
 
     /// The ends of its straight runs.
     pub(crate) fn runs(&self) -> impl Iterator<Item = [Vector; 2]> {
-        let is_run = |stretch: &&Stretch| matches!(stretch.curve, Curve::Run { .. });
+        let is_run = |stretch: &&Stretch| matches!(stretch.curve, Curve::Run(_));
         let ends =
             |stretch: &Stretch| [0.0, stretch.length].map(|position| stretch.point_at(position));
         self.stretches.iter().filter(is_run).map(ends)
@@ -181,10 +168,8 @@ impl Envelope {
     /// [rad] How far the hull bends round each of the first `count` discs; 0 if it does not touch it.
     pub(crate) fn bends(&self, count: usize) -> Vec<f64> {
         let mut bends = vec![0.0; count];
-        for stretch in &self.stretches {
-            if let Curve::Arc { disc, sweep, .. } = stretch.curve {
-                bends[disc] += sweep;
-            }
+        for arc in self.curved() {
+            bends[arc.disc] += arc.sweep;
         }
         bends
     }
@@ -204,8 +189,8 @@ impl Envelope {
     fn cuts(&self, turn: f64) -> impl Iterator<Item = (&Stretch, f64)> {
         self.stretches.iter().flat_map(move |stretch| {
             let cuts = match stretch.curve {
-                Curve::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0) as usize,
-                Curve::Run { .. } => 1,
+                Curve::Arc(arc) => (arc.sweep / turn).ceil().max(1.0) as usize,
+                Curve::Run(_) => 1,
             };
             (0..cuts).map(move |i| (stretch, stretch.length * i as f64 / cuts as f64))
         })
@@ -214,8 +199,8 @@ impl Envelope {
     /// The outward normal of the hull at the place nearest to a point.
     pub(crate) fn outward_at(&self, point: Vector) -> Vector {
         match self.stretches[self.nearest(point).stretch].curve {
-            Curve::Arc { center, .. } => (point - center).normalize_or(Vector::NEG_Y),
-            Curve::Run { outward, .. } => outward,
+            Curve::Arc(arc) => (point - arc.center).normalize_or(Vector::NEG_Y),
+            Curve::Run(run) => run.outward,
         }
     }
 
@@ -224,12 +209,12 @@ impl Envelope {
     /// They are the nearest discs along the belt that reach at least as far out as the point.
     pub(crate) fn neighbours(&self, point: Vector, nearest: Nearest, discs: &[Disc]) -> [usize; 2] {
         match self.stretches[nearest.stretch].curve {
-            Curve::Arc { disc, .. } => [disc, disc],
-            Curve::Run {
+            Curve::Arc(arc) => [arc.disc; 2],
+            Curve::Run(Run {
                 begin,
                 along,
                 outward,
-            } => {
+            }) => {
                 let here = (point - begin).dot(along);
                 let reaches_out = |d: &Disc| {
                     let gap = (begin - d.center).dot(outward) - d.radius;
@@ -277,25 +262,20 @@ impl Envelope {
     pub(crate) fn position_of(&self, point: Vector) -> f64 {
         let stretch = &self.stretches[self.nearest(point).stretch];
         let inner = match stretch.curve {
-            Curve::Arc {
-                center,
-                radius,
-                from,
-                sweep,
-                ..
-            } => {
-                let spoke = point - center;
-                let turn = (from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
+            Curve::Arc(arc) => {
+                let spoke = point - arc.center;
+                let turn = (arc.from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
                 // An angle just before the start of the arc means its start, not a whole turn further.
-                let turn = if turn > 0.5 * (sweep + TAU) {
+                let turn = if turn > 0.5 * (arc.sweep + TAU) {
                     0.0
                 } else {
                     turn
                 };
-                turn.min(sweep) * radius
+                turn.min(arc.sweep) * arc.radius
             }
-            Curve::Run { begin, along, .. } => {
-                (point - begin).dot(along).clamp(0.0, stretch.length)
+            Curve::Run(run) => {
+                let along = (point - run.begin).dot(run.along);
+                along.clamp(0.0, stretch.length)
             }
         };
         stretch.start + inner

@@ -9,12 +9,51 @@ use super::{Disc, Vector, cross, direction};
 pub(super) const SAME_TURN: f64 = 1e-12;
 
 /// One disc's fraction of the hull.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Arc {
+    /// Index of the disc.
     pub disc: usize,
+    pub center: Vector,
+    pub radius: f64,
     /// [rad] Outward direction at its start.
     pub from: f64,
     /// [rad] How far it turns, clockwise.
     pub sweep: f64,
+    /// Its first and its last outward direction.
+    pub ends: [Vector; 2],
+}
+
+impl Arc {
+    pub(super) fn new(disc: usize, Disc { center, radius }: Disc, from: f64, sweep: f64) -> Self {
+        Self {
+            disc,
+            center,
+            radius,
+            from,
+            sweep,
+            ends: [direction(from), direction(from - sweep)],
+        }
+    }
+
+    /// Whether a vector from the centre points through it, with a margin at its ends.
+    fn holds(&self, spoke: Vector, margin: f64) -> bool {
+        let [first, last] = self.ends;
+        let (after_first, before_last) = (cross(spoke, first), cross(last, spoke));
+        if self.sweep > 0.5 * TAU {
+            after_first >= -margin || before_last >= -margin
+        } else {
+            after_first >= -margin && before_last >= -margin
+        }
+    }
+}
+
+/// A straight piece of the hull.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub begin: Vector,
+    /// Unit vectors, along belt travel and out of the hull.
+    pub along: Vector,
+    pub outward: Vector,
 }
 
 /// The arcs of the hull, clockwise, found by rolling a tangent once round.
@@ -53,15 +92,13 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
         let left = TAU - turned;
         if turn > left + SAME_TURN && !arcs.is_empty() {
             // Once round: the rest belongs to the first arc, which began half-line.
-            arcs[0].from += left;
-            arcs[0].sweep += left;
+            let Arc {
+                disc, from, sweep, ..
+            } = arcs[0];
+            arcs[0] = Arc::new(disc, discs[disc], from + left, sweep + left);
             break;
         }
-        arcs.push(Arc {
-            disc,
-            from,
-            sweep: turn.min(left),
-        });
+        arcs.push(Arc::new(disc, discs[disc], from, turn.min(left)));
         if turn > left - SAME_TURN {
             break;
         }
@@ -98,83 +135,52 @@ pub(super) struct Stretch {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Curve {
-    /// An arc of disc `disc`, clockwise from the outward direction `from` [rad]; `ends` are its
-    /// first and last outward directions.
-    Arc {
-        disc: usize,
-        center: Vector,
-        radius: f64,
-        from: f64,
-        sweep: f64,
-        ends: [Vector; 2],
-    },
-    /// A straight run from `begin` along `along`.
-    Run {
-        begin: Vector,
-        along: Vector,
-        outward: Vector,
-    },
+    Arc(Arc),
+    Run(Run),
 }
 
 impl Stretch {
     pub(super) fn point_at(&self, inner: f64) -> Vector {
         match self.curve {
-            Curve::Arc {
-                center,
-                radius,
-                from,
-                sweep,
-                ..
-            } => {
+            Curve::Arc(arc) => {
                 let fraction = if self.length > 0.0 {
                     inner / self.length
                 } else {
                     0.0
                 };
-                center + direction(from - sweep * fraction) * radius
+                arc.center + direction(arc.from - arc.sweep * fraction) * arc.radius
             }
-            Curve::Run { begin, along, .. } => begin + along * inner,
+            Curve::Run(run) => run.begin + run.along * inner,
         }
     }
 
     /// [m] Position of the point ahead of `from` at a straight `distance` from it.
     pub(super) fn at_distance(&self, from: Vector, distance: f64) -> f64 {
         match self.curve {
-            Curve::Run { begin, along, .. } => {
-                let offset = begin - from;
-                let back = offset.dot(along);
+            Curve::Run(run) => {
+                let offset = run.begin - from;
+                let back = offset.dot(run.along);
                 let root = back * back - offset.length_squared() + distance * distance;
                 root.max(0.0).sqrt() - back
             }
-            Curve::Arc {
-                center,
-                radius,
-                from: start,
-                ..
-            } => {
-                let spoke = from - center;
+            Curve::Arc(arc) => {
+                let (spoke, radius) = (from - arc.center, arc.radius);
                 let reach = spoke.length();
                 let cosine = (radius * radius + reach * reach - distance * distance)
                     / (2.0 * radius * reach);
                 let angle = libm::atan2(spoke.y, spoke.x) - libm::acos(cosine.clamp(-1.0, 1.0));
-                (start - angle).rem_euclid(TAU) * radius
+                (arc.from - angle).rem_euclid(TAU) * radius
             }
         }
     }
 
     /// [m] Depth of a point below this stretch, if the point is within its extent.
     pub(super) fn depth(&self, point: Vector) -> Option<f64> {
-        match self.curve {
-            Curve::Run { begin, outward, .. } => Some((begin - point).dot(outward)),
-            Curve::Arc {
-                center,
-                radius,
-                sweep,
-                ends,
-                ..
-            } => {
-                let spoke = point - center;
-                is_on_arc(spoke, ends, sweep, 0.0).then(|| radius - spoke.length())
+        match &self.curve {
+            Curve::Run(run) => Some((run.begin - point).dot(run.outward)),
+            Curve::Arc(arc) => {
+                let spoke = point - arc.center;
+                arc.holds(spoke, 0.0).then(|| arc.radius - spoke.length())
             }
         }
     }
@@ -182,28 +188,18 @@ impl Stretch {
     /// Calls `cut` with the fractions of the segment at which it crosses this stretch.
     pub(super) fn crossings(&self, a: Vector, b: Vector, cut: &mut impl FnMut(f64)) {
         let line = b - a;
-        match self.curve {
-            Curve::Run {
-                begin,
-                along,
-                outward,
-            } => {
-                let towards = line.dot(outward);
-                let t = (begin - a).dot(outward) / towards;
-                let along = (a + line * t - begin).dot(along);
+        match &self.curve {
+            Curve::Run(run) => {
+                let towards = line.dot(run.outward);
+                let t = (run.begin - a).dot(run.outward) / towards;
+                let along = (a + line * t - run.begin).dot(run.along);
                 let on_run = (-JOINT..=self.length + JOINT).contains(&along);
                 if (0.0..=1.0).contains(&t) && on_run {
                     cut(t);
                 }
             }
-            Curve::Arc {
-                center,
-                radius,
-                sweep,
-                ends,
-                ..
-            } => {
-                let (offset, square) = (a - center, line.length_squared());
+            Curve::Arc(arc) => {
+                let (offset, square, radius) = (a - arc.center, line.length_squared(), arc.radius);
                 let half = offset.dot(line) / square;
                 let rest = half * half - (offset.length_squared() - radius * radius) / square;
                 if rest < 0.0 {
@@ -211,7 +207,7 @@ impl Stretch {
                 }
                 for t in [-half - rest.sqrt(), -half + rest.sqrt()] {
                     let spoke = offset + line * t;
-                    if (0.0..=1.0).contains(&t) && is_on_arc(spoke, ends, sweep, JOINT * radius) {
+                    if (0.0..=1.0).contains(&t) && arc.holds(spoke, JOINT * radius) {
                         cut(t);
                     }
                 }
@@ -223,18 +219,8 @@ impl Stretch {
     pub(super) fn swept(&self, from: f64, to: f64) -> f64 {
         let (p, q) = (self.point_at(from), self.point_at(to));
         match self.curve {
-            Curve::Run { .. } => cross(p, q),
-            Curve::Arc { center, radius, .. } => cross(center, q - p) - radius * (to - from),
+            Curve::Run(_) => cross(p, q),
+            Curve::Arc(arc) => cross(arc.center, q - p) - arc.radius * (to - from),
         }
-    }
-}
-
-/// Whether a vector from the centre points through a clockwise arc, with a margin at its ends.
-fn is_on_arc(spoke: Vector, [first, last]: [Vector; 2], sweep: f64, margin: f64) -> bool {
-    let (after_first, before_last) = (cross(spoke, first), cross(last, spoke));
-    if sweep > 0.5 * TAU {
-        after_first >= -margin || before_last >= -margin
-    } else {
-        after_first >= -margin && before_last >= -margin
     }
 }

@@ -6,10 +6,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::hull::{Curve, arcs_round};
+use super::hull::{Arc, Curve, arcs_round};
 use super::search::zero;
 use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
-use super::{Pose, Rotation, Vector, direction, right_of};
+use super::{Pose, Rotation, Vector, right_of};
 
 /// Number of positions of the chain along its path over which its length is averaged.
 const PHASES: u32 = 16;
@@ -115,8 +115,8 @@ impl ShoeLoop {
     /// [rad] Angle of a seat of the sprocket relative to the chassis at the start.
     pub(crate) fn first_seat(&self) -> f64 {
         match self.path(self.pitch, 0.0).stretches[0].curve {
-            Curve::Arc { from, .. } => from,
-            Curve::Run { .. } => 0.0,
+            Curve::Arc(arc) => arc.from,
+            Curve::Run(_) => 0.0,
         }
     }
 
@@ -212,22 +212,15 @@ impl ShoeLoop {
         for stretch in &mut path.stretches {
             stretch.start = start;
             match &mut stretch.curve {
-                Curve::Arc {
-                    radius,
-                    from,
-                    sweep,
-                    ends,
-                    ..
-                } => {
-                    let beyond = libm::atan(half / *radius);
-                    *radius = (*radius * *radius + half * half).sqrt();
-                    *from += beyond;
-                    *sweep += 2.0 * beyond;
-                    *ends = [direction(*from), direction(*from - *sweep)];
-                    stretch.length = *radius * *sweep;
+                Curve::Arc(arc) => {
+                    let (beyond, center) = (libm::atan(half / arc.radius), arc.center);
+                    let radius = (arc.radius * arc.radius + half * half).sqrt();
+                    let (from, sweep) = (arc.from + beyond, arc.sweep + 2.0 * beyond);
+                    *arc = Arc::new(arc.disc, Disc { center, radius }, from, sweep);
+                    stretch.length = radius * sweep;
                 }
-                Curve::Run { begin, along, .. } => {
-                    *begin += *along * half;
+                Curve::Run(run) => {
+                    run.begin += run.along * half;
                     stretch.length -= pitch;
                 }
             }
