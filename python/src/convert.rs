@@ -225,6 +225,7 @@ pub(crate) fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py,
 }
 
 /// The wheels of both sides, the left side first.
+#[allow(clippy::cast_possible_wrap)] // indices are small
 pub(crate) fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
     let of_side = || model.wheels().into_iter().map(WheelBody::of_one_side);
     let sides = ["left", "right"];
@@ -346,6 +347,7 @@ fn loaded_intrusion<'py>(
     Ok(Some(result))
 }
 
+#[allow(clippy::cast_possible_wrap)] // indices are small
 fn stop_contacts<'py>(py: Python<'py>, found: &[StopContact]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     let whole = |value: fn(&StopContact) -> i64| column(py, found, value);

@@ -31,6 +31,7 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Boun
 }
 
 /// The bodies as columns; bodies that are not parts have the number -1.
+#[allow(clippy::cast_possible_wrap)] // indices are small
 fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Bound<'py, PyDict>> {
     let found = model.outlines();
     let number = |index: Option<usize>| index.map_or(-1, |index| index as i64);
