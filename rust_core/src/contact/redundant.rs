@@ -8,7 +8,7 @@
 
 use super::Contact;
 use super::lane::{Corner, Lane, On, ROUNDING, Touch};
-use crate::geometry::{Disc, Vector, cross, right_of};
+use crate::geometry::{Disc, Vector, is_between, right_of};
 use crate::terrain::STRAIGHT;
 use crate::units::Metres;
 
@@ -30,7 +30,7 @@ pub(super) struct Tip {
 impl Tip {
     /// Whether a direction is an outward normal of the part at the tip, within rounding.
     pub(super) fn has_normal(&self, direction: Vector) -> bool {
-        self.has_normal_within(direction, ROUNDING)
+        is_between(direction, self.normals, ROUNDING)
     }
 
     /// Whether it can bear there until the part has turned on: above a face whichever way it points now, and in a face
@@ -38,18 +38,10 @@ impl Tip {
     pub(super) fn may_bear(&self, touch: &Touch) -> bool {
         match touch.on {
             On::Face(_) => {
-                touch.distance > 0.0 || self.has_normal_within(-touch.normal, NEARLY_PARALLEL)
+                touch.distance > 0.0 || is_between(-touch.normal, self.normals, NEARLY_PARALLEL)
             }
             On::Corner(_) => self.has_normal(-touch.normal),
         }
-    }
-
-    /// Whether a direction is an outward normal of the part at the tip, within an angle of this sine.
-    fn has_normal_within(&self, direction: Vector, sine: f64) -> bool {
-        let [before, behind] = self.normals;
-        cross(before, direction) >= -sine
-            && cross(direction, behind) >= -sine
-            && direction.dot(before + behind) > 0.0
     }
 }
 

@@ -16,8 +16,8 @@ pub(crate) use envelope::Envelope;
 pub use gear::Gear;
 pub use plane::{Disc, Vector};
 pub(crate) use plane::{
-    Pose, Rotation, cross, direction, end_discs, left_of, lower_tangent, outline_discs, plausible,
-    plausible_vectors, right_of, turned_by,
+    Pose, Rotation, cross, direction, end_discs, is_between, left_of, lower_tangent, outline_discs,
+    plausible, plausible_vectors, right_of, turned_by,
 };
 pub use shoes::ShoeLoop;
 pub use teeth::Teeth;

@@ -22,6 +22,12 @@ pub(crate) fn right_of(v: Vector) -> Vector {
     Vector::new(v.y, -v.x)
 }
 
+/// Whether a vector points between two directions, counter-clockwise and less than half a turn apart, or past one of them by
+/// an angle of at most this sine.
+pub(crate) fn is_between(v: Vector, [first, last]: [Vector; 2], sine: f64) -> bool {
+    cross(first, v) >= -sine && cross(v, last) >= -sine && v.dot(first + last) > 0.0
+}
+
 /// The unit vector at an angle [rad] from +x; bit-identical on every platform.
 pub(crate) fn direction(angle: f64) -> Vector {
     let (sine, cosine) = libm::sincos(angle);

@@ -2,7 +2,7 @@
 //!
 //! What is left out changes no contact by more than the contacts of a robot at rest sink in.
 
-use crate::geometry::{Vector, cross, left_of};
+use crate::geometry::{Vector, cross, is_between, left_of};
 use crate::units::Metres;
 
 /// [m] Points closer than this to the line through their neighbours do not make an edge.
@@ -63,9 +63,7 @@ impl Lines {
 
     /// Whether one of the lines leads to a point.
     fn reach(&self, point: Vector) -> bool {
-        self.0.is_none_or(|[right, left]| {
-            cross(right, point) >= 0.0 && cross(point, left) >= 0.0 && point.dot(right + left) > 0.0
-        })
+        self.0.is_none_or(|lines| is_between(point, lines, 0.0))
     }
 }
 

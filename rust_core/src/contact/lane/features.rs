@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::contact::Contact;
-use crate::geometry::{Vector, cross, left_of};
+use crate::geometry::{Vector, cross, is_between, left_of};
 use crate::terrain::{Edge, Profile};
 
 /// Sine of the angle by which a side of the robot may turn in a step: beyond its last normal by this angle, the arc of
@@ -47,22 +47,14 @@ impl Corner {
     /// Whether a straight side with this opposite normal bears on the corner, or would after a small turn: at an edge,
     /// where no other ground would bear in its place.
     pub(crate) fn nearly_has_normal(&self, direction: Vector) -> bool {
-        self.has_normal_within(
-            direction,
-            if self.edge >= 0 {
-                TURN_IN_A_STEP
-            } else {
-                ROUNDING
-            },
-        )
+        let is_edge = self.edge >= 0;
+        self.has_normal_within(direction, if is_edge { TURN_IN_A_STEP } else { ROUNDING })
     }
 
     /// Whether a direction is within an angle, of this sine, of the normals of the ground at the corner.
     fn has_normal_within(&self, direction: Vector, within: f64) -> bool {
         let [before, behind] = self.normals;
-        cross(direction, before) >= -within
-            && cross(behind, direction) >= -within
-            && direction.dot(before + behind) > 0.0
+        is_between(direction, [behind, before], within)
     }
 
     /// The facet of the profile at a normal of the arc.
