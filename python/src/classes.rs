@@ -165,20 +165,12 @@ impl Simulation {
         })?;
         let outcome = self.outcome(py)?;
         let state = PyDict::new(py);
-        state.set_item("time", reading.time)?;
-        state.set_item(
-            "position",
-            convert::pair(py, reading.position.x, reading.position.y),
-        )?;
-        state.set_item(
-            "velocity",
-            convert::pair(py, reading.velocity.x, reading.velocity.y),
-        )?;
-        state.set_item("chassis_angle", reading.chassis_angle)?;
-        state.set_item("angular_velocity", reading.angular_velocity)?;
-        state.set_item("commanded_speed", reading.commanded_speed)?;
-        state.set_item("track_speed", reading.track_speed)?;
-        state.set_item("track_position", reading.track_position)?;
+        state.set_item("position", convert::pair(py, reading.position))?;
+        state.set_item("velocity", convert::pair(py, reading.velocity))?;
+        convert::put! {
+            state, reading:
+            time chassis_angle angular_velocity commanded_speed track_speed track_position
+        }
         state.set_item("flipper_angles", flippers.into_pyarray(py))?;
         state.set_item("contacts", Bound::new(py, Contacts(contacts))?)?;
         state.set_item("outcome", outcome.map(Outcome::name))?;

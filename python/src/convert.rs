@@ -2,8 +2,8 @@
 
 use crawler2d_core::{
     Balance, BodyKind, Change, ContactTable, Diagnosis, Edge, Event, Intrusion, LoadedIntrusion,
-    Mechanism, Model, Outcome, Record, Run, Side, StopContact, TipOver, Trace, Trial, Wanted,
-    WheelBody,
+    Mechanism, Model, Outcome, Record, Run, Side, StopContact, TipOver, Trace, Trial, Vector,
+    Wanted, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
@@ -21,6 +21,7 @@ macro_rules! put {
         $($dict.set_item(stringify!($field), $of.$field.into_pyarray($py))?;)+
     };
 }
+pub(crate) use put;
 
 /// What to record of a run, from the arguments; `trials` are names of what to try at a stop.
 pub(crate) fn record(sample_interval: f64, record: &str, trials: &[String]) -> PyResult<Record> {
@@ -256,8 +257,8 @@ pub(crate) fn rows<'py, const N: usize>(
 }
 
 /// A pair of coordinates.
-pub(crate) fn pair(py: Python<'_>, x: f64, y: f64) -> Bound<'_, PyArray1<f64>> {
-    vec![x, y].into_pyarray(py)
+pub(crate) fn pair(py: Python<'_>, of: Vector) -> Bound<'_, PyArray1<f64>> {
+    vec![of.x, of.y].into_pyarray(py)
 }
 
 /// Version and build data of the compiled core.

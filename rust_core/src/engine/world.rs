@@ -238,17 +238,14 @@ impl Motion {
             let robot = world.multibody_joints.get_multibody(link.multibody)?;
             Some(robot.body_jacobian(link.id) * robot.generalized_velocity())
         });
-        match robot {
-            Some(moved) => Self {
-                center,
-                velocity: Vector::new(moved[0], moved[1]),
-                spin: moved[2],
-            },
-            None => Self {
-                center,
-                velocity: body.linvel(),
-                spin: body.angvel(),
-            },
+        let (velocity, spin) = match robot {
+            Some(moved) => (Vector::new(moved[0], moved[1]), moved[2]),
+            None => (body.linvel(), body.angvel()),
+        };
+        Self {
+            center,
+            velocity,
+            spin,
         }
     }
 

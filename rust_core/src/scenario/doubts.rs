@@ -41,23 +41,23 @@ impl Doubts {
     }
 
     /// Doubts a magnitude beyond `most`; `what` says in words what that is.
-    fn at_most(&mut self, path: String, value: f64, (most, unit): (f64, &str), what: &str) {
+    fn at_most(
+        &mut self,
+        path: impl Into<String>,
+        value: f64,
+        (most, unit): (f64, &str),
+        what: &str,
+    ) {
         if value.abs() > most {
-            self.add(
-                path,
-                value,
-                format!("is usually at most {most:.3} {unit}, {what}"),
-            );
+            let reason = format!("is usually at most {most:.3} {unit}, {what}");
+            self.add(path, value, reason);
         }
     }
 
-    fn angle(&mut self, path: String, value: f64) {
+    fn angle(&mut self, path: impl Into<String>, value: f64) {
+        let reason = "is usually between -3.14 and 3.14 rad, because angles are in radians";
         if value.abs() > PI {
-            self.add(
-                path,
-                value,
-                "is usually between -3.14 and 3.14 rad, because angles are in radians",
-            );
+            self.add(path, value, reason);
         }
     }
 }
@@ -73,12 +73,7 @@ impl Scenario {
         self.add_doubts_of_drive(to_goal, &mut doubts);
         self.add_doubts_of_goal(end, &mut doubts);
         let most = (30.0, "m/s^2");
-        doubts.at_most(
-            "gravity".into(),
-            self.gravity,
-            most,
-            "more than on any planet",
-        );
+        doubts.at_most("gravity", self.gravity, most, "more than on any planet");
         self.add_doubts_of_softness(&mut doubts);
         doubts.0
     }
@@ -114,15 +109,15 @@ impl Scenario {
         let drive = &self.drive;
         match &drive.gait {
             Some(Gait::Hold(hold)) => {
-                doubts.angle("drive.gait.angle".into(), hold.angle);
+                doubts.angle("drive.gait.angle", hold.angle);
                 for (i, [_, angle]) in hold.schedule.iter().flatten().enumerate() {
                     doubts.angle(format!("drive.gait.schedule[{i}][1]"), *angle);
                 }
             }
             Some(Gait::Climb(climb)) => {
-                doubts.angle("drive.gait.reach_angle".into(), climb.reach_angle);
-                doubts.angle("drive.gait.sweep_angle".into(), climb.sweep_angle);
-                doubts.angle("drive.gait.push_angle".into(), climb.push_angle);
+                doubts.angle("drive.gait.reach_angle", climb.reach_angle);
+                doubts.angle("drive.gait.sweep_angle", climb.sweep_angle);
+                doubts.angle("drive.gait.push_angle", climb.push_angle);
             }
             None => {}
         }
@@ -142,11 +137,8 @@ impl Scenario {
                     doubts.add("goal", goal, format!("cannot be reached: {way}"));
                 }
                 None if to_goal > FAR * reach => {
-                    doubts.add(
-                        "duration",
-                        time,
-                        format!("is too short for the goal: {way}"),
-                    );
+                    let reason = format!("is too short for the goal: {way}");
+                    doubts.add("duration", time, reason);
                 }
                 _ => {}
             }
@@ -177,7 +169,7 @@ impl Robot {
         let box_round = length * 2.0 * o.largest_radius() * length.max(self.gauge);
         let [least, most] = [AIR, GOLD].map(|density| density * box_round);
         let what = "the mass of gold of its length and height";
-        doubts.at_most("robot.mass".into(), self.mass, (most, "kg"), what);
+        doubts.at_most("robot.mass", self.mass, (most, "kg"), what);
         if self.mass < least {
             let reason = format!(
                 "is usually at least {least:.3} kg, the mass of air of its length and height"
@@ -186,12 +178,8 @@ impl Robot {
         }
         let most = (self.mass * length * length, "kg m^2");
         let what = "mass x the square of the robot's length";
-        doubts.at_most(
-            "robot.moment_of_inertia".into(),
-            self.moment_of_inertia,
-            most,
-            what,
-        );
+        let inertia = self.moment_of_inertia;
+        doubts.at_most("robot.moment_of_inertia", inertia, most, what);
         let size = (o.largest_radius(), o.axle_distance());
         add_doubts_of_wheels(&self.track, "robot.track", size, doubts);
         if let Some(flippers) = &self.flippers {
@@ -202,7 +190,7 @@ impl Robot {
 
 impl Flippers {
     fn add_doubts(&self, robot: &Robot, doubts: &mut Doubts) {
-        doubts.angle("robot.flippers.angle".into(), self.angle);
+        doubts.angle("robot.flippers.angle", self.angle);
         let size = (self.root_radius.max(self.tip_radius), self.length);
         let (path, track) = match &self.track {
             Some(track) => ("robot.flippers.track", track),

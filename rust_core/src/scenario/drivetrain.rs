@@ -41,7 +41,7 @@ object! {
         #[serde(skip_serializing_if = "is_false")]
         self_locking: bool = flag_or_false(),
     }
-    check by check
+    then check
 }
 
 /// A controller of the speed of a sprocket, whose torque is in proportion to the error, and to the error's sum.

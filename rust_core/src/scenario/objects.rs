@@ -24,7 +24,7 @@ macro_rules! object {
         pub struct $name:ident {
             $($(#[$note:meta])* $field:ident: $kind:ty = $method:ident($($rule:expr),*),)*
         }
-        $(check by $check:ident)?
+        $(then $check:ident)?
     ) => {
         $(#[$about])*
         #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -39,7 +39,7 @@ object! {
         /// How the track is modelled.
         track: Track = object(),
     }
-    check by check
+    then check
 }
 
 impl Robot {
@@ -225,7 +225,7 @@ object! {
         /// How their tracks are modelled; `None` takes the robot's model.
         track: Option<Track> = optional_object(),
     }
-    check by check
+    then check
 }
 
 choice! {

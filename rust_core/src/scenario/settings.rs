@@ -75,7 +75,7 @@ object! {
         #[serde(skip_serializing_if = "is_zero")]
         restitution: f64 = number_or_zero(Range::between(0.0, 1.0, "")),
     }
-    check by check
+    then check
 }
 
 object! {

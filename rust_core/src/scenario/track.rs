@@ -108,7 +108,7 @@ object! {
         /// Rollers under the upper run; `None` takes enough to leave gaps of at most two pitches.
         return_roller_count: Option<u32> = optional_integer(0, MAX_WHEELS),
     }
-    check by check
+    then check
 }
 
 choice! {

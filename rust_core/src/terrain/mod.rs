@@ -4,7 +4,7 @@ mod obstacle;
 mod profile;
 mod straight;
 
-use obstacle::{RUN_OUT, Skyline};
+use obstacle::{Obstacle, RUN_OUT, Skyline};
 use straight::COLLINEAR;
 
 pub(crate) use profile::facet_along;
@@ -25,12 +25,6 @@ pub struct Ground {
     pub goal: f64,
     /// [m] Where the obstacle begins: the first edge at or beyond x = 0, else the first of all, else 0.
     pub first_edge: f64,
-}
-
-/// The description of one lane.
-struct Described {
-    profile: Profile,
-    goal: f64,
 }
 
 impl Ground {
@@ -60,8 +54,8 @@ impl Ground {
                 Self::skylines(&lanes, field.surface)
             }
             _ => {
-                let lane = Described::new("terrain", terrain)?;
-                Ok(Self::of(vec![lane.profile], 1, lane.goal))
+                let (lane, goal) = described("terrain", terrain)?;
+                Ok(Self::of(vec![lane], 1, goal))
             }
         }
     }
@@ -72,21 +66,19 @@ impl Ground {
         right: &Terrain,
         middle: Option<&Terrain>,
     ) -> Result<Self, ScenarioError> {
-        let first = Described::new("terrain.left", left)?;
-        let second = Described::new("terrain.right", right)?;
-        let third = middle
-            .map(|lane| Described::new("terrain.middle", lane))
-            .transpose()?
-            .map(|lane| lane.profile);
-        let goal = first.goal.max(second.goal);
+        let (first, goal) = described("terrain.left", left)?;
+        let (second, other) = described("terrain.right", right)?;
+        let third = middle.map(|lane| described("terrain.middle", lane));
+        let third = third.transpose()?.map(|(lane, _)| lane);
+        let goal = goal.max(other);
         let ground = if left == right {
             // If both tracks meet the same profile, they are simulated as one.
             let own = third.filter(|_| middle != Some(left));
             let own = own.map(|profile| profile.under(Side::Middle));
-            let lanes = std::iter::once(first.profile).chain(own).collect();
+            let lanes = std::iter::once(first).chain(own).collect();
             Self::of(lanes, 1, goal)
         } else {
-            Self::apart([first.profile, second.profile], third, goal)?
+            Self::apart([first, second], third, goal)?
         };
         let (low, high) = ground.extent();
         if !(low..=high).contains(&goal) {
@@ -198,18 +190,20 @@ impl Ground {
     }
 }
 
-impl Described {
-    fn new(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {
-        let obstacle = obstacle::of(terrain);
-        let goal = obstacle.goal;
-        let profile = Profile::new(path, &obstacle.points, obstacle.surface, true)?;
-        let (low, high) = profile.extent();
-        if !(low..=high).contains(&goal) {
-            let rule = format!("must lie on the terrain, from {low} to {high} m");
-            return Err(ScenarioError::new(format!("{path}.goal"), goal, rule));
-        }
-        Ok(Self { profile, goal })
+/// One lane of the terrain at a path, with its goal [m].
+fn described(path: &str, terrain: &Terrain) -> Result<(Profile, f64), ScenarioError> {
+    let Obstacle {
+        points,
+        goal,
+        surface,
+    } = obstacle::of(terrain);
+    let profile = Profile::new(path, &points, surface, true)?;
+    let (low, high) = profile.extent();
+    if !(low..=high).contains(&goal) {
+        let rule = format!("must lie on the terrain, from {low} to {high} m");
+        return Err(ScenarioError::new(format!("{path}.goal"), goal, rule));
     }
+    Ok((profile, goal))
 }
 
 /// The upper envelope of two profiles over their common stretch of x. Arcs become polylines as fine as theirs;
