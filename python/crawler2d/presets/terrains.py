@@ -72,7 +72,7 @@ def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Ba
     thickness : float
         [m] Thickness along x.
     **fields : float
-        Further fields of `Barrier`: `edge_radius` [m], `friction` [-].
+        Further fields of `Barrier`, such as `edge_radius` [m] and `friction` [-].
 
     Returns
     -------
@@ -151,7 +151,7 @@ def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:
     goal : float
         [m] The x that the whole robot must pass.
     **fields : float
-        Further fields of `Points`: `edge_radius` [m], `friction` [-].
+        Further fields of `Points`, such as `edge_radius` [m] and `friction` [-].
 
     Returns
     -------
