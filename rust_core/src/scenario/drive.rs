@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
-use super::fields::{Fields, Range, one_of};
+use super::fields::{Checked, Fields, Range, one_of};
 use super::objects::{FromJson, kinds, object};
 use super::robot::ANGLE;
 
@@ -60,7 +60,7 @@ object! {
 
 impl Drive {
     /// Checks that no commanded speed exceeds the drivetrain's.
-    pub(crate) fn check(&self, drivetrain: &Drivetrain) -> Result<(), ScenarioError> {
+    pub(crate) fn check(&self, drivetrain: &Drivetrain) -> Checked<()> {
         let limit = drivetrain.max_speed;
         let (path, speed) = self.fastest();
         if speed.abs() <= limit {
@@ -91,7 +91,7 @@ impl Fields<'_> {
         &mut self,
         name: &'static str,
         value: (&str, Range),
-    ) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
+    ) -> Checked<Option<Vec<[f64; 2]>>> {
         let columns = [("time", Range::between(0.0, 1e5, "s")), value];
         let rows = self.unless_null(name, |f, name| f.rows(name, columns, MOST))?;
         for (i, pair) in rows.iter().flat_map(|rows| rows.windows(2)).enumerate() {

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::fields::{Fields, ROTOR, Range, TORQUE, is_false, is_zero, one_of};
+use super::TrackOutline;
+use super::fields::{Checked, Fields, ROTOR, Range, TORQUE, is_false, is_zero, one_of};
 use super::objects::{Choice, FromJson, choice, object};
-use super::{ScenarioError, TrackOutline};
 
 const FASTEST: Range = Range::above(0.0, 100.0, "m/s");
 /// Largest number of points of a torque curve.
@@ -70,7 +70,7 @@ impl Drivetrain {
         2.0 * self.max_torque / outline.belt_radius()
     }
 
-    fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check(&self, f: &Fields) -> Checked<()> {
         if self.self_locking && self.controller.is_some() {
             let rule = "must be false with a controller: the load never reaches the motor, so there is no error to correct";
             return Err(f.error("self_locking", true, rule));
@@ -85,7 +85,7 @@ impl Drivetrain {
 }
 
 impl FromJson for Pi {
-    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+    fn read(f: &mut Fields) -> Checked<Self> {
         match f.text("kind")? {
             "pi" => Ok(Self {
                 gain: f.number("gain", Range::above(0.0, 1e17, "N m s/rad"))?,
@@ -97,7 +97,7 @@ impl FromJson for Pi {
 }
 
 /// Reads torques at track speeds, which start at rest with the largest and fall.
-fn read_curve(f: &mut Fields, name: &'static str) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
+fn read_curve(f: &mut Fields, name: &'static str) -> Checked<Option<Vec<[f64; 2]>>> {
     let columns = [
         ("speed", Range::between(0.0, 100.0, "m/s")),
         ("torque", TORQUE),

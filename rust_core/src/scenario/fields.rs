@@ -16,10 +16,8 @@ impl Range {
     /// Above `low`, up to and including `high`.
     pub(crate) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
         Self {
-            low,
             low_included: false,
-            high,
-            unit,
+            ..Self::between(low, high, unit)
         }
     }
 
@@ -34,12 +32,7 @@ impl Range {
     }
 
     fn contains(self, x: f64) -> bool {
-        let above = if self.low_included {
-            x >= self.low
-        } else {
-            x > self.low
-        };
-        above && x <= self.high
+        (self.low..=self.high).contains(&x) && (self.low_included || x > self.low)
     }
 
     fn rule(self) -> String {
@@ -105,6 +98,9 @@ pub(super) fn is_false(flag: &bool) -> bool {
     !flag
 }
 
+/// What keeps its rules, or the first that is broken.
+pub(super) type Checked<T> = Result<T, ScenarioError>;
+
 /// A JSON object being read: every known field is read once; the others are errors.
 pub(crate) struct Fields<'a> {
     path: String,
@@ -113,7 +109,7 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    pub(crate) fn new(path: &str, value: &'a Value) -> Result<Self, ScenarioError> {
+    pub(crate) fn new(path: &str, value: &'a Value) -> Checked<Self> {
         match value {
             Value::Object(map) => Ok(Self {
                 path: path.to_owned(),
@@ -143,7 +139,7 @@ impl<'a> Fields<'a> {
         ScenarioError::new(self.path(name), value, rule)
     }
 
-    pub(crate) fn value(&mut self, name: &'static str) -> Result<&'a Value, ScenarioError> {
+    pub(crate) fn value(&mut self, name: &'static str) -> Checked<&'a Value> {
         // A field is read twice where null has a meaning of its own.
         if !self.known.contains(&name) {
             self.known.push(name);
@@ -158,21 +154,13 @@ impl<'a> Fields<'a> {
         self.map.contains_key(name)
     }
 
-    pub(crate) fn number(
-        &mut self,
-        name: &'static str,
-        range: Range,
-    ) -> Result<f64, ScenarioError> {
+    pub(crate) fn number(&mut self, name: &'static str, range: Range) -> Checked<f64> {
         let value = self.value(name)?;
         in_range(&self.path(name), value, range)
     }
 
     /// A number that texts leave out if it is 0, as those do that are older than the field.
-    pub(crate) fn number_or_zero(
-        &mut self,
-        name: &'static str,
-        range: Range,
-    ) -> Result<f64, ScenarioError> {
+    pub(crate) fn number_or_zero(&mut self, name: &'static str, range: Range) -> Checked<f64> {
         self.if_given(name, |f, name| f.number(name, range))
     }
 
@@ -180,28 +168,17 @@ impl<'a> Fields<'a> {
         &mut self,
         name: &'static str,
         range: Range,
-    ) -> Result<Option<f64>, ScenarioError> {
+    ) -> Checked<Option<f64>> {
         self.unless_null(name, |f, name| f.number(name, range))
     }
 
-    pub(crate) fn integer(
-        &mut self,
-        name: &'static str,
-        low: u32,
-        high: u32,
-    ) -> Result<u32, ScenarioError> {
+    pub(crate) fn integer(&mut self, name: &'static str, low: u32, high: u32) -> Checked<u32> {
         let value = self.value(name)?;
-        let inside = value
-            .as_u64()
-            .filter(|n| (u64::from(low)..=u64::from(high)).contains(n));
-        match inside {
-            Some(n) => Ok(n as u32),
-            None => Err(self.error(
-                name,
-                value,
-                format!("must be an integer from {low} to {high}"),
-            )),
-        }
+        let whole = value.as_u64().and_then(|n| u32::try_from(n).ok());
+        whole.filter(|n| (low..=high).contains(n)).ok_or_else(|| {
+            let rule = format!("must be an integer from {low} to {high}");
+            self.error(name, value, rule)
+        })
     }
 
     pub(crate) fn optional_integer(
@@ -209,18 +186,18 @@ impl<'a> Fields<'a> {
         name: &'static str,
         low: u32,
         high: u32,
-    ) -> Result<Option<u32>, ScenarioError> {
+    ) -> Checked<Option<u32>> {
         self.unless_null(name, |f, name| f.integer(name, low, high))
     }
 
-    pub(crate) fn flag(&mut self, name: &'static str) -> Result<bool, ScenarioError> {
+    pub(crate) fn flag(&mut self, name: &'static str) -> Checked<bool> {
         let value = self.value(name)?;
         let flag = value.as_bool();
         flag.ok_or_else(|| self.error(name, value, "must be true or false"))
     }
 
     /// A flag that texts leave out if it is false, as those do that are older than the field.
-    pub(crate) fn flag_or_false(&mut self, name: &'static str) -> Result<bool, ScenarioError> {
+    pub(crate) fn flag_or_false(&mut self, name: &'static str) -> Checked<bool> {
         self.if_given(name, Self::flag)
     }
 
@@ -228,8 +205,8 @@ impl<'a> Fields<'a> {
     pub(super) fn unless_null<T>(
         &mut self,
         name: &'static str,
-        read: impl FnOnce(&mut Self, &'static str) -> Result<T, ScenarioError>,
-    ) -> Result<Option<T>, ScenarioError> {
+        read: impl FnOnce(&mut Self, &'static str) -> Checked<T>,
+    ) -> Checked<Option<T>> {
         if self.value(name)?.is_null() {
             return Ok(None);
         }
@@ -240,8 +217,8 @@ impl<'a> Fields<'a> {
     pub(super) fn if_given<T: Default>(
         &mut self,
         name: &'static str,
-        read: impl FnOnce(&mut Self, &'static str) -> Result<T, ScenarioError>,
-    ) -> Result<T, ScenarioError> {
+        read: impl FnOnce(&mut Self, &'static str) -> Checked<T>,
+    ) -> Checked<T> {
         if self.has(name) {
             read(self, name)
         } else {
@@ -249,7 +226,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {
+    pub(crate) fn text(&mut self, name: &'static str) -> Checked<&'a str> {
         /// Largest number of characters.
         const LONGEST: usize = 1000;
 
@@ -264,15 +241,11 @@ impl<'a> Fields<'a> {
         Ok(text)
     }
 
-    pub(crate) fn string(&mut self, name: &'static str) -> Result<String, ScenarioError> {
+    pub(crate) fn string(&mut self, name: &'static str) -> Checked<String> {
         self.text(name).map(str::to_owned)
     }
 
-    pub(crate) fn point(
-        &mut self,
-        name: &'static str,
-        range: Range,
-    ) -> Result<[f64; 2], ScenarioError> {
+    pub(crate) fn point(&mut self, name: &'static str, range: Range) -> Checked<[f64; 2]> {
         let value = self.value(name)?;
         row(&self.path(name), value, [("x", range), ("y", range)])
     }
@@ -283,7 +256,7 @@ impl<'a> Fields<'a> {
         name: &'static str,
         columns: [(&str, Range); N],
         most: usize,
-    ) -> Result<Vec<[f64; N]>, ScenarioError> {
+    ) -> Checked<Vec<[f64; N]>> {
         rows(&self.path(name), self.value(name)?, columns, most)
     }
 
@@ -293,32 +266,25 @@ impl<'a> Fields<'a> {
         name: &'static str,
         range: Range,
         most: usize,
-    ) -> Result<Vec<[f64; 2]>, ScenarioError> {
+    ) -> Checked<Vec<[f64; 2]>> {
         self.rows(name, [("x", range), ("y", range)], most)
     }
 
-    pub(crate) fn child(&mut self, name: &'static str) -> Result<Fields<'a>, ScenarioError> {
+    pub(crate) fn child(&mut self, name: &'static str) -> Checked<Fields<'a>> {
         let value = self.value(name)?;
         Fields::new(&self.path(name), value)
     }
 
     /// Returns an error if the object has an unknown field.
-    pub(crate) fn finish(self) -> Result<(), ScenarioError> {
-        match self
-            .map
-            .iter()
-            .find(|(name, _)| !self.known.contains(&name.as_str()))
-        {
-            None => Ok(()),
-            Some((name, value)) => Err(ScenarioError::new(
-                self.path(name),
-                value,
-                format!(
-                    "must be a known field: {}",
-                    one_of(Some(name), &self.known).replacen("must be one of ", "", 1)
-                ),
-            )),
-        }
+    pub(crate) fn finish(self) -> Checked<()> {
+        let mut fields = self.map.iter();
+        let unknown = fields.find(|(name, _)| !self.known.contains(&name.as_str()));
+        let Some((name, value)) = unknown else {
+            return Ok(());
+        };
+        let rule = one_of(Some(name), &self.known);
+        let rule = rule.replacen("must be one of", "must be a known field:", 1);
+        Err(self.error(name, value, rule))
     }
 }
 
@@ -328,7 +294,7 @@ pub(super) fn rows<const N: usize>(
     value: &Value,
     columns: [(&str, Range); N],
     most: usize,
-) -> Result<Vec<[f64; N]>, ScenarioError> {
+) -> Checked<Vec<[f64; N]>> {
     let names = columns.map(|(column, _)| column).join(", ");
     let Value::Array(rows) = value else {
         let rule = format!("must be a list of [{names}]");
@@ -347,15 +313,12 @@ fn row<const N: usize>(
     path: &str,
     value: &Value,
     columns: [(&str, Range); N],
-) -> Result<[f64; N], ScenarioError> {
+) -> Checked<[f64; N]> {
     let cells = value.as_array().filter(|cells| cells.len() == N);
     let Some(cells) = cells else {
         let names = columns.map(|(column, _)| column).join(", ");
-        return Err(ScenarioError::new(
-            path,
-            value,
-            format!("must be [{names}]"),
-        ));
+        let rule = format!("must be [{names}]");
+        return Err(ScenarioError::new(path, value, rule));
     };
     let mut row = [0.0; N];
     for (i, (_, range)) in columns.iter().enumerate() {
@@ -364,7 +327,7 @@ fn row<const N: usize>(
     Ok(row)
 }
 
-fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioError> {
+fn in_range(path: &str, value: &Value, range: Range) -> Checked<f64> {
     // JSON has no non-finite numbers; they are passed as strings, so that the error can name the field.
     let x = match value {
         Value::String(text) if matches!(text.as_str(), "NaN" | "Infinity" | "-Infinity") => {

@@ -13,7 +13,7 @@ mod settings;
 mod terrain;
 mod track;
 
-use fields::{Fields, GRAVITY, Range, joined};
+use fields::{Checked, Fields, GRAVITY, Range, joined};
 use objects::{FromJson, object};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserializer, Serialize};
@@ -83,7 +83,7 @@ impl Scenario {
     }
 
     /// Reads all of it; rules that need the built robot and ground are checked elsewhere.
-    pub(crate) fn of_value(value: &Value) -> Result<Self, ScenarioError> {
+    pub(crate) fn of_value(value: &Value) -> Checked<Self> {
         let mut f = Fields::new("", value)?;
         if value.get("schema").is_some_and(|version| version == 1) {
             return Err(ScenarioError::new("schema", 1, OF_VERSION_1));
@@ -98,7 +98,7 @@ impl Scenario {
 const DEEPEST: usize = 12;
 
 /// Parses a text; an error has the path of the faulty value.
-pub(crate) fn parse(text: &str) -> Result<Value, ScenarioError> {
+pub(crate) fn parse(text: &str) -> Checked<Value> {
     let whole: &RawValue = from_str(text)
         .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
     tree(&Place::Root, whole, 0)
@@ -129,7 +129,7 @@ impl Place<'_> {
     }
 }
 
-fn tree(place: &Place, raw: &RawValue, depth: usize) -> Result<Value, ScenarioError> {
+fn tree(place: &Place, raw: &RawValue, depth: usize) -> Checked<Value> {
     let text = raw.get();
     // The text is known to be JSON; only half of a surrogate pair can still be wrong.
     let not_unicode = |_: Error| place.error(raw, "must be valid Unicode");

@@ -3,7 +3,7 @@
 //! In the tables, `= method(rule)` after a field is the method of [`Fields`] that reads it.
 
 use super::ScenarioError;
-use super::fields::{Fields, one_of};
+use super::fields::{Checked, Fields, one_of};
 
 /// What a JSON object says.
 pub(super) trait FromJson: Sized {
@@ -33,7 +33,7 @@ macro_rules! object {
         }
 
         impl FromJson for $name {
-            fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+            fn read(f: &mut Fields) -> Checked<Self> {
                 let object = Self {
                     $($field: f.$method(stringify!($field), $($rule),*)?,)*
                 };
@@ -69,7 +69,7 @@ macro_rules! kinds {
         }
 
         impl FromJson for $name {
-            fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+            fn read(f: &mut Fields) -> Checked<Self> {
                 match f.text("kind")? {
                     $($text => Ok(Self::$variant
                         $({ $($field: f.$method(stringify!($field), $($rule),*)?,)* })?
@@ -106,7 +106,7 @@ pub(super) use {choice, kinds, object};
 
 impl Fields<'_> {
     /// Reads an object and nothing else.
-    pub(super) fn object<T: FromJson>(&mut self, name: &'static str) -> Result<T, ScenarioError> {
+    pub(super) fn object<T: FromJson>(&mut self, name: &'static str) -> Checked<T> {
         let mut inner = self.child(name)?;
         let object = T::read(&mut inner)?;
         inner.finish()?;
@@ -117,17 +117,17 @@ impl Fields<'_> {
     pub(super) fn optional_object<T: FromJson>(
         &mut self,
         name: &'static str,
-    ) -> Result<Option<T>, ScenarioError> {
+    ) -> Checked<Option<T>> {
         self.unless_null(name, Self::object)
     }
 
     /// Reads a struct whose fields are among those of this object.
-    pub(super) fn flat<T: FromJson>(&mut self, _: &str) -> Result<T, ScenarioError> {
+    pub(super) fn flat<T: FromJson>(&mut self, _: &str) -> Checked<T> {
         T::read(self)
     }
 
     /// Reads one of a fixed set of names.
-    pub(super) fn choice<T: Choice>(&mut self, name: &'static str) -> Result<T, ScenarioError> {
+    pub(super) fn choice<T: Choice>(&mut self, name: &'static str) -> Checked<T> {
         let value = self.value(name)?;
         let mut all = T::ALL.iter();
         let found = all.find(|(choice, _)| value.as_str() == Some(choice));

@@ -4,7 +4,7 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use serde_json::{Value, json};
 
 use super::ScenarioError;
-use super::fields::{COORDINATE, Fields, SIZE, SIZE_OR_ZERO, SMALLEST};
+use super::fields::{COORDINATE, Checked, Fields, SIZE, SIZE_OR_ZERO, SMALLEST};
 use super::objects::FromJson;
 
 /// What texts have in place of two discs.
@@ -107,11 +107,7 @@ impl TrackOutline {
     ///
     /// # Errors
     /// The number would exceed `most`; the bounds are the same as for a given number.
-    pub(crate) fn pitches_along(
-        &self,
-        length: f64,
-        [least, most]: [u32; 2],
-    ) -> Result<u32, ScenarioError> {
+    pub(crate) fn pitches_along(&self, length: f64, [least, most]: [u32; 2]) -> Checked<u32> {
         let count = (length / self.grouser_pitch).round();
         if count <= f64::from(most) {
             return Ok((count as u32).max(least));
@@ -161,7 +157,7 @@ impl Serialize for TrackOutline {
 }
 
 impl FromJson for TrackOutline {
-    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+    fn read(f: &mut Fields) -> Checked<Self> {
         let short = SHORT.into_iter().find(|name| f.has(name));
         let discs = match short {
             Some(name) if f.has("discs") => {
@@ -201,7 +197,7 @@ impl FromJson for TrackOutline {
 
 impl TrackOutline {
     /// Checks that neither of two ends encloses the other.
-    fn check_enclosure(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check_enclosure(&self, f: &Fields) -> Checked<()> {
         let [rear, front] = [self.discs[0], self.discs[1]];
         if (front[2] - rear[2]).abs() >= front[0] - rear[0] {
             let rule = "must differ from rear_radius by less than the axle distance: otherwise one end would enclose the other";
@@ -211,7 +207,7 @@ impl TrackOutline {
     }
 
     /// Checks that it has two ends, with the origin of the chassis frame between them.
-    fn check_ends(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check_ends(&self, f: &Fields) -> Checked<()> {
         let [rear, front] = self.end_discs().map(|disc| disc[0]);
         if self.axle_distance() < SMALLEST {
             let rule = format!(
@@ -230,7 +226,7 @@ impl TrackOutline {
 }
 
 /// Reads the short form of two discs.
-fn read_ends(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
+fn read_ends(f: &mut Fields) -> Checked<Vec<[f64; 3]>> {
     let axle_distance = f.number("axle_distance", SIZE)?;
     let front = f.number("front_radius", SIZE)?;
     let rear = f.number("rear_radius", SIZE)?;
@@ -238,7 +234,7 @@ fn read_ends(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
 }
 
 /// Reads discs of which none lies in another.
-fn read_discs(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
+fn read_discs(f: &mut Fields) -> Checked<Vec<[f64; 3]>> {
     let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", SIZE)];
     let discs = f.rows("discs", columns, MOST)?;
     if discs.len() < 2 {

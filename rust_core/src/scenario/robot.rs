@@ -6,8 +6,8 @@ use serde_json::Value;
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
 use super::fields::{
-    COORDINATE, Fields, INERTIA, LEAST_FRACTION, MASS, ROTOR, Range, SIZE, TORQUE, is_false,
-    is_zero, rows,
+    COORDINATE, Checked, Fields, INERTIA, LEAST_FRACTION, MASS, ROTOR, Range, SIZE, TORQUE,
+    is_false, is_zero, rows,
 };
 use super::objects::{Choice, FromJson, choice, object};
 use super::outline::TrackOutline;
@@ -57,7 +57,7 @@ impl Robot {
     }
 
     /// Checks rules that involve several fields.
-    fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check(&self, f: &Fields) -> Checked<()> {
         if self.track_mass >= self.mass {
             return Err(f.error(
                 "track_mass",
@@ -95,7 +95,7 @@ impl Robot {
     }
 
     /// Checks that the digits of the chassis are not lost beside a motor's rotor.
-    fn check_rotor(&self, of: &str, inertia: f64) -> Result<(), ScenarioError> {
+    fn check_rotor(&self, of: &str, inertia: f64) -> Checked<()> {
         let most = self.moment_of_inertia / LEAST_FRACTION;
         if inertia <= most {
             return Ok(());
@@ -106,7 +106,7 @@ impl Robot {
     }
 
     /// Checks rules that involve robot and flippers.
-    fn check_flippers(&self, flippers: &Flippers) -> Result<(), ScenarioError> {
+    fn check_flippers(&self, flippers: &Flippers) -> Checked<()> {
         let error = |field: &str, value: f64, rule: String| {
             let path = format!("robot.flippers.{field}");
             Err(ScenarioError::new(path, value, rule))
@@ -160,12 +160,12 @@ impl Robot {
 }
 
 /// Reads the polygon of a belly.
-fn read_belly(f: &mut Fields, name: &'static str) -> Result<Vec<[f64; 2]>, ScenarioError> {
+fn read_belly(f: &mut Fields, name: &'static str) -> Checked<Vec<[f64; 2]>> {
     read_polygon(&f.path(name), f.value(name)?)
 }
 
 /// Reads a convex counter-clockwise polygon of non-zero area.
-fn read_polygon(path: &str, value: &Value) -> Result<Vec<[f64; 2]>, ScenarioError> {
+fn read_polygon(path: &str, value: &Value) -> Checked<Vec<[f64; 2]>> {
     const MOST: usize = 64;
     let points = rows(path, value, [("x", COORDINATE), ("y", COORDINATE)], MOST)?;
     let n = points.len();
@@ -260,7 +260,7 @@ impl End {
 }
 
 impl Flippers {
-    fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check(&self, f: &Fields) -> Checked<()> {
         if (self.root_radius - self.tip_radius).abs() >= self.length {
             let rule = "must differ from root_radius by less than the length: otherwise one end would enclose the other";
             return Err(f.error("tip_radius", self.tip_radius, rule));

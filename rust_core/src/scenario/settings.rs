@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::ScenarioError;
-use super::fields::{Fields, Range, SHORTEST, is_zero};
+use super::fields::{Checked, Fields, Range, SHORTEST, is_zero};
 use super::objects::{Choice, FromJson, choice, object};
 
 object! {
@@ -126,7 +125,7 @@ object! {
 
 impl Solver {
     /// Checks that either the length of steps is given or their error.
-    fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check(&self, f: &Fields) -> Checked<()> {
         match (self.accuracy, self.time_step) {
             (None, None) => Err(f.error("accuracy", "null", "must be given if time_step is not")),
             (Some(_), Some(step)) => {

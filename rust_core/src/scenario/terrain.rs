@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::ScenarioError;
-use super::fields::{Fields, Range, SIZE, SMALLEST, one_of};
+use super::fields::{Checked, Fields, Range, SIZE, SMALLEST, one_of};
 use super::objects::{Choice, FromJson, choice, kinds, object};
 
 /// Largest number of points of one profile; 100,000 are built in well under a second.
@@ -49,7 +48,7 @@ impl Friction {
 }
 
 impl FromJson for Friction {
-    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+    fn read(f: &mut Fields) -> Checked<Self> {
         Ok(Self {
             coefficient: f.number("friction", Range::between(0.0, 100.0, ""))?,
         })
@@ -266,7 +265,7 @@ impl Terrain {
 }
 
 impl Fields<'_> {
-    fn lane(&mut self, name: &'static str) -> Result<Box<Terrain>, ScenarioError> {
+    fn lane(&mut self, name: &'static str) -> Checked<Box<Terrain>> {
         let lane = self.object(name)?;
         let lanes = match lane {
             Terrain::Lanes { .. } => "lanes",
@@ -277,7 +276,7 @@ impl Fields<'_> {
         Err(self.error(name, lanes, "must be a terrain with a single profile"))
     }
 
-    fn optional_lane(&mut self, name: &'static str) -> Result<Option<Box<Terrain>>, ScenarioError> {
+    fn optional_lane(&mut self, name: &'static str) -> Checked<Option<Box<Terrain>>> {
         self.unless_null(name, Self::lane)
     }
 }

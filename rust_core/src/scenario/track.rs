@@ -4,7 +4,9 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::TorqueSharing;
-use super::fields::{COORDINATE, DAMPING, FORCE, Fields, Range, SIZE, STIFFNESS, joined, one_of};
+use super::fields::{
+    COORDINATE, Checked, DAMPING, FORCE, Fields, Range, SIZE, STIFFNESS, joined, one_of,
+};
 use super::objects::{Choice, FromJson, choice, kinds, object};
 
 /// Largest number of wheels per side.
@@ -222,7 +224,7 @@ impl Track {
     }
 
     /// Checks that it can stand at `path` for a track round so many discs.
-    pub(super) fn check_discs(&self, path: &str, count: usize) -> Result<(), ScenarioError> {
+    pub(super) fn check_discs(&self, path: &str, count: usize) -> Checked<()> {
         let refused = |field: &str, value: &str, [instead, why]: [&str; 2]| {
             let rule =
                 format!("must be {instead} round {count} discs (robot.outline.discs): {why}");
@@ -260,7 +262,7 @@ impl Track {
     }
 
     /// Checks that the motors can share their torque like this.
-    pub(super) fn check(&self, sharing: TorqueSharing) -> Result<(), ScenarioError> {
+    pub(super) fn check(&self, sharing: TorqueSharing) -> Checked<()> {
         if sharing == TorqueSharing::Wheel && self.wheel().is_none() {
             let rule = "must be \"track\" for a model without driven wheels";
             return Err(ScenarioError::new(
@@ -274,13 +276,13 @@ impl Track {
 }
 
 impl FromJson for BeltTrack {
-    fn read(_: &mut Fields) -> Result<Self, ScenarioError> {
+    fn read(_: &mut Fields) -> Checked<Self> {
         Ok(Self {})
     }
 }
 
 impl SegmentalTrack {
-    fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
+    fn check(&self, f: &Fields) -> Checked<()> {
         let wheels = [
             ("road_wheel_count", self.road_wheel_count),
             ("return_roller_count", self.return_roller_count),
@@ -296,7 +298,7 @@ impl SegmentalTrack {
 }
 
 impl Fields<'_> {
-    fn open_track(&mut self, name: &'static str) -> Result<Box<Track>, ScenarioError> {
+    fn open_track(&mut self, name: &'static str) -> Checked<Box<Track>> {
         match self.object(name)? {
             Track::Closed(_) => {
                 Err(self.error(name, "a closed track", "must not be closed itself"))
@@ -305,7 +307,7 @@ impl Fields<'_> {
         }
     }
 
-    fn placements(&mut self, name: &'static str) -> Result<Vec<[f64; 3]>, ScenarioError> {
+    fn placements(&mut self, name: &'static str) -> Checked<Vec<[f64; 3]>> {
         let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", SIZE)];
         let placements = self.rows(name, columns, MAX_WHEELS as usize)?;
         if placements.is_empty() {
