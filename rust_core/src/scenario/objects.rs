@@ -2,13 +2,12 @@
 //!
 //! In the tables, `= method(rule)` after a field is the method of [`Fields`] that reads it.
 
-use super::ScenarioError;
 use super::fields::{Checked, Fields, one_of};
 
 /// What a JSON object says.
 pub(super) trait FromJson: Sized {
     /// Reads its fields; that there are no others is for the caller to check.
-    fn read(f: &mut Fields) -> Result<Self, ScenarioError>;
+    fn read(f: &mut Fields) -> Checked<Self>;
 }
 
 /// One of a fixed set of names.
