@@ -114,20 +114,15 @@ impl Contact {
     #[inline]
     pub(super) fn constraints(&self, mut found: impl FnMut([&Direction; 2], Damper)) {
         let ([normal, tangent], [n, t]) = (&self.actions, self.dampers);
+        let coefficient = self.friction.coefficient;
         match self.grip {
             Grip::Open => {}
             Grip::Sticks => {
                 found([normal; 2], n);
                 found([tangent; 2], t);
             }
-            Grip::Forwards => found(
-                [&normal.plus(tangent, self.friction.coefficient), normal],
-                n,
-            ),
-            Grip::Backwards => found(
-                [&normal.plus(tangent, -self.friction.coefficient), normal],
-                n,
-            ),
+            Grip::Forwards => found([&normal.plus(tangent, coefficient), normal], n),
+            Grip::Backwards => found([&normal.plus(tangent, -coefficient), normal], n),
         }
     }
 
