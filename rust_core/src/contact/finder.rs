@@ -11,7 +11,7 @@ use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
 use super::redundant::{thin_out, without_redundant};
 use super::reference::ReferenceContact;
-use crate::geometry::{Disc, Grouser, Pose, Vector};
+use crate::geometry::{Disc, Grouser, Pose};
 use crate::robot::{Mount, Part, Running, Shape};
 use crate::scenario::ContactMethod;
 use crate::terrain::Profile;
@@ -28,11 +28,7 @@ pub(crate) struct OwnContact {
 
 /// A part as contacts see it.
 enum Outline {
-    Disc {
-        part: usize,
-        center: Vector,
-        radius: f64,
-    },
+    Disc(usize, Disc),
     Gear {
         drive: usize,
         gear: GearContact,
@@ -59,11 +55,7 @@ impl OwnContact {
                 grouser: grouser.clone(),
                 hull: HullContact::new(i, part),
             },
-            (Shape::Disc { center, radius }, _) => Outline::Disc {
-                part: i,
-                center: *center,
-                radius: *radius,
-            },
+            (&Shape::Disc { center, radius }, _) => Outline::Disc(i, Disc { center, radius }),
             _ => Outline::Hull(HullContact::new(i, part)),
         };
         Self {
@@ -88,12 +80,8 @@ impl OwnContact {
         for (lane, mount, outline) in &self.outlines {
             let (lane, pose) = (&self.lanes[*lane], running.mounted(*mount, pose));
             match outline {
-                Outline::Disc {
-                    part,
-                    center,
-                    radius,
-                } => {
-                    let (center, radius) = (pose.transform_point(*center), *radius);
+                Outline::Disc(part, disc) => {
+                    let (center, radius) = (pose.transform_point(disc.center), disc.radius);
                     let (reach, first) = ((prediction, SHALLOW.value()), contacts.len());
                     let far = radius + prediction;
                     let region = lane.region(center.x - far, center.x + far);
@@ -103,13 +91,8 @@ impl OwnContact {
                     thin_out(contacts, first, lane, &Disc { center, radius }, prediction);
                 }
                 Outline::Gear { drive, gear } => {
-                    gear.find(
-                        lane,
-                        pose,
-                        running.run(*mount, *drive),
-                        prediction,
-                        contacts,
-                    );
+                    let run = running.run(*mount, *drive);
+                    gear.find(lane, pose, run, prediction, contacts);
                 }
                 Outline::Grouser {
                     drive,

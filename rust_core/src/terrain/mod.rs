@@ -216,11 +216,8 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
     let (low, high) = (a_low.max(b_low), a_high.min(b_high));
     if low >= high {
         let value = format!("left {a_low} to {a_high} m, right {b_low} to {b_high} m");
-        return Err(ScenarioError::new(
-            path,
-            value,
-            "must have lanes with a common stretch of x",
-        ));
+        let rule = "must have lanes with a common stretch of x";
+        return Err(ScenarioError::new(path, value, rule));
     }
     let corners = a.points.iter().chain(&b.points).map(|p| p.x);
     let mut places: Vec<f64> = corners.filter(|x| (low..=high).contains(x)).collect();

@@ -107,11 +107,8 @@ impl Profile {
         points.dedup_by(|b, a| a.1 == b.1);
         if points.len() < 2 {
             let value = format!("{} distinct points", points.len());
-            return Err(ScenarioError::new(
-                format!("{path}.points"),
-                value,
-                "must have at least 2 distinct points",
-            ));
+            let rule = "must have at least 2 distinct points";
+            return Err(ScenarioError::new(format!("{path}.points"), value, rule));
         }
         check_overhangs(path, &points)?;
         let mut points: Vec<Vector> = points.into_iter().map(|(_, p)| p).collect();
@@ -176,11 +173,8 @@ impl Profile {
                     "must fit the edge at ({}, {}), whose arc needs {tangent} m of {room} m",
                     corner.x, corner.y
                 );
-                return Err(ScenarioError::new(
-                    format!("{path}.edge_radius"),
-                    radius,
-                    rule,
-                ));
+                let path = format!("{path}.edge_radius");
+                return Err(ScenarioError::new(path, radius, rule));
             }
             // What an arc leaves of a face has no direction if it is no longer than this.
             let is_joined = spare + tangent > 0.0 && to_last - tangent < COLLINEAR.value();
@@ -350,6 +344,14 @@ fn check_facets(path: &str, corners: &[Vector], radius: f64) -> Result<(), Scena
 
 #[allow(clippy::float_cmp)] // the points of a vertical face have exactly one x
 fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), ScenarioError> {
+    let error = |row: usize, point: Vector, rule: String| {
+        let value = format!("[{}, {}]", point.x, point.y);
+        Err(ScenarioError::new(
+            format!("{path}.points[{row}]"),
+            value,
+            rule,
+        ))
+    };
     for (i, pair) in points.windows(2).enumerate() {
         let ((_, a), (row, b)) = (pair[0], pair[1]);
         if b.x < a.x {
@@ -357,11 +359,7 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
                 "must not lie behind its neighbour at x = {}: overhangs are not allowed",
                 a.x
             );
-            return Err(ScenarioError::new(
-                format!("{path}.points[{row}]"),
-                format!("[{}, {}]", b.x, b.y),
-                rule,
-            ));
+            return error(row, b, rule);
         }
         if let Some((_, c)) = points.get(i + 2)
             && a.x == b.x
@@ -372,20 +370,13 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
                 "must not be a spike, where segments {i} and {} coincide",
                 i + 1
             );
-            return Err(ScenarioError::new(
-                format!("{path}.points[{row}]"),
-                format!("[{}, {}]", b.x, b.y),
-                rule,
-            ));
+            return error(row, b, rule);
         }
     }
     if points[0].1.x == points[points.len() - 1].1.x {
         let rule = "must extend along x, not be only a vertical wall";
-        return Err(ScenarioError::new(
-            format!("{path}.points"),
-            format!("x = {} only", points[0].1.x),
-            rule,
-        ));
+        let value = format!("x = {} only", points[0].1.x);
+        return Err(ScenarioError::new(format!("{path}.points"), value, rule));
     }
     Ok(())
 }
