@@ -110,11 +110,8 @@ fn read_curve(f: &mut Fields, name: &'static str) -> Checked<Option<Vec<[f64; 2]
         return Err(f.error("torque_curve", "[]", rule));
     };
     if from != 0.0 {
-        return Err(f.error(
-            "torque_curve[0][0]",
-            from,
-            "must be 0 m/s: the torque at rest",
-        ));
+        let rule = "must be 0 m/s: the torque at rest";
+        return Err(f.error("torque_curve[0][0]", from, rule));
     }
     let most = f.number("max_torque", TORQUE)?;
     if (largest - most).abs() > 1e-9 * most {

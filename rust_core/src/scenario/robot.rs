@@ -59,11 +59,8 @@ impl Robot {
     /// Checks rules that involve several fields.
     fn check(&self, f: &Fields) -> Checked<()> {
         if self.track_mass >= self.mass {
-            return Err(f.error(
-                "track_mass",
-                self.track_mass,
-                format!("must be less than robot.mass = {} kg", self.mass),
-            ));
+            let rule = format!("must be less than robot.mass = {} kg", self.mass);
+            return Err(f.error("track_mass", self.track_mass, rule));
         }
         let least = LEAST_FRACTION * self.mass;
         if self.track_mass < least {
@@ -73,11 +70,10 @@ impl Robot {
         let radius = self.outline.largest_radius();
         let circulating = self.track_mass * radius * radius;
         if circulating >= self.moment_of_inertia {
-            return Err(f.error(
-                "moment_of_inertia",
-                self.moment_of_inertia,
-                format!("must exceed track_mass x radius^2 = {circulating} kg m^2, the inertia of the moving track"),
-            ));
+            let rule = format!(
+                "must exceed track_mass x radius^2 = {circulating} kg m^2, the inertia of the moving track"
+            );
+            return Err(f.error("moment_of_inertia", self.moment_of_inertia, rule));
         }
         self.check_rotor("drivetrain", self.drivetrain.rotor_inertia)?;
         if self.drivetrain.self_locking && matches!(self.track.open(), Track::Force(_)) {

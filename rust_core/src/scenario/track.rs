@@ -265,11 +265,8 @@ impl Track {
     pub(super) fn check(&self, sharing: TorqueSharing) -> Checked<()> {
         if sharing == TorqueSharing::Wheel && self.wheel().is_none() {
             let rule = "must be \"track\" for a model without driven wheels";
-            return Err(ScenarioError::new(
-                "robot.drivetrain.torque_sharing",
-                "wheel",
-                rule,
-            ));
+            let path = "robot.drivetrain.torque_sharing";
+            return Err(ScenarioError::new(path, "wheel", rule));
         }
         Ok(())
     }
