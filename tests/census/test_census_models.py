@@ -46,7 +46,7 @@ SIZES = {
 @pytest.fixture(
     scope="module",
     params=[
-        pytest.param(60, id="a sixtieth"),
+        pytest.param(120, id="a few"),
         pytest.param(1, id="all", marks=pytest.mark.soak),
     ],
 )

@@ -151,7 +151,7 @@ def _nothing_waits() -> Iterator[None]:
 def test_a_mutated_model_file_is_read_or_refused(
     tmp_path: Path, originals: dict[str, bytes]
 ) -> None:
-    check(go_through(tmp_path, cases("MODELS", 100), originals))
+    check(go_through(tmp_path, cases("MODELS", 40), originals))
 
 
 @pytest.mark.soak
@@ -174,7 +174,7 @@ def meshes_of(form: str) -> dict[str, bytes]:
 def test_a_mutated_mesh_is_read_or_left_out(tmp_path: Path, form: str) -> None:
     """What is left out are wheels, so the model is refused."""
     with StandingChild("crawler2d.reading.meshes") as standing:
-        count = cases("MESHES", 100)
+        count = cases("MESHES", 40)
         how: dict[str, Any] = {"models": ON_MESHES, "mesh": "hull"}
         check(go_through(tmp_path, count, meshes_of(form), standing, **how))
 
@@ -190,14 +190,14 @@ def test_20000_mutated_meshes_are_read_or_left_out(tmp_path: Path, form: str) ->
 
 def test_a_mutated_mjcf_file_is_read_or_refused(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    check(go_through(tmp_path, cases("CHILDREN", 20), MJCF))
+    check(go_through(tmp_path, cases("CHILDREN", 8), MJCF))
 
 
 @TRUST
 def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path, trusted: bool) -> None:
     pytest.importorskip("xacrodoc")
     how = {"trusted": trusted, **LENIENT}
-    check(go_through(tmp_path, cases("CHILDREN", 20), XACRO, parts=NAMED_BY_XACRO, **how))
+    check(go_through(tmp_path, cases("CHILDREN", 8), XACRO, parts=NAMED_BY_XACRO, **how))
 
 
 @pytest.mark.soak

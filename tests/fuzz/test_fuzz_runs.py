@@ -173,7 +173,7 @@ def nothing_of_other_tests_is_collected() -> Iterator[None]:
 def test_extreme_scenarios_run_to_numbers_or_say_why_not(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
-    check(700)
+    check(300)
     assert "panicked" not in capfd.readouterr().err
 
 

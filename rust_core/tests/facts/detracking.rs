@@ -126,7 +126,11 @@ fn stays_on(build: Build, first: usize, deepest: f64) {
             let mut name = "";
             for start in 0..starts {
                 let trial = &trials(start)[seed];
-                let duration = if soak && start % 10 == 0 { 60.0 } else { 8.0 };
+                let duration = match (soak, start % 10) {
+                    (true, 0) => 60.0,
+                    (true, _) => 8.0,
+                    (false, _) => 5.0,
+                };
                 let (outcome, seen) = outcome_of(trial, build(count), &mut draw, duration);
                 name = trial.name;
                 runs += 1;
