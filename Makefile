@@ -31,9 +31,10 @@ study: $(VENV)/.built ## the main job in half a minute; all of it with ARGS=--fu
 # Two at a time, in this order: where one needs but one core, compiles or waits for another build, the other takes the rest.
 test: ## all tests (Rust, Python, documentation) and all checks
 	@$(MAKE) --no-print-directory --jobs=2 test-rust test-python check
-# The binding has no Rust tests; named here, its features make the engine that is compiled for it serve the tests, too.
+# The binding has no Rust tests. It is named so that both ask for the same features, and the engine is compiled once.
+CARGO_TEST := cargo test --release --package crawler2d-core --package crawler2d-python
 test-rust: | tools
-	cargo test --release --package crawler2d-core --package crawler2d-python
+	$(CARGO_TEST)
 test-python: $(VENV)/.built
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 test-debug: | tools
@@ -115,7 +116,7 @@ picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
 	$(BIN)/python docs/readme_picture.py
 
 soak: $(VENV)/.built test-debug ## the long tests, and those of a debug build, minutes to hours
-	CRAWLER2D_SOAK=1 cargo test --release --package crawler2d-core --package crawler2d-python -- --include-ignored
+	CRAWLER2D_SOAK=1 $(CARGO_TEST) -- --include-ignored
 	CRAWLER2D_SOAK=1 $(BIN)/python -m pytest -m 'soak or not soak'
 
 # The faults and the tests that must notice them are those of .cargo/mutants.toml; a build and a test of each.

@@ -257,7 +257,18 @@ impl<'a> Fields<'a> {
         columns: [(&str, Range); N],
         most: usize,
     ) -> Checked<Vec<[f64; N]>> {
-        rows(&self.path(name), self.value(name)?, columns, most)
+        let value = self.value(name)?;
+        let names = columns.map(|(column, _)| column).join(", ");
+        let Value::Array(rows) = value else {
+            return Err(self.error(name, value, format!("must be a list of [{names}]")));
+        };
+        if rows.len() > most {
+            let (count, rule) = (rows.len(), format!("must have at most {most} rows"));
+            return Err(self.error(name, format!("{count} rows"), rule));
+        }
+        let (path, rows) = (self.path(name), rows.iter().enumerate());
+        rows.map(|(i, given)| row(&format!("{path}[{i}]"), given, columns))
+            .collect()
     }
 
     /// Reads a list of points.
@@ -286,27 +297,6 @@ impl<'a> Fields<'a> {
         let rule = rule.replacen("must be one of", "must be a known field:", 1);
         Err(self.error(name, value, rule))
     }
-}
-
-/// Reads a list of rows of numbers at a path; that of an error includes the index, from 0.
-pub(super) fn rows<const N: usize>(
-    path: &str,
-    value: &Value,
-    columns: [(&str, Range); N],
-    most: usize,
-) -> Checked<Vec<[f64; N]>> {
-    let names = columns.map(|(column, _)| column).join(", ");
-    let Value::Array(rows) = value else {
-        let rule = format!("must be a list of [{names}]");
-        return Err(ScenarioError::new(path, value, rule));
-    };
-    if rows.len() > most {
-        let (count, rule) = (rows.len(), format!("must have at most {most} rows"));
-        return Err(ScenarioError::new(path, format!("{count} rows"), rule));
-    }
-    let rows = rows.iter().enumerate();
-    rows.map(|(i, given)| row(&format!("{path}[{i}]"), given, columns))
-        .collect()
 }
 
 fn row<const N: usize>(

@@ -1,13 +1,12 @@
 //! The robot as built, with masses, outline, belly and drivetrain, and the model of its track.
 
 use serde::Serialize;
-use serde_json::Value;
 
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
 use super::fields::{
     COORDINATE, Checked, Fields, INERTIA, LEAST_FRACTION, MASS, ROTOR, Range, SIZE, TORQUE,
-    is_false, is_zero, rows,
+    is_false, is_zero,
 };
 use super::objects::{Choice, FromJson, choice, object};
 use super::outline::TrackOutline;
@@ -155,17 +154,12 @@ impl Robot {
     }
 }
 
-/// Reads the polygon of a belly.
-fn read_belly(f: &mut Fields, name: &'static str) -> Checked<Vec<[f64; 2]>> {
-    read_polygon(&f.path(name), f.value(name)?)
-}
-
 /// Reads a convex counter-clockwise polygon of non-zero area.
-fn read_polygon(path: &str, value: &Value) -> Checked<Vec<[f64; 2]>> {
+fn read_belly(f: &mut Fields, name: &'static str) -> Checked<Vec<[f64; 2]>> {
     const MOST: usize = 64;
-    let points = rows(path, value, [("x", COORDINATE), ("y", COORDINATE)], MOST)?;
+    let points = f.points(name, COORDINATE, MOST)?;
     let n = points.len();
-    let refuse = |rule| Err(ScenarioError::new(path, format!("{n} points"), rule));
+    let refuse = |rule: &str| Err(f.error(name, format!("{n} points"), rule));
     if n < 3 {
         return refuse("must have at least 3 points");
     }
@@ -173,9 +167,9 @@ fn read_polygon(path: &str, value: &Value) -> Checked<Vec<[f64; 2]>> {
         let ([ax, ay], [bx, by], [cx, cy]) = (points[i], points[(i + 1) % n], points[(i + 2) % n]);
         let turn = (bx - ax) * (cy - by) - (by - ay) * (cx - bx);
         if turn <= 0.0 {
-            let corner = format!("{path}[{}]", (i + 1) % n);
+            let corner = format!("{name}[{}]", (i + 1) % n);
             let rule = "must be a corner of a convex counter-clockwise polygon";
-            return Err(ScenarioError::new(corner, format!("[{bx}, {by}]"), rule));
+            return Err(f.error(&corner, format!("[{bx}, {by}]"), rule));
         }
     }
     // A polygon with left turns only may still go round more than once, as a pentagram does.

@@ -32,7 +32,15 @@ fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profi
     (profile, lane)
 }
 
-/// The same as a saw, whose arcs take up all of its faces.
+/// Ground along points whose edges are all round.
+fn rounded(points: &[[f64; 2]], edge_radius: f64) -> (Profile, Lane) {
+    let surface = Surface::rounded(edge_radius, 0.9);
+    let profile = Profile::new("terrain", points, surface, false).unwrap();
+    let lane = Lane::new(&profile);
+    (profile, lane)
+}
+
+/// Ground as a saw, whose arcs take up all of its faces.
 fn saw(points: usize) -> (Profile, Lane) {
     let pitch = 0.5 / points as f64;
     let points: Vec<[f64; 2]> = (0..points)
@@ -40,14 +48,7 @@ fn saw(points: usize) -> (Profile, Lane) {
         .collect();
     // Its faces slope by 45 degrees.
     let edge_radius = pitch * 2.0_f64.sqrt();
-    let profile = Profile::new(
-        "terrain",
-        &points,
-        Surface::rounded(edge_radius, 0.9),
-        false,
-    )
-    .unwrap();
-    let lane = Lane::new(&profile);
+    let (profile, lane) = rounded(&points, edge_radius);
     assert!(
         lane.faces[1..points.len() - 2]
             .iter()
@@ -156,14 +157,7 @@ fn nothing_rises_above_the_top_of_a_region() {
                 [0.2 + left, 0.0],
                 [2.0, 0.0],
             ];
-            let profile = Profile::new(
-                "terrain",
-                &points,
-                Surface::rounded(edge_radius, 0.9),
-                false,
-            )
-            .unwrap();
-            let lane = Lane::new(&profile);
+            let (_, lane) = rounded(&points, edge_radius);
             let arc = &lane.corners[2];
             let top = lane.top(&lane.region(left - 0.1, left + 0.1));
             assert!(top >= arc.center.y + edge_radius, "{left} {edge_radius}");
