@@ -176,7 +176,7 @@ fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
         let (whole, upward_on_whole) = two_seconds(&scenario, level(1));
         let approach = scenario.start.approach;
         let (mut spread, mut fastest) = (0.0_f64, upward_on_whole);
-        for nanometres in 1..=3 {
+        for nanometres in 1..=12 {
             scenario.start.approach = approach + 1e-9 * f64::from(nanometres);
             let (twin, upward) = two_seconds(&scenario, level(1));
             (spread, fastest) = (spread.max(apart(&whole, &twin)), fastest.max(upward));
@@ -189,7 +189,8 @@ fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
                 "{name}, {pieces} pieces: off {off:.1e} m, starts {spread:.1e} m; upwards {upward:.1e} m/s, \
                  starts {fastest:.1e} m/s"
             );
-            // Paths part exponentially: three starts know how far they lead to a power of ten.
+            // Paths part exponentially: starts know how far they lead to a power of ten. Of a dozen of a belt with grousers,
+            // three led 7 to 250 times as far as the others.
             assert!(off < 1e-9 + 10.0 * spread && upward < 1e-6 + 1.5 * fastest);
         }
         let mut far = level(1);

@@ -98,7 +98,7 @@ fn a_push_is_held_by_the_force_of_the_motors() {
 }
 
 /// A corner that comes down round the front makes a small blow, and a blow passes differences of rounding
-/// on; smooth belts keep a nanometre.
+/// on: of a dozen shifts half led 30 um off, the others 1 um. Smooth belts keep a nanometre.
 #[test]
 fn a_shift_by_a_hundred_metres_changes_hundredths_of_a_millimetre_at_most() {
     let path = |x: f64| {
@@ -114,9 +114,12 @@ fn a_shift_by_a_hundred_metres_changes_hundredths_of_a_millimetre_at_most() {
         let r = after(&scenario, 3.0).reading();
         [r.position.x - x, r.position.y, r.chassis_angle]
     };
-    let (here, there) = (path(0.0), path(100.0));
-    println!("{here:?} and {there:?}");
-    assert!((0..3).all(|i| (here[i] - there[i]).abs() < 1e-5));
+    let here = path(0.0);
+    for shift in [100.0, 103.7, 107.4] {
+        let there = path(shift);
+        println!("{here:?} and {there:?}");
+        assert!((0..3).all(|i| (here[i] - there[i]).abs() < 5e-5));
+    }
 }
 
 /// Rails of 10 mm across the way, hardly any friction: a flank that stands against a rail holds what the
