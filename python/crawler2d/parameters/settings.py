@@ -147,8 +147,8 @@ class Solver(Parameters, path="solver"):
         shorter only where something strikes the ground, a command changes or a run ends.
     iterations : int, optional
         Largest number of rounds in the search for forces that satisfy all contacts; each is a
-        few guesses and, if none is right, a lowering of the robot onto its contacts. None takes
-        8; usually one is enough.
+        path of pivots to states that fit all contacts and motors, and settles. None takes 8;
+        usually none is needed.
     contact_frequency : float
         [Hz] Natural frequency of the contact softness.
     contact_damping_ratio : float

@@ -7,12 +7,11 @@
 use super::findings::{Facts, LoadedIntrusion, StopContact};
 use super::statics::{Hinge, Statics, Support};
 use crate::contact::{Contact, Intrusion, TrackEnvelope};
-use crate::dynamics::{Carrier, Levers};
+use crate::dynamics::{Carrier, Direction, Levers};
 use crate::geometry::{Motion, Pose, Vector, cross, right_of};
 use crate::observe::{Bearing, DriveMean, Stance};
 use crate::robot::{BodyKind, Model, Mount, Running, Shape};
 use crate::scenario::SeizureCriteria;
-use crate::solver::Direction;
 use crate::terrain::Profile;
 
 /// What a diagnosis needs besides the stop itself.

@@ -12,9 +12,8 @@ use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
-use crate::dynamics::push_axis;
+use crate::dynamics::{Direction, push_axis};
 use crate::robot::Model;
-use crate::solver::Direction;
 
 /// Multiple of the weight above which a force counts as unlimited.
 const WITHOUT_LIMIT: f64 = 1e3;

@@ -3,9 +3,9 @@
 //! The equations: docs/physics.md, "Arms".
 
 use super::approach::Approach;
-use crate::geometry::{Vector, left_of};
+use crate::geometry::{Twist, Vector, left_of};
 use crate::robot::Flipper;
-use crate::solver::{ActsOn, Direction, Inertia, Joint, Twist};
+use crate::solver::{Inertia, Row};
 
 /// The arms at one end of the robot.
 pub(super) struct Arm {
@@ -64,17 +64,7 @@ impl Arm {
         chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
-    /// The arm as contacts on it feel it. Beside shoes it is as light as they are; otherwise its grip would keep changing
-    /// with theirs.
-    pub(super) fn joint(&self, shoe_mass: Option<f64>) -> Joint {
-        let inertia = self.inertia_about_pivot() + self.rule.rotor_inertia;
-        match shoe_mass {
-            Some(mass) => Joint::new(f64::INFINITY, mass),
-            None => Joint::new(inertia, f64::INFINITY),
-        }
-    }
-
-    /// Its inertia along x, along y and in rotation.
+    /// Its inertia along x, along y and in rotation; its rate stands at `joint` among the solver's unknowns.
     pub(super) fn inertias(&self, joint: usize) -> [Inertia; 3] {
         let [pivot, arm] = [self.pivot, self.center].map(left_of);
         let Flipper {
@@ -82,18 +72,14 @@ impl Arm {
             moment_of_inertia: inertia,
             ..
         } = self.rule;
-        let free = self.free;
-        let along = |unit: Vector, [lever, joint_lever]: [f64; 2]| Direction {
-            unit,
-            lever,
-            joint_lever,
-            ..Direction::default()
-        };
+        let Vector { x, y } = self.free.velocity;
         [
-            (along(Vector::X, [pivot.x, arm.x]), mass, free.velocity.x),
-            (along(Vector::Y, [pivot.y, arm.y]), mass, free.velocity.y),
-            (along(Vector::ZERO, [0.0, 1.0]), inertia, free.turn),
+            ([1.0, 0.0, pivot.x], arm.x, mass, x),
+            ([0.0, 1.0, pivot.y], arm.y, mass, y),
+            ([0.0; 3], 1.0, inertia, self.free.turn),
         ]
-        .map(|(along, inertia, free)| Inertia::new(ActsOn::on_joint(joint), along, inertia, free))
+        .map(|(on_base, lever, inertia, free)| {
+            Inertia::new(Row::on_base(on_base).and(joint, lever), inertia, free)
+        })
     }
 }

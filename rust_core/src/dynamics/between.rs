@@ -6,9 +6,8 @@
 //! The equations: docs/physics.md, "Length of a step".
 
 use super::state::{Shoe, State};
-use crate::geometry::Vector;
+use crate::geometry::{Twist, Vector};
 use crate::robot::Model;
-use crate::solver::Twist;
 
 /// A time within a step.
 #[derive(Clone, Copy)]

@@ -8,9 +8,8 @@ mod tests;
 use super::Dynamics;
 use super::chain::{Chain, ChainPose};
 use super::state::State;
-use super::touch::{Touch, is_on_ground};
+use super::touch::{On, Start, Touch};
 use crate::geometry::Vector;
-use crate::solver::{ActsOn, Twist};
 
 /// A shoe that is closer to the guide than so many times the way of the fastest part may come to rest on it within a step.
 /// Of 5,200 that did so from more than 50 um, the farthest came from 1.6 times that way at the speed after the step; the
@@ -44,9 +43,8 @@ impl Dynamics {
             reading.sprocket_slip = reading.sprocket_slip.max(chain.sprocket_slip());
             reading.is_off |= chain.is_off;
         }
-        let contacts = self.touches.iter().zip(&self.problem.contacts);
-        let on_guide = contacts.filter(|(_, solved)| !is_on_ground(solved));
-        let gaps = on_guide.map(|(touch, _)| touch.gap);
+        let on_guide = self.touches.iter().filter(|touch| !touch.is_on_ground());
+        let gaps = on_guide.map(|touch| touch.gap);
         reading.guide_penetration = gaps.fold(0.0, |deepest, gap| deepest.max(-gap));
         reading
     }
@@ -76,12 +74,19 @@ impl Dynamics {
                 travel: idler.travel + idler.rate * half,
                 run: state.drives[number].position + state.track_speed(&self.model, number) * half,
             };
+            let problem = &mut self.problem;
+            let start = Start {
+                state,
+                unknowns: &problem.unknowns,
+                layout: problem.layout,
+                model: &self.model,
+                half,
+            };
             chain.rests(stand, place_of, NEAR_GUIDE * travel, |chain, rest| {
                 let of = (first + rest.shoe, number);
-                let last = chain.recall(&rest);
-                let (touch, solved) = Touch::at_rest(&rest, last, state, of, half);
+                let (touch, solved) = Touch::at_rest(&rest, chain.recall(&rest), of, &start);
                 self.touches.push(touch);
-                self.problem.contacts.push(solved);
+                problem.contacts.push(solved);
             });
         }
     }
@@ -95,16 +100,16 @@ impl Dynamics {
             chain.forget_rests();
         }
         for (touch, solved) in self.touches.iter().zip(&self.problem.contacts) {
-            if let ActsOn::LinkAndSlide(link) | ActsOn::LinkAndSpin { link, .. } = solved.acts {
-                self.chains[link.ring].remember_rest(link.number, touch, solved.grip);
+            if let On::Guide { chain, shoe } = touch.on {
+                self.chains[chain].remember_rest(shoe, touch, solved.grip);
             }
         }
     }
 
     /// Moves shoes and idlers by `h` [s] at their velocities.
     pub(super) fn move_chains(&mut self, state: &mut State, h: f64) {
-        for (chain, ring) in self.chains.iter_mut().zip(&self.problem.rings) {
-            chain.count(ring.drive_speed(&self.problem.velocities), state, h);
+        for chain in &mut self.chains {
+            chain.count(state.track_speed(&self.model, chain.rule.number), state, h);
         }
         for shoe in &mut state.shoes {
             *shoe = shoe.after(h);
@@ -116,44 +121,36 @@ impl Dynamics {
 
     /// Starts a step of `h` [s]: velocities without constraints, and pins in place.
     pub(super) fn start_chains(&mut self, state: &State, h: f64) {
-        let weight = self.weight(0.5 * h);
+        self.fall_with_shoes(0.5 * h);
         let pose = state.pose_after(0.5 * h, &self.model);
-        let free = &mut self.problem.free.links;
-        for (free, shoe) in free.iter_mut().zip(&state.shoes) {
-            *free = shoe.twist.plus(weight, 1.0);
-        }
+        let free = &self.problem.free;
         for (chain, ring) in self.chains.iter_mut().zip(&mut self.problem.rings) {
             chain.follow(ring, (state, pose), free, h);
-            chain.guess(ring, 0.5 * h);
         }
     }
 
     /// Continues after the motion of a step of `h` [s]: the other half of the weight, and pins where they are now.
     pub(super) fn hold_chains(&mut self, state: &State, h: f64) {
-        let weight = self.weight(0.5 * h);
-        let free = &mut self.problem.free.links;
-        for free in free.iter_mut() {
-            *free = free.plus(weight, 1.0);
-        }
+        self.fall_with_shoes(0.5 * h);
+        let free = &self.problem.free;
         for (chain, ring) in self.chains.iter_mut().zip(&mut self.problem.rings) {
             chain.hold(ring, state, free, h);
-            chain.guess_more(ring, 0.5 * h);
         }
     }
 
-    /// Change of a shoe's velocity by its weight in a time [s].
-    fn weight(&self, time: f64) -> Twist {
-        Twist {
-            velocity: Vector::new(0.0, -self.gravity * time),
-            turn: 0.0,
+    /// Lets the weight of the shoes act on their velocities for a time [s].
+    fn fall_with_shoes(&mut self, time: f64) {
+        let problem = &mut self.problem;
+        for link in problem.free[problem.layout.link(0)..].chunks_exact_mut(3) {
+            link[1] -= self.gravity * time;
         }
     }
 
     /// Sets the spins of the drives that have no sprocket, from the speeds of their chains.
     pub(super) fn spin_with_chains(&self, state: &mut State) {
-        for (k, ring) in self.problem.rings.iter().enumerate() {
-            if ring.spin.is_none() {
-                let speed = ring.drive_speed(&self.problem.velocities);
+        for (k, (chain, ring)) in self.chains.iter().zip(&self.problem.rings).enumerate() {
+            if !chain.has_sprocket() {
+                let speed = ring.drive_speed(&self.problem.unknowns);
                 state.drives[k].spin = state.angular_velocity - speed / self.model.drive_radius;
             }
         }

@@ -5,10 +5,10 @@
 use super::levers::Moved;
 use super::meeting::{Meeting, Swing};
 use super::state::State;
-use super::touch::{Touch, mount};
+use super::touch::Touch;
 use crate::geometry::{Vector, left_of};
 use crate::robot::{Model, Mount};
-use crate::solver::{Contact, Direction};
+use crate::solver::Contact;
 use crate::units::Metres;
 
 /// [m] Surfaces closer than this touch; a gap that a step has just closed is only rounding.
@@ -17,28 +17,36 @@ const TOUCHING: Metres = Metres(1e-10);
 impl Touch {
     /// Updates the gap for the motion in a step of `h` [s], and how much faster the gap opens, and the surface slides, at
     /// its end than with the levers of its middle.
-    pub(super) fn follow(&mut self, solved: &mut Contact, state: &State, model: &Model, h: f64) {
-        let Some(mount) = mount(solved) else {
+    pub(super) fn follow(
+        &mut self,
+        solved: &mut Contact,
+        (state, unknowns): (&State, &[f64]),
+        model: &Model,
+        h: f64,
+    ) {
+        let Some(mount) = self.mount() else {
             // Its directions are kept, and so is its speed during the step.
-            self.gap += solved.opening_speed(state) * h;
+            self.gap += solved.normal.along(unknowns) * h;
             return;
         };
         let moved = self.moved(state, model, (mount, 0.0));
-        self.gap = self.gap_at(solved, &moved);
+        self.gap = self.gap_at(&moved);
         if self.has_closed(solved) {
-            let swing = self.swing(solved, state, model, mount, &moved);
+            let slip = solved.tangent.along(unknowns);
+            let swing = self.swing(slip, state, model, (mount, &moved));
             let [opens, slides] = self.meeting.gains(swing).map(|gain| 0.5 * h * gain);
             (solved.normal.offset, solved.tangent.offset) = (opens, slides);
-            self.overrun = self.overrun(&solved.tangent, &moved);
+            self.overrun = self.overrun(&moved);
         }
     }
 
     /// [m] How far the ground has fallen away below an arc that has rolled past the end of its face.
-    fn overrun(&self, tangent: &Direction, moved: &Moved) -> f64 {
+    fn overrun(&self, moved: &Moved) -> f64 {
         let Meeting::Arc(radius) = self.meeting else {
             return 0.0;
         };
-        let way = tangent.unit.dot(moved.way) - radius * moved.of_part.sin();
+        let [_, along] = self.along(moved.way);
+        let way = along - radius * moved.of_part.sin();
         self.face.below(radius, way)
     }
 
@@ -52,14 +60,13 @@ impl Touch {
         self.start > TOUCHING.value()
     }
 
-    /// Its part's motion.
+    /// Its part's motion, where that slips at a speed [m/s].
     fn swing(
         &self,
-        solved: &Contact,
+        slip: f64,
         state: &State,
         model: &Model,
-        mount: Mount,
-        moved: &Moved,
+        (mount, moved): (Mount, &Moved),
     ) -> Swing {
         let of_drive = |of: &dyn Fn(usize) -> f64| self.drive.map_or(0.0, of);
         let speed = of_drive(&|k| state.speed_over(mount, k, model));
@@ -70,7 +77,6 @@ impl Touch {
             ..
         } = moved;
         let carried = &self.middle.carried;
-        let slip = solved.slip(state);
         // The pivot of an arm turns with the chassis.
         let of_chassis = state.angular_velocity * state.angular_velocity;
         let (turn, of_pivot) = match mount {
@@ -80,25 +86,24 @@ impl Touch {
             ),
             _ => (state.angular_velocity, Vector::ZERO),
         };
-        let along = |v: Vector| [solved.normal.unit, solved.tangent.unit].map(|unit| unit.dot(v));
         if carried.turns() {
             return Swing {
                 turn: turn + carried.turn_at(speed),
-                center: along(-spoke),
-                pull: along(of_pivot - arm * (turn * turn)),
+                center: self.along(-spoke),
+                pull: self.along(of_pivot - arm * (turn * turn)),
                 slip,
             };
         }
         let of_surface = if carried.is_moving() {
             0.0
         } else {
-            of_drive(&|k| solved.tangent.spin_lever * (state.drives[k].spin - turn))
+            of_drive(&|k| self.spin_levers[1] * (state.drives[k].spin - turn))
         };
         let over_carrier = carried.velocity(of_carrier, speed);
         Swing {
             turn,
-            center: along(-(arm + spoke)),
-            pull: along(of_pivot + left_of(over_carrier) * (2.0 * turn)),
+            center: self.along(-(arm + spoke)),
+            pull: self.along(of_pivot + left_of(over_carrier) * (2.0 * turn)),
             slip: slip - of_surface,
         }
     }
@@ -106,16 +111,15 @@ impl Touch {
     /// [m] The gap after a time [s] at the present velocities.
     pub(super) fn gap_after(
         &self,
-        solved: &Contact,
         state: &State,
         model: &Model,
         (mount, time): (Mount, f64),
     ) -> f64 {
-        self.gap_at(solved, &self.moved(state, model, (mount, time)))
+        self.gap_at(&self.moved(state, model, (mount, time)))
     }
 
-    fn gap_at(&self, solved: &Contact, moved: &Moved) -> f64 {
-        let way = [solved.normal.unit, solved.tangent.unit].map(|unit| unit.dot(moved.way));
+    fn gap_at(&self, moved: &Moved) -> f64 {
+        let way = self.along(moved.way);
         self.middle.gap + self.meeting.opened(way, moved.of_part)
     }
 

@@ -13,10 +13,10 @@ use super::approach::Approach;
 use super::arm::Arm;
 use super::state::{State, Turn};
 use super::trend::Trend;
-use crate::geometry::Vector;
+use crate::geometry::{Twist, Vector};
 use crate::robot::held_speed;
 use crate::scenario::End;
-use crate::solver::{ActsOn, Inertia, Twist};
+use crate::solver::{Inertia, Row, TURN};
 
 impl Dynamics {
     /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
@@ -92,13 +92,16 @@ impl Dynamics {
     /// Gives the next solve the arms as they are now, and what their motors can do in a `time` [s].
     pub(super) fn hang_flippers(&mut self, time: f64) {
         let arms = self.flippers.iter().enumerate();
+        let (layout, turn) = (self.problem.layout, self.problem.free[TURN]);
         let inertias = &mut self.problem.inertias;
-        inertias.extend(arms.clone().flat_map(|(k, arm)| arm.inertias(k)));
-        let turn = self.problem.free.base.turn;
+        inertias.extend(
+            arms.clone()
+                .flat_map(|(k, arm)| arm.inertias(layout.joint(k))),
+        );
         let with_rotor = arms.filter(|(_, arm)| arm.rule.rotor_inertia > 0.0);
         inertias.extend(with_rotor.map(|(k, arm)| {
-            let (on, free) = (ActsOn::on_joint(k), arm.free.turn - turn);
-            Inertia::of_rotor(on, arm.rule.rotor_inertia, free)
+            let row = Row::over_base(layout.joint(k), 1.0);
+            Inertia::new(row, arm.rule.rotor_inertia, arm.free.turn - turn)
         }));
         let motors = &mut self.problem.motors[self.model.flipper_motors()];
         for (motor, arm) in motors.iter_mut().zip(&self.flippers) {

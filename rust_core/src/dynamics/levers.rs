@@ -6,7 +6,7 @@ use super::state::Carrier;
 use crate::contact::Contact;
 use crate::geometry::{Motion, Rotation, Vector, cross, left_of, right_of};
 use crate::robot::Model;
-use crate::solver::Direction;
+use crate::solver::{Layout, Row};
 
 impl Carried {
     /// Whether its drive moves it at all, other than along the surface.
@@ -35,6 +35,18 @@ impl Carried {
     }
 }
 
+/// A direction at a contact of the robot, with the levers by which velocities add up along it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Direction {
+    pub unit: Vector,
+    /// [m] Lever of the turn of the chassis.
+    pub lever: f64,
+    /// [m] Lever of the spin of a drive.
+    pub spin_lever: f64,
+    /// [m] Lever of the rate of a flipper; `lever` is then that of its pivot.
+    pub joint_lever: f64,
+}
+
 impl Direction {
     /// That of a contact on the robot: `arm` leads from the carrier's centre to the contact; `motion` is the velocity of
     /// the surface over the carrier for a surface speed of 1.
@@ -56,6 +68,19 @@ impl Direction {
             joint_lever: self.lever,
             ..self
         }
+    }
+
+    /// Its row for the solver, with a drive and a flipper on which it acts.
+    pub(super) fn row(&self, layout: Layout, drive: Option<usize>, flipper: Option<usize>) -> Row {
+        let Vector { x, y } = self.unit;
+        let mut row = Row::on_base([x, y, self.lever]);
+        if let Some(k) = flipper {
+            row = row.and(layout.joint(k), self.joint_lever);
+        }
+        if let Some(k) = drive {
+            row = row.and(layout.spin(k), self.spin_lever);
+        }
+        row
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::Dynamics;
 use super::state::State;
-use crate::solver::Twist;
+use crate::geometry::Twist;
 
 /// Share of a shoe's error that counts: shoes are light, and swing where the chain is slack.
 const OF_SHOES: f64 = 0.1;

@@ -43,7 +43,7 @@ use forces::Forces;
 use identity::{Identity, Numbered};
 use meeting::Meeting;
 use softness::Softness;
-use touch::{Touch, is_on_ground};
+use touch::{Start, Touch};
 
 use crate::contact::Contact;
 use crate::geometry::Vector;
@@ -55,7 +55,7 @@ use crate::terrain::Profile;
 use crate::units::Seconds;
 pub use chains::ChainReading;
 pub(crate) use impulses::Impulses;
-pub(crate) use levers::Levers;
+pub(crate) use levers::{Direction, Levers};
 pub(crate) use push::push_axis;
 pub(crate) use set_point::SetPoint;
 pub(crate) use state::{
@@ -177,23 +177,29 @@ impl Dynamics {
             1.0
         };
         self.touches.clear();
-        self.problem.contacts.clear();
+        let problem = &mut self.problem;
+        problem.contacts.clear();
+        state.write_velocities(problem.layout, &mut problem.unknowns);
+        let start = Start {
+            state,
+            unknowns: &problem.unknowns,
+            layout: problem.layout,
+            model: &self.model,
+            half,
+        };
         let mut last = Numbered::new(&self.loaded);
         for contact in contacts {
             let last = last.get(contact.number);
             let part = &self.model.parts[contact.part];
             let (mut touch, mut solved) = match part.mount {
-                Mount::Shoe(shoe) => {
-                    Touch::of_shoe(contact, last, state, &self.model, (shoe, half))
-                }
-                Mount::Chassis | Mount::Flipper(_) => {
-                    Touch::new(contact, last, state, &self.model, half)
-                }
+                Mount::Shoe(shoe) => Touch::of_shoe(contact, last, shoe, &start),
+                Mount::Chassis | Mount::Flipper(_) => Touch::new(contact, last, &start),
             };
             solved.friction = self.frictions[part.lane].at_most(part.friction_limit);
+            solved.mass = mass_on_spring(&self.model, part.mount);
             touch.friction_guess *= fading;
             self.touches.push(touch);
-            self.problem.contacts.push(solved);
+            problem.contacts.push(solved);
         }
         self.rest_on_guides(state, half, travel);
     }
@@ -228,7 +234,7 @@ impl Dynamics {
         self.moved.copy(state);
         self.move_on(state, h);
         self.move_chains(state, h);
-        self.problem.free.base.velocity += self.kick(half);
+        self.fall(half);
         self.pull_flippers(state, began, half);
         self.aim_at_end(state, began);
         self.hold_chains(state, h);
@@ -248,12 +254,12 @@ impl Dynamics {
 
     /// Keeps what a step of `h` [s] has found, for the next one to start from; after an impact, which is over, that
     /// starts from the forces before it.
-    pub(crate) fn keep(&mut self, state: &State, contacts: &[Contact], h: f64, strikes: bool) {
+    pub(crate) fn keep(&mut self, contacts: &[Contact], h: f64, strikes: bool) {
         self.identity.keep(&self.loaded, h);
         if !strikes {
             self.remember(h);
         }
-        self.report(state, contacts, h);
+        self.report(contacts, h);
     }
 
     /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half of it.
@@ -292,7 +298,7 @@ impl Dynamics {
     fn balance_momentum(&mut self, state: &mut State, before: Vector, h: f64) {
         let mass = self.model.total_mass();
         let of_weight = Vector::new(0.0, -mass * self.gravity);
-        let given = before + (self.outer_force + of_weight) * h + self.impulse_of_ground();
+        let given = before + (self.outer_force + of_weight) * h + self.impulse_of_ground(state);
         let lost = (given - self.momentum_at(state)) / mass;
         state.velocity += lost;
         for shoe in &mut state.shoes {
@@ -301,16 +307,13 @@ impl Dynamics {
     }
 
     /// [N s] Impulse of the ground in this step.
-    fn impulse_of_ground(&self) -> Vector {
-        let contacts = self.problem.contacts.iter();
-        let on_ground = contacts.filter(|solved| is_on_ground(solved));
+    fn impulse_of_ground(&self, state: &State) -> Vector {
+        let contacts = self.touches.iter().zip(&self.problem.contacts);
+        let on_ground = contacts.filter(|(touch, _)| touch.is_on_ground());
+        let of_contacts: Vector = on_ground.map(|(touch, solved)| touch.impulse(solved)).sum();
+        let axis = push_axis(&self.model, state.angle).unit;
         let pushes = self.problem.bilaterals.iter();
-        on_ground
-            .map(crate::solver::Contact::impulse)
-            .sum::<Vector>()
-            + pushes
-                .map(|push| push.along.unit * push.impulse)
-                .sum::<Vector>()
+        of_contacts + axis * pushes.map(|push| push.impulse).sum::<f64>()
     }
 
     /// Goes back to before a step that was not kept.
@@ -338,20 +341,19 @@ impl Dynamics {
         Softness::new(frequency, damping, h)
     }
 
-    /// [m/s] Change of velocity by weight and external force in a time [s].
-    fn kick(&self, time: f64) -> Vector {
-        (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * time
-    }
-
     /// Starts a step with the velocities after a time [s] in which only weight and external force act.
     fn start(&mut self, state: &State, time: f64) {
-        let free = &mut self.problem.free;
-        free.base = state.twist();
-        for (rate, drive) in free.spins.iter_mut().zip(&state.drives) {
-            *rate = drive.spin;
-        }
-        self.problem.free.base.velocity += self.kick(time);
+        let problem = &mut self.problem;
+        problem.free.copy_from_slice(&problem.unknowns);
+        self.fall(time);
         self.start_flippers(state, time);
+    }
+
+    /// Lets weight and external force act on the chassis for a time [s].
+    fn fall(&mut self, time: f64) {
+        let Vector { x, y } = self.outer_force / self.model.mass;
+        self.problem.free[0] += x * time;
+        self.problem.free[1] += (y - self.gravity) * time;
     }
 
     /// Moves chassis, drives, flippers and gaps by `h` [s] at their velocities.
@@ -365,11 +367,12 @@ impl Dynamics {
             flipper.angle += flipper.rate * h;
         }
         for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {
-            touch.follow(solved, state, &self.model, h);
+            let now = (&*state, self.problem.unknowns.as_slice());
+            touch.follow(solved, now, &self.model, h);
         }
     }
 
-    fn report(&mut self, state: &State, contacts: &[Contact], h: f64) {
+    fn report(&mut self, contacts: &[Contact], h: f64) {
         self.loaded.clear();
         let found = self.touches.iter().zip(&self.problem.contacts);
         for ((touch, solved), contact) in found.zip(contacts) {
@@ -377,7 +380,7 @@ impl Dynamics {
                 distance: touch.gap,
                 normal_force: solved.normal_impulse / h,
                 friction_force: solved.friction_impulse / h,
-                surface_speed: solved.slip(state),
+                surface_speed: solved.tangent.along(&self.problem.unknowns),
                 normal_guess: touch.normal_guess,
                 friction_guess: touch.friction_guess,
                 grip: solved.grip,
@@ -385,5 +388,16 @@ impl Dynamics {
             });
         }
         self.remember_rests();
+    }
+}
+
+/// [kg] The mass on the spring of a contact with the ground, if not what it moves. The ground is as stiff below an arm as
+/// below the chassis; shoes, which are light, have springs of their own, and arms beside them are as light: otherwise
+/// their grip would keep changing with that of the shoes.
+fn mass_on_spring(model: &Model, mount: Mount) -> Option<f64> {
+    match (model.chains.first(), mount) {
+        (None, _) => Some(model.total_mass()),
+        (Some(chain), Mount::Flipper(_)) => Some(chain.shoe_mass),
+        (Some(_), _) => None,
     }
 }

@@ -3,9 +3,9 @@
 //!
 //! The equations: docs/physics.md, "Motors".
 
+use super::levers::Direction;
 use crate::geometry::{Rotation, Vector, cross};
 use crate::robot::Model;
-use crate::solver::Direction;
 
 /// Direction of a force along the x axis of the chassis frame, at a chassis angle [rad].
 pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {

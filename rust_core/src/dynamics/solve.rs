@@ -3,9 +3,9 @@
 //! The equations: docs/physics.md, "A step".
 
 use super::Dynamics;
-use super::push::push_axis;
+use super::build::push_row;
 use super::state::State;
-use crate::solver::{ActsOn, Damper, Inertia};
+use crate::solver::{Damper, Driven, Inertia, Row, TURN};
 
 impl Dynamics {
     /// Solves for the velocities after a `time` [s] in which motors push.
@@ -13,30 +13,34 @@ impl Dynamics {
         self.problem.inertias.clear();
         self.turn_rotors();
         self.hang_flippers(time);
+        let layout = self.problem.layout;
         for push in &mut self.problem.bilaterals {
-            push.along = push_axis(&self.model, state.angle);
+            push.row = push_row(&self.model, layout, state.angle);
         }
-        state.write_velocities(&mut self.problem.velocities);
         self.problem.solve();
-        state.take_velocities(&self.problem.velocities);
+        state.take_velocities(layout, &self.problem.unknowns);
         self.spin_with_chains(state);
     }
 
     /// Gives the next solve the rotors of the drives, which turn with these over the chassis.
     fn turn_rotors(&mut self) {
         let problem = &mut self.problem;
-        for (k, spin) in problem.spins.iter().enumerate() {
-            let free = problem.free.spins[k] - problem.free.base.turn;
-            if spin.rotor == 0.0 {
+        for (k, motor) in problem.motors.iter().take(self.model.drives).enumerate() {
+            let rotor = self.model.rotor_inertia(k);
+            if rotor == 0.0 {
                 continue;
             }
-            if let Some(ring) = problem.rings.get_mut(k) {
-                let lever = problem.motors[k].lever;
-                let mass = spin.rotor / (lever * lever);
-                ring.drive.rotor = Damper::new(mass * lever * free, mass);
-            } else {
-                let rotor = Inertia::of_rotor(ActsOn::on_spin(k), spin.rotor, free);
-                problem.inertias.push(rotor);
+            let at = problem.layout.spin(k);
+            let free = problem.free[at] - problem.free[TURN];
+            match motor.on {
+                Driven::Ring(ring) => {
+                    let mass = rotor / (motor.lever * motor.lever);
+                    problem.rings[ring].rotor = Damper::new(mass * motor.lever * free, mass);
+                }
+                Driven::Body(at) => {
+                    let over_base = Inertia::new(Row::over_base(at, 1.0), rotor, free);
+                    problem.inertias.push(over_base);
+                }
             }
         }
     }
@@ -47,7 +51,7 @@ impl Dynamics {
             solved.bears |= touch.strikes;
         }
         self.problem.blow(self.solver.restitution);
-        state.take_velocities(&self.problem.velocities);
+        state.take_velocities(self.problem.layout, &self.problem.unknowns);
     }
 
     /// Starts a step from the forces of the last one, for half its time.
@@ -103,7 +107,7 @@ impl Dynamics {
         let per_torque = (self.model.drive_radius * h).recip();
         for (touch, solved) in self.touches.iter().zip(&self.problem.contacts) {
             if let Some(k) = touch.drive {
-                state.drives[k].traction += solved.torque() * per_torque;
+                state.drives[k].traction += touch.torque(solved) * per_torque;
             }
         }
         for push in &self.problem.bilaterals {

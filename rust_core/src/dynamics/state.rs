@@ -4,9 +4,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Pose, Rotation, Vector, direction, left_of};
+use crate::geometry::{Pose, Rotation, Twist, Vector, direction, left_of};
 use crate::robot::{ChainOfShoes, Flipper, Model, Mount, Running};
-use crate::solver::{HasVelocities, Twist, Velocities};
+use crate::solver::Layout;
 
 /// The state of motion.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -140,37 +140,41 @@ impl State {
         }
     }
 
-    /// Writes its velocities down for a solve.
-    pub(super) fn write_velocities(&self, into: &mut Velocities) {
-        into.base = self.twist();
-        for (rate, flipper) in into.joints.iter_mut().zip(&self.flippers) {
-            *rate = flipper.rate;
+    /// Writes its velocities down as the unknowns of a solve.
+    pub(super) fn write_velocities(&self, layout: Layout, into: &mut [f64]) {
+        into[..3].copy_from_slice(&self.twist().entries());
+        for (k, flipper) in self.flippers.iter().enumerate() {
+            into[layout.joint(k)] = flipper.rate;
         }
-        for (rate, drive) in into.spins.iter_mut().zip(&self.drives) {
-            *rate = drive.spin;
+        for (k, drive) in self.drives.iter().enumerate() {
+            into[layout.spin(k)] = drive.spin;
         }
-        for (link, shoe) in into.links.iter_mut().zip(&self.shoes) {
-            *link = shoe.twist;
+        for (k, idler) in self.idlers.iter().enumerate() {
+            into[layout.slide(k)] = idler.rate;
         }
-        for (rate, idler) in into.slides.iter_mut().zip(&self.idlers) {
-            *rate = idler.rate;
+        let links = into[layout.link(0)..].chunks_exact_mut(3);
+        for (link, shoe) in links.zip(&self.shoes) {
+            link.copy_from_slice(&shoe.twist.entries());
         }
     }
 
     /// Takes the velocities that a solve has found.
-    pub(super) fn take_velocities(&mut self, found: &Velocities) {
-        (self.velocity, self.angular_velocity) = (found.base.velocity, found.base.turn);
-        for (flipper, rate) in self.flippers.iter_mut().zip(found.joints) {
-            flipper.rate = rate;
+    pub(super) fn take_velocities(&mut self, layout: Layout, found: &[f64]) {
+        let twist = |own: &[f64]| Twist::from([own[0], own[1], own[2]]);
+        let base = twist(found);
+        (self.velocity, self.angular_velocity) = (base.velocity, base.turn);
+        for (k, flipper) in self.flippers.iter_mut().enumerate() {
+            flipper.rate = found[layout.joint(k)];
         }
-        for (drive, rate) in self.drives.iter_mut().zip(&found.spins) {
-            drive.spin = *rate;
+        for (k, drive) in self.drives.iter_mut().enumerate() {
+            drive.spin = found[layout.spin(k)];
         }
-        for (shoe, link) in self.shoes.iter_mut().zip(&found.links) {
-            shoe.twist = *link;
+        for (k, idler) in self.idlers.iter_mut().enumerate() {
+            idler.rate = found[layout.slide(k)];
         }
-        for (idler, rate) in self.idlers.iter_mut().zip(&found.slides) {
-            idler.rate = *rate;
+        let links = found[layout.link(0)..].chunks_exact(3);
+        for (link, shoe) in links.zip(&mut self.shoes) {
+            shoe.twist = twist(link);
         }
     }
 
@@ -335,28 +339,6 @@ impl State {
                 .flippers
                 .iter()
                 .all(|f| f.angle.is_finite() && f.rate.is_finite())
-    }
-}
-
-impl HasVelocities for State {
-    fn base(&self) -> Twist {
-        self.twist()
-    }
-
-    fn joint(&self, joint: usize) -> f64 {
-        self.flippers[joint].rate
-    }
-
-    fn spin(&self, spin: usize) -> f64 {
-        self.drives[spin].spin
-    }
-
-    fn link(&self, link: usize) -> Twist {
-        self.shoes[link].twist
-    }
-
-    fn slide(&self, ring: usize) -> f64 {
-        self.idlers[ring].rate
     }
 }
 

@@ -4,10 +4,9 @@
 
 use super::Dynamics;
 use super::state::State;
-use super::touch::{Touch, mount};
+use super::touch::Touch;
 use super::trend::Trend;
 use crate::robot::Model;
-use crate::solver::Contact;
 
 /// Where a tip comes nearest to the ground, its course is looked at again over this share of the step to either side:
 /// over a whole step a wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is 10 um off.
@@ -76,36 +75,38 @@ impl Dynamics {
         if !self.chains.is_empty() {
             return f64::INFINITY;
         }
+        let unknowns = &self.problem.unknowns;
+        let mut before = unknowns.clone();
+        if let Some(trend) = trend {
+            trend.write_velocities(self.problem.layout, &mut before);
+        }
         let contacts = self.touches.iter().zip(&self.problem.contacts);
         let times = contacts.filter_map(|(touch, solved)| {
-            touch.strike(solved, state, &self.model, (h, speed), trend)
+            let slope = solved.normal.along(unknowns);
+            let gain = trend.map_or(0.0, |t| t.gain(slope, solved.normal.along(&before)));
+            touch.strike((slope, gain), state, &self.model, (h, speed))
         });
         times.fold(f64::INFINITY, f64::min)
     }
 }
 
 impl Touch {
-    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if velocities go on to change like this.
+    /// [s] When the gap, that opens at a speed [m/s] that grows [m/s^2], closes faster than `speed` [m/s] in a step of `h` [s].
     ///
     /// A tip that a drive carries may come down and go up again within a step.
     pub(super) fn strike(
         &self,
-        solved: &Contact,
+        (slope, gain): (f64, f64),
         state: &State,
         model: &Model,
         (h, speed): (f64, f64),
-        trend: Option<Trend>,
     ) -> Option<f64> {
         let start = self.start;
         if start <= 0.0 {
             // It is closed already; if it closes further, the error makes the step short.
             return None;
         }
-        let slope = solved.opening_speed(state);
-        let gain = trend.map_or(0.0, |t| {
-            t.rate(slope, |before| solved.opening_speed(before))
-        });
-        let carried = mount(solved).filter(|_| self.middle.carried.is_moving());
+        let carried = self.mount().filter(|_| self.middle.carried.is_moving());
         let Some(mount) = carried else {
             let course = Parabola {
                 at: 0.0,
@@ -116,7 +117,7 @@ impl Touch {
             let (time, closing) = course.speeding_up(gain).lands()?;
             return (closing > speed).then_some(time);
         };
-        let gap = |time| self.gap_after(solved, state, model, (mount, time));
+        let gap = |time| self.gap_after(state, model, (mount, time));
         let gaps = [start, self.middle.gap, gap(h)];
         let whole = Parabola::through(gaps, 0.5 * h, 0.5 * h).speeding_up(gain);
         let course = match whole.lowest().filter(|time| (0.0..h).contains(time)) {

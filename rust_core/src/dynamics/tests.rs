@@ -40,7 +40,7 @@ impl Dynamics {
         self.recognise(&mut contacts, 0.0);
         self.prepare(state, &contacts, (h, TRAVEL));
         self.advance(state, SetPoint::constant(set_point), (h, false));
-        self.keep(state, &contacts, h, false);
+        self.keep(&contacts, h, false);
     }
 }
 

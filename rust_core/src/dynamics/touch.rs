@@ -7,20 +7,48 @@ use super::levers::{Levers, Place};
 use super::meeting::Meeting;
 use super::softness::Softness;
 use super::state::State;
-use crate::geometry::Rotation;
+use crate::geometry::{Rotation, Vector, right_of};
 use crate::robot::{Model, Mount};
-use crate::solver::{ActsOn, Contact, Grip};
+use crate::solver::{Contact, Grip, Layout};
 
 /// Compliance of the contacts of shoes, in units of that of the contact frequency: shoes are light, but the
 /// robot stands on them. Harder ones hardly reduce the penetration, and jam more.
 const ON_GUIDE: f64 = 0.1;
 const ON_GROUND: f64 = 0.3;
 
+/// What a contact of a step is on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum On {
+    /// The ground, at the chassis or a flipper.
+    Ground(Mount),
+    /// The ground, at a shoe.
+    #[default]
+    Shoe,
+    /// The guide of a chain, a wheel in it or a tooth, at a shoe.
+    Guide { chain: usize, shoe: usize },
+}
+
+/// What a step starts from.
+pub(super) struct Start<'a> {
+    pub state: &'a State,
+    /// Its velocities as the unknowns of a solve, and where they stand.
+    pub unknowns: &'a [f64],
+    pub layout: Layout,
+    pub model: &'a Model,
+    /// [s] Half of the step.
+    pub half: f64,
+}
+
 /// What a step knows of a contact besides what its solves do.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
+    pub on: On,
+    /// Unit normal away from what it is on.
+    pub normal: Vector,
     /// The drive of its part.
     pub drive: Option<usize>,
+    /// [m] Levers of normal and tangent on the spin of that drive.
+    pub spin_levers: [f64; 2],
     /// [N] Forces to start from, the last ones.
     pub normal_guess: f64,
     pub friction_guess: f64,
@@ -42,20 +70,19 @@ pub(super) struct Touch {
 }
 
 impl Touch {
-    /// That of a contact found in the middle of the step, half of `time` [s] from now, and the contact as the solver
-    /// sees it; `last` is the same contact in the last step.
+    /// That of a contact found in the middle of the step, and the contact as the solver sees it; `last` is the same contact in
+    /// the last step.
     pub(super) fn new(
         contact: &crate::contact::Contact,
         last: Option<crate::contact::Contact>,
-        state: &State,
-        model: &Model,
-        time: f64,
+        start: &Start,
     ) -> (Self, Contact) {
+        let Start { state, model, .. } = *start;
         let part = &model.parts[contact.part];
-        let middle = state.carrier(part.mount, time, model);
+        let middle = state.carrier(part.mount, start.half, model);
         let of_drive = |of: &dyn Fn(usize) -> f64| part.drive.map_or(0.0, of);
         let drive_position = of_drive(&|k| state.run_over(part.mount, k, model));
-        let advance = of_drive(&|k| state.speed_over(part.mount, k, model)) * time;
+        let advance = of_drive(&|k| state.speed_over(part.mount, k, model)) * start.half;
         let Levers {
             normal,
             tangent,
@@ -67,20 +94,20 @@ impl Touch {
             part.motion(drive_position + advance, advance.abs()),
             model,
         );
-        let spin = part.drive;
-        let solved = match part.mount {
+        let (directions, flipper) = match part.mount {
             Mount::Flipper(k) => {
-                let pivot = middle.center - state.moved(time).0;
-                let joint = Some(k);
-                let directions = [normal, tangent].map(|along| along.on_flipper(pivot));
-                Contact::new(ActsOn::Base { joint, spin }, directions)
+                let pivot = middle.center - state.moved(start.half).0;
+                let on_flipper = [normal, tangent].map(|along| along.on_flipper(pivot));
+                (on_flipper, Some(k))
             }
-            Mount::Chassis | Mount::Shoe(_) => {
-                let joint = None;
-                Contact::new(ActsOn::Base { joint, spin }, [normal, tangent])
-            }
+            Mount::Chassis | Mount::Shoe(_) => ([normal, tangent], None),
         };
+        let mut solved = Contact::new(directions.map(|d| d.row(start.layout, part.drive, flipper)));
         let mut touch = Self {
+            on: On::Ground(part.mount),
+            normal: contact.normal,
+            drive: part.drive,
+            spin_levers: directions.map(|along| along.spin_lever),
             middle: Place {
                 gap: contact.distance,
                 carrier: middle,
@@ -93,22 +120,17 @@ impl Touch {
             }),
             ..Self::default()
         };
-        touch.drive = part.drive;
-        touch.gap = touch.gap_after(&solved, state, model, (part.mount, 0.0));
+        touch.gap = touch.gap_after(state, model, (part.mount, 0.0));
         touch.start = touch.gap;
-        touch.continued(solved, last)
+        touch.go_on(&mut solved, last);
+        (touch, solved)
     }
 
-    /// The same with the forces and the grip of the last step.
-    pub(super) fn continued(
-        mut self,
-        mut solved: Contact,
-        last: Option<crate::contact::Contact>,
-    ) -> (Self, Contact) {
+    /// Takes over the forces and the grip of the last step.
+    pub(super) fn go_on(&mut self, solved: &mut Contact, last: Option<crate::contact::Contact>) {
         solved.grip = last.map_or(Grip::Open, |l| l.grip);
         self.normal_guess = last.map_or(0.0, |l| l.normal_guess);
         self.friction_guess = last.map_or(0.0, |l| l.friction_guess);
-        (self, solved)
     }
 
     /// Sets a contact up for a motion of `h` [s]: an open gap may just close, softly; a penetration is pushed out. The
@@ -120,7 +142,7 @@ impl Touch {
         soft: Softness,
         max_push_speed: f64,
     ) {
-        let share = if is_on_ground(solved) {
+        let share = if self.is_on_ground() {
             ON_GROUND
         } else {
             ON_GUIDE
@@ -148,18 +170,33 @@ impl Touch {
             solved.compliance = 2.0 * soft.compliance;
         }
     }
-}
 
-/// Whether the ground bears at a contact, not the robot itself.
-pub(super) fn is_on_ground(solved: &Contact) -> bool {
-    matches!(solved.acts, ActsOn::Base { .. } | ActsOn::Link(_))
-}
+    /// Whether the ground bears, not the robot itself.
+    pub(super) fn is_on_ground(&self) -> bool {
+        !matches!(self.on, On::Guide { .. })
+    }
 
-/// What carries a contact, if that is no shoe.
-pub(super) fn mount(solved: &Contact) -> Option<Mount> {
-    match solved.acts {
-        ActsOn::Base { joint: Some(k), .. } => Some(Mount::Flipper(k)),
-        ActsOn::Base { joint: None, .. } => Some(Mount::Chassis),
-        _ => None,
+    /// What carries it, if that is no shoe.
+    pub(super) fn mount(&self) -> Option<Mount> {
+        match self.on {
+            On::Ground(mount) => Some(mount),
+            _ => None,
+        }
+    }
+
+    /// The parts of a vector along normal and tangent.
+    pub(super) fn along(&self, v: Vector) -> [f64; 2] {
+        [self.normal.dot(v), right_of(self.normal).dot(v)]
+    }
+
+    /// [N s] Impulse on the robot, or the shoe.
+    pub(super) fn impulse(&self, solved: &Contact) -> Vector {
+        self.normal * solved.normal_impulse + right_of(self.normal) * solved.friction_impulse
+    }
+
+    /// [N m s] Angular impulse on the drive.
+    pub(super) fn torque(&self, solved: &Contact) -> f64 {
+        let [normal, tangent] = self.spin_levers;
+        normal * solved.normal_impulse + tangent * solved.friction_impulse
     }
 }

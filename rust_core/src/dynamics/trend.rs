@@ -3,6 +3,7 @@
 //! The equations: docs/physics.md, "Length of a step".
 
 use super::state::State;
+use crate::solver::Layout;
 
 /// The last step, for how fast velocities change.
 #[derive(Clone, Copy)]
@@ -19,13 +20,18 @@ impl<'a> Trend<'a> {
         (time > 0.0).then_some(Self { before, time })
     }
 
-    /// Rate at which a velocity has come to what it is `now` from what it is `of` the state before.
-    pub(super) fn rate(&self, now: f64, of: impl Fn(&State) -> f64) -> f64 {
-        (now - of(self.before)) / self.time
+    /// Writes the velocities at its beginning down as the unknowns of a solve.
+    pub(super) fn write_velocities(&self, layout: Layout, into: &mut [f64]) {
+        self.before.write_velocities(layout, into);
+    }
+
+    /// How fast a velocity has come to what it is `now` from what it was `before`.
+    pub(super) fn gain(&self, now: f64, before: f64) -> f64 {
+        (now - before) / self.time
     }
 
     /// [rad/s] How much faster the chassis turns after a time [s] than in a state at the step's end, if that goes on.
     pub(super) fn turn_gained(&self, state: &State, time: f64) -> f64 {
-        self.rate(state.angular_velocity, |before| before.angular_velocity) * time
+        self.gain(state.angular_velocity, self.before.angular_velocity) * time
     }
 }

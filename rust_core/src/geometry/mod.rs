@@ -9,6 +9,7 @@ mod plane;
 pub(crate) mod search;
 mod shoes;
 mod teeth;
+mod twist;
 
 pub use belt::Grouser;
 pub(crate) use belt::Motion;
@@ -21,3 +22,4 @@ pub(crate) use plane::{
 };
 pub use shoes::ShoeLoop;
 pub use teeth::Teeth;
+pub(crate) use twist::Twist;

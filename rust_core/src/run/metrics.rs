@@ -70,7 +70,7 @@ metrics! {
     repeated_steps ["1"] "attempts at a step whose local error exceeded `solver.accuracy`; each was taken again with a shorter one"
     solves ["1"] "searches for the forces that all contacts, motors and pins agree on"
     solve_rounds ["1"] "linear systems solved in these: one per solve if the first guess of what sticks and what slides is right"
-    solver_fallbacks ["1"] "how often correcting the guesses did not succeed, so that the robot was lifted off and lowered onto its contacts"
+    solver_fallbacks ["1"] "how often corrections did not lead to right states, so that a path of pivots to them was followed"
     unresolved_solves ["1"] "solves that ended without agreement: contacts close a little faster in them than they should"
 }
 
@@ -122,7 +122,7 @@ impl Metrics {
             repeated_steps: observed.effort.repeated_steps as f64,
             solves: observed.effort.solves as f64,
             solve_rounds: observed.effort.rounds as f64,
-            solver_fallbacks: observed.effort.lowerings as f64,
+            solver_fallbacks: observed.effort.paths as f64,
             unresolved_solves: observed.effort.unresolved as f64,
         }
     }

@@ -2,9 +2,9 @@
 //!
 //! The equations: docs/physics.md, "Impacts".
 
-use super::damper::Damper;
+use super::damper::{Damper, Inertia};
 use super::motor::Motor;
-use super::{Contact, Hold, Inertia, Problem};
+use super::{Contact, Hold, Problem};
 
 impl Problem {
     /// Goes on from the velocities of a solve by a blow, in which no time passes: no weight acts, and motors do nothing, but gears
@@ -12,7 +12,7 @@ impl Problem {
     /// impulses are added to those of the solve.
     pub(crate) fn blow(&mut self, restitution: f64) {
         let before: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
-        let along: Vec<f64> = self.bilaterals.iter().map(|row| row.impulse).collect();
+        let along: Vec<f64> = self.bilaterals.iter().map(|each| each.impulse).collect();
         let motors = self.motors.clone();
         let speeds: Vec<f64> = motors.iter().map(|motor| self.motor_speed(motor)).collect();
         for (motor, speed) in self.motors.iter_mut().zip(speeds) {
@@ -28,8 +28,8 @@ impl Problem {
             contact.normal_impulse += normal;
             contact.friction_impulse += friction;
         }
-        for (row, before) in self.bilaterals.iter_mut().zip(along) {
-            row.impulse += before;
+        for (bilateral, before) in self.bilaterals.iter_mut().zip(along) {
+            bilateral.impulse += before;
         }
         self.motors = motors;
     }
@@ -56,22 +56,16 @@ impl Problem {
 
     /// Takes the present velocities as those without constraints, and lets go of what motors turn.
     fn start_from_here(&mut self) {
-        self.free.base = self.velocities.base;
-        self.free.spins.clone_from(&self.velocities.spins);
+        self.free.clone_from(&self.unknowns);
         for inertia in &mut self.inertias {
-            let Inertia {
-                acts,
-                along,
-                damper,
-            } = *inertia;
-            let free = acts.speed(&along, &self.velocities);
-            *inertia = Inertia::new(acts, along, damper.stiffness, free);
+            let free = inertia.row.along(&self.unknowns);
+            *inertia = Inertia::new(inertia.row, inertia.damper.stiffness, free);
         }
         for motor in &mut self.motors {
             motor.hold = Hold::Free;
         }
-        for row in &mut self.bilaterals {
-            row.impulse = 0.0;
+        for bilateral in &mut self.bilaterals {
+            bilateral.impulse = 0.0;
         }
     }
 
@@ -85,7 +79,7 @@ impl Problem {
     /// Solves from contacts without impulses.
     fn solve_anew(&mut self) {
         for contact in &mut self.contacts {
-            (contact.normal_impulse, contact.friction_impulse) = (0.0, 0.0);
+            contact.set_impulses([0.0; 2]);
         }
         self.solve();
     }

@@ -1,33 +1,65 @@
-//! A contact as a solve sees it: two directions, a law, and what it has found of it.
+//! A contact: Coulomb's law with softness, the state in which it is, and the conditions under which that holds. No other
+//! file of the solver knows the limit of friction.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
-use super::damper::Damper;
-use super::direction::Direction;
-use super::grip::Grip;
-use super::velocities::{ActsOn, HasVelocities, Velocities};
-use super::way::Way;
-use crate::geometry::Vector;
+use serde::{Deserialize, Serialize};
+
+use super::damper::{COMPLIANCE, Damper};
+use super::row::Row;
 use crate::scenario::Friction;
 
-/// [1/kg] Velocity along normal and tangent per unit impulse along them.
+/// The state of a contact in a solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Grip {
+    /// No contact force.
+    #[default]
+    Open,
+    /// It sticks.
+    Sticks,
+    /// It slides; friction acts along the tangent.
+    Forwards,
+    /// It slides; friction acts against the tangent.
+    Backwards,
+}
+
+impl Grip {
+    /// The next guess: a change of the direction of slip goes through sticking.
+    pub(super) fn towards(self, fitting: Self) -> Self {
+        match (self, fitting) {
+            (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Sticks,
+            _ => fitting,
+        }
+    }
+}
+
+/// [1/kg] Velocity along normal and tangent per unit impulse along them, ...
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Admittance {
-    pub normal: f64,
-    pub tangent: f64,
-    /// That of the mass on its spring.
-    pub spring: f64,
+pub(super) struct Admittances {
+    pub own: [f64; 2],
+    /// ... and that of the mass on their springs.
+    pub springs: [f64; 2],
+}
+
+/// [N s] How the law of a contact is relaxed along normal and tangent.
+#[derive(Clone, Copy, Debug, Default)]
+struct Relaxation {
+    /// What its law sees beyond the impulses of its dampers, ...
+    seen: [f64; 2],
+    /// ... and the part of that which its impulses are without, so that in its present state they are what they were.
+    without: [f64; 2],
 }
 
 /// A contact: it can only push along its normal, and its friction along the tangent is limited by that.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact {
-    pub acts: ActsOn,
-    pub normal: Direction,
-    pub tangent: Direction,
+    pub normal: Row,
+    pub tangent: Row,
     pub friction: Friction,
     /// Whether it can carry a load in this solve.
     pub bears: bool,
+    /// [kg] The mass on its springs, if not what it moves.
+    pub mass: Option<f64>,
     /// [m/s] Speed at which it may close or, if negative, must open.
     pub bias: f64,
     /// Compliance in units of the admittance of its spring.
@@ -40,30 +72,30 @@ pub(crate) struct Contact {
     pub normal_impulse: f64,
     /// [N s] Impulse along the tangent.
     pub friction_impulse: f64,
-    /// The guessed state.
+    /// The present state.
     pub grip: Grip,
     /// [N s] Impulses about which it is damped.
-    pub(super) center: (f64, f64),
+    center: [f64; 2],
     /// The state that fits the last velocities.
     pub(super) fitting: Grip,
     /// Normal and tangent, with the motors in their state in this solve.
-    pub(super) actions: [Direction; 2],
-    pub(super) admittance: Admittance,
+    pub(super) actions: [Row; 2],
+    pub(super) admittances: Admittances,
     /// Dampers of normal and tangent in this solve while no limit is reached.
     pub(super) dampers: [Damper; 2],
-    /// Its line in a step of Newton's method.
-    pub(super) way: Way,
+    /// How its law is relaxed on the path to a solution.
+    relaxed: Relaxation,
 }
 
 impl Contact {
     /// A contact along these directions, without friction or history.
-    pub(crate) fn new(acts: ActsOn, [normal, tangent]: [Direction; 2]) -> Self {
+    pub(crate) fn new([normal, tangent]: [Row; 2]) -> Self {
         Self {
-            acts,
             normal,
             tangent,
             friction: Friction::dry(0.0),
             bears: false,
+            mass: None,
             bias: 0.0,
             compliance: 0.0,
             give: 0.0,
@@ -71,47 +103,31 @@ impl Contact {
             normal_impulse: 0.0,
             friction_impulse: 0.0,
             grip: Grip::Open,
-            center: (0.0, 0.0),
+            center: [0.0; 2],
             fitting: Grip::Open,
-            actions: [Direction::default(); 2],
-            admittance: Admittance::default(),
+            actions: [normal, tangent],
+            admittances: Admittances::default(),
             dampers: [Damper::default(); 2],
-            way: Way::default(),
+            relaxed: Relaxation::default(),
         }
     }
 
-    /// [m/s] Speed at which it opens.
-    pub(crate) fn opening_speed(&self, of: &impl HasVelocities) -> f64 {
-        self.acts.speed(&self.normal, of)
-    }
-
-    /// [m/s] Velocity along the tangent.
-    pub(crate) fn slip(&self, of: &impl HasVelocities) -> f64 {
-        self.acts.speed(&self.tangent, of)
-    }
-
     /// [m/s] Speeds along normal and tangent in this solve, offsets included.
-    pub(super) fn speeds(&self, velocities: &Velocities) -> [f64; 2] {
-        let [n, t] = self.changes(velocities);
-        [n + self.actions[0].offset, t + self.actions[1].offset]
-    }
-
-    /// [m/s] Changes of these speeds with changes of the velocities; without friction that of slip makes no difference, and
-    /// is left out.
-    pub(super) fn changes(&self, changes: &Velocities) -> [f64; 2] {
+    pub(super) fn speeds(&self, unknowns: &[f64]) -> [f64; 2] {
         let [n, t] = &self.actions;
+        // Without friction the speed of slip makes no difference, and is left out.
         let slip = if self.friction.resists() {
-            self.acts.speed(t, changes)
+            t.along(unknowns)
         } else {
             0.0
         };
-        [self.acts.speed(n, changes), slip]
+        [n.speed(unknowns), slip + t.offset]
     }
 
     /// Softens its grip by a compliance, about the friction [N s] of the last step; its spring keeps a share of a change.
     pub(crate) fn give_way(&mut self, compliance: f64, springs: f64, last: f64) {
         (self.give, self.springs) = (compliance, springs);
-        self.center.1 = last;
+        self.center[1] = last;
     }
 
     /// [N s] Impulse along the tangent without the part of the damper, from which the next step starts.
@@ -119,28 +135,229 @@ impl Contact {
         if self.give == 0.0 || self.grip != Grip::Sticks {
             return self.friction_impulse;
         }
-        self.center.1 + (self.friction_impulse - self.center.1) * self.springs
+        self.center[1] + (self.friction_impulse - self.center[1]) * self.springs
     }
 
     /// [N s] Its impulses along normal and tangent.
-    pub(super) fn impulses(&self) -> [f64; 2] {
+    pub(crate) fn impulses(&self) -> [f64; 2] {
         [self.normal_impulse, self.friction_impulse]
     }
 
-    /// [N s] Impulse on the body that it touches.
-    pub(crate) fn impulse(&self) -> Vector {
-        self.normal.unit * self.normal_impulse + self.tangent.unit * self.friction_impulse
+    pub(super) fn set_impulses(&mut self, impulses: [f64; 2]) {
+        [self.normal_impulse, self.friction_impulse] = impulses;
     }
 
-    /// [N m s] Angular impulse on what spins.
-    pub(crate) fn torque(&self) -> f64 {
-        self.normal.spin_lever * self.normal_impulse
-            + self.tangent.spin_lever * self.friction_impulse
+    /// Makes the current impulses the ones about which the contact is damped.
+    pub(super) fn settle(&mut self) {
+        self.center[0] = self.normal_impulse;
+        if self.give == 0.0 {
+            self.center[1] = self.friction_impulse;
+        }
+        self.place_dampers();
     }
 
-    /// [N m s] Angular impulse on what is hinged to the base.
-    pub(super) fn torque_on_joint(&self) -> f64 {
-        self.normal.joint_lever * self.normal_impulse
-            + self.tangent.joint_lever * self.friction_impulse
+    /// Takes the impulses ahead by so many times their change, as far as Coulomb's law lets them.
+    pub(super) fn lead(&mut self, times: f64) {
+        let [normal, friction] = self.center;
+        self.normal_impulse = beyond(normal, self.normal_impulse, times).max(0.0);
+        let limit = self.limit(self.normal_impulse);
+        self.friction_impulse = beyond(friction, self.friction_impulse, times).clamp(-limit, limit);
     }
+
+    /// Goes back to the impulses about which the contact is damped.
+    pub(super) fn unsettle(&mut self) {
+        self.set_impulses(self.center);
+    }
+
+    /// Sets the dampers about their centres.
+    pub(super) fn place_dampers(&mut self) {
+        let [normal, friction] = self.center;
+        let [spring, grip] = self.admittances.springs;
+        let proximal = self.proximal();
+        let damping = proximal * spring;
+        let stiffness = 1.0 / (self.compliance * spring + damping);
+        let of_grip = 1.0 / (self.give * grip + proximal * self.admittances.own[1]);
+        self.dampers = [
+            Damper::new(stiffness * (damping * normal - self.bias), stiffness),
+            Damper::new(friction, of_grip),
+        ];
+    }
+
+    /// Updates impulses and fitting state for the velocities; returns the error of the velocity [m/s].
+    pub(super) fn follow(&mut self, unknowns: &[f64]) -> f64 {
+        let (grip, impulses) = self.law(self.speeds(unknowns));
+        self.fitting = grip;
+        self.set_impulses(impulses);
+        let [of_normal, of_tangent] =
+            [0, 1].map(|i| (impulses[i] - self.center[i]).abs() * self.admittances.own[i]);
+        let off = match grip {
+            Grip::Open => 0.0,
+            Grip::Sticks if self.give == 0.0 => of_normal.max(of_tangent),
+            _ => of_normal,
+        };
+        self.proximal() * off
+    }
+
+    /// Compliance of its damper about the last impulses; one that gives way elastically needs none.
+    fn proximal(&self) -> f64 {
+        if self.give == 0.0 { COMPLIANCE } else { 0.0 }
+    }
+
+    /// [N s] The most friction under a normal impulse.
+    fn limit(&self, normal: f64) -> f64 {
+        self.friction.coefficient * normal
+    }
+
+    /// The state at these speeds, and the impulses along normal and tangent [N s].
+    fn law(&self, [approach, slip]: [f64; 2]) -> (Grip, [f64; 2]) {
+        let [n, t] = self.dampers;
+        let (normal, friction) = (n.at(approach), t.at(slip));
+        let limit = self.limit(normal);
+        if normal <= 0.0 {
+            (Grip::Open, [0.0, 0.0])
+        } else if friction > limit || limit == 0.0 {
+            // Without friction the direction of slip makes no difference.
+            (Grip::Forwards, [normal, limit])
+        } else if friction < -limit {
+            (Grip::Backwards, [normal, -limit])
+        } else {
+            (Grip::Sticks, [normal, friction])
+        }
+    }
+
+    /// [N s] Impulses along normal and tangent at these velocities in the present state, with a share of its relaxation.
+    pub(super) fn held(&self, unknowns: &[f64], share: f64) -> [f64; 2] {
+        let [normal, friction] = self.seen(unknowns, share);
+        let limit = self.limit(normal);
+        let impulses = match self.grip {
+            Grip::Open => [0.0, 0.0],
+            Grip::Sticks => [normal, friction],
+            Grip::Forwards => [normal, limit],
+            Grip::Backwards => [normal, -limit],
+        };
+        [0, 1].map(|i| impulses[i] - share * self.relaxed.without[i])
+    }
+
+    /// [N s] The impulses along normal and tangent that its law sees at these velocities, with a share of its relaxation.
+    fn seen(&self, unknowns: &[f64], share: f64) -> [f64; 2] {
+        let speeds = self.speeds(unknowns);
+        [0, 1].map(|i| self.dampers[i].at(speeds[i]) + share * self.relaxed.seen[i])
+    }
+
+    /// [m/s] How far apart the law and the present state are, by what their impulses do to the speeds.
+    pub(super) fn misfit(&self, unknowns: &[f64]) -> f64 {
+        if self.fitting == self.grip {
+            return 0.0;
+        }
+        let (held, law) = (self.held(unknowns, 0.0), self.impulses());
+        let off = [0, 1].map(|i| (law[i] - held[i]).abs() * self.admittances.own[i]);
+        off[0].max(off[1])
+    }
+
+    /// Calls `each` with the constraints of the present state: the impulse of each acts along the first of two rows, with a
+    /// damper along the second.
+    #[inline]
+    pub(super) fn constraints(&self, mut each: impl FnMut([&Row; 2], Damper)) {
+        let ([normal, tangent], [n, t]) = (&self.actions, self.dampers);
+        let coefficient = match self.grip {
+            Grip::Open => return,
+            Grip::Sticks => {
+                each([tangent; 2], t);
+                0.0
+            }
+            Grip::Forwards => self.friction.coefficient,
+            Grip::Backwards => -self.friction.coefficient,
+        };
+        if coefficient == 0.0 {
+            each([normal; 2], n);
+        } else {
+            each([&normal.plus(tangent, coefficient), normal], n);
+        }
+    }
+
+    /// The way in which it starts to slide when it touches.
+    pub(super) fn slides(&self, unknowns: &[f64], share: f64) -> Grip {
+        if self.friction.resists() && self.seen(unknowns, share)[1] < 0.0 {
+            Grip::Backwards
+        } else {
+            Grip::Forwards
+        }
+    }
+
+    /// Calls `each` with the conditions of its state: the state that follows, and the value, with a share of its
+    /// relaxation.
+    pub(super) fn conditions(&self, unknowns: &[f64], share: f64, mut each: impl FnMut(Grip, f64)) {
+        let [normal, friction] = self.seen(unknowns, share);
+        let limit = self.limit(normal);
+        if self.grip == Grip::Open {
+            each(Grip::Sticks, -normal);
+            return;
+        }
+        each(Grip::Open, normal);
+        match self.grip {
+            Grip::Sticks => {
+                each(Grip::Forwards, limit - friction);
+                each(Grip::Backwards, limit + friction);
+            }
+            Grip::Forwards if self.friction.resists() => each(Grip::Sticks, friction - limit),
+            Grip::Backwards if self.friction.resists() => each(Grip::Sticks, -friction - limit),
+            _ => {}
+        }
+    }
+
+    /// [m/s] By how much its state does not fit these velocities, as a speed at which it would; 0 if it fits.
+    pub(super) fn violation(&self, unknowns: &[f64]) -> f64 {
+        let mut most: f64 = 0.0;
+        self.conditions(unknowns, 0.0, |next, value| {
+            let is_normal = next == Grip::Open || self.grip == Grip::Open;
+            let damper = self.dampers[usize::from(!is_normal)];
+            most = most.max(-value / damper.stiffness);
+        });
+        most
+    }
+
+    /// Relaxes its law so that its state fits these velocities; by at least a speed [m/s] where that is more.
+    pub(super) fn relax(&mut self, unknowns: &[f64], least: f64) {
+        self.relaxed = Relaxation::default();
+        let [normal, friction] = self.seen(unknowns, 0.0);
+        let [of_normal, of_friction] = self.dampers.map(|damper| least * damper.stiffness);
+        let Relaxation {
+            mut seen,
+            mut without,
+        } = self.relaxed;
+        if self.grip == Grip::Open {
+            seen[0] = -of_normal;
+        } else if normal < 0.0 {
+            (seen[0], without[0]) = (of_normal, of_normal);
+        }
+        let limit = self.limit(normal + seen[0]);
+        match self.grip {
+            Grip::Open => {}
+            Grip::Sticks => {
+                let excess = friction.abs() - limit;
+                if excess > 0.0 {
+                    seen[1] = -friction.signum() * of_friction.max(excess).min(friction.abs());
+                }
+                without[1] = seen[1];
+            }
+            Grip::Forwards | Grip::Backwards => {
+                let direction = if self.grip == Grip::Forwards {
+                    1.0
+                } else {
+                    -1.0
+                };
+                without[1] = direction * self.limit(seen[0]);
+                let short = limit - direction * friction;
+                if short > 0.0 && self.friction.resists() {
+                    seen[1] = direction * of_friction.max(short);
+                }
+            }
+        }
+        self.relaxed = Relaxation { seen, without };
+    }
+}
+
+/// What lies beyond the second of two values, by so many times their difference.
+pub(super) fn beyond(from: f64, to: f64, times: f64) -> f64 {
+    to + times * (to - from)
 }

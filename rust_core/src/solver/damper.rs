@@ -2,6 +2,8 @@
 //!
 //! The equations: docs/physics.md, "The linear system".
 
+use super::row::Row;
+
 /// Compliance of the dampers, in units of the contact's own admittance.
 pub(super) const COMPLIANCE: f64 = 1e-6;
 
@@ -19,17 +21,9 @@ impl Damper {
         Self { impulse, stiffness }
     }
 
-    /// The same damper about a speed [m/s] other than zero.
-    pub(super) fn shifted(self, speed: f64) -> Self {
-        Self::new(self.at(-speed), self.stiffness)
-    }
-
     /// A constant impulse, whatever the speed.
     pub(crate) fn constant(impulse: f64) -> Self {
-        Self {
-            impulse,
-            stiffness: 0.0,
-        }
+        Self::new(impulse, 0.0)
     }
 
     /// [N s] Impulse at a speed.
@@ -49,9 +43,67 @@ impl Damper {
             self.stiffness + other.stiffness,
         )
     }
+}
 
-    /// [m/s] Speed at a given impulse.
-    pub(super) fn speed_for(self, impulse: f64) -> f64 {
-        (self.impulse - impulse) / self.stiffness
+/// A row with a damper: inertia along a direction, of a body that is hinged to the base or of a motor's rotor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inertia {
+    pub row: Row,
+    /// The impulse that it takes to give it a speed along that.
+    pub damper: Damper,
+    /// The row with the motors in their state in this solve.
+    pub(super) action: Row,
+}
+
+impl Inertia {
+    /// One of `inertia` [kg] along a row, with a speed there without constraints [m/s].
+    pub(crate) fn new(row: Row, inertia: f64, free: f64) -> Self {
+        Self {
+            row,
+            damper: Damper::new(inertia * free, inertia),
+            action: row,
+        }
+    }
+
+    /// [N s] Its impulse at these velocities.
+    pub(super) fn impulse(&self, unknowns: &[f64]) -> f64 {
+        self.damper.at(self.row.along(unknowns))
+    }
+}
+
+/// A row along which nothing moves, whatever impulse that takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bilateral {
+    pub row: Row,
+    /// [N s] Impulse along it.
+    pub impulse: f64,
+    /// [N s] Impulse about which a solve damps it.
+    pub(super) center: f64,
+    /// The row with the motors in their state in this solve.
+    pub(super) action: Row,
+    /// [1/kg] Velocity per unit impulse along it.
+    pub(super) admittance: f64,
+}
+
+impl Bilateral {
+    pub(crate) fn new(row: Row) -> Self {
+        Self {
+            row,
+            impulse: 0.0,
+            center: 0.0,
+            action: row,
+            admittance: 0.0,
+        }
+    }
+
+    pub(super) fn damper(&self) -> Damper {
+        Damper::new(self.center, 1.0 / (COMPLIANCE * self.admittance))
+    }
+
+    /// Updates the impulse to match the velocities; returns the error of the velocity [m/s].
+    pub(super) fn follow(&mut self, unknowns: &[f64]) -> f64 {
+        let slip = self.action.speed(unknowns);
+        self.impulse = self.damper().at(slip);
+        slip.abs()
     }
 }

@@ -1,6 +1,6 @@
 //! Counts of the solver's work; the motion does not depend on them.
 //!
-//! The equations: docs/physics.md, "Direct search".
+//! The equations: docs/physics.md, "Settling".
 
 use serde::{Deserialize, Serialize};
 
@@ -15,9 +15,9 @@ pub(crate) struct Effort {
     pub solves: u64,
     /// Linear systems solved in them.
     pub rounds: u64,
-    /// How often no guess could be corrected, so that all were lowered onto their contacts.
-    pub lowerings: u64,
-    /// Solves that ended without a solution, with contacts that are lifted a little.
+    /// How often corrections did not lead to right states, so that a path was followed.
+    pub paths: u64,
+    /// Solves that ended without a solution, with laws that stay relaxed a little.
     pub unresolved: u64,
 }
 
@@ -29,7 +29,7 @@ impl Effort {
             repeated_steps: self.repeated_steps + more.repeated_steps,
             solves: self.solves + more.solves,
             rounds: self.rounds + more.rounds,
-            lowerings: self.lowerings + more.lowerings,
+            paths: self.paths + more.paths,
             unresolved: self.unresolved + more.unresolved,
         }
     }

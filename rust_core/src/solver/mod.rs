@@ -6,48 +6,29 @@
 //!
 //! The equations: docs/physics.md, "The problem".
 
-mod balance;
-mod bilateral;
 mod blow;
 mod bodies;
-mod change;
-mod condition;
-mod conditions;
 mod contact;
 mod damper;
-mod direct;
-mod direction;
 mod effort;
-mod grip;
-mod law;
-mod lowering;
 mod motor;
-mod motors;
+mod path;
 mod ring;
+mod row;
 mod settling;
-mod steps;
 mod system;
 #[cfg(test)]
 mod tests;
-mod tie;
-mod twist;
-mod velocities;
-mod way;
 
-pub(crate) use bilateral::Bilateral;
-pub(crate) use bodies::{Base, Inertia, Joint, Spin};
-pub(crate) use contact::Contact;
-pub(crate) use damper::Damper;
-pub(crate) use direction::Direction;
+pub(crate) use contact::{Contact, Grip};
+pub(crate) use damper::{Bilateral, Damper, Inertia};
 pub(crate) use effort::Effort;
-pub(crate) use grip::Grip;
 pub(crate) use motor::{Driven, Hold, Motor};
-pub(crate) use ring::{Drive, Grasp, Hinge, Ring};
-pub(crate) use twist::Twist;
-pub(crate) use velocities::{ActsOn, HasVelocities, Link, Velocities};
+pub(crate) use ring::{Grasp, Hinge, Ring, RingSpec};
+pub(crate) use row::{Layout, Link, Row, TURN};
 
 use crate::units::MetresPerSecond;
-use condition::Condition;
+use row::BASE;
 use system::System;
 
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
@@ -56,141 +37,135 @@ const AGREEMENT: MetresPerSecond = MetresPerSecond(1e-7);
 /// Rounds of a search at most, unless told otherwise; most need none.
 const ITERATIONS: u32 = 8;
 
+/// Where a search starts: from the states of the last solve, or from where all contacts are open.
+#[derive(Clone, Copy, PartialEq)]
+enum Start {
+    LastStates,
+    Air,
+}
+
 /// Bodies, what constrains them, and the velocities that a solve finds.
 pub(crate) struct Problem {
-    pub base: Base,
-    pub spins: Vec<Spin>,
-    pub joints: Vec<Joint>,
+    /// Where the unknowns of each body stand.
+    pub layout: Layout,
+    /// [kg, kg, kg m^2] Inertia of the base for x, y and turn, without what turns with it; then [kg m^2] that of each body
+    /// hinged to it, as far as it is not among `inertias`, and of each that spins.
+    pub masses: Vec<f64>,
     pub inertias: Vec<Inertia>,
     pub rings: Vec<Ring>,
     pub contacts: Vec<Contact>,
     pub bilaterals: Vec<Bilateral>,
     pub motors: Vec<Motor>,
-    /// [kg] The mass on the springs of contacts; none if each has that of its own bodies.
-    pub mass_on_springs: Option<f64>,
     /// Rounds of a search at most.
     pub iterations: Option<u32>,
-    /// Velocities without constraints: of the base, of what spins, and of links.
-    pub free: Velocities,
-    /// The velocities; a solve starts from them.
-    pub velocities: Velocities,
+    /// Velocities without constraints.
+    pub free: Vec<f64>,
+    /// The velocities, and the impulses of the drives of rings; a solve starts from them.
+    pub unknowns: Vec<f64>,
     /// The work done.
     pub effort: Effort,
-    /// [kg m^2] Moment of inertia of the base with what turns with it.
-    inertia: f64,
-    /// [N m s] Angular impulse of the constraints on what spins.
-    torques: Vec<f64>,
+    /// [N m s, ...] Impulses of contacts and bilaterals on what is on the base.
+    pushes: Vec<f64>,
     system: System,
     /// The change to the last solution of the linear system.
-    change: Velocities,
-    /// Conditions of the states on the way down to the ground.
-    conditions: Vec<Condition>,
+    change: Vec<f64>,
 }
 
 impl Problem {
-    /// Bodies without constraints.
-    pub(crate) fn new(base: Base, spins: Vec<Spin>, joints: Vec<Joint>, rings: Vec<Ring>) -> Self {
-        let velocities = Velocities {
-            spins: vec![0.0; spins.len()],
-            links: vec![Twist::default(); rings.last().map_or(0, |ring| ring.links.end)],
-            slides: vec![0.0; rings.len()],
-            ..Velocities::default()
-        };
-        Self {
-            inertia: base.inertia,
-            torques: vec![0.0; spins.len()],
-            system: System::new(spins.len(), joints.len()),
-            conditions: Vec::new(),
-            free: velocities.clone(),
-            change: velocities.clone(),
-            velocities,
-            base,
-            spins,
+    /// Bodies without constraints: a base with a mass [kg] and a moment of inertia [kg m^2], so many bodies hinged to it,
+    /// bodies that spin on it with these moments of inertia [kg m^2], and rings.
+    pub(crate) fn new(
+        [mass, inertia]: [f64; 2],
+        joints: usize,
+        spins: &[f64],
+        rings: &[RingSpec],
+    ) -> Self {
+        let layout = Layout {
             joints,
+            spins: spins.len(),
+            rings: rings.len(),
+            links: rings.iter().map(|ring| ring.links).sum(),
+        };
+        let mut masses = vec![mass, mass, inertia];
+        masses.resize(BASE + joints, 0.0);
+        masses.extend(spins);
+        let nothing = vec![0.0; layout.count()];
+        Self {
+            masses,
             inertias: Vec::new(),
-            rings,
+            rings: Ring::all(layout, rings),
             contacts: Vec::new(),
             bilaterals: Vec::new(),
             motors: Vec::new(),
-            mass_on_springs: None,
             iterations: None,
+            free: nothing.clone(),
+            unknowns: nothing.clone(),
             effort: Effort::default(),
+            pushes: vec![0.0; layout.link(0)],
+            system: System::new(layout),
+            change: nothing,
+            layout,
         }
     }
 
     /// Finds the velocities and impulses that satisfy all constraints.
     pub(crate) fn solve(&mut self) {
         self.effort.solves += 1;
-        let agreed =
-            (self.search() && !self.offsets_throw()) || (self.forget_offsets() && self.search());
-        if !agreed {
-            self.effort.unresolved += 1;
-        }
+        let solved = self.find() || (self.forget_offsets() && self.find());
+        self.effort.unresolved += u64::from(!solved);
         // From the impulses, so that momentum is conserved to the last digit.
         self.balance();
     }
 
+    /// Finds them from the states of the last solve or, as that can end in a jam to which a search from the air does not
+    /// come, from there.
+    fn find(&mut self) -> bool {
+        let mut starts = [Start::LastStates, Start::Air].into_iter();
+        starts.any(|start| self.search(start) && !self.offsets_throw())
+    }
+
     /// Searches for them; returns whether they agree.
-    fn search(&mut self) -> bool {
+    fn search(&mut self, start: Start) -> bool {
         self.tie();
-        if self.guess() {
+        let near = start == Start::LastStates;
+        if near && (self.correct() || (self.correct() && self.close_in())) {
             return true;
         }
-        // What no guess finds can be close to a jam, where constraints agree before the bodies stand.
+        // What corrections do not find can be close to a jam, where constraints agree before the bodies stand.
         for _ in 0..self.iterations.unwrap_or(ITERATIONS) {
-            if !self.lower() {
+            let Some(off) = self.follow_path(start) else {
                 return false;
-            }
-            if self.close_in() || (self.guess() && self.close_in()) {
+            };
+            if off == 0.0 || self.close_in() || (self.correct() && self.close_in()) {
                 return true;
             }
         }
         // Contacts that share a load may pass it round, and agree all the same.
-        self.lower() && self.follow_velocities() < AGREEMENT.value()
-    }
-
-    /// Finds them from those of the last solve, if corrected guesses lead there.
-    fn guess(&mut self) -> bool {
-        if self.rings.is_empty() {
-            self.solve_at_once()
-        } else {
-            self.solve_in_steps()
-        }
+        (self.follow_path(start)).is_some_and(|off| off < AGREEMENT.value())
     }
 
     /// Whether contacts that jam give more energy by how they move along their directions than there was. Wedged together
     /// almost exactly, bodies would have to move fast to follow contacts that hardly move.
     fn offsets_throw(&self) -> bool {
-        let given: f64 = (self.contacts.iter())
-            .map(|c| {
-                (c.normal.offset * c.normal_impulse).abs()
-                    + (c.tangent.offset * c.friction_impulse).abs()
-            })
-            .sum();
-        let Twist { velocity, turn } = self.free.base;
-        let of_base = self.base.mass * velocity.length_squared() + self.inertia * turn * turn;
-        let spins = self.spins.iter().zip(&self.free.spins);
-        let of_spins: f64 = spins.map(|(spin, rate)| spin.inertia * rate * rate).sum();
-        given > 0.5 * (of_base + of_spins)
+        let of_contact = |c: &Contact| {
+            (c.normal.offset * c.normal_impulse).abs()
+                + (c.tangent.offset * c.friction_impulse).abs()
+        };
+        let given: f64 = self.contacts.iter().map(of_contact).sum();
+        let moving = self.masses.iter().zip(&self.free);
+        given > 0.5 * moving.map(|(mass, v)| mass * v * v).sum::<f64>()
     }
 
     /// Lets all contacts move along their directions as these are: contacts that jam cannot all open or slide on their
     /// own. Returns whether that changes anything.
     fn forget_offsets(&mut self) -> bool {
-        let offsets = |c: &Contact| c.normal.offset != 0.0 || c.tangent.offset != 0.0;
-        if !self.contacts.iter().any(offsets) {
+        if !self.contacts.iter().any(Contact::has_offset) {
             return false;
         }
         for contact in &mut self.contacts {
             (contact.normal.offset, contact.tangent.offset) = (0.0, 0.0);
-            (contact.normal_impulse, contact.friction_impulse) = (0.0, 0.0);
+            contact.set_impulses([0.0; 2]);
         }
         true
-    }
-
-    /// Adopts the motors' present states in the middle of a search, and updates the dampers about their centres.
-    fn act_with_motors(&mut self) {
-        self.tie();
-        self.contacts.iter_mut().for_each(Contact::place_dampers);
     }
 }

@@ -8,7 +8,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Problem;
 use super::damper::Damper;
+use super::row::TURN;
 use crate::units::MetresPerSecond;
 
 /// The state of a motor in a solve.
@@ -27,15 +29,16 @@ pub(crate) enum Hold {
 }
 
 /// Relative tolerance of the limit; a smaller excess is rounding.
-pub(super) const AT_LIMIT: f64 = 1e-12;
+const AT_LIMIT: f64 = 1e-12;
 /// [m/s] A motor at its limit holds again once it is past its speed by this.
-pub(super) const PAST: MetresPerSecond = MetresPerSecond(1e-9);
+const PAST: MetresPerSecond = MetresPerSecond(1e-9);
 
 /// What a motor moves over the base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Driven {
-    Spin(usize),
-    Joint(usize),
+    /// What spins on the base or is hinged to it, by where its rate stands.
+    Body(usize),
+    /// The links of a ring.
     Ring(usize),
 }
 
@@ -55,6 +58,8 @@ pub(crate) struct Motor {
     /// that.
     pub locks: bool,
     pub hold: Hold,
+    /// [N s] By how much its limits are wider on the path to a solution.
+    pub(super) relaxed: f64,
 }
 
 impl Motor {
@@ -68,6 +73,7 @@ impl Motor {
             correction: None,
             locks: false,
             hold: if is_there { Hold::Holds } else { Hold::Free },
+            relaxed: 0.0,
         }
     }
 
@@ -134,16 +140,10 @@ impl Motor {
         impulse.clamp(least, most)
     }
 
-    /// Whether its impulse depends on its speed.
-    pub(super) fn has_slope(&self) -> bool {
-        self.given().is_some_and(|given| given.stiffness != 0.0)
-    }
-
-    /// Its state after a solve in which it gave this impulse [N s], and was so much faster [m/s] than what it holds.
-    pub(super) fn next(&self, impulse: f64, ahead: f64) -> Hold {
+    /// Its state after a solve in which it gave this impulse [N s] at this speed [m/s].
+    fn next(&self, impulse: f64, speed: f64) -> Hold {
         let mut next = self.hold;
-        let speed = ahead + self.held_speed();
-        self.conditions(speed, impulse, [ahead, speed], |hold, value| {
+        self.conditions(impulse, speed, |hold, value| {
             // A smaller excess is rounding.
             let slack = match (self.hold, self.correction) {
                 (Hold::Holds | Hold::Locked, _) | (_, Some(_)) => AT_LIMIT * impulse.abs(),
@@ -154,5 +154,111 @@ impl Motor {
             }
         });
         next
+    }
+
+    /// Calls `each` with the conditions of its state at an impulse [N s] and a speed [m/s]: the state that follows, and the
+    /// value.
+    fn conditions(&self, impulse: f64, speed: f64, mut each: impl FnMut(Hold, f64)) {
+        let [most, least] = self.limits.map(|limit| limit.at(speed));
+        let wanted = self.correction.map(|correction| correction.at(speed));
+        let ahead = speed - self.held_speed();
+        match self.hold {
+            Hold::Holds => {
+                let impulse = wanted.unwrap_or(impulse);
+                if !self.locks || self.target > 0.0 {
+                    each(Hold::Pushes, most - impulse);
+                }
+                if !self.locks || self.target < 0.0 {
+                    each(Hold::Brakes, impulse - least);
+                }
+            }
+            Hold::Pushes => {
+                each(Hold::Holds, wanted.map_or(-ahead, |wanted| wanted - most));
+                if self.locks {
+                    each(Hold::Locked, speed);
+                }
+            }
+            Hold::Brakes => {
+                each(Hold::Holds, wanted.map_or(ahead, |wanted| least - wanted));
+                if self.locks {
+                    each(Hold::Locked, -speed);
+                }
+            }
+            Hold::Locked if self.target > 0.0 => each(Hold::Pushes, impulse - most),
+            Hold::Locked if self.target < 0.0 => each(Hold::Brakes, least - impulse),
+            Hold::Locked | Hold::Free => {}
+        }
+    }
+
+    /// By how much the condition of its state that leads to the next one is relaxed, with wider limits.
+    pub(super) fn relaxed_by(&self, next: Hold) -> f64 {
+        // One impulse tells both whether it reaches its limit and whether it holds again.
+        let is_soft = self.correction.is_some();
+        match (self.hold, next) {
+            (Hold::Holds, _) => self.relaxed,
+            (Hold::Locked, _) => -self.relaxed,
+            (_, Hold::Holds) if is_soft => -self.relaxed,
+            (_, Hold::Locked) if is_soft => self.relaxed,
+            _ => 0.0,
+        }
+    }
+}
+
+impl Problem {
+    /// [N s] The impulses of all motors.
+    pub(crate) fn motor_impulses(&self) -> impl Iterator<Item = f64> + '_ {
+        self.motors.iter().map(|motor| self.motor_impulse(motor))
+    }
+
+    /// [m/s] The speed of a motor.
+    pub(super) fn motor_speed(&self, motor: &Motor) -> f64 {
+        match motor.on {
+            Driven::Body(at) => motor.lever * (self.unknowns[at] - self.unknowns[TURN]),
+            Driven::Ring(k) => self.rings[k].drive_speed(&self.unknowns),
+        }
+    }
+
+    /// [N s] Impulse of a motor so far.
+    pub(super) fn motor_impulse(&self, motor: &Motor) -> f64 {
+        if let Some(given) = motor.given() {
+            return given.at(self.motor_speed(motor));
+        }
+        match motor.on {
+            Driven::Body(at) => {
+                // It has made the change of momentum that nothing else has.
+                let change = self.masses[at] * (self.unknowns[at] - self.free[at]);
+                let mut made = change - self.pushes[at];
+                for inertia in &self.inertias {
+                    let mut own = inertia.row.beside_base();
+                    if let Some((_, lever)) = own.find(|(entry, _)| *entry == at) {
+                        made -= lever * inertia.impulse(&self.unknowns);
+                    }
+                }
+                made / motor.lever
+            }
+            Driven::Ring(k) => self.rings[k].drive_impulse(&self.unknowns),
+        }
+    }
+
+    /// Calls `each` with the conditions of the state of a motor.
+    pub(super) fn conditions_of(&self, motor: &Motor, each: impl FnMut(Hold, f64)) {
+        motor.conditions(self.motor_impulse(motor), self.motor_speed(motor), each);
+    }
+
+    /// The state of a motor after a solve.
+    pub(super) fn next_of(&self, motor: &Motor) -> Hold {
+        motor.next(self.motor_impulse(motor), self.motor_speed(motor))
+    }
+
+    /// Releases motors beyond their limit, and lets those past their speed hold again; returns whether any changed.
+    pub(super) fn switch_motors(&mut self) -> bool {
+        self.sum_pushes();
+        let mut switched = false;
+        for k in 0..self.motors.len() {
+            let next = self.next_of(&self.motors[k]);
+            switched |= next != self.motors[k].hold;
+            self.motors[k].hold = next;
+        }
+        switched
     }
 }

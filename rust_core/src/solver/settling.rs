@@ -1,15 +1,21 @@
-//! The impulses about which constraints are damped: they follow those that a solve finds, until both are the same.
+//! Right states, and the impulses about which constraints are damped: states that do not fit are corrected, and the
+//! centres of the dampers follow the impulses that a solve finds, until all stay.
 //!
 //! Close to a jam each solution of the system comes only a little nearer than the last, always by the same ratio. The
 //! rest of the way is then a geometric series, and is taken at once (Aitken 1926).
 //!
 //! The equations: docs/physics.md, "Settling".
 
-use super::{AGREEMENT, Contact, Problem, Twist};
+use super::contact::{Contact, Grip, beyond};
+use super::row::TURN;
+use super::{AGREEMENT, Problem};
 use crate::units::MetresPerSecond;
 
-/// Solutions with the same states at most.
-const MOST_ITERATIONS: u32 = 8;
+/// Solutions of the system at most until constraints agree; since all misfits are corrected at once, corrections could
+/// alternate for ever.
+const UNTIL_AGREED: u32 = 4;
+/// Solutions at most until the base stands.
+const UNTIL_STANDING: u32 = 8;
 /// Changes that are taken at once at most.
 const FARTHEST: f64 = 1e6;
 /// [m/s] By how much the base may still move where a search ends close to a jam, ...
@@ -24,45 +30,42 @@ fn rest_of_series(before: Option<f64>, now: f64) -> Option<f64> {
     Some((now / (before - now)).min(FARTHEST))
 }
 
-/// What lies beyond the second of two values, by so many times their difference.
-pub(super) fn beyond(from: f64, to: f64, times: f64) -> f64 {
-    to + times * (to - from)
-}
-
 impl Problem {
-    /// Makes the current impulses the ones about which constraints are damped.
-    pub(super) fn settle(&mut self) {
-        self.contacts.iter_mut().for_each(Contact::settle);
-        for ring in &mut self.rings {
-            ring.drive.center = ring.drive.impulse;
-        }
-        for row in &mut self.bilaterals {
-            row.center = row.impulse;
-        }
-    }
-
-    /// The same after a solution with an error, the states being those of the last one with its error, if there was one:
-    /// then the impulses are taken to where such changes lead. Returns the error of this one, if they are not.
-    pub(super) fn settle_after(&mut self, before: Option<f64>, error: f64) -> Option<f64> {
-        let rest = rest_of_series(before, error);
-        if let Some(times) = rest {
-            self.lead(times);
-        }
+    /// Solves with the present states, and corrects all that do not fit at once, until constraints agree; returns whether
+    /// they do.
+    pub(super) fn correct(&mut self) -> bool {
         self.settle();
-        rest.is_none().then_some(error)
+        self.expect_to_close();
+        let mut last = None;
+        for _ in 0..UNTIL_AGREED {
+            let before = last.take();
+            if self.solve_states().is_none() {
+                return false;
+            }
+            let off = self.follow_unknowns();
+            if !self.mend() {
+                continue;
+            }
+            if self.switch_motors() {
+                self.tie();
+                self.bearing().for_each(Contact::place_dampers);
+            } else if off < AGREEMENT.value() {
+                return true;
+            } else {
+                last = self.settle_after(before, off);
+            }
+        }
+        self.bearing().for_each(Contact::unsettle);
+        false
     }
 
-    /// Takes all impulses ahead by so many times their change.
-    fn lead(&mut self, times: f64) {
-        for contact in &mut self.contacts {
-            contact.lead(times);
-        }
-        for ring in &mut self.rings {
-            let drive = &mut ring.drive;
-            drive.impulse = beyond(drive.center, drive.impulse, times);
-        }
-        for row in &mut self.bilaterals {
-            row.impulse = beyond(row.center, row.impulse, times);
+    /// Expects what is open and would close at the present velocities to do so.
+    fn expect_to_close(&mut self) {
+        let unknowns = &self.unknowns;
+        let bearing = self.contacts.iter_mut().filter(|c| c.bears);
+        for contact in bearing.filter(|c| c.grip == Grip::Open) {
+            contact.follow(unknowns);
+            contact.grip = contact.fitting;
         }
     }
 
@@ -71,17 +74,17 @@ impl Problem {
     pub(super) fn close_in(&mut self) -> bool {
         self.settle();
         let mut last = None;
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..UNTIL_STANDING {
             let before = last.take();
-            self.effort.rounds += 1;
-            self.assemble();
-            if self.solve_for_change().is_none() {
+            if self.solve_states().is_none() {
                 break;
             }
-            self.go(1.0);
-            let off = self.follow_velocities();
-            self.turn_with_base();
-            if !self.fits() || self.switch_motors() {
+            let off = self.follow_unknowns();
+            if self.switch_motors() {
+                self.tie();
+                break;
+            }
+            if !self.fits() {
                 break;
             }
             let moved = self.moved();
@@ -93,20 +96,75 @@ impl Problem {
             }
             last = self.settle_after(before, moved);
         }
-        self.contacts.iter_mut().for_each(Contact::unsettle);
+        self.bearing().for_each(Contact::unsettle);
         false
     }
 
+    /// The contacts that can carry a load.
+    pub(super) fn bearing(&mut self) -> impl Iterator<Item = &mut Contact> {
+        self.contacts.iter_mut().filter(|c| c.bears)
+    }
+
+    /// Makes the current impulses the ones about which constraints are damped.
+    pub(super) fn settle(&mut self) {
+        self.bearing().for_each(Contact::settle);
+        for bilateral in &mut self.bilaterals {
+            bilateral.center = bilateral.impulse;
+        }
+    }
+
+    /// The same after a solution with an error, the states being those of the last one with its error, if there was one:
+    /// then the impulses are taken to where such changes lead. Returns the error of this one, if they are not.
+    fn settle_after(&mut self, before: Option<f64>, error: f64) -> Option<f64> {
+        let rest = rest_of_series(before, error);
+        if let Some(times) = rest {
+            self.bearing().for_each(|contact| contact.lead(times));
+            for bilateral in &mut self.bilaterals {
+                bilateral.impulse = beyond(bilateral.center, bilateral.impulse, times);
+            }
+        }
+        self.settle();
+        rest.is_none().then_some(error)
+    }
+
+    /// Updates all impulses to match the velocities; returns the largest error of a velocity [m/s].
+    pub(super) fn follow_unknowns(&mut self) -> f64 {
+        let mut off: f64 = 0.0;
+        for contact in self.contacts.iter_mut().filter(|c| c.bears) {
+            off = off.max(contact.follow(&self.unknowns));
+        }
+        off.max(self.follow_bilaterals())
+    }
+
+    /// The same for bilaterals alone.
+    pub(super) fn follow_bilaterals(&mut self) -> f64 {
+        let unknowns = &self.unknowns;
+        let bilaterals = self.bilaterals.iter_mut();
+        bilaterals.fold(0.0, |off: f64, each| off.max(each.follow(unknowns)))
+    }
+
+    /// Corrects the states that do not fit; returns whether all fitted.
+    fn mend(&mut self) -> bool {
+        let mut fits = true;
+        for contact in self.bearing() {
+            let next = contact.grip.towards(contact.fitting);
+            fits &= next == contact.grip;
+            contact.grip = next;
+        }
+        fits
+    }
+
     /// Whether the states fit the velocities, but for what makes no difference to these.
-    fn fits(&self) -> bool {
+    pub(super) fn fits(&self) -> bool {
         let mut bearing = self.contacts.iter().filter(|c| c.bears);
-        bearing.all(|c| c.misfit(c.speeds(&self.velocities)) < AGREEMENT.value())
+        bearing.all(|c| c.misfit(&self.unknowns) < AGREEMENT.value())
     }
 
     /// [m/s] How far the last solution has moved the base.
     fn moved(&self) -> f64 {
-        let Twist { velocity, turn } = self.change.base;
-        velocity.length() + turn.abs() * (self.inertia / self.base.mass).sqrt()
+        let [x, y, turn] = [0, 1, TURN].map(|i| self.change[i]);
+        let weights = &self.system.weights;
+        x.hypot(y) + turn.abs() * (weights[0] / weights[TURN]).sqrt()
     }
 }
 

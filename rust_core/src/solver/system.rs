@@ -1,167 +1,181 @@
-//! The linear system of a solve: the base, what is hinged to it, and what spins on its own.
+//! The linear system of a solve: the base, what is hinged to it, and what spins on it.
+//!
+//! What spins is eliminated first, body by body: it is coupled to little else. What a motor holds is no unknown; it turns
+//! with the base.
 //!
 //! The equations: docs/physics.md, "The linear system".
 
-use super::damper::Damper;
-use super::direction::Direction;
-use super::twist::Twist;
-use super::velocities::{ActsOn, JOINTS, Velocities};
-use crate::geometry::Vector;
+use super::damper::{Damper, Inertia};
+use super::row::{BASE, Layout, Row, TURN};
 
-/// Columns of the base, of the bodies hinged to it, and the right-hand side.
-const BASE: usize = 3;
-const UNKNOWNS: usize = BASE + JOINTS;
-const RIGHT: usize = UNKNOWNS;
+/// Bodies hinged to the base, at most.
+const JOINTS: usize = 2;
+const BODIES: usize = BASE + JOINTS;
 
-/// The linear system, and the equations of what spins on its own.
+/// The linear system of the unknowns on the base.
 pub(super) struct System {
-    /// Rows of the base and of what is hinged to it.
-    rows: [[f64; UNKNOWNS + 1]; UNKNOWNS],
-    /// [1/kg, 1/kg, 1/(kg m^2), ...] Weights of the rows: those of forces and of moments have no unit in common.
-    weights: [f64; UNKNOWNS],
-    joints: usize,
-    spins: Vec<Spin>,
-}
-
-/// The equation of one spin: `inertia x spin + columns . velocity = moment`; the equations of the velocity contain
-/// `rows x spin`.
-#[derive(Clone, Copy, Default)]
-struct Spin {
-    inertia: f64,
-    moment: f64,
-    columns: [f64; UNKNOWNS],
-    rows: [f64; UNKNOWNS],
-    /// Whether a constraint acts on it.
-    acts: bool,
+    /// Number of unknowns of the base and of what is hinged to it, ...
+    bodies: usize,
+    /// ... and with what spins.
+    count: usize,
+    /// Row by row, each with the right-hand side at its end.
+    rows: Vec<f64>,
+    /// [1/kg, 1/kg, 1/(kg m^2), ...] One over the inertia of each unknown, 0 for those of rings: the weights of the rows.
+    pub weights: Vec<f64>,
+    /// [rad/s] Rate over the base of each that turns with it.
+    held: Vec<Option<f64>>,
 }
 
 impl System {
-    /// The system of so many bodies that spin on the base or are hinged to it.
-    pub(super) fn new(spins: usize, joints: usize) -> Self {
+    pub(super) fn new(layout: Layout) -> Self {
+        let count = layout.on_base();
+        debug_assert!(layout.joints <= JOINTS);
         Self {
-            rows: [[0.0; UNKNOWNS + 1]; UNKNOWNS],
-            weights: [1.0; UNKNOWNS],
-            joints,
-            spins: vec![Spin::default(); spins],
+            bodies: BASE + layout.joints,
+            count,
+            rows: vec![0.0; count * (count + 1)],
+            weights: vec![0.0; layout.link(0)],
+            held: vec![None; layout.link(0)],
         }
     }
 
-    /// Starts from a base on which nothing acts.
-    pub(super) fn start(&mut self, mass: f64, inertia: f64, velocity: Vector, moment: f64) {
-        self.rows = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
-        let (of_force, of_moment) = (1.0 / mass, 1.0 / inertia);
-        self.weights = [of_force, of_force, of_moment, of_moment, of_moment];
-        let momentum = [mass * velocity.x, mass * velocity.y, moment];
-        for (i, mass) in [mass, mass, inertia].into_iter().enumerate() {
-            self.rows[i][i] = mass;
-            self.rows[i][RIGHT] = momentum[i];
-        }
+    /// Has what a motor turns go with the base at a rate over it [rad/s], or lets go of it.
+    pub(super) fn hold(&mut self, at: usize, rate: Option<f64>) {
+        self.held[at] = rate;
     }
 
-    /// Starts a body that spins from its rate without constraints [rad/s].
-    pub(super) fn spin(&mut self, spin: usize, inertia: f64, rate: f64) {
-        self.spins[spin] = Spin {
-            inertia,
-            moment: inertia * rate,
-            ..Spin::default()
-        };
+    /// A row with what is held as part of the base.
+    pub(super) fn tied(&self, row: &Row) -> Row {
+        row.tied(&self.held)
     }
 
-    /// Adds an angular impulse on it [N m s].
-    pub(super) fn turn(&mut self, spin: usize, impulse: f64) {
-        self.spins[spin].moment += impulse;
-    }
-
-    /// Gives a trivial row to what is hinged to the base, and turns with it.
-    pub(super) fn hold(&mut self, joint: usize) {
-        self.rows[BASE + joint][BASE + joint] = 1.0;
-    }
-
-    /// The rows of the base: three columns and the right-hand side.
-    pub(super) fn of_base(&self) -> [[f64; 4]; 3] {
-        let row = |i: usize| {
-            let [a, b, c, ..] = self.rows[i];
-            [a, b, c, self.rows[i][RIGHT]]
-        };
-        [row(0), row(1), row(2)]
-    }
-
-    pub(super) fn set_of_base(&mut self, rows: [[f64; 4]; 3]) {
-        for (own, [a, b, c, right]) in self.rows.iter_mut().zip(rows) {
-            own[..BASE].copy_from_slice(&[a, b, c]);
-            own[RIGHT] = right;
-        }
-    }
-
-    /// Adds a constraint on the base: its impulse acts along the first of two directions, with a damper along the second.
-    pub(super) fn add(&mut self, acts: ActsOn, [force, action]: [&Direction; 2], damper: Damper) {
-        let (f, d) = (force.body(), action.body());
-        let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
-        for (row, f) in self.rows.iter_mut().zip(f) {
-            for (entry, d) in row.iter_mut().zip(d) {
-                *entry += stiffness * f * d;
-            }
-            row[RIGHT] += f * impulse;
-        }
-        if let Some(k) = acts.joint() {
-            let own = BASE + k;
-            for i in 0..BASE {
-                self.rows[i][own] += stiffness * f[i] * action.joint_lever;
-                self.rows[own][i] += stiffness * force.joint_lever * d[i];
-            }
-            self.rows[own][own] += stiffness * force.joint_lever * action.joint_lever;
-            self.rows[own][RIGHT] += force.joint_lever * impulse;
-        }
-        let has_lever = action.spin_lever != 0.0 || force.spin_lever != 0.0;
-        let Some(k) = acts.spin().filter(|_| has_lever) else {
-            return;
-        };
-        let spin = &mut self.spins[k];
-        spin.acts = true;
-        spin.inertia += stiffness * force.spin_lever * action.spin_lever;
-        spin.moment += force.spin_lever * impulse;
-        for i in 0..BASE {
-            spin.rows[i] += stiffness * f[i] * action.spin_lever;
-            spin.columns[i] += stiffness * force.spin_lever * d[i];
-        }
-        if let Some(k) = acts.joint() {
-            let own = BASE + k;
-            spin.rows[own] += stiffness * force.joint_lever * action.spin_lever;
-            spin.columns[own] += stiffness * force.spin_lever * action.joint_lever;
-        }
-    }
-
-    /// Finds the velocities of the base, of what is hinged to it, and of what spins; none if the constraints contradict
-    /// each other.
-    pub(super) fn solve(&mut self, into: &mut Velocities) -> Option<()> {
-        match self.joints {
-            0 => self.solve_for::<BASE>(into),
-            1 => self.solve_for::<{ BASE + 1 }>(into),
-            _ => self.solve_for::<UNKNOWNS>(into),
-        }
-    }
-
-    /// The same for a fixed number of unknowns: most problems have three, and the compiler can use that.
-    fn solve_for<const COUNT: usize>(&mut self, into: &mut Velocities) -> Option<()> {
-        for spin in self.spins.iter().filter(|spin| spin.acts) {
-            for i in 0..COUNT {
-                let share = spin.rows[i] / spin.inertia;
-                for j in 0..COUNT {
-                    self.rows[i][j] -= share * spin.columns[j];
+    /// Starts from bodies on which nothing acts: their inertias [kg, kg, kg m^2, ...], and their velocities.
+    pub(super) fn start(&mut self, masses: &[f64], free: &[f64]) {
+        self.rows.fill(0.0);
+        for (at, mass) in masses.iter().enumerate() {
+            match self.held[at] {
+                None => {
+                    *self.entry(at, at) += mass;
+                    *self.right(at) += mass * free[at];
                 }
-                self.rows[i][RIGHT] -= share * spin.moment;
+                Some(rate) => {
+                    *self.entry(at, at) = 1.0;
+                    *self.entry(TURN, TURN) += mass;
+                    *self.right(TURN) += mass * (free[at] - rate);
+                }
             }
         }
-        let known = eliminate::<COUNT>(&mut self.rows, self.weights)?;
-        into.base = Twist {
-            velocity: Vector::new(known[0], known[1]),
-            turn: known[2],
-        };
-        into.joints[..COUNT - BASE].copy_from_slice(&known[BASE..]);
-        for (rate, spin) in into.spins.iter_mut().zip(&self.spins) {
-            let of_body: f64 = (0..COUNT).map(|i| spin.columns[i] * known[i]).sum();
-            *rate = (spin.moment - of_body) / spin.inertia;
+    }
+
+    /// Finds the weights of all unknowns from the inertias of bodies and along rows.
+    pub(super) fn weigh(&mut self, masses: &[f64], inertias: &[Inertia]) {
+        let Self { weights, held, .. } = self;
+        weights[BASE..].fill(0.0);
+        weights[..BASE].copy_from_slice(&masses[..BASE]);
+        for (at, mass) in masses.iter().enumerate().skip(BASE) {
+            weights[held[at].map_or(at, |_| TURN)] += mass;
         }
+        for inertia in inertias {
+            for (at, lever) in inertia.action.entries() {
+                weights[at] += inertia.damper.stiffness * lever * lever;
+            }
+        }
+        for (weight, held) in weights.iter_mut().zip(held).take(self.count) {
+            *weight = if held.is_some() { 1.0 } else { weight.recip() };
+        }
+    }
+
+    pub(super) fn entry(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.rows[row * (self.count + 1) + column]
+    }
+
+    /// The right-hand side of a row.
+    pub(super) fn right(&mut self, row: usize) -> &mut f64 {
+        self.entry(row, self.count)
+    }
+
+    /// Adds a constraint: its impulse acts along the first of two tied rows, with a damper along the second.
+    pub(super) fn add(&mut self, [force, action]: [&Row; 2], damper: Damper) {
+        let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
+        let stride = self.count + 1;
+        let of_base = action.of_base();
+        for (i, f) in force.entries() {
+            let row = &mut self.rows[i * stride..][..stride];
+            row[stride - 1] += f * impulse;
+            let share = stiffness * f;
+            for (entry, d) in row[..BASE].iter_mut().zip(of_base) {
+                *entry += share * d;
+            }
+            for (j, d) in action.beside_base() {
+                row[j] += share * d;
+            }
+        }
+    }
+
+    /// Adds an impulse along a tied row.
+    pub(super) fn push(&mut self, row: &Row, impulse: f64) {
+        for (at, lever) in row.entries() {
+            *self.right(at) += lever * impulse;
+        }
+    }
+
+    /// Finds the unknowns; none if the constraints contradict each other.
+    pub(super) fn solve(&mut self, into: &mut [f64]) -> Option<()> {
+        for at in self.bodies..self.count {
+            if self.held[at].is_none() {
+                self.eliminate_spin(at);
+            }
+        }
+        match self.bodies {
+            BASE => self.solve_bodies::<BASE>(into)?,
+            BODIES => self.solve_bodies::<BODIES>(into)?,
+            _ => self.solve_bodies::<{ BASE + 1 }>(into)?,
+        }
+        let turn = into[TURN];
+        for at in (BASE..self.count).rev() {
+            if let Some(rate) = self.held[at] {
+                into[at] = turn + rate;
+            } else if at >= self.bodies {
+                let row = &self.rows[at * (self.count + 1)..][..=self.count];
+                let of_known = |at: usize| row[at] * into[at];
+                let known = (0..self.bodies).chain(at + 1..self.count);
+                let of_others: f64 = known.map(of_known).sum();
+                into[at] = (row[self.count] - of_others) / row[at];
+            }
+        }
+        Some(())
+    }
+
+    /// Eliminates what spins from the rows of the base and of all that spin after it.
+    fn eliminate_spin(&mut self, at: usize) {
+        let (count, bodies) = (self.count, self.bodies);
+        let stride = count + 1;
+        let (above, from) = self.rows.split_at_mut(at * stride);
+        let (own, below) = from.split_at_mut(stride);
+        let bodies_above = above.chunks_exact_mut(stride).take(bodies);
+        for row in bodies_above.chain(below.chunks_exact_mut(stride)) {
+            if row[at] == 0.0 {
+                continue;
+            }
+            let share = row[at] / own[at];
+            for j in (0..bodies).chain(at + 1..stride) {
+                row[j] -= share * own[j];
+            }
+        }
+    }
+
+    /// Solves for the base and what is hinged to it, a fixed number of unknowns: most problems have three, and the compiler
+    /// can use that.
+    fn solve_bodies<const COUNT: usize>(&self, into: &mut [f64]) -> Option<()> {
+        let mut rows = [[0.0; BODIES + 1]; COUNT];
+        let stride = self.count + 1;
+        for (row, from) in rows.iter_mut().zip(self.rows.chunks_exact(stride)) {
+            row[..COUNT].copy_from_slice(&from[..COUNT]);
+            row[BODIES] = from[self.count];
+        }
+        let mut weights = [0.0; COUNT];
+        weights.copy_from_slice(&self.weights[..COUNT]);
+        into[..COUNT].copy_from_slice(&eliminate(&mut rows, weights)?);
         Some(())
     }
 }
@@ -169,8 +183,8 @@ impl System {
 /// Gaussian elimination with pivoting; none if the system is singular. The squares of pivots are compared by the weights
 /// of their rows, so that a copy of a robot on another scale has the same pivots.
 fn eliminate<const COUNT: usize>(
-    a: &mut [[f64; UNKNOWNS + 1]; UNKNOWNS],
-    mut weights: [f64; UNKNOWNS],
+    a: &mut [[f64; BODIES + 1]; COUNT],
+    mut weights: [f64; COUNT],
 ) -> Option<[f64; COUNT]> {
     for i in 0..COUNT {
         let size = |row: usize| a[row][i] * a[row][i] * weights[row];
@@ -183,7 +197,7 @@ fn eliminate<const COUNT: usize>(
         let above = a[i];
         for row in &mut a[i + 1..COUNT] {
             let share = row[i] / above[i];
-            for j in (i + 1..COUNT).chain([RIGHT]) {
+            for j in (i + 1..COUNT).chain([BODIES]) {
                 row[j] -= share * above[j];
             }
         }
@@ -191,7 +205,7 @@ fn eliminate<const COUNT: usize>(
     let mut known = [0.0; COUNT];
     for i in (0..COUNT).rev() {
         let of_known: f64 = (i + 1..COUNT).map(|j| a[i][j] * known[j]).sum();
-        known[i] = (a[i][RIGHT] - of_known) / a[i][i];
+        known[i] = (a[i][BODIES] - of_known) / a[i][i];
     }
     Some(known)
 }

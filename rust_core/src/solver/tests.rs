@@ -2,7 +2,7 @@
 
 mod blow;
 mod interior_point;
-mod lowering;
+mod path;
 mod random;
 mod rings;
 mod worst;
@@ -10,7 +10,7 @@ mod worst;
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::geometry::{Vector, cross, right_of};
+use crate::geometry::{Twist, Vector, cross, right_of};
 use crate::scenario::Friction;
 
 /// [m/s^2], and [s] the time of a solve here.
@@ -19,30 +19,48 @@ const TIME: f64 = 0.01;
 
 /// A body of 2 kg and 0.1 kg m^2 on which nothing acts, that would have a velocity without constraints.
 fn body(velocity: Vector, turn: f64) -> Problem {
-    let base = Base {
-        mass: 2.0,
-        inertia: 0.1,
-    };
-    let mut problem = Problem::new(base, Vec::new(), Vec::new(), Vec::new());
-    problem.free.base = Twist { velocity, turn };
-    problem.mass_on_springs = Some(2.0);
+    body_with(&[], velocity, turn)
+}
+
+/// The same with bodies of these moments of inertia that spin on it.
+fn body_with(spins: &[f64], velocity: Vector, turn: f64) -> Problem {
+    let mut problem = Problem::new([2.0, 0.1], 0, spins, &[]);
+    problem.set_free(velocity, turn);
     problem
 }
 
 /// A contact of the body at `arm` from its centre, which bears.
 fn contact(arm: Vector, normal: Vector, friction: f64) -> Contact {
-    let directions = [normal, right_of(normal)].map(|unit| Direction {
-        unit,
-        lever: cross(arm, unit),
-        ..Direction::default()
+    let rows = [normal, right_of(normal)];
+    let rows = rows.map(|unit| Row::on_base([unit.x, unit.y, cross(arm, unit)]));
+    bearing(rows, friction)
+}
+
+/// A contact of the surface of a belt that a spin drives, at a radius.
+fn on_belt(arm: Vector, normal: Vector, friction: f64, (spin, radius): (usize, f64)) -> Contact {
+    let rows = [(normal, 0.0), (right_of(normal), radius)];
+    let rows = rows.map(|(unit, lever)| {
+        Row::on_base([unit.x, unit.y, cross(arm, unit) - lever]).and(spin, lever)
     });
-    let acts = ActsOn::Base {
-        joint: None,
-        spin: None,
-    };
-    let mut contact = Contact::new(acts, directions);
+    bearing(rows, friction)
+}
+
+fn bearing(rows: [Row; 2], friction: f64) -> Contact {
+    let mut contact = Contact::new(rows);
     (contact.friction, contact.bears) = (Friction::dry(friction), true);
+    contact.mass = Some(2.0);
     contact
+}
+
+impl Problem {
+    fn set_free(&mut self, velocity: Vector, turn: f64) {
+        self.free[..3].copy_from_slice(&[velocity.x, velocity.y, turn]);
+    }
+
+    /// The velocity of the base.
+    fn base(&self) -> Twist {
+        Twist::from([self.unknowns[0], self.unknowns[1], self.unknowns[2]])
+    }
 }
 
 /// The velocity that the weight gives to a body on a slope [rad], with x along it and y off it.
@@ -64,7 +82,7 @@ fn a_box_on_a_slope_starts_to_slide_at_the_friction_angle() {
         assert_eq!(problem.effort.unresolved, 0);
         let free = on_slope(angle);
         let expected = (free.x + friction * free.y).max(0.0);
-        let Twist { velocity, turn } = problem.velocities.base;
+        let Twist { velocity, turn } = problem.base();
         assert_relative_eq!(velocity.x, expected, epsilon = 1e-9);
         assert_relative_eq!(velocity.y, 0.0, epsilon = 1e-9);
         assert_relative_eq!(turn, 0.0, epsilon = 1e-9);
@@ -94,7 +112,7 @@ fn a_rod_that_jams_stops_at_once() {
     problem.contacts[0].grip = Grip::Backwards;
     problem.solve();
     assert_eq!(problem.effort.unresolved, 0);
-    let end = problem.velocities.base.at(arm);
+    let end = problem.base().at(arm);
     assert!(end.length() < 1e-7, "the end moves at {end} m/s");
     let contact = &problem.contacts[0];
     assert!(contact.normal_impulse > 0.0);
@@ -145,7 +163,7 @@ fn a_narrow_wedge_holds_what_a_wide_one_lets_go() {
         }
         problem.solve();
         assert_eq!(problem.effort.unresolved, 0);
-        let left = problem.velocities.base.velocity.y;
+        let left = problem.base().velocity.y;
         let loads = problem.contacts.iter().map(|c| c.normal_impulse);
         if holds {
             assert!(left.abs() < 1e-7, "{left} m/s");
@@ -171,7 +189,7 @@ fn what_falls_into_a_narrow_gap_stands_there() {
         }
         problem.solve();
         assert_eq!(problem.effort.unresolved, 0);
-        let speed = problem.velocities.base.velocity.length();
+        let speed = problem.base().velocity.length();
         assert!(speed < 1e-6, "{speed} m/s at {angle}");
     }
 }
@@ -180,37 +198,27 @@ fn what_falls_into_a_narrow_gap_stands_there() {
 fn opposed_contacts_on_one_belt_share_its_motor() {
     let (radius, friction) = (0.1, 0.5);
     for most in [0.0, 0.02, 1.0] {
-        let base = Base {
-            mass: 2.0,
-            inertia: 0.1,
-        };
-        let mut problem = Problem::new(base, vec![Spin::new(0.01, 0.0)], Vec::new(), Vec::new());
-        problem.mass_on_springs = Some(2.0);
-        problem.free.base.velocity = Vector::new(1.0, 0.0);
-        let mut motor = Motor::new(Driven::Spin(0), -radius, most > 0.0);
+        let mut problem = body_with(&[0.01], Vector::new(1.0, 0.0), 0.0);
+        let spin = problem.layout.spin(0);
+        let mut motor = Motor::new(Driven::Body(spin), -radius, most > 0.0);
         motor.aim(0.0, most);
         problem.motors.push(motor);
         for (up, load) in [(1.0, 0.3), (-1.0, 0.2)] {
-            let mut on_belt = contact(Vector::new(0.0, -0.1 * up), Vector::Y * up, friction);
-            on_belt.acts = ActsOn::Base {
-                joint: None,
-                spin: Some(0),
-            };
             // The belt's surface moves with the body, and along by what the drive spins: forwards below, back above.
-            on_belt.tangent.spin_lever = radius;
-            on_belt.tangent.lever = 0.0;
+            let arm = Vector::new(0.0, -0.1 * up);
+            let mut next = on_belt(arm, Vector::Y * up, friction, (spin, radius));
             // Soft, so that the loads stay as they are.
-            (on_belt.compliance, on_belt.bias) = (1e9, -load * 1e9 / 2.0);
-            problem.contacts.push(on_belt);
+            (next.compliance, next.bias) = (1e9, -load * 1e9 / 2.0);
+            problem.contacts.push(next);
         }
         problem.solve();
         assert_eq!(problem.effort.unresolved, 0);
         let [below, above] = [0, 1].map(|i| &problem.contacts[i]);
         assert_relative_eq!(below.normal_impulse, 0.3, max_relative = 1e-6);
         assert_relative_eq!(above.normal_impulse, 0.2, max_relative = 1e-6);
-        let on_belt = below.torque() + above.torque();
+        let on_belt = radius * (below.friction_impulse + above.friction_impulse);
         let motor = problem.motor_impulses().next().expect("there is one");
-        let gained = 0.01 * (problem.velocities.spins[0] - problem.free.spins[0]);
+        let gained = 0.01 * (problem.unknowns[spin] - problem.free[spin]);
         assert_relative_eq!(on_belt - radius * motor, gained, epsilon = 1e-9);
         assert!(motor.abs() <= most * (1.0 + 1e-9));
         for c in [below, above] {

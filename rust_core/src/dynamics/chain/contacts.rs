@@ -5,80 +5,78 @@
 use super::RestMemory;
 use super::rest::{Bearing, Rest};
 use crate::contact;
-use crate::dynamics::state::State;
-use crate::dynamics::touch::Touch;
+use crate::dynamics::touch::{On, Start, Touch};
 use crate::geometry::{Vector, cross, right_of};
-use crate::robot::Model;
-use crate::solver::{ActsOn, Contact, Direction, Link};
+use crate::solver::{Contact, Link, Row};
 
 impl Touch {
     /// A shoe's contact with the ground, found half a step (`time` [s]) from now.
     pub(in crate::dynamics) fn of_shoe(
         contact: &contact::Contact,
         last: Option<contact::Contact>,
-        state: &State,
-        model: &Model,
-        (shoe, time): (usize, f64),
+        shoe: usize,
+        start: &Start,
     ) -> (Self, Contact) {
+        let model = start.model;
         let part = &model.parts[contact.part];
-        let then = state.shoes[shoe].after(time);
+        let then = start.state.shoes[shoe].after(start.half);
         let (arm, travel) = (contact.point - then.center, then.along());
-        let directions = [contact.normal, right_of(contact.normal)].map(|unit: Vector| Direction {
-            unit,
-            lever: cross(arm, unit),
-            spin_lever: -model.drive_radius * unit.dot(travel),
-            ..Direction::default()
-        });
+        let units = [contact.normal, right_of(contact.normal)];
         let ring = model.chains.iter().position(|c| c.shoes.contains(&shoe));
-        let link = Link {
-            ring: ring.unwrap_or_default(),
-            number: shoe,
-        };
-        let solved = Contact::new(ActsOn::Link(link), directions);
-        let touch = Self {
+        let link = Link::new(start.layout, ring.unwrap_or_default(), shoe);
+        let rows = units.map(|unit| Row::on_link(link, levers(unit, arm)));
+        let mut touch = Self {
             drive: part.drive,
-            gap: contact.distance - solved.opening_speed(state) * time,
+            on: On::Shoe,
+            normal: contact.normal,
+            spin_levers: units.map(|unit| -model.drive_radius * unit.dot(travel)),
+            gap: contact.distance - rows[0].along(start.unknowns) * start.half,
             ..Self::default()
         };
-        touch.continued(solved, last)
+        let mut solved = Contact::new(rows);
+        touch.go_on(&mut solved, last);
+        (touch, solved)
     }
 
     /// A place where a shoe rests on the guide, a wheel or a tooth, without friction.
     pub(in crate::dynamics) fn at_rest(
         rest: &Rest,
         last: RestMemory,
-        state: &State,
         (shoe, chain): (usize, usize),
-        time: f64,
+        start: &Start,
     ) -> (Self, Contact) {
-        let arm = rest.point - state.shoes[shoe].after(time).center;
-        let center = state.moved(time).0;
-        let link = Link {
-            ring: chain,
-            number: shoe,
+        let layout = start.layout;
+        let arm = rest.point - start.state.shoes[shoe].after(start.half).center;
+        let center = start.state.moved(start.half).0;
+        let borne_at = match rest.on {
+            Bearing::Chassis(_) => rest.point,
+            Bearing::Tooth(axle) => axle,
         };
-        let (acts, borne_at) = match rest.on {
-            Bearing::Chassis(_) => (ActsOn::LinkAndSlide(link), rest.point),
-            Bearing::Tooth(axle) => (ActsOn::LinkAndSpin { link, spin: chain }, axle),
-        };
-        let directions = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
-            unit,
-            lever: cross(arm, unit),
-            spin_lever: match rest.on {
-                Bearing::Chassis(slides) => -unit.dot(slides),
-                Bearing::Tooth(axle) => -cross(rest.point - axle, unit),
-            },
-            back: cross(borne_at - center, unit),
-            ..Direction::default()
+        let link = Link::new(layout, chain, shoe);
+        let rows = [rest.normal, right_of(rest.normal)].map(|unit| {
+            let (at, lever) = match rest.on {
+                Bearing::Chassis(slides) => (layout.slide(chain), -unit.dot(slides)),
+                Bearing::Tooth(axle) => (layout.spin(chain), -cross(rest.point - axle, unit)),
+            };
+            Row::on_link(link, levers(unit, arm))
+                .against_base(levers(unit, borne_at - center))
+                .and(at, lever)
         });
-        let mut solved = Contact::new(acts, directions);
+        let mut solved = Contact::new(rows);
         solved.grip = last.grip;
         let touch = Self {
+            on: On::Guide { chain, shoe },
+            normal: rest.normal,
             normal_guess: last.force,
             place: rest.place,
-            gap: rest.gap - solved.opening_speed(state) * time,
+            gap: rest.gap - rows[0].along(start.unknowns) * start.half,
             ..Self::default()
         };
         (touch, solved)
     }
+}
+
+/// The levers of a body for a direction at a point of it.
+fn levers(unit: Vector, arm: Vector) -> [f64; 3] {
+    [unit.x, unit.y, cross(arm, unit)]
 }

@@ -18,7 +18,7 @@ use super::state::{Shoe, State};
 use super::touch::Touch;
 use crate::geometry::{Pose, Vector, plausible};
 use crate::robot::ChainOfShoes;
-use crate::solver::{Drive, Grip, Ring};
+use crate::solver::{Grip, Ring, RingSpec};
 
 pub(super) use rest::ChainPose;
 
@@ -30,8 +30,6 @@ const STOP_STIFFNESS: f64 = 100.0;
 pub(super) struct Chain {
     pub rule: ChainOfShoes,
     pins: Vec<Pin>,
-    /// [N] Force of its drive from which the next step starts.
-    force: f64,
     /// [m] How far it lags behind its sprocket, ...
     behind: f64,
     /// [m] ... and did when the step began.
@@ -61,7 +59,6 @@ pub(super) struct RestMemory {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ChainImpulses {
     pins: Vec<Pin>,
-    force: f64,
     behind: f64,
     memory: Vec<RestMemory>,
 }
@@ -71,7 +68,6 @@ impl Chain {
         let count = rule.path.count;
         Self {
             pins: vec![Pin::default(); count],
-            force: 0.0,
             behind: 0.0,
             lagged: 0.0,
             middle: Vec::with_capacity(count),
@@ -85,23 +81,19 @@ impl Chain {
     }
 
     /// Its shoes as the solver sees them.
-    pub(super) fn ring(&self) -> Ring {
+    pub(super) fn ring(&self) -> RingSpec {
         let rule = &self.rule;
-        let mut drive = Drive::default();
-        if let Some(sprocket) = &rule.sprocket {
-            let lever = sprocket.teeth.drive_radius();
-            drive.lever = Some(lever);
-            drive.admittance = lever * lever / sprocket.inertia;
+        RingSpec {
+            links: rule.path.count,
+            mass: rule.shoe_mass,
+            inertia: rule.shoe_inertia,
+            spin: rule.sprocket.is_some().then_some(rule.number),
         }
-        let spin = rule.sprocket.is_some().then_some(rule.number);
-        let of_shoe = [rule.shoe_mass, rule.shoe_inertia];
-        Ring::new(rule.shoes.clone(), of_shoe, spin, drive)
     }
 
     pub(super) fn impulses(&self) -> ChainImpulses {
         ChainImpulses {
             pins: self.pins.clone(),
-            force: self.force,
             behind: self.behind,
             memory: self.memory.clone(),
         }
@@ -111,20 +103,19 @@ impl Chain {
     pub(super) fn fits(&self, impulses: &ChainImpulses) -> bool {
         let ChainImpulses {
             pins,
-            force,
             behind,
             memory,
         } = impulses;
         let counts = pins.len() == self.pins.len() && memory.len() == self.memory.len();
         counts
-            && plausible(&[*force, *behind])
+            && plausible(&[*behind])
             && pins.iter().all(Pin::is_plausible)
             && memory.iter().all(|rest| plausible(&[rest.force]))
     }
 
     pub(super) fn start_from(&mut self, impulses: ChainImpulses) {
         self.pins = impulses.pins;
-        (self.force, self.behind) = (impulses.force, impulses.behind);
+        self.behind = impulses.behind;
         self.memory = impulses.memory;
     }
 
@@ -184,21 +175,10 @@ impl Chain {
         self.pins.iter().map(reading)
     }
 
-    /// Starts a step of `h` [s] from the force of the last one.
-    pub(super) fn guess(&self, ring: &mut Ring, h: f64) {
-        ring.drive.impulse = self.force * h;
-    }
-
-    /// The same for the rest of the step, another `h` [s].
-    pub(super) fn guess_more(&self, ring: &mut Ring, h: f64) {
-        ring.drive.impulse += self.force * h;
-    }
-
     /// Stores the forces of a step of `h` [s].
     pub(super) fn remember(&mut self, ring: &Ring, h: f64) {
         for (pin, impulse) in self.pins.iter_mut().zip(ring.impulses()) {
             pin.force = impulse / h;
         }
-        self.force = ring.drive.impulse / h;
     }
 }

@@ -6,12 +6,12 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use super::pull::grasps;
+use super::pull::find_grasps;
 use super::{Chain, STOP_STIFFNESS};
 use crate::dynamics::state::{Shoe, State};
 use crate::geometry::{Pose, Vector};
 use crate::robot::Tensioner;
-use crate::solver::{Damper, Hinge, Ring, Twist};
+use crate::solver::{Damper, Hinge, Ring};
 
 impl Chain {
     /// Prepares the solve before a motion of `h` [s], in whose middle the chassis has the pose `chassis`: pins are to close
@@ -20,7 +20,7 @@ impl Chain {
         &mut self,
         ring: &mut Ring,
         (state, chassis): (&State, Pose),
-        free: &[Twist],
+        free: &[f64],
         h: f64,
     ) {
         let shoes = &state.shoes[self.rule.shoes.clone()];
@@ -41,7 +41,7 @@ impl Chain {
         }
         if self.rule.sprocket.is_none() {
             let (center, _) = state.moved(0.5 * h);
-            grasps(&mut ring.drive, &self.rule, &middle, (chassis, center));
+            find_grasps(&mut ring.grasps, &self.rule, &middle, (chassis, center));
         }
         self.middle = middle;
         ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, 0.5 * h);
@@ -53,7 +53,7 @@ impl Chain {
         &mut self,
         ring: &mut Ring,
         state: &State,
-        free: &[Twist],
+        free: &[f64],
         h: f64,
     ) {
         let shoes = &state.shoes[self.rule.shoes.clone()];

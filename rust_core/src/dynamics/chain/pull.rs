@@ -12,21 +12,20 @@ use std::f64::consts::FRAC_2_PI;
 use crate::dynamics::state::Shoe;
 use crate::geometry::{Pose, Vector, cross, right_of};
 use crate::robot::ChainOfShoes;
-use crate::solver::{Drive, Grasp};
+use crate::solver::Grasp;
 
 /// Finds how the travel of the motor depends on the places of the shoes at the driving end; the chassis has the pose
 /// `chassis` and its centre of mass at `center`. A chain that has come off may have no shoe there.
-pub(super) fn grasps(
-    drive: &mut Drive,
+pub(super) fn find_grasps(
+    grasps: &mut Vec<Grasp>,
     chain: &ChainOfShoes,
     shoes: &[Shoe],
     (chassis, center): (Pose, Vector),
 ) {
-    drive.grasps.clear();
+    grasps.clear();
     let end = chain.ends[0];
     let axle = chassis.transform_point(end.center);
     let rearwards = chassis.rotation * -Vector::X;
-    let mut squares = 0.0;
     for (link, shoe) in shoes.iter().enumerate() {
         let arm = shoe.center - axle;
         let (squared, behind) = (arm.length_squared(), arm.dot(rearwards));
@@ -36,14 +35,12 @@ pub(super) fn grasps(
         // Squares of cosines: they add up to a pitch over half a turn, and start and end smoothly.
         let share = FRAC_2_PI * behind * behind / squared;
         let along = right_of(arm) * (chain.path.pitch * share / squared);
-        squares += along.length_squared();
-        drive.grasps.push(Grasp {
+        grasps.push(Grasp {
             link,
             on_link: [along.x, along.y, 0.0],
             on_base: [-along.x, -along.y, -cross(shoe.center - center, along)],
         });
     }
-    drive.admittance = squares / chain.shoe_mass;
 }
 
 #[cfg(test)]
@@ -53,9 +50,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::geometry::{Disc, Envelope, ShoeLoop, direction};
+    use crate::geometry::{Disc, Envelope, ShoeLoop, Twist, direction};
     use crate::robot::Tensioner;
-    use crate::solver::Twist;
 
     const RADIUS: f64 = 0.05;
     const PIECES: u32 = 400;
@@ -96,15 +92,15 @@ mod tests {
 
     /// [m] Travel of the motor while a shoe goes along a path, which it does from 0 to 1.
     fn travel(path: impl Fn(f64) -> Vector) -> f64 {
-        let (chain, mut drive) = (chain(), Drive::default());
+        let (chain, mut grasps) = (chain(), Vec::new());
         let mut travel = 0.0;
         for i in 0..PIECES {
             let [from, to] = [i, i + 1].map(|k| path(f64::from(k) / f64::from(PIECES)));
             let still = (Pose::default(), Vector::ZERO);
-            grasps(&mut drive, &chain, &[shoe_at((from + to) * 0.5)], still);
+            find_grasps(&mut grasps, &chain, &[shoe_at((from + to) * 0.5)], still);
             let moved = to - from;
             let of = |g: &Grasp| g.on_link[0] * moved.x + g.on_link[1] * moved.y;
-            travel += drive.grasps.iter().map(of).sum::<f64>();
+            travel += grasps.iter().map(of).sum::<f64>();
         }
         travel
     }
@@ -134,11 +130,11 @@ mod tests {
 
     #[test]
     fn a_drive_without_a_shoe_behind_its_axle_finds_no_hold() {
-        let (chain, mut drive) = (chain(), Drive::default());
+        let (chain, mut grasps) = (chain(), Vec::new());
         let still = (Pose::default(), Vector::ZERO);
         for (x, holds) in [(-RADIUS, true), (RADIUS, false)] {
-            grasps(&mut drive, &chain, &[shoe_at(Vector::new(x, 0.0))], still);
-            assert_eq!(!drive.grasps.is_empty(), holds);
+            find_grasps(&mut grasps, &chain, &[shoe_at(Vector::new(x, 0.0))], still);
+            assert_eq!(!grasps.is_empty(), holds);
         }
     }
 }

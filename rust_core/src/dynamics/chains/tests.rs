@@ -1,7 +1,7 @@
 //! A chain that whirls freely in the air, off its guide.
 
 use super::*;
-use crate::geometry::{Rotation, cross, left_of};
+use crate::geometry::{Rotation, Twist, cross, left_of};
 use crate::robot::Model;
 use crate::scenario::{Friction, Scenario};
 

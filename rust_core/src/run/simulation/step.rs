@@ -246,8 +246,7 @@ impl Simulation {
         self.time = arrive(self.time + h, limit);
         if self.engine.is_none() {
             self.last.sight = attempt.sight;
-            self.dynamics
-                .keep(&self.state, &attempt.contacts, h, strikes);
+            self.dynamics.keep(&attempt.contacts, h, strikes);
             std::mem::swap(&mut self.dents, &mut attempt.dents);
             self.dents.heal(self.dynamics.loaded());
         }

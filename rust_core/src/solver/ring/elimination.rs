@@ -7,15 +7,15 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
-use super::hinge::Hinge;
-use super::system::{BASE, CLOSING_HINGE, DRIVE, Entry, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
-use crate::geometry::{Vector, left_of};
-use crate::solver::twist::Twist;
+use super::system::{
+    BASE, CLOSING_HINGE, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, WIDTH,
+};
+use crate::geometry::{Twist, Vector, left_of};
 
 impl RingSystem {
-    /// Reduces the system to the base, adding the ring's part to the rows of that. None if the constraints
-    /// contradict each other.
-    pub(super) fn eliminate(&mut self, hinges: &[Hinge], base: &mut [[f64; 4]; 3]) -> Option<()> {
+    /// Reduces the system to the border, and that to the base and, where the drive is a body that spins, to this. None if the
+    /// constraints contradict each other.
+    pub(super) fn eliminate(&mut self, hinges: &[Hinge], spins: bool) -> Option<()> {
         let last = self.links.len() - 1;
         self.links[0].close(1, &hinges[last]);
         for (k, hinge) in hinges[..last].iter().enumerate() {
@@ -25,14 +25,8 @@ impl RingSystem {
         }
         self.links[last].close(0, &hinges[last]);
         self.eliminate_last(&hinges[last])?;
-        self.solve_border()?;
-        for (i, row) in base.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                let column = if j < 3 { BASE + j } else { RIGHT };
-                *entry += self.border[(BASE + i, column)];
-            }
-        }
-        Some(())
+        let of_ring = [CLOSING_HINGE, CLOSING_HINGE + 1, SLIDE, DRIVE];
+        self.solve_border(&of_ring[..of_ring.len() - usize::from(spins)])
     }
 
     /// Makes what is left of a link part of the next one and of the border.
@@ -67,9 +61,9 @@ impl RingSystem {
         Some(())
     }
 
-    /// Expresses the closing hinge, the drive and the slide in terms of the base.
-    fn solve_border(&mut self) -> Option<()> {
-        for pivot in [CLOSING_HINGE, CLOSING_HINGE + 1, SLIDE, DRIVE] {
+    /// Expresses unknowns of the border in terms of the others.
+    fn solve_border(&mut self, of_ring: &[usize]) -> Option<()> {
+        for &pivot in of_ring {
             let by = self.border[(pivot, pivot)];
             if by == 0.0 || !by.is_finite() {
                 return None;
@@ -83,25 +77,35 @@ impl RingSystem {
         Some(())
     }
 
-    /// Computes the velocities of the links and the impulses of the hinges from the velocity of the base; returns
-    /// the velocities of slide and spin.
+    /// Computes the velocities of the links and the impulses of the hinges from the velocity of the base and, where the
+    /// drive is a body that spins, of this; returns those of the slide and the drive.
     pub(super) fn follow(
         &mut self,
         hinges: &[Hinge],
-        base: [f64; 3],
-        links: &mut [Twist],
+        (base, spin): ([f64; 3], Option<f64>),
+        links: &mut [f64],
     ) -> [f64; 2] {
         let mut known = SVector::<f64, WIDTH>::zeros();
         known.fixed_rows_mut::<3>(BASE).copy_from_slice(&base);
+        known[DRIVE] = spin.unwrap_or_default();
         known[RIGHT] = -1.0;
         let of_border = -(self.border * known);
-        for i in [CLOSING_HINGE, CLOSING_HINGE + 1, DRIVE, SLIDE] {
+        for i in [CLOSING_HINGE, CLOSING_HINGE + 1, SLIDE] {
             known[i] = of_border[i];
         }
-        let last = links.len() - 1;
+        if spin.is_none() {
+            known[DRIVE] = of_border[DRIVE];
+        }
+        let last = self.links.len() - 1;
         self.impulses[last] = known.fixed_rows::<2>(CLOSING_HINGE).into_owned();
         let mut next = Twist::from(<[f64; 3]>::from(self.last.tr_mul(&known)));
-        links[last] = next;
+        let mut links = links.chunks_exact_mut(3).rev();
+        let mut set = |twist: Twist| {
+            if let Some(link) = links.next() {
+                link.copy_from_slice(&twist.entries());
+            }
+        };
+        set(next);
         for k in (0..last).rev() {
             let hinge = &hinges[k];
             let Solved { turn, impulse } = &self.solved[k];
@@ -113,7 +117,7 @@ impl RingSystem {
                 turn,
             };
             self.impulses[k] = -(impulse.0 * pin + impulse.1.tr_mul(&known));
-            links[k] = next;
+            set(next);
         }
         [known[SLIDE], known[DRIVE]]
     }

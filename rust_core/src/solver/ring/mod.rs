@@ -2,68 +2,89 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-mod drive;
 mod elimination;
-mod hinge;
 mod system;
 
-pub(crate) use drive::{Drive, Grasp};
-pub(crate) use hinge::Hinge;
-pub(super) use system::Beside;
-
-use std::ops::Range;
-
+use super::Motor;
 use super::damper::Damper;
-use super::direction::Direction;
-use super::motor::Motor;
-use super::twist::Twist;
-use super::velocities::{Link, Velocities};
+use super::row::{BASE, Layout, Link, Row};
 use crate::geometry::Vector;
-use system::RingSystem;
+use crate::solver::system::System;
+use system::{DRIVE, RIGHT, RingSystem, SLIDE};
+pub(crate) use system::{Grasp, Hinge};
 
-/// One closed ring of links.
-pub(crate) struct Ring {
-    /// Their numbers among the links of all rings.
-    pub links: Range<usize>,
+/// The links of a ring, and what drives it.
+pub(crate) struct RingSpec {
+    /// Number of links.
+    pub links: usize,
     /// [kg] Mass of a link, ...
     pub mass: f64,
     /// [kg m^2] ... and its moment of inertia.
     pub inertia: f64,
-    /// What its drive spins, if anything.
+    /// The body that spins on the base and drives it, if any; if not, a motor pulls at some of its links.
     pub spin: Option<usize>,
+}
+
+/// One closed ring of links.
+pub(crate) struct Ring {
+    /// Where the velocities of its links begin, and those of its slide, its drive and what spins to drive it.
+    first: usize,
+    slide_at: usize,
+    drive_at: usize,
+    spin: Option<usize>,
+    /// [kg] Mass of a link, ...
+    mass: f64,
+    /// [1/kg, 1/kg, 1/(kg m^2)] ... and one over its inertia for x, y and turn.
+    weights: [f64; BASE],
     /// The hinge in front of each link.
     pub hinges: Vec<Hinge>,
     /// What holds the slide.
     pub slide: Damper,
-    pub drive: Drive,
+    /// The links at which its motor pulls, if it spins nothing.
+    pub grasps: Vec<Grasp>,
+    /// The impulse that the rotor of that motor takes to give it a speed.
+    pub rotor: Damper,
     system: RingSystem,
 }
 
 impl Ring {
-    /// Links of a mass [kg] and a moment of inertia [kg m^2].
-    pub(crate) fn new(
-        links: Range<usize>,
-        [mass, inertia]: [f64; 2],
-        spin: Option<usize>,
-        drive: Drive,
-    ) -> Self {
-        Self {
-            mass,
-            inertia,
-            spin,
-            hinges: vec![Hinge::default(); links.len()],
-            slide: Damper::default(),
-            drive,
-            system: RingSystem::new(links.len()),
-            links,
-        }
+    /// All rings of a problem.
+    pub(super) fn all(layout: Layout, specs: &[RingSpec]) -> Vec<Self> {
+        let mut links = 0;
+        let ring = |(number, spec): (usize, &RingSpec)| {
+            links += spec.links;
+            Self {
+                first: layout.link(links - spec.links),
+                slide_at: layout.slide(number),
+                drive_at: layout.drive(number),
+                spin: spec.spin.map(|k| layout.spin(k)),
+                mass: spec.mass,
+                weights: [spec.mass, spec.mass, spec.inertia].map(f64::recip),
+                hinges: vec![Hinge::default(); spec.links],
+                slide: Damper::default(),
+                grasps: Vec::new(),
+                rotor: Damper::default(),
+                system: RingSystem::new(spec.links),
+            }
+        };
+        specs.iter().enumerate().map(ring).collect()
     }
 
-    /// Sets the velocities of the links without constraints, and the moments of inertia with which they turn from there
-    /// [kg m^2].
-    pub(crate) fn start(&mut self, inertias: &[f64], free: &[Twist]) {
-        self.system
-            .free(self.mass, inertias, &free[self.links.clone()]);
+    /// [1/kg, 1/kg, 1/(kg m^2)] One over the inertia of a link for x, y and turn.
+    pub(super) fn weights(&self) -> [f64; BASE] {
+        self.weights
+    }
+
+    /// The velocities of its links among all unknowns.
+    fn links<'a>(&self, unknowns: &'a [f64]) -> &'a [f64] {
+        &unknowns[self.first..][..BASE * self.hinges.len()]
+    }
+
+    /// Sets the velocities of the links without constraints, from those of all unknowns, and the moments of inertia with
+    /// which they turn from there [kg m^2].
+    pub(crate) fn start(&mut self, inertias: &[f64], free: &[f64]) {
+        let free = self.links(free);
+        self.system.free(self.mass, inertias, free);
     }
 
     /// [N s] Impulse of the hinge in front of each link on the next one.
@@ -71,82 +92,89 @@ impl Ring {
         self.system.impulses()
     }
 
-    /// [m/s] Speed of the drive.
-    pub(crate) fn drive_speed(&self, velocities: &Velocities) -> f64 {
-        let base = velocities.base;
-        if let (Some(lever), Some(spin)) = (self.drive.lever, self.spin) {
-            return lever * (base.turn - velocities.spins[spin]);
-        }
-        let along = |row: &[f64; 3], twist: Twist| -> f64 {
-            row.iter().zip(twist.entries()).map(|(a, v)| a * v).sum()
+    /// [m/s] Speed of a drive that pulls at links.
+    pub(crate) fn drive_speed(&self, unknowns: &[f64]) -> f64 {
+        let along = |levers: &[f64; 3], velocities: &[f64]| -> f64 {
+            levers.iter().zip(velocities).map(|(a, v)| a * v).sum()
         };
-        let links = &velocities.links[self.links.clone()];
-        let grasps = self.drive.grasps.iter();
+        let links = self.links(unknowns);
+        let grasps = self.grasps.iter();
         grasps
-            .map(|g| along(&g.on_link, links[g.link]) + along(&g.on_base, base))
+            .map(|g| along(&g.on_link, &links[BASE * g.link..]) + along(&g.on_base, unknowns))
             .sum()
     }
 
-    /// Impulse of the drive at a speed, if its motor does not hold that.
-    pub(super) fn given(&self, motor: &Motor) -> Option<Damper> {
-        if self.drive.has_hold() {
-            motor.given()
-        } else {
-            Some(Damper::default())
-        }
+    /// [N s] Impulse of the motor of such a drive while it holds its speed.
+    pub(super) fn drive_impulse(&self, unknowns: &[f64]) -> f64 {
+        -unknowns[self.drive_at] - self.rotor.at(self.drive_speed(unknowns))
     }
 
-    /// Assembles the system of links and drive; what the drive spins has an inertia [kg m^2], and a rate without
-    /// constraints [rad/s].
-    pub(super) fn assemble(&mut self, motor: &Motor, spin: Option<[f64; 2]>) {
+    /// Starts the system of its links and its slide.
+    pub(super) fn start_system(&mut self) {
         self.system.start(self.slide);
-        let holds = self.drive.damper().shifted(motor.held_speed());
-        let damper = self.given(motor).unwrap_or(holds).plus(self.drive.rotor);
-        if let (Some([inertia, rate]), Some(lever)) = (spin, self.drive.lever) {
-            self.system.add_spin(inertia, rate);
-            self.system.turn_spin(lever, damper);
-            return;
+    }
+
+    /// Has a motor pull at its links.
+    pub(super) fn drive(&mut self, motor: &Motor) {
+        if self.grasps.is_empty() {
+            return self.system.let_go();
         }
-        let is_constant = damper.stiffness == 0.0;
-        for grasp in &self.drive.grasps {
-            if is_constant {
-                self.system.push(grasp, damper.at(0.0));
-            } else {
-                self.system.add_grasp(grasp);
+        match motor.given().map(|given| given.plus(self.rotor)) {
+            Some(given) if given.stiffness == 0.0 => {
+                self.system.let_go();
+                for grasp in &self.grasps {
+                    self.system.push(grasp, given.at(0.0));
+                }
+            }
+            given => {
+                for grasp in &self.grasps {
+                    self.system.add_grasp(grasp);
+                }
+                match given {
+                    Some(given) => self.system.give(given),
+                    None => self.system.hold(motor.held_speed()),
+                }
             }
         }
-        if !is_constant {
-            self.system.set_drive(damper);
+    }
+
+    /// Adds a constraint on a link: its impulse acts along the first of two rows, with a damper along the second.
+    pub(super) fn add(&mut self, link: Link, rows: [&Row; 2], damper: Damper) {
+        let number = (link.at() - self.first) / BASE;
+        if !rows[1].is_on_base() {
+            return self.system.add(number, rows, damper);
         }
+        // What spins and is held is part of the base, and has no entry here.
+        let slides = rows[1].beside_base().any(|(at, _)| at == self.slide_at);
+        let column = if slides { SLIDE } else { DRIVE };
+        self.system.add_between((number, column), rows, damper);
     }
 
-    /// Adds a constraint on a link: its impulse acts along the first of two directions, with a damper along the second.
-    pub(super) fn add(&mut self, link: Link, along: [&Direction; 2], damper: Damper) {
-        self.system
-            .add(link.number - self.links.start, along, damper);
-    }
-
-    /// The same between a link and the base with what is beside it.
-    pub(super) fn add_between(
-        &mut self,
-        link: Link,
-        beside: Beside,
-        along: [&Direction; 2],
-        damper: Damper,
-    ) {
-        let link = link.number - self.links.start;
-        self.system.add_between(link, beside, along, damper);
-    }
-
-    /// Reduces the system to the base, adding the ring's part to the rows of that; none if the constraints contradict
+    /// Reduces its system to the unknowns on the base, and adds that to the rows of these; none if the constraints contradict
     /// each other.
-    pub(super) fn eliminate(&mut self, base: &mut [[f64; 4]; 3]) -> Option<()> {
-        self.system.eliminate(&self.hinges, base)
+    pub(super) fn eliminate(&mut self, system: &mut System) -> Option<()> {
+        self.system.eliminate(&self.hinges, self.spin.is_some())?;
+        let on_base = (0..BASE).map(|i| (i, i));
+        let shared = on_base.chain(self.spin.map(|at| (at, DRIVE)));
+        let border = &self.system.border;
+        for (row, i) in shared.clone() {
+            for (column, j) in shared.clone() {
+                *system.entry(row, column) += border[(i, j)];
+            }
+            *system.right(row) += border[(i, RIGHT)];
+        }
+        Some(())
     }
 
-    /// Finds the velocities of the links from that of the base; returns those of slide and spin.
-    pub(super) fn follow(&mut self, base: Twist, links: &mut [Twist]) -> [f64; 2] {
-        let links = &mut links[self.links.clone()];
-        self.system.follow(&self.hinges, base.entries(), links)
+    /// Finds the velocities of links and slide from those of the base and of what spins.
+    pub(super) fn follow(&mut self, unknowns: &mut [f64]) {
+        let base = [unknowns[0], unknowns[1], unknowns[2]];
+        let spin = self.spin.map(|at| unknowns[at]);
+        let links = &mut unknowns[self.first..][..BASE * self.hinges.len()];
+        let [slide, drive] = self.system.follow(&self.hinges, (base, spin), links);
+        unknowns[self.slide_at] = slide;
+        if spin.is_none() {
+            unknowns[self.drive_at] = drive;
+        }
     }
 }

@@ -10,15 +10,32 @@
 
 use nalgebra::{Matrix2, Matrix3, RowVector2, SMatrix, SVector, Vector2, Vector3};
 
-use super::drive::Grasp;
 use crate::geometry::Vector;
 use crate::solver::damper::Damper;
-use crate::solver::direction::Direction;
-use crate::solver::twist::Twist;
+use crate::solver::row::Row;
+
+/// How a hinge holds its two links: it keeps an end of each together.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Hinge {
+    /// [m] From the centre of each link to the end that it holds, ...
+    pub ends: [Vector; 2],
+    /// [m] ... and to where its impulse acts.
+    pub pushed_at: [Vector; 2],
+    /// [m/s] Velocity of the second end relative to the first, with which it closes.
+    pub velocity: Vector,
+}
+
+/// How a drive that pulls at links acts on one of them and on the base.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grasp {
+    /// Index in the ring.
+    pub link: usize,
+    pub on_link: [f64; 3],
+    pub on_base: [f64; 3],
+}
 
 /// Rows and columns of the border: three for the base, ...
 pub(super) const BASE: usize = 0;
-const TURN: usize = 2;
 /// ... one for the drive (its force or the spin through which it acts), one for the slide, ...
 pub(super) const DRIVE: usize = 3;
 pub(super) const SLIDE: usize = 4;
@@ -26,24 +43,6 @@ pub(super) const SLIDE: usize = 4;
 pub(super) const CLOSING_HINGE: usize = 5;
 pub(super) const RIGHT: usize = 7;
 pub(super) const WIDTH: usize = 8;
-
-/// A body that takes part in a contact besides base and link.
-#[derive(Clone, Copy)]
-pub(in crate::solver) enum Beside {
-    Slide,
-    Spin,
-}
-
-impl Beside {
-    /// Its rows of the border: three of the base and its own.
-    fn places(self) -> [usize; 4] {
-        let own = match self {
-            Beside::Slide => SLIDE,
-            Beside::Spin => DRIVE,
-        };
-        [BASE, BASE + 1, TURN, own]
-    }
-}
 
 /// The part of the system that belongs to one link.
 #[derive(Clone, Copy, Default)]
@@ -89,13 +88,14 @@ impl RingSystem {
         }
     }
 
-    /// Sets up links of a mass, and inertias, with their velocities without constraints.
-    pub(super) fn free(&mut self, mass: f64, inertias: &[f64], free: &[Twist]) {
-        for ((own, inertia), twist) in self.free.iter_mut().zip(inertias).zip(free) {
+    /// Sets up links with these masses and moments of inertia, by their velocities without constraints.
+    pub(super) fn free(&mut self, mass: f64, inertias: &[f64], free: &[f64]) {
+        let free = free.chunks_exact(3);
+        for ((own, inertia), free) in self.free.iter_mut().zip(inertias).zip(free) {
             let masses = Vector3::new(mass, mass, *inertia);
             *own = [
                 masses,
-                masses.component_mul(&Vector3::from(twist.entries())),
+                masses.component_mul(&Vector3::from_column_slice(free)),
             ];
         }
     }
@@ -108,43 +108,46 @@ impl RingSystem {
             link.beside.set_row(RIGHT, &momentum.transpose());
         }
         self.border = SMatrix::zeros();
-        self.border[(DRIVE, DRIVE)] = 1.0;
         self.border[(SLIDE, SLIDE)] = slide.stiffness;
         self.border[(SLIDE, RIGHT)] = slide.at(0.0);
     }
 
-    /// Adds a constraint on one link: its impulse acts along the first of two directions, with a damper along the second.
-    pub(super) fn add(&mut self, link: usize, along: [&Direction; 2], damper: Damper) {
+    /// Adds a constraint on a link alone: its impulse acts along the first of two rows, with a damper along the second.
+    pub(super) fn add(&mut self, link: usize, [force, action]: [&Row; 2], damper: Damper) {
         let entry = &mut self.links[link];
-        let [force, action] = along.map(|along| Vector3::from(along.body()));
-        entry.own += force * action.transpose() * damper.stiffness;
+        let [force, along] = [force, action].map(|row| Vector3::from(row.on_link));
+        entry.own += force * along.transpose() * damper.stiffness;
         let mut right = entry.beside.row_mut(RIGHT);
-        right += force.transpose() * damper.at(along[1].offset);
+        right += force.transpose() * damper.at(action.offset);
     }
 
-    /// The same between a link and the base with what is beside it.
+    /// The same on a link and the base, with what is beside it there and stands at a column of the border.
     pub(super) fn add_between(
         &mut self,
-        link: usize,
-        beside: Beside,
-        along: [&Direction; 2],
+        (link, column): (usize, usize),
+        rows: [&Row; 2],
         damper: Damper,
     ) {
-        self.add(link, along, damper);
-        let (stiffness, impulse) = (damper.stiffness, damper.at(along[1].offset));
-        let [force, action] = along.map(Direction::body);
-        let [back_force, back_action] = along.map(Direction::reaction);
+        self.add(link, rows, damper);
+        let (stiffness, impulse) = (damper.stiffness, damper.at(rows[1].offset));
+        let [force, action] = rows.map(|row| row.on_link);
+        let [force_beside, action_beside] = rows.map(|row| {
+            let [x, y, turn] = row.of_base();
+            let own = row.beside_base().map(|(_, lever)| lever).sum();
+            [x, y, turn, own]
+        });
+        let columns = [BASE, BASE + 1, BASE + 2, column];
         let entry = &mut self.links[link];
-        for (i, at) in beside.places().into_iter().enumerate() {
-            let (force_there, action_there) = (stiffness * back_force[i], back_action[i]);
-            for (k, there) in beside.places().into_iter().enumerate() {
-                self.border[(there, at)] += stiffness * back_force[k] * action_there;
+        for (i, at) in columns.into_iter().enumerate() {
+            let (of_force, of_action) = (stiffness * force_beside[i], action_beside[i]);
+            for (k, there) in columns.into_iter().enumerate() {
+                self.border[(there, at)] += stiffness * force_beside[k] * of_action;
             }
             for k in 0..3 {
-                entry.beside[(at, k)] += stiffness * force[k] * action_there;
-                entry.below[(at, k)] += force_there * action[k];
+                entry.beside[(at, k)] += stiffness * force[k] * of_action;
+                entry.below[(at, k)] += of_force * action[k];
             }
-            self.border[(at, RIGHT)] += back_force[i] * impulse;
+            self.border[(at, RIGHT)] += force_beside[i] * impulse;
         }
     }
 
@@ -164,35 +167,27 @@ impl RingSystem {
         }
     }
 
-    /// Adds a constant impulse of the drive on a link and on the base.
-    pub(super) fn push(&mut self, grasp: &Grasp, impulse: f64) {
-        for i in 0..3 {
-            self.links[grasp.link].beside[(RIGHT, i)] += grasp.on_link[i] * impulse;
-            self.border[(BASE + i, RIGHT)] += grasp.on_base[i] * impulse;
-        }
+    /// Has the drive give no impulse.
+    pub(super) fn let_go(&mut self) {
+        self.border[(DRIVE, DRIVE)] = 1.0;
     }
 
-    /// Sets the damper of the drive.
-    pub(super) fn set_drive(&mut self, damper: Damper) {
+    /// Has the drive hold a speed [m/s].
+    pub(super) fn hold(&mut self, speed: f64) {
+        self.border[(DRIVE, RIGHT)] = speed;
+    }
+
+    /// Has the drive give the impulse of a damper that is not constant.
+    pub(super) fn give(&mut self, damper: Damper) {
         self.border[(DRIVE, DRIVE)] = -1.0 / damper.stiffness;
         self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.stiffness;
     }
 
-    /// Adds a body that spins on the base to the drive: its inertia [kg m^2] and its rate [rad/s] without constraints.
-    pub(super) fn add_spin(&mut self, inertia: f64, rate: f64) {
-        self.border[(DRIVE, DRIVE)] = inertia;
-        self.border[(DRIVE, RIGHT)] = inertia * rate;
-    }
-
-    /// Adds a damper at a lever [m] that turns base and spin against each other; its speed is that of the base relative
-    /// to the spin.
-    pub(super) fn turn_spin(&mut self, lever: f64, damper: Damper) {
-        let levers = [(TURN, lever), (DRIVE, -lever)];
-        for (row, of_row) in levers {
-            for (column, of_column) in levers {
-                self.border[(row, column)] += of_row * of_column * damper.stiffness;
-            }
-            self.border[(row, RIGHT)] += of_row * damper.at(0.0);
+    /// Has the drive give a constant impulse [N s], through a link and the base.
+    pub(super) fn push(&mut self, grasp: &Grasp, impulse: f64) {
+        for i in 0..3 {
+            self.links[grasp.link].beside[(RIGHT, i)] += grasp.on_link[i] * impulse;
+            self.border[(BASE + i, RIGHT)] += grasp.on_base[i] * impulse;
         }
     }
 

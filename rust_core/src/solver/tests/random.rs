@@ -12,25 +12,18 @@ use crate::geometry::direction;
 
 /// A random problem: a body, up to two others that spin on it with a motor each, and contacts from all sides.
 pub(super) fn drawn(draw: &mut Draw) -> Problem {
-    let base = Base {
-        mass: draw.size(0.5, 50.0),
-        inertia: draw.size(0.01, 5.0),
-    };
-    let spins: Vec<Spin> = (0..draw.below(3))
-        .map(|_| Spin::new(draw.size(1e-4, 0.1), 0.0))
-        .collect();
-    let mut problem = Problem::new(base, spins, Vec::new(), Vec::new());
-    problem.mass_on_springs = Some(base.mass);
+    let base = [draw.size(0.5, 50.0), draw.size(0.01, 5.0)];
+    let spins: Vec<f64> = (0..draw.below(3)).map(|_| draw.size(1e-4, 0.1)).collect();
+    let mut problem = Problem::new(base, 0, &spins, &[]);
     let mut speed = |most: f64| draw.between(-most, most);
-    problem.free.base = Twist {
-        velocity: Vector::new(speed(1.0), speed(1.0)),
-        turn: speed(3.0),
-    };
-    for rate in &mut problem.free.spins {
-        *rate = speed(10.0);
+    let velocity = Vector::new(speed(1.0), speed(1.0));
+    problem.set_free(velocity, speed(3.0));
+    for k in 0..spins.len() {
+        problem.free[problem.layout.spin(k)] = speed(10.0);
     }
-    for k in 0..problem.spins.len() {
-        let mut motor = Motor::new(Driven::Spin(k), -0.1, draw.chance(0.8));
+    for k in 0..spins.len() {
+        let on = Driven::Body(problem.layout.spin(k));
+        let mut motor = Motor::new(on, -0.1, draw.chance(0.8));
         motor.aim(draw.between(-1.0, 1.0), draw.size(1e-3, 10.0));
         problem.motors.push(motor);
     }
@@ -44,13 +37,13 @@ pub(super) fn drawn(draw: &mut Draw) -> Problem {
             0.3 * direction(draw.between(0.0, 6.3)),
             direction(draw.between(0.0, 6.3)),
         );
-        let mut next = contact(arm, normal, friction);
-        if !problem.spins.is_empty() && draw.chance(0.7) {
-            let spin = Some(draw.below(problem.spins.len()));
-            next.acts = ActsOn::Base { joint: None, spin };
-            next.tangent.spin_lever = 0.1;
-            next.tangent.lever -= 0.1;
-        }
+        let mut next = if !spins.is_empty() && draw.chance(0.7) {
+            let spin = problem.layout.spin(draw.below(spins.len()));
+            on_belt(arm, normal, friction, (spin, 0.1))
+        } else {
+            contact(arm, normal, friction)
+        };
+        next.mass = Some(base[0]);
         if draw.chance(0.3) {
             (next.bias, next.compliance) = (draw.between(-0.1, 0.1), draw.size(1e-3, 1.0));
         }
@@ -59,39 +52,34 @@ pub(super) fn drawn(draw: &mut Draw) -> Problem {
     problem
 }
 
-/// A row: its entries, target, compliance and the bounds of its impulse.
-type Row = (DVector<f64>, f64, f64, (f64, f64));
+/// What acts along a row: its entries, target, compliance and the bounds of its impulse.
+type Acting = (DVector<f64>, f64, f64, (f64, f64));
 
 /// Where the other method gets, from the limits of friction that the solver has found: velocities of body and spins.
 pub(super) fn by_interior_point(problem: &Problem) -> DVector<f64> {
-    let dofs = 3 + problem.spins.len();
-    let mut inertias = vec![problem.base.mass, problem.base.mass, problem.base.inertia];
-    inertias.extend(problem.spins.iter().map(|spin| spin.inertia));
-    let mut free = problem.free.base.entries().to_vec();
-    free.extend(&problem.free.spins);
-    let mut free = DVector::from_vec(free);
-    let mut rows: Vec<Row> = Vec::new();
+    let inertias = problem.masses.clone();
+    let dofs = inertias.len();
+    let mut free = DVector::from_column_slice(&problem.free);
+    let mut rows: Vec<Acting> = Vec::new();
     for c in &problem.contacts {
-        let row = |along: &Direction| {
+        let row = |along: &Row| {
             let mut row = DVector::zeros(dofs);
-            row.as_mut_slice()[..3].copy_from_slice(&along.body());
-            if let Some(k) = c.acts.spin() {
-                row[3 + k] = along.spin_lever;
+            for (at, lever) in along.entries() {
+                row[at] = lever;
             }
             row
         };
-        let spring = problem.mass_on_springs.expect("a mass").recip();
-        let soft = c.compliance * spring;
+        let soft = c.compliance / c.mass.expect("a mass");
         rows.push((row(&c.normal), -c.bias, soft, (0.0, f64::INFINITY)));
         let most = c.friction.coefficient * c.normal_impulse;
         rows.push((row(&c.tangent), 0.0, 0.0, (-most, most)));
     }
     for motor in &problem.motors {
-        if let Driven::Spin(k) = motor.on
+        if let Driven::Body(at) = motor.on
             && motor.hold != Hold::Free
         {
             let mut row = DVector::zeros(dofs);
-            (row[2], row[3 + k]) = (-motor.lever, motor.lever);
+            (row[TURN], row[at]) = (-motor.lever, motor.lever);
             let [most, least] = motor.limits.map(|limit| limit.at(0.0));
             if motor.locks {
                 // It gives its limit the way that it turns, and stops hold it between rest and its target.
@@ -135,9 +123,8 @@ fn ten_thousand_random_problems_are_solved_as_by_an_interior_point_method() {
             unresolved += 1;
             continue;
         }
-        let mut found = problem.velocities.base.entries().to_vec();
-        found.extend(&problem.velocities.spins);
-        off.push((DVector::from_vec(found) - by_interior_point(&problem)).amax());
+        let found = DVector::from_column_slice(&problem.unknowns);
+        off.push((found - by_interior_point(&problem)).amax());
     }
     assert_eq!(unresolved, 0);
     off.sort_by(f64::total_cmp);
@@ -195,9 +182,8 @@ fn motors_behind_locks_are_solved_as_by_an_interior_point_method() {
             };
             holds[kind] += 1;
         }
-        let mut found = problem.velocities.base.entries().to_vec();
-        found.extend(&problem.velocities.spins);
-        let difference = DVector::from_vec(found) - by_interior_point(&problem);
+        let found = DVector::from_column_slice(&problem.unknowns);
+        let difference = found - by_interior_point(&problem);
         of_base = of_base.max(difference.rows(0, 3).amax());
         off.push(difference.amax());
     }

@@ -24,44 +24,41 @@ fn body_at(number: f64) -> Option<usize> {
     (number >= 0.0).then_some(number as usize)
 }
 
-/// Unit, levers and offset of a direction.
-fn along(entries: &[f64]) -> Direction {
-    Direction {
-        unit: Vector::new(entries[0], entries[1]),
-        lever: entries[2],
-        spin_lever: entries[3],
-        back: 0.0,
-        joint_lever: entries[4],
-        offset: entries[5],
+/// A row by its unit, levers and offset, with what spins and is hinged there.
+fn row(entries: &[f64], layout: Layout, [spin, joint]: [Option<usize>; 2]) -> Row {
+    let mut row = Row::on_base([entries[0], entries[1], entries[2]]);
+    if let Some(k) = joint {
+        row = row.and(layout.joint(k), entries[4]);
     }
+    if let Some(k) = spin {
+        row = row.and(layout.spin(k), entries[3]);
+    }
+    row.offset = entries[5];
+    row
 }
 
-fn contact_of(entries: &[f64]) -> Contact {
+fn contact_of(entries: &[f64], layout: Layout) -> Contact {
     const GRIPS: [Grip; 4] = [Grip::Open, Grip::Sticks, Grip::Forwards, Grip::Backwards];
 
-    let acts = ActsOn::Base {
-        spin: body_at(entries[0]),
-        joint: body_at(entries[1]),
-    };
-    let mut contact = Contact::new(acts, [along(&entries[2..8]), along(&entries[8..14])]);
-    contact.bears = true;
-    contact.friction = Friction::dry(entries[14]);
+    let on = [entries[0], entries[1]].map(body_at);
+    let rows = [2, 8].map(|at| row(&entries[at..at + 6], layout, on));
+    let mut contact = bearing(rows, entries[14]);
     (contact.bias, contact.compliance) = (entries[15], entries[16]);
     (contact.normal_impulse, contact.friction_impulse) = (entries[17], entries[18]);
     contact.grip = GRIPS[entries[19] as usize];
     contact
 }
 
-fn motor_of(entries: &[f64]) -> Motor {
+fn motor_of(entries: &[f64], layout: Layout) -> Motor {
     const HOLDS: [Hold; 4] = [Hold::Holds, Hold::Pushes, Hold::Brakes, Hold::Free];
 
     let at = entries[1] as usize;
     let on = if entries[0] > 0.0 {
-        Driven::Joint(at)
+        layout.joint(at)
     } else {
-        Driven::Spin(at)
+        layout.spin(at)
     };
-    let mut motor = Motor::new(on, entries[2], true);
+    let mut motor = Motor::new(Driven::Body(on), entries[2], true);
     motor.aim(entries[3], entries[4]);
     motor.hold = HOLDS[entries[5] as usize];
     motor
@@ -70,44 +67,46 @@ fn motor_of(entries: &[f64]) -> Motor {
 fn problem_of(line: &str) -> Problem {
     let given: Value = serde_json::from_str(line).expect("a line is JSON");
     let [base, free, start] = ["base", "free", "start"].map(|name| numbers(&given[name]));
-    let base = Base {
-        mass: base[0],
-        inertia: base[1],
-    };
-    let spins = numbers(&given["spins"])
-        .into_iter()
-        .map(|inertia| Spin::new(inertia, 0.0));
-    let joints = numbers(&given["joints"]).into_iter();
-    let joints = joints.map(|inertia| Joint::new(inertia, f64::INFINITY));
-    let mut problem = Problem::new(base, spins.collect(), joints.collect(), Vec::new());
-    let twist = |v: &[f64]| Twist::from([v[0], v[1], v[2]]);
-    problem.free.base = twist(&free);
-    problem.free.spins = numbers(&given["free_spins"]);
-    problem.velocities.base = twist(&start);
-    problem.velocities.spins = numbers(&given["start_spins"]);
-    let rates = numbers(&given["start_joints"]);
-    problem.velocities.joints.copy_from_slice(&rates);
-    problem.mass_on_springs = given["springs"].as_f64();
-    let inertia = |entries: Vec<f64>| Inertia {
-        acts: ActsOn::on_joint(entries[0] as usize),
-        along: along(&entries[1..7]),
-        damper: Damper::new(entries[7], entries[8]),
+    let joints = numbers(&given["joints"]).len();
+    let mut problem = Problem::new([base[0], base[1]], joints, &numbers(&given["spins"]), &[]);
+    let layout = problem.layout;
+    problem.free[..3].copy_from_slice(&free);
+    problem.unknowns[..3].copy_from_slice(&start);
+    for (k, rate) in numbers(&given["free_spins"]).into_iter().enumerate() {
+        problem.free[layout.spin(k)] = rate;
+    }
+    for (k, rate) in numbers(&given["start_spins"]).into_iter().enumerate() {
+        problem.unknowns[layout.spin(k)] = rate;
+    }
+    let rates = numbers(&given["start_joints"]).into_iter();
+    for (k, rate) in rates.take(joints).enumerate() {
+        problem.unknowns[layout.joint(k)] = rate;
+    }
+    let inertia = |entries: Vec<f64>| {
+        let row = row(&entries[1..7], layout, [None, body_at(entries[0])]);
+        Inertia::new(row, entries[8], entries[7] / entries[8])
     };
     problem.inertias = lists(&given["hung"]).map(inertia).collect();
-    problem.contacts = lists(&given["contacts"]).map(|c| contact_of(&c)).collect();
-    problem.motors = lists(&given["motors"]).map(|m| motor_of(&m)).collect();
+    let contacts = lists(&given["contacts"]).map(|c| contact_of(&c, layout));
+    problem.contacts = contacts.collect();
+    for contact in &mut problem.contacts {
+        contact.mass = given["springs"].as_f64();
+    }
+    problem.motors = lists(&given["motors"])
+        .map(|m| motor_of(&m, layout))
+        .collect();
     problem
 }
 
 /// [m/s] By how much a contact breaks its law: it approaches, or moves where it should stick, or is helped on by
 /// friction.
 fn breach(contact: &Contact, problem: &Problem) -> f64 {
-    let v = &problem.velocities;
-    let spring = problem.mass_on_springs.expect("a mass").recip();
+    let v = &problem.unknowns;
+    let spring = contact.mass.expect("a mass").recip();
     let (n, t) = (contact.normal_impulse, contact.friction_impulse);
     let gives = contact.bias + contact.compliance * spring * n;
-    let opens = contact.opening_speed(v) + contact.normal.offset + gives;
-    let slip = contact.slip(v) + contact.tangent.offset;
+    let opens = contact.normal.speed(v) + gives;
+    let slip = contact.tangent.speed(v);
     let of_normal = if n > 0.0 {
         opens.abs()
     } else {

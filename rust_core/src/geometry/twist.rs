@@ -1,10 +1,8 @@
 //! The velocity of a body.
-//!
-//! The equations: docs/physics.md, "State".
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Vector, left_of};
+use super::{Vector, left_of};
 
 /// Velocity of a body: [m/s] of its centre of mass, [rad/s] of its rotation.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]

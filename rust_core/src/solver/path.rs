@@ -1,0 +1,329 @@
+//! The path from any states to a solution.
+//!
+//! All laws are relaxed so far that the present states are a solution, and the relaxation is driven to nothing. On the
+//! way one condition after another is reached: a contact touches or opens, starts to slide or sticks again, a motor
+//! comes to its limit. Between two of these everything changes linearly, so the next one is found exactly, and the
+//! state of what has reached it changes: a pivot. Where that turns the path round, the relaxation grows for a while.
+//! This is the method of Lemke (1965) from an advanced start (Tomlin 1978). From where all contacts are open it finds a
+//! solution of Coulomb's law in the plane wherever contacts may come to rest at all (Anitescu and Potra 1997).
+//!
+//! The equations: docs/physics.md, "The path".
+
+use super::contact::{Contact, Grip};
+use super::motor::Hold;
+use super::row::TURN;
+use super::{Problem, Start};
+use crate::units::MetresPerSecond;
+
+/// Pivots, at most, for each contact and motor, from where all contacts are open, ...
+const FROM_AIR: usize = 16;
+/// ... and from the last states: a path from there is short, or leads round for ever.
+const FROM_LAST_STATES: usize = 4;
+/// Conditions within this share of the path are met together: one by one, both sides of what is symmetric would part.
+const TOGETHER: f64 = 1e-9;
+/// That share where only the first is met.
+const ALONE: f64 = 0.0;
+/// [m/s] A path that would lead back from where laws are relaxed by less ends there: friction is known no better where
+/// surfaces are fast.
+const ROUNDING: MetresPerSecond = MetresPerSecond(1e-9);
+
+/// What the state of a contact or a motor becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Switch {
+    Contact(usize, Grip),
+    Motor(usize, Hold),
+}
+
+/// A condition of the present states: they hold as long as its value is above 0, and the switch is made where it
+/// reaches 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Condition {
+    switch: Switch,
+    /// Its value now, and where the present states are a solution without relaxation.
+    now: f64,
+    there: f64,
+}
+
+/// What is met next on the path, on which the relaxation falls (1) or grows (-1): conditions, after a share of the
+/// rest of the path; its end; or nothing, where the relaxation grows.
+enum Met {
+    Conditions { direction: f64, share: f64 },
+    End,
+    Nothing,
+}
+
+/// The point of a path with the least relaxation.
+struct Lowest {
+    share: f64,
+    unknowns: Vec<f64>,
+    contacts: Vec<(Grip, [f64; 2])>,
+    motors: Vec<Hold>,
+}
+
+impl Problem {
+    /// Follows the path from the present states or from where all contacts are open; returns the largest error of a velocity
+    /// [m/s] at its end. If it has none, laws stay relaxed as little as they have been on the way.
+    pub(super) fn follow_path(&mut self, start: Start) -> Option<f64> {
+        self.effort.paths += 1;
+        self.settle();
+        if start == Start::LastStates {
+            let end = self.pivot(FROM_LAST_STATES, TOGETHER);
+            let off = end.filter(|_| self.fits());
+            if off.is_none() {
+                self.bearing().for_each(Contact::unsettle);
+            }
+            return off;
+        }
+        // What is met together can lead past a solution that one after the other leads to.
+        [TOGETHER, ALONE].into_iter().find_map(|together| {
+            self.bearing().for_each(|contact| contact.grip = Grip::Open);
+            self.pivot(FROM_AIR, together)
+        })
+    }
+
+    /// Pivots until the relaxation is nothing, up to so many times for each contact and motor, with conditions within a share
+    /// of the path together; if that cannot be, goes back to where it was least. Returns the error in the end, if there is
+    /// one.
+    fn pivot(&mut self, pivots: usize, together: f64) -> Option<f64> {
+        loop {
+            self.solve_states()?;
+            self.hold_states(0.0);
+            if !self.hold_with_motors() {
+                break;
+            }
+        }
+        let most = self.relax();
+        let ends = most == 0.0 || self.pivot_along(pivots, (most, together));
+        ends.then(|| self.follow_unknowns())
+    }
+
+    /// The pivots of [`Problem::pivot`], from laws that are relaxed by up to `most` [m/s].
+    fn pivot_along(&mut self, pivots: usize, (most, together): (f64, f64)) -> bool {
+        let mut conditions = Vec::new();
+        let (mut share, mut back) = (1.0, None);
+        let mut lowest = self.lowest(share);
+        self.change.fill(0.0);
+        for pivot in 0..pivots * (self.contacts.len() + self.motors.len()) {
+            if self
+                .look_ahead(share, pivot == 0, &mut conditions)
+                .is_none()
+            {
+                break;
+            }
+            match first_met(&conditions, back) {
+                Met::End => return true,
+                Met::Nothing => break,
+                Met::Conditions {
+                    direction,
+                    share: of_rest,
+                } => {
+                    self.go(direction * of_rest - 1.0);
+                    share *= 1.0 - direction * of_rest;
+                    self.hold_states(share);
+                    let is_met = |c: &&Condition| {
+                        let met = c.met(direction, back);
+                        met.is_some_and(|met| met <= of_rest + together)
+                    };
+                    let count = if together > 0.0 { usize::MAX } else { 1 };
+                    let met = conditions.iter().filter(is_met).take(count);
+                    back = self.make_all(met.map(|c| c.switch), share);
+                }
+            }
+            if share < lowest.share {
+                lowest = self.lowest(share);
+            }
+        }
+        let least = lowest.share * most;
+        self.return_to(lowest);
+        least < ROUNDING.value()
+    }
+
+    /// Relaxes all laws so that the present states are a solution at the present velocities; returns by how much at most, as
+    /// a speed [m/s].
+    fn relax(&mut self) -> f64 {
+        let unknowns = &self.unknowns;
+        let bearing = || self.contacts.iter().filter(|c| c.bears);
+        let mut most = bearing().fold(0.0, |most: f64, c| most.max(c.violation(unknowns)));
+        for contact in self.contacts.iter_mut().filter(|c| c.bears) {
+            contact.relax(unknowns, most);
+        }
+        for k in 0..self.motors.len() {
+            let motor = &self.motors[k];
+            let mut relaxed: f64 = 0.0;
+            if motor.hold == Hold::Holds {
+                self.conditions_of(motor, |_, value| relaxed = relaxed.max(-value));
+            }
+            most = most.max(relaxed * motor.lever * motor.lever * self.system.weights[TURN]);
+            self.motors[k].relaxed = relaxed;
+        }
+        most
+    }
+
+    /// Lets motors at a limit or at a lock hold their speed if their state does not fit: with limits that are wide enough
+    /// all can. Returns whether any changed.
+    fn hold_with_motors(&mut self) -> bool {
+        let mut changed = false;
+        for k in 0..self.motors.len() {
+            let motor = &self.motors[k];
+            if motor.hold != Hold::Holds && self.next_of(motor) != motor.hold {
+                self.motors[k].hold = Hold::Holds;
+                changed = true;
+            }
+        }
+        if changed {
+            self.tie();
+        }
+        changed
+    }
+
+    /// Finds the conditions of the present states, from the share of the relaxation that is left to none, and goes to where
+    /// these states are a solution without any; it stays where it is if there is none. At the start that is where it is.
+    fn look_ahead(
+        &mut self,
+        share: f64,
+        is_start: bool,
+        conditions: &mut Vec<Condition>,
+    ) -> Option<()> {
+        conditions.clear();
+        self.hold_states(share);
+        self.conditions(share, |switch, now| {
+            let there = now;
+            conditions.push(Condition { switch, now, there });
+        });
+        if !is_start {
+            self.solve_states()?;
+        }
+        self.hold_states(0.0);
+        let mut all = conditions.iter_mut();
+        self.conditions(0.0, |_, there| {
+            if let Some(condition) = all.next() {
+                condition.there = there;
+            }
+        });
+        Some(())
+    }
+
+    /// Sets all impulses to those of the present states, with a share of the relaxation.
+    fn hold_states(&mut self, share: f64) {
+        for contact in self.contacts.iter_mut().filter(|c| c.bears) {
+            let impulses = contact.held(&self.unknowns, share);
+            contact.set_impulses(impulses);
+        }
+        self.follow_bilaterals();
+        self.sum_pushes();
+    }
+
+    /// Calls `each` with the conditions of the present states and their values, with a share of all relaxations.
+    fn conditions(&self, share: f64, mut each: impl FnMut(Switch, f64)) {
+        for (i, contact) in self.contacts.iter().enumerate().filter(|(_, c)| c.bears) {
+            contact.conditions(&self.unknowns, share, |grip, value| {
+                each(Switch::Contact(i, grip), value);
+            });
+        }
+        for (k, motor) in self.motors.iter().enumerate() {
+            self.conditions_of(motor, |hold, value| {
+                let value = value + share * motor.relaxed_by(hold);
+                each(Switch::Motor(k, hold), value);
+            });
+        }
+    }
+
+    /// Makes switches, one of each contact and motor; returns the one that would take back the first.
+    fn make_all(&mut self, switches: impl Iterator<Item = Switch>, share: f64) -> Option<Switch> {
+        let mut made: Vec<Switch> = Vec::new();
+        for switch in switches {
+            if !made.iter().any(|other| other.is_of_the_same(switch)) {
+                made.push(self.make(switch, share));
+            }
+        }
+        made.first().copied()
+    }
+
+    /// Makes a switch; returns the one that would take it back.
+    fn make(&mut self, switch: Switch, share: f64) -> Switch {
+        match switch {
+            Switch::Contact(i, next) => {
+                let contact = &mut self.contacts[i];
+                let before = contact.grip;
+                contact.grip = match before {
+                    Grip::Open => contact.slides(&self.unknowns, share),
+                    _ => next,
+                };
+                // An open contact has one condition, whatever it becomes.
+                let back = if next == Grip::Open {
+                    Grip::Sticks
+                } else {
+                    before
+                };
+                Switch::Contact(i, back)
+            }
+            Switch::Motor(k, next) => {
+                let before = std::mem::replace(&mut self.motors[k].hold, next);
+                self.tie();
+                Switch::Motor(k, before)
+            }
+        }
+    }
+
+    fn lowest(&self, share: f64) -> Lowest {
+        let of_contact = |c: &Contact| (c.grip, c.impulses());
+        Lowest {
+            share,
+            unknowns: self.unknowns.clone(),
+            contacts: self.contacts.iter().map(of_contact).collect(),
+            motors: self.motors.iter().map(|motor| motor.hold).collect(),
+        }
+    }
+
+    /// Goes back to a point of the path.
+    fn return_to(&mut self, lowest: Lowest) {
+        self.unknowns = lowest.unknowns;
+        for (contact, (grip, impulses)) in self.contacts.iter_mut().zip(lowest.contacts) {
+            contact.grip = grip;
+            contact.set_impulses(impulses);
+        }
+        for (motor, hold) in self.motors.iter_mut().zip(lowest.motors) {
+            motor.hold = hold;
+        }
+        self.tie();
+    }
+}
+
+/// What is met first on the way to where the present states are a solution without relaxation. The condition that the last
+/// switch has left must grow; if it falls on that way, the path leads back.
+fn first_met(conditions: &[Condition], back: Option<Switch>) -> Met {
+    let left = conditions.iter().find(|c| Some(c.switch) == back);
+    let direction = match left {
+        Some(left) if left.there < left.now => -1.0,
+        _ => 1.0,
+    };
+    let met = conditions.iter().filter_map(|c| c.met(direction, back));
+    let share = met.fold(f64::INFINITY, f64::min);
+    if share < 1.0 || (direction < 0.0 && share.is_finite()) {
+        Met::Conditions { direction, share }
+    } else if direction > 0.0 {
+        Met::End
+    } else {
+        Met::Nothing
+    }
+}
+
+impl Condition {
+    /// The share of the rest of the path, forwards or back, after which it is met, if it is.
+    fn met(&self, direction: f64, back: Option<Switch>) -> Option<f64> {
+        let falls = (self.now - self.there) * direction;
+        (falls > 0.0 && Some(self.switch) != back).then(|| self.now.max(0.0) / falls)
+    }
+}
+
+impl Switch {
+    /// Whether both are switches of one contact or motor.
+    fn is_of_the_same(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Contact(i, _), Self::Contact(k, _)) | (Self::Motor(i, _), Self::Motor(k, _)) => {
+                i == k
+            }
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The path to a solution.
+
+use super::*;
+
+/// A belt that drives off on two contacts, with its motor at its limit; solved.
+fn driving_off() -> Problem {
+    let mut problem = body_with(&[0.01], Vector::new(0.0, -GRAVITY * TIME), 0.0);
+    let (spin, radius) = (problem.layout.spin(0), 0.05);
+    let mut motor = Motor::new(Driven::Body(spin), -radius, true);
+    motor.aim(5.0, 0.05);
+    problem.motors.push(motor);
+    for x in [-0.2, 0.15] {
+        let arm = Vector::new(x, -0.1);
+        problem
+            .contacts
+            .push(on_belt(arm, Vector::Y, 0.5, (spin, radius)));
+    }
+    problem.solve();
+    problem
+}
+
+fn impulses(problem: &Problem) -> Vec<f64> {
+    let of_contact = |c: &Contact| [c.normal_impulse, c.friction_impulse];
+    problem.contacts.iter().flat_map(of_contact).collect()
+}
+
+#[test]
+fn the_path_from_wrong_states_leads_to_what_right_ones_give() {
+    for grips in [
+        [Grip::Open, Grip::Open],
+        [Grip::Sticks, Grip::Open],
+        [Grip::Backwards, Grip::Sticks],
+    ] {
+        let mut problem = driving_off();
+        let (right, before) = (impulses(&problem), problem.unknowns.clone());
+        assert_eq!(problem.motors[0].hold, Hold::Pushes);
+        problem.motors[0].hold = Hold::Holds;
+        for (contact, grip) in problem.contacts.iter_mut().zip(grips) {
+            contact.grip = grip;
+        }
+        problem.tie();
+        let mut starts = [Start::LastStates, Start::Air].into_iter();
+        let off = starts.find_map(|start| problem.follow_path(start));
+        assert!(off.expect("a path ends") < 1e-9, "{off:?} m/s");
+        assert_eq!(problem.motors[0].hold, Hold::Pushes);
+        for (pivoted, guessed) in impulses(&problem).into_iter().zip(right) {
+            assert_relative_eq!(pivoted, guessed, max_relative = 1e-6);
+        }
+        for (pivoted, before) in problem.unknowns.iter().zip(before) {
+            assert!((pivoted - before).abs() < AGREEMENT.value());
+        }
+    }
+}
