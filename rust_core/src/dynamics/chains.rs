@@ -64,6 +64,9 @@ impl Dynamics {
     /// the step, in which nothing moves farther than `travel` [m].
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64, travel: f64) {
         let pose = state.pose_after(half, &self.model);
+        let problem = &mut self.problem;
+        let velocities = (problem.layout, problem.unknowns.as_slice());
+        let start = Start::new((state, &self.model), velocities, half);
         for chain in &mut self.chains {
             let first = chain.rule.shoes.start;
             let place_of = |i: usize| state.shoes[first + i].after(half).pose();
@@ -73,14 +76,6 @@ impl Dynamics {
                 chassis: pose,
                 travel: idler.travel + idler.rate * half,
                 run: state.drives[number].position + state.track_speed(&self.model, number) * half,
-            };
-            let problem = &mut self.problem;
-            let start = Start {
-                state,
-                unknowns: &problem.unknowns,
-                layout: problem.layout,
-                model: &self.model,
-                half,
             };
             chain.rests(stand, place_of, NEAR_GUIDE * travel, |chain, rest| {
                 let of = (first + rest.shoe, number);

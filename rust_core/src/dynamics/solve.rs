@@ -37,7 +37,7 @@ impl Dynamics {
                     let mass = rotor / (motor.lever * motor.lever);
                     problem.rings[ring].rotor = Damper::new(mass * motor.lever * free, mass);
                 }
-                Driven::Body(at) => {
+                Driven::Body(_) => {
                     let over_base = Inertia::new(Row::over_base(at, 1.0), rotor, free);
                     problem.inertias.push(over_base);
                 }

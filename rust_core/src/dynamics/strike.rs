@@ -76,14 +76,17 @@ impl Dynamics {
             return f64::INFINITY;
         }
         let unknowns = &self.problem.unknowns;
-        let mut before = unknowns.clone();
-        if let Some(trend) = trend {
+        let last = trend.map(|trend| {
+            let mut before = unknowns.clone();
             trend.write_velocities(self.problem.layout, &mut before);
-        }
+            (trend, before)
+        });
         let contacts = self.touches.iter().zip(&self.problem.contacts);
         let times = contacts.filter_map(|(touch, solved)| {
             let slope = solved.normal.along(unknowns);
-            let gain = trend.map_or(0.0, |t| t.gain(slope, solved.normal.along(&before)));
+            let gain = (last.as_ref()).map_or(0.0, |(trend, before)| {
+                trend.gain(slope, solved.normal.along(before))
+            });
             touch.strike((slope, gain), state, &self.model, (h, speed))
         });
         times.fold(f64::INFINITY, f64::min)
@@ -91,7 +94,8 @@ impl Dynamics {
 }
 
 impl Touch {
-    /// [s] When the gap, that opens at a speed [m/s] that grows [m/s^2], closes faster than `speed` [m/s] in a step of `h` [s].
+    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s]. It opens at `slope` [m/s], which grows by `gain`
+    /// [m/s^2].
     ///
     /// A tip that a drive carries may come down and go up again within a step.
     pub(super) fn strike(

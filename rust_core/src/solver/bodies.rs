@@ -2,7 +2,7 @@
 //!
 //! The equations: docs/physics.md, "The problem".
 
-use super::contact::{Admittances, Contact};
+use super::contact::Admittances;
 use super::motor::Driven;
 use super::ring::Ring;
 use super::row::Row;
@@ -134,13 +134,6 @@ impl Problem {
         for bilateral in &self.bilaterals {
             add(&bilateral.row, bilateral.impulse);
         }
-    }
-}
-
-impl Contact {
-    /// Whether its directions move on their own.
-    pub(super) fn has_offset(&self) -> bool {
-        self.normal.offset != 0.0 || self.tangent.offset != 0.0
     }
 }
 

@@ -138,6 +138,11 @@ impl Contact {
         self.center[1] + (self.friction_impulse - self.center[1]) * self.springs
     }
 
+    /// Whether its directions move on their own.
+    pub(super) fn has_offset(&self) -> bool {
+        self.normal.offset != 0.0 || self.tangent.offset != 0.0
+    }
+
     /// [N s] Its impulses along normal and tangent.
     pub(crate) fn impulses(&self) -> [f64; 2] {
         [self.normal_impulse, self.friction_impulse]
@@ -318,13 +323,9 @@ impl Contact {
 
     /// Relaxes its law so that its state fits these velocities; by at least a speed [m/s] where that is more.
     pub(super) fn relax(&mut self, unknowns: &[f64], least: f64) {
-        self.relaxed = Relaxation::default();
         let [normal, friction] = self.seen(unknowns, 0.0);
         let [of_normal, of_friction] = self.dampers.map(|damper| least * damper.stiffness);
-        let Relaxation {
-            mut seen,
-            mut without,
-        } = self.relaxed;
+        let (mut seen, mut without) = ([0.0; 2], [0.0; 2]);
         if self.grip == Grip::Open {
             seen[0] = -of_normal;
         } else if normal < 0.0 {

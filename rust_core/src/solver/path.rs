@@ -29,7 +29,7 @@ const ROUNDING: MetresPerSecond = MetresPerSecond(1e-9);
 
 /// What the state of a contact or a motor becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Switch {
+enum Switch {
     Contact(usize, Grip),
     Motor(usize, Hold),
 }
@@ -37,7 +37,7 @@ pub(super) enum Switch {
 /// A condition of the present states: they hold as long as its value is above 0, and the switch is made where it
 /// reaches 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Condition {
+struct Condition {
     switch: Switch,
     /// Its value now, and where the present states are a solution without relaxation.
     now: f64,
