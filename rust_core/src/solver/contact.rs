@@ -152,8 +152,8 @@ impl Contact {
         [self.normal_impulse, self.friction_impulse] = impulses;
     }
 
-    /// Makes the current impulses the ones about which the contact is damped.
-    pub(super) fn settle(&mut self) {
+    /// Damps it about its current impulses.
+    pub(super) fn center(&mut self) {
         self.center[0] = self.normal_impulse;
         if self.give == 0.0 {
             self.center[1] = self.friction_impulse;
@@ -169,8 +169,8 @@ impl Contact {
         self.friction_impulse = beyond(friction, self.friction_impulse, times).clamp(-limit, limit);
     }
 
-    /// Goes back to the impulses about which the contact is damped.
-    pub(super) fn unsettle(&mut self) {
+    /// Goes back to the impulses about which it is damped.
+    pub(super) fn uncenter(&mut self) {
         self.set_impulses(self.center);
     }
 

@@ -127,16 +127,14 @@ impl Problem {
     /// Searches for them; returns whether they agree.
     fn search(&mut self, start: Start) -> bool {
         self.tie();
-        let near = start == Start::LastStates;
-        if near && (self.correct() || (self.correct() && self.close_in())) {
+        if start == Start::LastStates && self.settle(false) {
             return true;
         }
-        // What corrections do not find can be close to a jam, where constraints agree before the bodies stand.
         for _ in 0..self.iterations.unwrap_or(ITERATIONS) {
             let Some(off) = self.follow_path(start) else {
                 return false;
             };
-            if off == 0.0 || self.close_in() || (self.correct() && self.close_in()) {
+            if off == 0.0 || self.settle(true) {
                 return true;
             }
         }

@@ -65,12 +65,12 @@ impl Problem {
     /// [m/s] at its end. If it has none, laws stay relaxed as little as they have been on the way.
     pub(super) fn follow_path(&mut self, start: Start) -> Option<f64> {
         self.effort.paths += 1;
-        self.settle();
+        self.center();
         if start == Start::LastStates {
             let end = self.pivot(FROM_LAST_STATES, TOGETHER);
             let off = end.filter(|_| self.fits());
             if off.is_none() {
-                self.bearing().for_each(Contact::unsettle);
+                self.bearing().for_each(Contact::uncenter);
             }
             return off;
         }

@@ -11,11 +11,10 @@ use super::row::TURN;
 use super::{AGREEMENT, Problem};
 use crate::units::MetresPerSecond;
 
-/// Solutions of the system at most until constraints agree; since all misfits are corrected at once, corrections could
-/// alternate for ever.
-const UNTIL_AGREED: u32 = 4;
-/// Solutions at most until the base stands.
-const UNTIL_STANDING: u32 = 8;
+/// Solutions of the system at most; since all misfits are corrected at once, corrections could alternate for ever.
+const SOLUTIONS: u32 = 8;
+/// So many of them are not yet a sign of a jam.
+const FAR_FROM_JAM: u32 = 4;
 /// Changes that are taken at once at most.
 const FARTHEST: f64 = 1e6;
 /// [m/s] By how much the base may still move where a search ends close to a jam, ...
@@ -30,32 +29,42 @@ fn rest_of_series(before: Option<f64>, now: f64) -> Option<f64> {
     Some((now / (before - now)).min(FARTHEST))
 }
 
+/// Whether the base stands, from how far the last two solutions have moved it [m/s].
+fn stands(before: Option<f64>, moved: f64) -> bool {
+    let rest = rest_of_series(before, moved).map(|times| times * moved);
+    moved < STANDS.value() || rest.is_some_and(|rest| rest < CLOSE.value())
+}
+
 impl Problem {
-    /// Solves with the present states, and corrects all that do not fit at once, until constraints agree; returns whether
-    /// they do.
-    pub(super) fn correct(&mut self) -> bool {
-        self.settle();
+    /// Solves with the present states, corrects all that do not fit at once, and comes closer to the solution with those
+    /// that fit, until constraints agree; returns whether they do. Close to a jam they agree before the base stands: after
+    /// some solutions, or a path, it must stand as well.
+    pub(super) fn settle(&mut self, is_after_path: bool) -> bool {
+        self.center();
         self.expect_to_close();
         let mut last = None;
-        for _ in 0..UNTIL_AGREED {
+        for solution in 0..SOLUTIONS {
             let before = last.take();
             if self.solve_states().is_none() {
-                return false;
+                break;
             }
             let off = self.follow_unknowns();
-            if !self.mend() {
+            if !self.correct_contacts() {
                 continue;
             }
             if self.switch_motors() {
                 self.tie();
                 self.bearing().for_each(Contact::place_dampers);
-            } else if off < AGREEMENT.value() {
-                return true;
-            } else {
-                last = self.settle_after(before, off);
+                continue;
             }
+            let must_stand = is_after_path || solution >= FAR_FROM_JAM;
+            let error = if must_stand { self.moved() } else { off };
+            if off < AGREEMENT.value() && (!must_stand || stands(before, error)) {
+                return true;
+            }
+            last = self.center_after(before, error);
         }
-        self.bearing().for_each(Contact::unsettle);
+        self.bearing().for_each(Contact::uncenter);
         false
     }
 
@@ -69,45 +78,14 @@ impl Problem {
         }
     }
 
-    /// Comes closer to the solution with the present states, from impulses near it, until the base stands; returns whether
-    /// it gets there, and all states fit.
-    pub(super) fn close_in(&mut self) -> bool {
-        self.settle();
-        let mut last = None;
-        for _ in 0..UNTIL_STANDING {
-            let before = last.take();
-            if self.solve_states().is_none() {
-                break;
-            }
-            let off = self.follow_unknowns();
-            if self.switch_motors() {
-                self.tie();
-                break;
-            }
-            if !self.fits() {
-                break;
-            }
-            let moved = self.moved();
-            let rest = rest_of_series(before, moved).map(|times| times * moved);
-            if off < AGREEMENT.value()
-                && (moved < STANDS.value() || rest.is_some_and(|rest| rest < CLOSE.value()))
-            {
-                return true;
-            }
-            last = self.settle_after(before, moved);
-        }
-        self.bearing().for_each(Contact::unsettle);
-        false
-    }
-
     /// The contacts that can carry a load.
     pub(super) fn bearing(&mut self) -> impl Iterator<Item = &mut Contact> {
         self.contacts.iter_mut().filter(|c| c.bears)
     }
 
-    /// Makes the current impulses the ones about which constraints are damped.
-    pub(super) fn settle(&mut self) {
-        self.bearing().for_each(Contact::settle);
+    /// Damps all constraints about their current impulses.
+    pub(super) fn center(&mut self) {
+        self.bearing().for_each(Contact::center);
         for bilateral in &mut self.bilaterals {
             bilateral.center = bilateral.impulse;
         }
@@ -115,7 +93,7 @@ impl Problem {
 
     /// The same after a solution with an error, the states being those of the last one with its error, if there was one:
     /// then the impulses are taken to where such changes lead. Returns the error of this one, if they are not.
-    fn settle_after(&mut self, before: Option<f64>, error: f64) -> Option<f64> {
+    fn center_after(&mut self, before: Option<f64>, error: f64) -> Option<f64> {
         let rest = rest_of_series(before, error);
         if let Some(times) = rest {
             self.bearing().for_each(|contact| contact.lead(times));
@@ -123,7 +101,7 @@ impl Problem {
                 bilateral.impulse = beyond(bilateral.center, bilateral.impulse, times);
             }
         }
-        self.settle();
+        self.center();
         rest.is_none().then_some(error)
     }
 
@@ -143,15 +121,17 @@ impl Problem {
         bilaterals.fold(0.0, |off: f64, each| off.max(each.follow(unknowns)))
     }
 
-    /// Corrects the states that do not fit; returns whether all fitted.
-    fn mend(&mut self) -> bool {
-        let mut fits = true;
-        for contact in self.bearing() {
-            let next = contact.grip.towards(contact.fitting);
-            fits &= next == contact.grip;
-            contact.grip = next;
+    /// Corrects the states of contacts that do not fit; returns whether all fitted.
+    fn correct_contacts(&mut self) -> bool {
+        let unknowns = &self.unknowns;
+        let mut all_fit = true;
+        for contact in self.contacts.iter_mut().filter(|c| c.bears) {
+            if contact.misfit(unknowns) >= AGREEMENT.value() {
+                contact.grip = contact.grip.towards(contact.fitting);
+                all_fit = false;
+            }
         }
-        fits
+        all_fit
     }
 
     /// Whether the states fit the velocities, but for what makes no difference to these.
