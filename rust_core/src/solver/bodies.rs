@@ -9,6 +9,15 @@ use super::row::Row;
 use super::system::System;
 use super::{Damper, Problem};
 
+/// The impulses of contacts and bilaterals in a system.
+#[derive(Clone, Copy)]
+enum Impulses {
+    /// Those of dampers, in the present states.
+    OfStates,
+    /// The ones that they have.
+    Given,
+}
+
 impl Problem {
     /// Ties what motors hold to the base, and finds the directions of all constraints with that.
     pub(super) fn tie(&mut self) {
@@ -35,47 +44,49 @@ impl Problem {
         }
     }
 
-    /// Starts the system with what has inertia, and the motors.
-    fn start_system(&mut self) {
+    /// Solves the system of the present states; none if the constraints contradict each other.
+    pub(super) fn solve_states(&mut self) -> Option<()> {
+        self.effort.rounds += 1;
+        self.solve_system(Impulses::OfStates)
+    }
+
+    /// Solves the system of all bodies with these impulses of contacts and bilaterals, and notes how that changes the
+    /// unknowns.
+    fn solve_system(&mut self, impulses: Impulses) -> Option<()> {
         self.system.start(&self.masses, &self.free);
+        let (system, rings) = (&mut self.system, &mut self.rings);
         for inertia in &self.inertias {
-            self.system.add([&inertia.action; 2], inertia.damper);
+            system.add([&inertia.action; 2], inertia.damper);
         }
-        for ring in &mut self.rings {
+        for ring in rings.iter_mut() {
             ring.start_system();
         }
         for motor in &self.motors {
             match (motor.on, motor.given()) {
-                (Driven::Ring(k), _) => self.rings[k].drive(motor),
+                (Driven::Ring(k), _) => rings[k].drive(motor),
                 (Driven::Body(at), Some(given)) => {
-                    self.system
-                        .add([&Row::over_base(at, motor.lever); 2], given);
+                    system.add([&Row::over_base(at, motor.lever); 2], given);
                 }
                 (Driven::Body(_), None) => {}
             }
         }
-    }
-
-    /// Solves the system of the present states, and goes to its solution; none if the constraints contradict each other.
-    pub(super) fn solve_states(&mut self) -> Option<()> {
-        self.effort.rounds += 1;
-        self.start_system();
-        let (system, rings) = (&mut self.system, &mut self.rings);
         let mut add = |rows: [&Row; 2], damper: Damper| match rows[1].link {
             None => system.add(rows, damper),
             Some(link) => rings[link.ring()].add(link, rows, damper),
         };
         for contact in self.contacts.iter().filter(|c| c.bears) {
-            contact.constraints(&mut add);
+            match impulses {
+                Impulses::OfStates => contact.constraints(&mut add),
+                Impulses::Given => contact.given(&mut add),
+            }
         }
         for bilateral in &self.bilaterals {
-            add([&bilateral.action; 2], bilateral.damper());
+            let damper = match impulses {
+                Impulses::OfStates => bilateral.damper(),
+                Impulses::Given => Damper::constant(bilateral.impulse),
+            };
+            add([&bilateral.action; 2], damper);
         }
-        self.solve_system()
-    }
-
-    /// Solves the system as it is, goes to its solution, and notes how that changes the unknowns.
-    fn solve_system(&mut self) -> Option<()> {
         for ring in &mut self.rings {
             ring.eliminate(&mut self.system)?;
         }
@@ -100,40 +111,25 @@ impl Problem {
     /// Computes the velocities from all impulses so far, for the current state of the motors. With rings the velocities
     /// that keep links together matter more.
     pub(super) fn balance(&mut self) {
-        self.sum_pushes();
-        if !self.rings.is_empty() {
-            return;
+        if self.rings.is_empty() {
+            self.solve_system(Impulses::Given);
         }
-        self.start_system();
-        for contact in self.contacts.iter().filter(|c| c.bears) {
-            let [normal, tangent] = &contact.actions;
-            self.system.push(normal, contact.normal_impulse);
-            self.system.push(tangent, contact.friction_impulse);
-        }
-        for bilateral in &self.bilaterals {
-            self.system.push(&bilateral.action, bilateral.impulse);
-        }
-        self.solve_system();
     }
 
-    /// Sums the impulses of contacts and bilaterals on each unknown besides those of the base.
-    pub(super) fn sum_pushes(&mut self) {
-        let pushes = &mut self.pushes;
-        pushes.fill(0.0);
-        let mut add = |row: &Row, impulse: f64| {
-            if impulse != 0.0 {
-                for (at, lever) in row.beside_base() {
-                    pushes[at] += lever * impulse;
-                }
-            }
-        };
-        for contact in &self.contacts {
-            add(&contact.normal, contact.normal_impulse);
-            add(&contact.tangent, contact.friction_impulse);
-        }
-        for bilateral in &self.bilaterals {
-            add(&bilateral.row, bilateral.impulse);
-        }
+    /// [N s or N m s] The impulse of all constraints but motors, and of inertia along rows, on what is on the base.
+    pub(super) fn impulse_on(&self, at: usize) -> f64 {
+        let of_contacts = self.contacts.iter().flat_map(|c| {
+            let [normal, friction] = c.impulses();
+            [(&c.normal, normal), (&c.tangent, friction)]
+        });
+        let of_bilaterals = self.bilaterals.iter().map(|b| (&b.row, b.impulse));
+        let all = of_contacts.chain(of_bilaterals);
+        let of_inertias = self.inertias.iter();
+        let of_inertias = of_inertias.map(|each| (&each.row, each.impulse(&self.unknowns)));
+        let loaded = all
+            .chain(of_inertias)
+            .filter(|(_, impulse)| *impulse != 0.0);
+        loaded.map(|(row, impulse)| row.lever(at) * impulse).sum()
     }
 }
 

@@ -280,6 +280,13 @@ impl Contact {
         }
     }
 
+    /// The same with the impulses that it has.
+    pub(super) fn given(&self, mut each: impl FnMut([&Row; 2], Damper)) {
+        for (action, impulse) in self.actions.iter().zip(self.impulses()) {
+            each([action; 2], Damper::constant(impulse));
+        }
+    }
+
     /// The way in which it starts to slide when it touches.
     pub(super) fn slides(&self, unknowns: &[f64], share: f64) -> Grip {
         if self.friction.resists() && self.seen(unknowns, share)[1] < 0.0 {

@@ -64,8 +64,6 @@ pub(crate) struct Problem {
     pub unknowns: Vec<f64>,
     /// The work done.
     pub effort: Effort,
-    /// [N m s, ...] Impulses of contacts and bilaterals on what is on the base.
-    pushes: Vec<f64>,
     system: System,
     /// The change to the last solution of the linear system.
     change: Vec<f64>,
@@ -101,7 +99,6 @@ impl Problem {
             free: nothing.clone(),
             unknowns: nothing.clone(),
             effort: Effort::default(),
-            pushes: vec![0.0; layout.link(0)],
             system: System::new(layout),
             change: nothing,
             layout,

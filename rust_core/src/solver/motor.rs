@@ -227,14 +227,7 @@ impl Problem {
             Driven::Body(at) => {
                 // It has made the change of momentum that nothing else has.
                 let change = self.masses[at] * (self.unknowns[at] - self.free[at]);
-                let mut made = change - self.pushes[at];
-                for inertia in &self.inertias {
-                    let mut own = inertia.row.beside_base();
-                    if let Some((_, lever)) = own.find(|(entry, _)| *entry == at) {
-                        made -= lever * inertia.impulse(&self.unknowns);
-                    }
-                }
-                made / motor.lever
+                (change - self.impulse_on(at)) / motor.lever
             }
             Driven::Ring(k) => self.rings[k].drive_impulse(&self.unknowns),
         }
@@ -252,7 +245,6 @@ impl Problem {
 
     /// Releases motors beyond their limit, and lets those past their speed hold again; returns whether any changed.
     pub(super) fn switch_motors(&mut self) -> bool {
-        self.sum_pushes();
         let mut switched = false;
         for k in 0..self.motors.len() {
             let next = self.next_of(&self.motors[k]);

@@ -23,8 +23,8 @@ const FROM_LAST_STATES: usize = 4;
 const TOGETHER: f64 = 1e-9;
 /// That share where only the first is met.
 const ALONE: f64 = 0.0;
-/// [m/s] A path that would lead back from where laws are relaxed by less ends there: friction is known no better where
-/// surfaces are fast.
+/// [m/s] A path that leads nowhere has ended where laws are relaxed by less: friction is known no better where surfaces
+/// are fast.
 const ROUNDING: MetresPerSecond = MetresPerSecond(1e-9);
 
 /// What the state of a contact or a motor becomes.
@@ -44,46 +44,30 @@ struct Condition {
     there: f64,
 }
 
-/// What is met next on the path, on which the relaxation falls (1) or grows (-1): conditions, after a share of the
-/// rest of the path; its end; or nothing, where the relaxation grows.
-enum Met {
-    Conditions { direction: f64, share: f64 },
-    End,
-    Nothing,
-}
-
-/// The point of a path with the least relaxation.
-struct Lowest {
-    share: f64,
-    unknowns: Vec<f64>,
-    contacts: Vec<(Grip, [f64; 2])>,
-    motors: Vec<Hold>,
-}
-
 impl Problem {
     /// Follows the path from the present states or from where all contacts are open; returns the largest error of a velocity
-    /// [m/s] at its end. If it has none, laws stay relaxed as little as they have been on the way.
+    /// [m/s] at its end. If it has none, impulses stay as they were.
     pub(super) fn follow_path(&mut self, start: Start) -> Option<f64> {
         self.effort.paths += 1;
         self.center();
-        if start == Start::LastStates {
+        let off = if start == Start::LastStates {
             let end = self.pivot(FROM_LAST_STATES, TOGETHER);
-            let off = end.filter(|_| self.fits());
-            if off.is_none() {
-                self.bearing().for_each(Contact::uncenter);
-            }
-            return off;
+            end.filter(|_| self.fits())
+        } else {
+            // What is met together can lead past a solution that one after the other leads to.
+            [TOGETHER, ALONE].into_iter().find_map(|together| {
+                self.bearing().for_each(|contact| contact.grip = Grip::Open);
+                self.pivot(FROM_AIR, together)
+            })
+        };
+        if off.is_none() {
+            self.bearing().for_each(Contact::uncenter);
         }
-        // What is met together can lead past a solution that one after the other leads to.
-        [TOGETHER, ALONE].into_iter().find_map(|together| {
-            self.bearing().for_each(|contact| contact.grip = Grip::Open);
-            self.pivot(FROM_AIR, together)
-        })
+        off
     }
 
     /// Pivots until the relaxation is nothing, up to so many times for each contact and motor, with conditions within a share
-    /// of the path together; if that cannot be, goes back to where it was least. Returns the error in the end, if there is
-    /// one.
+    /// of the path together. Returns the error in the end, if there is one.
     fn pivot(&mut self, pivots: usize, together: f64) -> Option<f64> {
         loop {
             self.solve_states()?;
@@ -101,41 +85,31 @@ impl Problem {
     fn pivot_along(&mut self, pivots: usize, (most, together): (f64, f64)) -> bool {
         let mut conditions = Vec::new();
         let (mut share, mut back) = (1.0, None);
-        let mut lowest = self.lowest(share);
         self.change.fill(0.0);
         for pivot in 0..pivots * (self.contacts.len() + self.motors.len()) {
-            if self
-                .look_ahead(share, pivot == 0, &mut conditions)
-                .is_none()
-            {
+            let is_start = pivot == 0;
+            if (self.look_ahead(share, is_start, &mut conditions)).is_none() {
                 break;
             }
-            match first_met(&conditions, back) {
-                Met::End => return true,
-                Met::Nothing => break,
-                Met::Conditions {
-                    direction,
-                    share: of_rest,
-                } => {
-                    self.go(direction * of_rest - 1.0);
-                    share *= 1.0 - direction * of_rest;
-                    self.hold_states(share);
-                    let is_met = |c: &&Condition| {
-                        let met = c.met(direction, back);
-                        met.is_some_and(|met| met <= of_rest + together)
-                    };
-                    let count = if together > 0.0 { usize::MAX } else { 1 };
-                    let met = conditions.iter().filter(is_met).take(count);
-                    back = self.make_all(met.map(|c| c.switch), share);
-                }
+            let (direction, of_rest) = first_met(&conditions, back);
+            if direction > 0.0 && of_rest >= 1.0 {
+                return true;
             }
-            if share < lowest.share {
-                lowest = self.lowest(share);
+            if of_rest.is_infinite() {
+                break;
             }
+            self.go(direction * of_rest - 1.0);
+            share *= 1.0 - direction * of_rest;
+            self.hold_states(share);
+            let is_met = |c: &&Condition| {
+                let met = c.met(direction, back);
+                met.is_some_and(|met| met <= of_rest + together)
+            };
+            let count = if together > 0.0 { usize::MAX } else { 1 };
+            let met = conditions.iter().filter(is_met).take(count);
+            back = self.make_all(met.map(|c| c.switch), share);
         }
-        let least = lowest.share * most;
-        self.return_to(lowest);
-        least < ROUNDING.value()
+        share * most < ROUNDING.value()
     }
 
     /// Relaxes all laws so that the present states are a solution at the present velocities; returns by how much at most, as
@@ -210,7 +184,6 @@ impl Problem {
             contact.set_impulses(impulses);
         }
         self.follow_bilaterals();
-        self.sum_pushes();
     }
 
     /// Calls `each` with the conditions of the present states and their values, with a share of all relaxations.
@@ -264,48 +237,19 @@ impl Problem {
             }
         }
     }
-
-    fn lowest(&self, share: f64) -> Lowest {
-        let of_contact = |c: &Contact| (c.grip, c.impulses());
-        Lowest {
-            share,
-            unknowns: self.unknowns.clone(),
-            contacts: self.contacts.iter().map(of_contact).collect(),
-            motors: self.motors.iter().map(|motor| motor.hold).collect(),
-        }
-    }
-
-    /// Goes back to a point of the path.
-    fn return_to(&mut self, lowest: Lowest) {
-        self.unknowns = lowest.unknowns;
-        for (contact, (grip, impulses)) in self.contacts.iter_mut().zip(lowest.contacts) {
-            contact.grip = grip;
-            contact.set_impulses(impulses);
-        }
-        for (motor, hold) in self.motors.iter_mut().zip(lowest.motors) {
-            motor.hold = hold;
-        }
-        self.tie();
-    }
 }
 
-/// What is met first on the way to where the present states are a solution without relaxation. The condition that the last
-/// switch has left must grow; if it falls on that way, the path leads back.
-fn first_met(conditions: &[Condition], back: Option<Switch>) -> Met {
+/// Whether the relaxation falls (1) or grows (-1) from here, and the share of the rest of the path after which the next
+/// condition is met. The condition that the last switch has left must grow; if it falls where the relaxation falls, the
+/// path leads back.
+fn first_met(conditions: &[Condition], back: Option<Switch>) -> (f64, f64) {
     let left = conditions.iter().find(|c| Some(c.switch) == back);
     let direction = match left {
         Some(left) if left.there < left.now => -1.0,
         _ => 1.0,
     };
     let met = conditions.iter().filter_map(|c| c.met(direction, back));
-    let share = met.fold(f64::INFINITY, f64::min);
-    if share < 1.0 || (direction < 0.0 && share.is_finite()) {
-        Met::Conditions { direction, share }
-    } else if direction > 0.0 {
-        Met::End
-    } else {
-        Met::Nothing
-    }
+    (direction, met.fold(f64::INFINITY, f64::min))
 }
 
 impl Condition {

@@ -112,13 +112,6 @@ impl System {
         }
     }
 
-    /// Adds an impulse along a tied row.
-    pub(super) fn push(&mut self, row: &Row, impulse: f64) {
-        for (at, lever) in row.entries() {
-            *self.right(at) += lever * impulse;
-        }
-    }
-
     /// Finds the unknowns; none if the constraints contradict each other.
     pub(super) fn solve(&mut self, into: &mut [f64]) -> Option<()> {
         for at in self.bodies..self.count {
