@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::Problem;
 use super::damper::Damper;
 use super::row::TURN;
+use super::system::System;
 use crate::units::MetresPerSecond;
 
 /// The state of a motor in a solve.
@@ -129,6 +130,11 @@ impl Motor {
             Hold::Locked => None,
             Hold::Free => Some(Damper::default()),
         }
+    }
+
+    /// [1/kg] Its speed per impulse that the base takes up.
+    pub(super) fn admittance(&self, system: &System) -> f64 {
+        self.lever * self.lever * system.weights[TURN]
     }
 
     /// [N s] The part of its impulse that the motor itself can have given, without what its gear has held.

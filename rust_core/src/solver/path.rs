@@ -10,10 +10,8 @@
 //! The equations: docs/physics.md, "The path".
 
 use super::contact::{Contact, Grip};
-use super::motor::Hold;
-use super::row::TURN;
+use super::motor::{Hold, Motor};
 use super::{Problem, Start};
-use crate::units::MetresPerSecond;
 
 /// Pivots, at most, for each contact and motor, from where all contacts are open, ...
 const FROM_AIR: usize = 16;
@@ -23,10 +21,6 @@ const FROM_LAST_STATES: usize = 4;
 const TOGETHER: f64 = 1e-9;
 /// That share where only the first is met.
 const ALONE: f64 = 0.0;
-/// [m/s] A path that leads nowhere has ended where laws are relaxed by less: friction is known no better where surfaces
-/// are fast.
-const ROUNDING: MetresPerSecond = MetresPerSecond(1e-9);
-
 /// What the state of a contact or a motor becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Switch {
@@ -57,6 +51,11 @@ impl Problem {
             // What is met together can lead past a solution that one after the other leads to.
             [TOGETHER, ALONE].into_iter().find_map(|together| {
                 self.bearing().for_each(|contact| contact.grip = Grip::Open);
+                let motors = self.motors.iter_mut();
+                for motor in motors.filter(|motor| motor.hold != Hold::Free) {
+                    motor.hold = Hold::Holds;
+                }
+                self.tie();
                 self.pivot(FROM_AIR, together)
             })
         };
@@ -77,26 +76,26 @@ impl Problem {
             }
         }
         let most = self.relax();
-        let ends = most == 0.0 || self.pivot_along(pivots, (most, together));
+        let ends = most == 0.0 || self.pivot_along(pivots, together);
         ends.then(|| self.follow_unknowns())
     }
 
-    /// The pivots of [`Problem::pivot`], from laws that are relaxed by up to `most` [m/s].
-    fn pivot_along(&mut self, pivots: usize, (most, together): (f64, f64)) -> bool {
+    /// The pivots of [`Problem::pivot`], from relaxed laws; returns whether the relaxation became nothing.
+    fn pivot_along(&mut self, pivots: usize, together: f64) -> bool {
         let mut conditions = Vec::new();
         let (mut share, mut back) = (1.0, None);
         self.change.fill(0.0);
         for pivot in 0..pivots * (self.contacts.len() + self.motors.len()) {
             let is_start = pivot == 0;
             if (self.look_ahead(share, is_start, &mut conditions)).is_none() {
-                break;
+                return false;
             }
             let (direction, of_rest) = first_met(&conditions, back);
             if direction > 0.0 && of_rest >= 1.0 {
                 return true;
             }
             if of_rest.is_infinite() {
-                break;
+                return false;
             }
             self.go(direction * of_rest - 1.0);
             share *= 1.0 - direction * of_rest;
@@ -109,26 +108,34 @@ impl Problem {
             let met = conditions.iter().filter(is_met).take(count);
             back = self.make_all(met.map(|c| c.switch), share);
         }
-        share * most < ROUNDING.value()
+        false
     }
 
-    /// Relaxes all laws so that the present states are a solution at the present velocities; returns by how much at most, as
-    /// a speed [m/s].
+    /// Relaxes all laws so that the present states are a solution at the present velocities, each by at least as much as the
+    /// one that needs most; returns how much that is, as a speed [m/s].
     fn relax(&mut self) -> f64 {
         let unknowns = &self.unknowns;
-        let bearing = || self.contacts.iter().filter(|c| c.bears);
-        let mut most = bearing().fold(0.0, |most: f64, c| most.max(c.violation(unknowns)));
+        let bearing = self.contacts.iter().filter(|c| c.bears);
+        let of_contacts = bearing.fold(0.0, |most: f64, c| most.max(c.violation(unknowns)));
+        let short = |motor: &Motor| {
+            let mut short: f64 = 0.0;
+            self.conditions_of(motor, |_, value| short = short.max(-value));
+            short
+        };
+        let holding = self.motors.iter().filter(|m| m.hold == Hold::Holds);
+        let most = holding.fold(of_contacts, |most, m| {
+            most.max(short(m) * m.admittance(&self.system))
+        });
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
-            contact.relax(unknowns, most);
+            contact.relax(&self.unknowns, most);
         }
-        for k in 0..self.motors.len() {
-            let motor = &self.motors[k];
-            let mut relaxed: f64 = 0.0;
-            if motor.hold == Hold::Holds {
-                self.conditions_of(motor, |_, value| relaxed = relaxed.max(-value));
-            }
-            most = most.max(relaxed * motor.lever * motor.lever * self.system.weights[TURN]);
-            self.motors[k].relaxed = relaxed;
+        for motor in &mut self.motors {
+            let wider = most / motor.admittance(&self.system);
+            motor.relaxed = if motor.hold == Hold::Holds {
+                wider
+            } else {
+                0.0
+            };
         }
         most
     }
