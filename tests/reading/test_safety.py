@@ -19,7 +19,7 @@ def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf") -> c2d.
     start = time.perf_counter()
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
         read(folder, text, name)
-    assert time.perf_counter() - start < 2.0
+    assert time.perf_counter() - start < 6.0
     return caught.value
 
 
@@ -207,7 +207,7 @@ def test_xacro_that_goes_round_without_an_end_is_refused(tmp_path: Path, what: s
     start = time.process_time()
     with pytest.raises(c2d.ScenarioError, match=r"must be (xacro|parsed)|must have a value"):
         read(tmp_path, text, "cart.xacro")
-    assert time.process_time() - start < 2.0
+    assert time.process_time() - start < 6.0
 
 
 def test_a_thousand_files_of_settings_cost_little(tmp_path: Path) -> None:
