@@ -102,6 +102,9 @@ impl System {
         for (i, f) in force.entries() {
             let row = &mut self.rows[i * stride..][..stride];
             row[stride - 1] += f * impulse;
+            if stiffness == 0.0 {
+                continue;
+            }
             let share = stiffness * f;
             for (entry, d) in row[..BASE].iter_mut().zip(of_base) {
                 *entry += share * d;
