@@ -33,7 +33,7 @@ def test_a_chain_round_ends_with_no_run_between_them_is_refused_by_its_count(
     error = refusal(robot)
     assert error.path == "robot.track.shoe_count"
     assert "straight run" in error.rule
-    assert time.process_time() - begin < 0.2  # Ctrl-C waits for so long
+    assert time.process_time() - begin < 1.0  # Ctrl-C waits for so long
 
 
 def with_grousers(height: float, thickness: float, contact: str) -> c2d.Run:

@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "The problem".
 
 use super::contact::Admittances;
-use super::motor::Driven;
+use super::motor::{Driven, Hold};
 use super::ring::Ring;
 use super::row::Row;
 use super::system::System;
@@ -50,8 +50,8 @@ impl Problem {
         self.solve_system(Impulses::OfStates)
     }
 
-    /// Solves the system of all bodies with these impulses of contacts and bilaterals, and notes how that changes the
-    /// unknowns.
+    /// Solves the system of all bodies with these impulses of contacts and bilaterals, which without rings may be given, and
+    /// notes how that changes the unknowns.
     fn solve_system(&mut self, impulses: Impulses) -> Option<()> {
         self.system.start(&self.masses, &self.free);
         let (system, rings) = (&mut self.system, &mut self.rings);
@@ -64,28 +64,33 @@ impl Problem {
         for motor in &self.motors {
             match (motor.on, motor.given()) {
                 (Driven::Ring(k), _) => rings[k].drive(motor),
-                (Driven::Body(at), Some(given)) => {
+                (Driven::Body(at), Some(given)) if motor.hold != Hold::Free => {
                     system.add([&Row::over_base(at, motor.lever); 2], given);
                 }
-                (Driven::Body(_), None) => {}
+                (Driven::Body(_), _) => {}
             }
         }
-        let mut add = |rows: [&Row; 2], damper: Damper| match rows[1].link {
-            None => system.add(rows, damper),
-            Some(link) => rings[link.ring()].add(link, rows, damper),
-        };
-        for contact in self.contacts.iter().filter(|c| c.bears) {
-            match impulses {
-                Impulses::OfStates => contact.constraints(&mut add),
-                Impulses::Given => contact.given(&mut add),
+        let bearing = self.contacts.iter().filter(|c| c.bears);
+        match impulses {
+            Impulses::OfStates => {
+                let mut add = |rows: [&Row; 2], damper: Damper| match rows[1].link {
+                    None => system.add(rows, damper),
+                    Some(link) => rings[link.ring()].add(link, rows, damper),
+                };
+                bearing.for_each(|contact| contact.constraints(&mut add));
+                for bilateral in &self.bilaterals {
+                    add([&bilateral.action; 2], bilateral.damper());
+                }
             }
-        }
-        for bilateral in &self.bilaterals {
-            let damper = match impulses {
-                Impulses::OfStates => bilateral.damper(),
-                Impulses::Given => Damper::constant(bilateral.impulse),
-            };
-            add([&bilateral.action; 2], damper);
+            Impulses::Given => {
+                for contact in bearing {
+                    system.push(&contact.actions[0], contact.normal_impulse);
+                    system.push(&contact.actions[1], contact.friction_impulse);
+                }
+                for bilateral in &self.bilaterals {
+                    system.push(&bilateral.action, bilateral.impulse);
+                }
+            }
         }
         for ring in &mut self.rings {
             ring.eliminate(&mut self.system)?;
@@ -118,18 +123,25 @@ impl Problem {
 
     /// [N s or N m s] The impulse of all constraints but motors, and of inertia along rows, on what is on the base.
     pub(super) fn impulse_on(&self, at: usize) -> f64 {
-        let of_contacts = self.contacts.iter().flat_map(|c| {
-            let [normal, friction] = c.impulses();
-            [(&c.normal, normal), (&c.tangent, friction)]
-        });
-        let of_bilaterals = self.bilaterals.iter().map(|b| (&b.row, b.impulse));
-        let all = of_contacts.chain(of_bilaterals);
-        let of_inertias = self.inertias.iter();
-        let of_inertias = of_inertias.map(|each| (&each.row, each.impulse(&self.unknowns)));
-        let loaded = all
-            .chain(of_inertias)
-            .filter(|(_, impulse)| *impulse != 0.0);
-        loaded.map(|(row, impulse)| row.lever(at) * impulse).sum()
+        let mut sum = 0.0;
+        let mut add = |row: &Row, impulse: &dyn Fn() -> f64| {
+            let lever = row.lever(at);
+            if lever != 0.0 {
+                sum += lever * impulse();
+            }
+        };
+        for contact in &self.contacts {
+            let [normal, friction] = contact.impulses();
+            add(&contact.normal, &|| normal);
+            add(&contact.tangent, &|| friction);
+        }
+        for bilateral in &self.bilaterals {
+            add(&bilateral.row, &|| bilateral.impulse);
+        }
+        for inertia in &self.inertias {
+            add(&inertia.row, &|| inertia.impulse(&self.unknowns));
+        }
+        sum
     }
 }
 

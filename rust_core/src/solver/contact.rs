@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::AGREEMENT;
 use super::damper::{COMPLIANCE, Damper};
 use super::row::Row;
 use crate::scenario::Friction;
@@ -249,14 +250,14 @@ impl Contact {
         [0, 1].map(|i| self.dampers[i].at(speeds[i]) + share * self.relaxed.seen[i])
     }
 
-    /// [m/s] How far apart the law and the present state are, by what their impulses do to the speeds.
-    pub(super) fn misfit(&self, unknowns: &[f64]) -> f64 {
+    /// Whether the present state fits its law at these velocities, but for what makes no difference to them.
+    pub(super) fn fits(&self, unknowns: &[f64]) -> bool {
         if self.fitting == self.grip {
-            return 0.0;
+            return true;
         }
         let (held, law) = (self.held(unknowns, 0.0), self.impulses());
-        let off = [0, 1].map(|i| (law[i] - held[i]).abs() * self.admittances.own[i]);
-        off[0].max(off[1])
+        let off = |i: usize| (law[i] - held[i]).abs() * self.admittances.own[i];
+        off(0).max(off(1)) < AGREEMENT.value()
     }
 
     /// Calls `each` with the constraints of the present state: the impulse of each acts along the first of two rows, with a
@@ -277,13 +278,6 @@ impl Contact {
             each([normal; 2], n);
         } else {
             each([&normal.plus(tangent, coefficient), normal], n);
-        }
-    }
-
-    /// The same with the impulses that it has.
-    pub(super) fn given(&self, mut each: impl FnMut([&Row; 2], Damper)) {
-        for (action, impulse) in self.actions.iter().zip(self.impulses()) {
-            each([action; 2], Damper::constant(impulse));
         }
     }
 

@@ -182,7 +182,11 @@ impl Row {
     /// [m/s] The speed along it, without its offset.
     pub(crate) fn along(&self, unknowns: &[f64]) -> f64 {
         let mut speed = 0.0;
-        for (at, lever) in self.entries() {
+        if self.is_on_base() {
+            let [x, y, turn] = self.of_base();
+            speed += x * unknowns[0] + y * unknowns[1] + turn * unknowns[TURN];
+        }
+        for (at, lever) in self.beside_base() {
             speed += lever * unknowns[at];
         }
         if let Some(link) = self.link {

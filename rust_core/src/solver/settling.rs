@@ -126,7 +126,7 @@ impl Problem {
         let unknowns = &self.unknowns;
         let mut all_fit = true;
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
-            if contact.misfit(unknowns) >= AGREEMENT.value() {
+            if !contact.fits(unknowns) {
                 contact.grip = contact.grip.towards(contact.fitting);
                 all_fit = false;
             }
@@ -134,10 +134,10 @@ impl Problem {
         all_fit
     }
 
-    /// Whether the states fit the velocities, but for what makes no difference to these.
+    /// Whether all states fit the velocities.
     pub(super) fn fits(&self) -> bool {
         let mut bearing = self.contacts.iter().filter(|c| c.bears);
-        bearing.all(|c| c.misfit(&self.unknowns) < AGREEMENT.value())
+        bearing.all(|c| c.fits(&self.unknowns))
     }
 
     /// [m/s] How far the last solution has moved the base.

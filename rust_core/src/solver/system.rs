@@ -5,6 +5,8 @@
 //!
 //! The equations: docs/physics.md, "The linear system".
 
+use std::ops::Range;
+
 use super::damper::{Damper, Inertia};
 use super::row::{BASE, Layout, Row, TURN};
 
@@ -20,6 +22,8 @@ pub(super) struct System {
     count: usize,
     /// Row by row, each with the right-hand side at its end.
     rows: Vec<f64>,
+    /// Whether any row has other unknowns than its own.
+    is_coupled: bool,
     /// [1/kg, 1/kg, 1/(kg m^2), ...] One over the inertia of each unknown, 0 for those of rings: the weights of the rows.
     pub weights: Vec<f64>,
     /// [rad/s] Rate over the base of each that turns with it.
@@ -34,6 +38,7 @@ impl System {
             bodies: BASE + layout.joints,
             count,
             rows: vec![0.0; count * (count + 1)],
+            is_coupled: false,
             weights: vec![0.0; layout.link(0)],
             held: vec![None; layout.link(0)],
         }
@@ -52,6 +57,7 @@ impl System {
     /// Starts from bodies on which nothing acts: their inertias [kg, kg, kg m^2, ...], and their velocities.
     pub(super) fn start(&mut self, masses: &[f64], free: &[f64]) {
         self.rows.fill(0.0);
+        self.is_coupled = false;
         for (at, mass) in masses.iter().enumerate() {
             match self.held[at] {
                 None => {
@@ -85,7 +91,13 @@ impl System {
         }
     }
 
-    pub(super) fn entry(&mut self, row: usize, column: usize) -> &mut f64 {
+    /// The entry of two unknowns, which may couple them.
+    pub(super) fn coupling(&mut self, row: usize, column: usize) -> &mut f64 {
+        self.is_coupled = true;
+        self.entry(row, column)
+    }
+
+    fn entry(&mut self, row: usize, column: usize) -> &mut f64 {
         &mut self.rows[row * (self.count + 1) + column]
     }
 
@@ -96,36 +108,55 @@ impl System {
 
     /// Adds a constraint: its impulse acts along the first of two tied rows, with a damper along the second.
     pub(super) fn add(&mut self, [force, action]: [&Row; 2], damper: Damper) {
-        let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
-        let stride = self.count + 1;
+        self.push(force, damper.at(action.offset));
+        if damper.stiffness == 0.0 {
+            return;
+        }
+        self.is_coupled = true;
         let of_base = action.of_base();
-        for (i, f) in force.entries() {
-            let row = &mut self.rows[i * stride..][..stride];
-            row[stride - 1] += f * impulse;
-            if stiffness == 0.0 {
-                continue;
-            }
-            let share = stiffness * f;
-            for (entry, d) in row[..BASE].iter_mut().zip(of_base) {
+        let add_to = |row: &mut [f64], lever: f64| {
+            let share = damper.stiffness * lever;
+            for (entry, d) in row.iter_mut().zip(of_base) {
                 *entry += share * d;
             }
             for (j, d) in action.beside_base() {
                 row[j] += share * d;
             }
+        };
+        let stride = self.count + 1;
+        let rows_of_base = self.rows.chunks_exact_mut(stride);
+        for (row, lever) in rows_of_base.zip(force.of_base()) {
+            add_to(row, lever);
+        }
+        for (i, lever) in force.beside_base() {
+            add_to(&mut self.rows[i * stride..][..stride], lever);
+        }
+    }
+
+    /// Adds an impulse [N s] along a tied row.
+    pub(super) fn push(&mut self, row: &Row, impulse: f64) {
+        for (i, lever) in row.entries() {
+            *self.right(i) += lever * impulse;
         }
     }
 
     /// Finds the unknowns; none if the constraints contradict each other.
     pub(super) fn solve(&mut self, into: &mut [f64]) -> Option<()> {
-        for at in self.bodies..self.count {
-            if self.held[at].is_none() {
-                self.eliminate_spin(at);
+        if self.is_coupled {
+            for at in self.bodies..self.count {
+                if self.held[at].is_none() {
+                    self.eliminate_spin(at);
+                }
             }
-        }
-        match self.bodies {
-            BASE => self.solve_bodies::<BASE>(into)?,
-            BODIES => self.solve_bodies::<BODIES>(into)?,
-            _ => self.solve_bodies::<{ BASE + 1 }>(into)?,
+            match self.bodies {
+                BASE => self.solve_bodies::<BASE>(into)?,
+                BODIES => self.solve_bodies::<BODIES>(into)?,
+                _ => self.solve_bodies::<{ BASE + 1 }>(into)?,
+            }
+        } else {
+            for (at, known) in into.iter_mut().enumerate().take(self.bodies) {
+                *known = *self.right(at) / *self.entry(at, at);
+            }
         }
         let turn = into[TURN];
         for at in (BASE..self.count).rev() {
@@ -133,9 +164,9 @@ impl System {
                 into[at] = turn + rate;
             } else if at >= self.bodies {
                 let row = &self.rows[at * (self.count + 1)..][..=self.count];
-                let of_known = |at: usize| row[at] * into[at];
-                let known = (0..self.bodies).chain(at + 1..self.count);
-                let of_others: f64 = known.map(of_known).sum();
+                let of_known = |part: Range<usize>| row[part.clone()].iter().zip(&into[part]);
+                let known = of_known(0..self.bodies).chain(of_known(at + 1..self.count));
+                let of_others: f64 = known.map(|(entry, known)| entry * known).sum();
                 into[at] = (row[self.count] - of_others) / row[at];
             }
         }
@@ -154,8 +185,10 @@ impl System {
                 continue;
             }
             let share = row[at] / own[at];
-            for j in (0..bodies).chain(at + 1..stride) {
-                row[j] -= share * own[j];
+            for part in [0..bodies, at + 1..stride] {
+                for (entry, own) in row[part.clone()].iter_mut().zip(&own[part]) {
+                    *entry -= share * own;
+                }
             }
         }
     }

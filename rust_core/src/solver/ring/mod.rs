@@ -159,7 +159,7 @@ impl Ring {
         let border = &self.system.border;
         for (row, i) in shared.clone() {
             for (column, j) in shared.clone() {
-                *system.entry(row, column) += border[(i, j)];
+                *system.coupling(row, column) += border[(i, j)];
             }
             *system.right(row) += border[(i, RIGHT)];
         }
