@@ -123,25 +123,16 @@ impl Problem {
 
     /// [N s or N m s] The impulse of all constraints but motors, and of inertia along rows, on what is on the base.
     pub(super) fn impulse_on(&self, at: usize) -> f64 {
-        let mut sum = 0.0;
-        let mut add = |row: &Row, impulse: &dyn Fn() -> f64| {
-            let lever = row.lever(at);
-            if lever != 0.0 {
-                sum += lever * impulse();
-            }
-        };
-        for contact in &self.contacts {
-            let [normal, friction] = contact.impulses();
-            add(&contact.normal, &|| normal);
-            add(&contact.tangent, &|| friction);
-        }
-        for bilateral in &self.bilaterals {
-            add(&bilateral.row, &|| bilateral.impulse);
-        }
-        for inertia in &self.inertias {
-            add(&inertia.row, &|| inertia.impulse(&self.unknowns));
-        }
-        sum
+        let of_contacts = self.contacts.iter().flat_map(|c| {
+            let [normal, friction] = c.impulses();
+            [(&c.normal, normal), (&c.tangent, friction)]
+        });
+        let of_bilaterals = self.bilaterals.iter().map(|b| (&b.row, b.impulse));
+        let acting = self.inertias.iter().filter(|i| i.row.lever(at) != 0.0);
+        let of_inertias = acting.map(|i| (&i.row, i.impulse(&self.unknowns)));
+        let all = of_contacts.chain(of_bilaterals).chain(of_inertias);
+        let loaded = all.filter(|(_, impulse)| *impulse != 0.0);
+        loaded.map(|(row, impulse)| row.lever(at) * impulse).sum()
     }
 }
 

@@ -5,8 +5,6 @@
 //!
 //! The equations: docs/physics.md, "The linear system".
 
-use std::ops::Range;
-
 use super::damper::{Damper, Inertia};
 use super::row::{BASE, Layout, Row, TURN};
 
@@ -113,23 +111,17 @@ impl System {
             return;
         }
         self.is_coupled = true;
+        let stride = self.count + 1;
         let of_base = action.of_base();
-        let add_to = |row: &mut [f64], lever: f64| {
-            let share = damper.stiffness * lever;
-            for (entry, d) in row.iter_mut().zip(of_base) {
+        for (i, f) in force.entries() {
+            let row = &mut self.rows[i * stride..][..stride];
+            let share = damper.stiffness * f;
+            for (entry, d) in row[..BASE].iter_mut().zip(of_base) {
                 *entry += share * d;
             }
             for (j, d) in action.beside_base() {
                 row[j] += share * d;
             }
-        };
-        let stride = self.count + 1;
-        let rows_of_base = self.rows.chunks_exact_mut(stride);
-        for (row, lever) in rows_of_base.zip(force.of_base()) {
-            add_to(row, lever);
-        }
-        for (i, lever) in force.beside_base() {
-            add_to(&mut self.rows[i * stride..][..stride], lever);
         }
     }
 
@@ -164,9 +156,9 @@ impl System {
                 into[at] = turn + rate;
             } else if at >= self.bodies {
                 let row = &self.rows[at * (self.count + 1)..][..=self.count];
-                let of_known = |part: Range<usize>| row[part.clone()].iter().zip(&into[part]);
-                let known = of_known(0..self.bodies).chain(of_known(at + 1..self.count));
-                let of_others: f64 = known.map(|(entry, known)| entry * known).sum();
+                let of_known = |at: usize| row[at] * into[at];
+                let known = (0..self.bodies).chain(at + 1..self.count);
+                let of_others: f64 = known.map(of_known).sum();
                 into[at] = (row[self.count] - of_others) / row[at];
             }
         }
@@ -185,10 +177,8 @@ impl System {
                 continue;
             }
             let share = row[at] / own[at];
-            for part in [0..bodies, at + 1..stride] {
-                for (entry, own) in row[part.clone()].iter_mut().zip(&own[part]) {
-                    *entry -= share * own;
-                }
+            for j in (0..bodies).chain(at + 1..stride) {
+                row[j] -= share * own[j];
             }
         }
     }
