@@ -8,7 +8,10 @@
 use super::Dynamics;
 use super::state::State;
 use crate::geometry::Twist;
+use crate::units::Seconds;
 
+/// [s] Shortest step that is tried for the sake of accuracy.
+pub(crate) const SHORTEST: Seconds = Seconds(2e-5);
 /// Share of a shoe's error that counts: shoes are light, and swing where the chain is slack.
 const OF_SHOES: f64 = 0.1;
 

@@ -10,6 +10,7 @@
 
 mod approach;
 mod arm;
+mod arrival;
 mod between;
 mod build;
 mod chain;
@@ -56,6 +57,7 @@ use crate::units::Seconds;
 pub use chains::ChainReading;
 pub(crate) use impulses::Impulses;
 pub(crate) use levers::{Direction, Levers};
+pub(crate) use local_error::SHORTEST;
 pub(crate) use push::push_axis;
 pub(crate) use set_point::SetPoint;
 pub(crate) use state::{
@@ -92,6 +94,8 @@ pub(crate) struct Dynamics {
     /// The state of the last step with the velocities of its motion.
     moved: State,
     identity: Identity,
+    /// [m/s] What motors and friction may bring to 0 within the step: of the drives, then of the contacts.
+    lags: Vec<f64>,
     /// [N] External force at the centre of mass.
     pub outer_force: Vector,
 }
@@ -121,6 +125,7 @@ impl Dynamics {
             loaded: Vec::new(),
             moved,
             identity: Identity::default(),
+            lags: Vec::new(),
             outer_force: Vector::ZERO,
         }
     }
@@ -208,13 +213,14 @@ impl Dynamics {
         }
     }
 
-    /// Advances the state by the prepared step of `h` [s], in which something may strike the ground.
+    /// Advances the state by the prepared step of `h` [s], in which something may strike the ground; fails with the time [s]
+    /// after which a force jumps if the step should end there instead.
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
         set_point: SetPoint,
         (h, strikes): (f64, bool),
-    ) {
+    ) -> Result<(), f64> {
         self.problem.effort = Effort::default();
         let half = 0.5 * h;
         let before = (!self.model.is_one_body()).then(|| self.momentum_at(state));
@@ -225,7 +231,11 @@ impl Dynamics {
         self.close_gaps(h);
         self.guess(half);
         self.drive_to_middle(state, set_point, half);
+        self.note_lags(set_point);
         self.solve(state, half);
+        if let Some(time) = self.first_arrival(half).filter(|_| !strikes) {
+            return Err(time);
+        }
         self.moved.copy(state);
         self.move_on(state, h);
         self.move_chains(state, h);
@@ -245,6 +255,7 @@ impl Dynamics {
         if let Some(before) = before {
             self.balance_momentum(state, before, h);
         }
+        Ok(())
     }
 
     /// Keeps what a step of `h` [s] has found, for the next one to start from; after an impact, which is over, that

@@ -25,7 +25,7 @@ impl Dynamics {
             let speed = state.track_speed(&self.model, k);
             let forces = Forces {
                 limits: rule.limits(speed).map(Damper::from),
-                error: 2.0 * set_point.middle - set_point.end - speed,
+                error: set_point.start() - speed,
             };
             let [most, least] = forces.limits.map(|limit| limit.at(speed));
             let over = |force: Damper, now: f64| {

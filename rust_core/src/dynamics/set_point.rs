@@ -11,9 +11,14 @@ pub(crate) struct SetPoint {
     pub end: f64,
 }
 
-#[cfg(test)]
 impl SetPoint {
+    /// At its beginning.
+    pub(super) fn start(self) -> f64 {
+        2.0 * self.middle - self.end
+    }
+
     /// One that does not change.
+    #[cfg(test)]
     pub(super) fn constant(speed: f64) -> Self {
         Self {
             middle: speed,

@@ -14,6 +14,8 @@ pub(super) fn engineer() -> Scenario {
 
 pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     let mut scenario = engineer();
+    // Steps here are of a given length.
+    scenario.solver.accuracy = None;
     change(&mut scenario);
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
@@ -39,7 +41,8 @@ impl Dynamics {
         let mut contacts = contacts.to_vec();
         self.recognise(&mut contacts, 0.0);
         self.prepare(state, &contacts, (h, TRAVEL));
-        self.advance(state, SetPoint::constant(set_point), (h, false));
+        self.advance(state, SetPoint::constant(set_point), (h, false))
+            .expect("no step is cut without an accuracy");
         self.keep(&contacts, h, false);
     }
 }
@@ -83,6 +86,31 @@ fn drive_in_the_air_spins_up_by_its_force_and_turns_the_chassis_back() {
         max_relative = 1e-9
     );
     assert!(state.velocity.length() < 1e-12);
+}
+
+#[test]
+fn a_step_ends_when_a_drive_in_the_air_has_its_speed_back() {
+    let (mut dynamics, mut state) = setup(|s| {
+        s.gravity = 0.0;
+        s.solver.accuracy = Some(3e-7);
+    });
+    let m = dynamics.model();
+    let (force, radius) = (2.0 * 6.0 / 0.052, m.drive_radius);
+    let lag = 0.05;
+    state.drives[0].spin = lag / radius;
+    let gain = force * (1.0 / m.drive_masses[0] + radius * radius / m.moment_of_inertia);
+    let expected = lag / gain;
+    // It is at its limit in the middle of the shorter step, and has long been at its speed in that of the longer one.
+    for h in [1.3 * expected, 5.0 * expected] {
+        dynamics.prepare(&state, &[], (h, TRAVEL));
+        let advanced = dynamics.advance(&mut state.clone(), SetPoint::constant(0.0), (h, false));
+        let time = advanced.expect_err("the force jumps");
+        assert_relative_eq!(time, expected, max_relative = 1e-9);
+    }
+    dynamics.prepare(&state, &[], (expected, TRAVEL));
+    let advanced = dynamics.advance(&mut state, SetPoint::constant(0.0), (expected, false));
+    assert_eq!(advanced, Ok(()));
+    assert_relative_eq!(state.track_speed(dynamics.model(), 0), 0.0, epsilon = 1e-9);
 }
 
 #[test]

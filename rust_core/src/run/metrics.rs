@@ -67,7 +67,7 @@ metrics! {
     max_guide_penetration ["m"] "deepest overlap of a shoe with guide, wheels or teeth"
     max_sprocket_slip ["m"] "farthest that a chain ran ahead of its sprocket or behind it; some hundredths of a pitch are the play of the teeth"
     steps ["1"] "steps of the solver, all together"
-    repeated_steps ["1"] "attempts at a step whose local error exceeded `solver.accuracy`; each was taken again with a shorter one"
+    repeated_steps ["1"] "attempts at a step whose local error exceeded `solver.accuracy`, or within which a force jumped; each was taken again with a shorter one"
     solves ["1"] "searches for the forces that all contacts, motors and pins agree on"
     solve_rounds ["1"] "linear systems solved in these: one per solve if the first guess of what sticks and what slides is right"
     solver_fallbacks ["1"] "how often corrections did not lead to right states, so that a path of pivots to them was followed"

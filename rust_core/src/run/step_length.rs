@@ -2,14 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::dynamics::SHORTEST;
 use crate::robot::Part;
 use crate::scenario::Scenario;
 use crate::units::Seconds;
 
 /// [s] Longest step: the accuracy of rates gains nothing from a limit, but what is looked at between two steps does.
 const LONGEST: Seconds = Seconds(0.016);
-/// [s] Shortest step that is tried for the sake of accuracy.
-const SHORTEST: Seconds = Seconds(2e-5);
 /// [s] Length of the first step.
 const FIRST: Seconds = Seconds(1e-3);
 /// [rad] Farthest that anything may turn in a step: it would pass over corners without contact.

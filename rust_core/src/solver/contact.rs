@@ -209,6 +209,11 @@ impl Contact {
         if self.give == 0.0 { COMPLIANCE } else { 0.0 }
     }
 
+    /// Its friction, as a share of the most under its normal impulse.
+    pub(crate) fn friction_load(&self) -> f64 {
+        self.friction_impulse.abs() / self.limit(self.normal_impulse)
+    }
+
     /// [N s] The most friction under a normal impulse.
     fn limit(&self, normal: f64) -> f64 {
         self.friction.coefficient * normal

@@ -217,7 +217,7 @@ impl Problem {
     }
 
     /// [m/s] The speed of a motor.
-    pub(super) fn motor_speed(&self, motor: &Motor) -> f64 {
+    pub(crate) fn motor_speed(&self, motor: &Motor) -> f64 {
         match motor.on {
             Driven::Body(at) => motor.lever * (self.unknowns[at] - self.unknowns[TURN]),
             Driven::Ring(k) => self.rings[k].drive_speed(&self.unknowns),
@@ -237,6 +237,13 @@ impl Problem {
             }
             Driven::Ring(k) => self.rings[k].drive_impulse(&self.unknowns),
         }
+    }
+
+    /// The impulse of a motor so far, as a share of the largest one that way.
+    pub(crate) fn motor_load(&self, motor: &Motor) -> f64 {
+        let impulse = self.motor_impulse(motor);
+        let limit = motor.limits[usize::from(impulse < 0.0)];
+        impulse / limit.at(self.motor_speed(motor))
     }
 
     /// Calls `each` with the conditions of the state of a motor.

@@ -51,13 +51,21 @@ fn a_drive_that_runs_free_reaches_the_speed_without_load_and_no_more() {
         let drivetrain = &mut scenario.robot.drivetrain;
         (drivetrain.max_acceleration, drivetrain.no_load_speed) = (1e6, Some(0.3));
         scenario.drive.speed = 0.4;
-        let found = after(&scenario, 2.0).drive_speed(0);
+        let (from, to) = (1.0, 2.0);
+        let mut simulation = after(&scenario, from);
+        let mut travel = 0.0;
+        while simulation.time() < to {
+            simulation.step_until(to).expect("the state stays finite");
+            travel += simulation.drive_speed(0) * simulation.last_step();
+        }
+        let found = travel / (to - from);
         println!("{name}: {found:.5} m/s");
-        // The tension of a chain on a guide pulls at its drive to and fro.
+        // The tension of a chain on a guide pulls at its drive to and fro, and what runs faster than without load is not
+        // braked.
         assert_relative_eq!(
             found,
             0.3,
-            max_relative = if is_on_chain(&scenario) { 0.02 } else { 1e-3 }
+            max_relative = if is_on_chain(&scenario) { 0.04 } else { 1e-3 }
         );
     }
 }

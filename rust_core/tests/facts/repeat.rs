@@ -131,16 +131,16 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0xd41e_fae9_0307_44b6),
+        ("line of 5", engineer_on(line(5)), 0x0285_9b64_9482_9453),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0xbeaa_d183_cfe5_f9d9,
+            0x9a22_f097_e5b3_2f25,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0x1e2e_7fb7_8d77_55a0,
+            0x772c_11ad_676e_84e9,
         ),
         ("chain", engineer_on(segmental(None)), 0xffd9_5a58_a999_7e12),
         (
@@ -148,7 +148,7 @@ fn every_build_finds_the_same_values() {
             engineer_on(sprocketed(None)),
             0x91de_80e2_b497_5ad0,
         ),
-        ("belt, arms", on_arms(0.5, belt()), 0xc857_591e_ca82_5214),
+        ("belt, arms", on_arms(0.5, belt()), 0x56ec_d7fd_a24b_834b),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),

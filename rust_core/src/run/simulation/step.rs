@@ -87,16 +87,9 @@ impl Simulation {
     fn attempt_accurately(&mut self, attempt: &mut Attempt, mut h: f64, limit: f64) -> Effort {
         let mut effort = Effort::default();
         loop {
-            self.attempt_step(attempt, h, limit - self.time);
+            let attempted = self.attempt_step(attempt, h, limit - self.time);
             effort = effort.plus(self.dynamics.effort());
-            if attempt.strikes && attempt.state.is_finite() {
-                return effort;
-            }
-            let error = self.local_error(attempt);
-            match self
-                .step_control
-                .judge(self.step_rule, attempt.length, error)
-            {
+            match attempted.and_then(|()| self.judge(attempt)) {
                 Ok(()) => return effort,
                 Err(shorter) => {
                     self.dynamics.rewind();
@@ -105,6 +98,16 @@ impl Simulation {
                 }
             }
         }
+    }
+
+    /// Whether an attempt will do; if not, how long to try instead [s].
+    fn judge(&mut self, attempt: &Attempt) -> Result<(), f64> {
+        if attempt.strikes && attempt.state.is_finite() {
+            return Ok(());
+        }
+        let error = self.local_error(attempt);
+        self.step_control
+            .judge(self.step_rule, attempt.length, error)
     }
 
     /// [m] The local error of an attempt, if that matters; infinite if its state is not finite.
@@ -120,8 +123,9 @@ impl Simulation {
     }
 
     /// Attempts a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the
-    /// ground; the next, with the impact, is short.
-    fn attempt_step(&mut self, attempt: &mut Attempt, h: f64, left: f64) {
+    /// ground; the next, with the impact, is short. Fails with the time [s] after which a force jumps if it should end
+    /// there instead.
+    fn attempt_step(&mut self, attempt: &mut Attempt, h: f64, left: f64) -> Result<(), f64> {
         let mut h = h;
         let strikes = loop {
             let travel = self.find_contacts(attempt, h);
@@ -145,9 +149,10 @@ impl Simulation {
             .command_flippers(&self.state, angles, keep_level, h, self.last.trend());
         attempt.state.copy(&self.state);
         self.dynamics
-            .advance(&mut attempt.state, set_point, (h, strikes));
+            .advance(&mut attempt.state, set_point, (h, strikes))?;
         (attempt.length, attempt.strikes) = (h, strikes);
         attempt.set_point = set_point.end;
+        Ok(())
     }
 
     /// The same of `h` [s] in another engine; what that has given up is not finite.
@@ -300,9 +305,11 @@ mod tests {
         }
 
         /// A step of `h` [s] at most, not kept.
-        fn tried(&mut self, h: f64) -> Attempt {
+        fn tried(&mut self, mut h: f64) -> Attempt {
             let mut attempt = Attempt::default();
-            self.attempt_step(&mut attempt, h, f64::INFINITY);
+            while let Err(shorter) = self.attempt_step(&mut attempt, h, f64::INFINITY) {
+                h = shorter;
+            }
             attempt
         }
     }

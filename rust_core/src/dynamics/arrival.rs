@@ -1,0 +1,127 @@
+//! When, within a step, a motor comes to its speed or a contact ceases to slide: its force jumps then, and the step is
+//! to end there.
+//!
+//! The equations: docs/physics.md, "Length of a step".
+
+use super::local_error::SHORTEST;
+use super::{Dynamics, SetPoint};
+use crate::solver::{Grip, Hold};
+
+/// No step is cut to more than this share of it.
+const LONGEST_SHARE: f64 = 0.97;
+
+/// What has become, in the middle of a step, of a speed that a motor or friction brings to 0.
+#[derive(Clone, Copy)]
+enum Middle {
+    /// It is held at 0, which has taken this share of the largest impulse.
+    Held(f64),
+    /// [m/s] It is not yet 0.
+    Left(f64),
+}
+
+/// [s] When a speed of `lag` [m/s] comes to 0 under a constant force, from its middle, `half` [s] after the beginning of a
+/// step; none if the step to its end is off by no more than `accuracy` [m].
+fn arrival(lag: f64, middle: Middle, half: f64, accuracy: f64) -> Option<f64> {
+    let step = 2.0 * half;
+    let (time, off) = match middle {
+        Middle::Held(share) => {
+            let time = half * share;
+            (time, 0.5 * lag.abs() * time)
+        }
+        Middle::Left(left) => {
+            let time = half * lag / (lag - left);
+            (time, 0.5 * lag.abs() * (step - time) * (step - time) / time)
+        }
+    };
+    let is_within = time > SHORTEST.value() && time < LONGEST_SHARE * step;
+    (is_within && off > accuracy).then_some(time)
+}
+
+impl Dynamics {
+    /// Notes what motors and friction may bring to 0 within a step: by how much the drives are off their set-points, and
+    /// how fast contacts slide.
+    pub(super) fn note_lags(&mut self, set_point: SetPoint) {
+        let problem = &self.problem;
+        let target = self.model.motor.target(set_point.start());
+        let drives = &problem.motors[self.model.drive_motors()];
+        let of_drives = drives
+            .iter()
+            .map(|motor| problem.motor_speed(motor) - target);
+        let of_contacts = problem.contacts.iter().map(|contact| {
+            if contact.grip == Grip::Sticks {
+                0.0
+            } else {
+                contact.tangent.along(&problem.unknowns) + contact.tangent.offset
+            }
+        });
+        self.lags.clear();
+        self.lags.extend(of_drives.chain(of_contacts));
+    }
+
+    /// [s] When the first of these comes to 0, from the middle of a step, `half` [s] after its beginning; none if that
+    /// makes no difference to the accuracy, with steps of a given length, and with chains.
+    pub(super) fn first_arrival(&self, half: f64) -> Option<f64> {
+        let accuracy = self.solver.accuracy.filter(|_| self.chains.is_empty())?;
+        let problem = &self.problem;
+        let drives = &problem.motors[self.model.drive_motors()];
+        let of_drives = drives.iter().map(|motor| match motor.hold {
+            _ if motor.correction.is_some() => None,
+            Hold::Holds => Some(Middle::Held(problem.motor_load(motor))),
+            Hold::Pushes | Hold::Brakes => {
+                Some(Middle::Left(problem.motor_speed(motor) - motor.target))
+            }
+            Hold::Locked | Hold::Free => None,
+        });
+        let of_contacts = problem.contacts.iter().map(|contact| match contact.grip {
+            _ if !contact.friction.resists() => None,
+            Grip::Sticks => Some(Middle::Held(contact.friction_load())),
+            Grip::Forwards | Grip::Backwards => {
+                let slip = contact.tangent.along(&problem.unknowns);
+                Some(Middle::Left(slip + contact.tangent.offset))
+            }
+            Grip::Open => None,
+        });
+        let middles = of_drives.chain(of_contacts);
+        let arrivals = (self.lags.iter().zip(middles))
+            .filter_map(|(lag, middle)| arrival(*lag, middle?, half, accuracy));
+        arrivals.reduce(f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    #[test]
+    fn a_speed_that_is_lost_evenly_is_lost_at_its_share_of_the_time() {
+        // 0.3 m/s at 400 m/s^2: after 0.75 ms, in the first half of a long step and in the second of a short one.
+        let (lag, loss) = (-0.3, 400.0);
+        let time = 0.3 / loss;
+        let held = arrival(lag, Middle::Held(time / 2e-3), 2e-3, 1e-7);
+        assert_relative_eq!(held.expect("it is within"), time, max_relative = 1e-12);
+        let left = arrival(lag, Middle::Left(lag + loss * 5e-4), 5e-4, 1e-7);
+        assert_relative_eq!(left.expect("it is within"), time, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn what_a_step_is_not_off_by_does_not_cut_it() {
+        let half = 1e-3;
+        for lag in [0.1, 1e-2] {
+            // The middle has no speed all the time, and there was half of the lag up to then.
+            let off = 0.5 * lag * 0.25 * half;
+            let cut = |accuracy| arrival(lag, Middle::Held(0.25), half, accuracy);
+            assert_eq!(cut(0.9 * off), Some(0.25 * half));
+            assert_eq!(cut(1.1 * off), None);
+        }
+    }
+
+    #[test]
+    fn a_speed_that_grows_or_stays_never_arrives() {
+        for left in [0.2, 0.3] {
+            assert_eq!(arrival(0.2, Middle::Left(left), 1e-3, 1e-9), None);
+        }
+        assert_eq!(arrival(0.0, Middle::Held(0.0), 1e-3, 1e-9), None);
+    }
+}
