@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from crawler2d import studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
+    from crawler2d.runs.saved import load
     from crawler2d.sweeps.rates import rate
     from crawler2d.sweeps.sequential import Until, sequential
     from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
@@ -112,6 +113,7 @@ __all__ = [
     "check_store",
     "compare",
     "join_stores",
+    "load",
     "newcombe",
     "newcombe_paired",
     "rate",
@@ -147,6 +149,7 @@ _LAZY = {
     "check_store": "crawler2d.sweeps.store",
     "compare": "crawler2d.sweeps.sweep",
     "join_stores": "crawler2d.sweeps.store",
+    "load": "crawler2d.runs.saved",
     "newcombe": "crawler2d.sweeps.statistics",
     "newcombe_paired": "crawler2d.sweeps.statistics",
     "rate": "crawler2d.sweeps.rates",

@@ -17,6 +17,7 @@ from pathlib import Path
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.drawings import draw_robot
+from crawler2d.common.files import write_text
 from crawler2d.drawings.svg import escape
 from crawler2d.errors import Crawler2dError, ScenarioWarning
 from crawler2d.pictures.page import fill_page, read_part
@@ -85,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"interrupted; {options.html} has what was done", file=sys.stderr)
             return 130
         _show(entries[-1])
-        _write(options.html, atlas_page(folder, entries, samples=options.samples))
+        write_text(options.html, atlas_page(folder, entries, samples=options.samples))
     print(f"{_conclusion(entries)}\nThe page is in {options.html}" if entries else "no model file")
     return 0
 
@@ -147,13 +148,6 @@ def _show(entry: Entry) -> None:
 def _verdict(entry: Entry) -> str:
     assert entry.audit is not None  # or there is a refusal
     return " ".join(words.conclusion(entry.audit))
-
-
-def _write(path: Path, text: str) -> None:
-    """Put a page in the place of the last one, whole or not at all."""
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(text, encoding="utf-8", newline="\n")
-    part.replace(path)
 
 
 def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLES) -> str:

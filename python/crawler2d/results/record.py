@@ -6,10 +6,12 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, overload
 
 import numpy as np
 
+from crawler2d import _core
 from crawler2d.common.arrays import Metrics, Table, freeze_array
 from crawler2d.common.bodies import bodies_of, body_poses
 from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, own_error
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
     from crawler2d.parameters.scenario import Scenario
 
 __all__ = ["NO_RESULT", "Record", "Row", "diagnosis_json", "read_diagnosis"]
+
+
+_BUILD = _core.build_info()
 
 
 class _History:
@@ -79,6 +84,7 @@ class Record:
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
         self.wall_time: float = result.get("wall_time", 0.0)
+        self.build = MappingProxyType(dict(result.get("build", _BUILD)))
         self._trace = {name: freeze_array(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
 
@@ -251,6 +257,7 @@ class Record:
             "edges": dict(self.edges),
             "events": dict(self.events),
             "wall_time": self.wall_time,
+            "build": dict(self.build),
             "trace": self._trace,
             "contacts": dict(self._contacts),
         }

@@ -169,6 +169,13 @@ def refuse_without_result(run: Record) -> None:
 def branch_time(run: Record, at: float | str) -> float:
     """[s] The instant given by `at`: a time of the run, or the stop it ended in."""
     refuse_without_result(run)
+    build = _core.build_info()["build_id"]
+    if run.build["build_id"] != build:
+        rule = (
+            f"must be of this build, {build}, to be repeated, not of {run.build['build_id']}:"
+            " simulate(run.scenario) makes such a run"
+        )
+        raise ScenarioError("run", run, rule)
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
             rule = (

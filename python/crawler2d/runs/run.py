@@ -74,6 +74,8 @@ class Run(Record):
         Stops, and edges inside the track; see below.
     wall_time : float
         [s] Computing time on one thread.
+    build : mapping of str to object
+        What simulated it, as `build_info` says; of a loaded run it may be another build.
     error : Crawler2dError or None
         Why there is no result, in a batch that was interrupted or has ``on_error="record"``.
     trunk : tuple of Scenario and float, or None
@@ -596,14 +598,54 @@ class Run(Record):
             If the run was recorded with ``record="summary"``.
         """
         # Imported only when used.
-        from pathlib import Path  # noqa: PLC0415
-
+        from crawler2d.common.files import write_text  # noqa: PLC0415
         from crawler2d.pictures.page import replay_page  # noqa: PLC0415
 
         text = replay_page(self, time)
-        if path is None:
-            return text
-        Path(path).write_text(text, encoding="utf-8", newline="\n")
+        return text if path is None else write_text(path, text)
+
+    @takes_keywords
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Write the run to one file, which `crawler2d.load` reads.
+
+        The file is a NumPy ``.npz``: the scenario as JSON, every array and table, metrics,
+        diagnosis and `build`. What was at the path is replaced once the file is complete.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Where to write it; ``.npz`` is the usual suffix.
+
+        Returns
+        -------
+        Path
+            The written file.
+
+        Raises
+        ------
+        ScenarioError
+            If the run has no result, see `error`.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        The history needs nothing but NumPy to be read:
+
+        >>> import tempfile
+        >>> import numpy as np
+        >>> import crawler2d as c2d
+        >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
+        >>> path = run.save(f"{tempfile.mkdtemp()}/step.npz")
+        >>> np.load(path)["trace/position"].shape == run.position.shape
+        True
+        """
+        # Imported only when used.
+        from pathlib import Path  # noqa: PLC0415
+
+        from crawler2d.results.run_file import write_run  # noqa: PLC0415
+
+        write_run(self, Path(path))
         return Path(path)
 
     def _repr_html_(self) -> str:

@@ -1,0 +1,56 @@
+"""Files that appear once they are complete."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+__all__ = ["write_text", "written_whole"]
+
+
+@contextlib.contextmanager
+def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+    """Open a file that takes the place of another one when it is complete.
+
+    Parameters
+    ----------
+    path : str or path-like
+        Its place. Until the end, and after a failure, what was there is still there.
+
+    Yields
+    ------
+    file
+        Open for bytes, beside that place.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written, or something other than a file is in its place.
+    """
+    place = Path(os.path.realpath(path))  # a link stays one
+    if place.exists() and not place.is_file():
+        number = errno.EISDIR if place.is_dir() else errno.EINVAL
+        raise OSError(number, os.strerror(number), os.fspath(path))
+    part = place.with_name(f".{place.name}.{os.getpid()}.part")
+    try:
+        with part.open("wb") as file:
+            yield file
+        part.replace(place)
+    except OSError as error:
+        if error.filename != str(part):
+            raise
+        # The name of the part would tell its user nothing.
+        raise OSError(error.errno, error.strerror, os.fspath(path)) from None
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> Path:
+    """Write a text as UTF-8, whole or not at all; errors are those of `written_whole`."""
+    with written_whole(path) as file:
+        file.write(text.encode())
+    return Path(path)

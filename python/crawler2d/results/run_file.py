@@ -1,0 +1,189 @@
+"""A run in one file: arrays in NumPy's .npz, texts as JSON, nothing pickled."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from crawler2d.common.files import written_whole
+from crawler2d.errors import ScenarioError, StoreError
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.record import diagnosis_json, read_diagnosis
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from crawler2d.results.record import Record
+
+__all__ = ["SIGNATURE", "read_run", "write_run"]
+
+R = TypeVar("R")
+
+SIGNATURE = b"PK\x03\x04"
+"""How a .npz begins, which is a zip file."""
+
+_FORMAT = "crawler2d run"
+_VERSION = 1
+
+_TABLES = ("edges", "events", "contacts")
+_OF_STOP = "diagnosis/contacts"
+
+_AGAIN = "copy it again from where it was saved, or simulate its scenario again"
+_CUT = f"is cut short or damaged: {_AGAIN}"
+_OTHER = "is not a saved run: Run.save writes them, and Scenario.from_json reads scenarios"
+
+
+def write_run(run: Record, path: Path) -> None:
+    """Write a run that has a result; see `Run.save`."""
+    if run.error is not None:
+        rule = f"must have a result to be saved, not the error {run.error}"
+        raise ScenarioError("run", run, rule)
+    _, (scenario, result, _, trunk) = run.__reduce__()
+    tables = {name: result[name] for name in _TABLES}
+    diagnosis = result["diagnosis"]
+    if diagnosis is not None:
+        tables[_OF_STOP], diagnosis["contacts"] = diagnosis["contacts"], {}
+    about = {
+        "format": _FORMAT,
+        "version": _VERSION,
+        "build": result["build"],
+        "outcome": result["outcome"],
+        "wall_time": result["wall_time"],
+        "trunk": None if trunk is None else [trunk[0].to_json(), trunk[1]],
+        "tables": {name: _texts(columns) for name, columns in tables.items()},
+    }
+    arrays = {
+        "about": np.array(json.dumps(about)),
+        "scenario": np.array(scenario.to_json()),
+        "diagnosis": np.array("" if diagnosis is None else diagnosis_json(diagnosis)),
+        "metrics/names": np.array(list(result["metrics"])),
+        "metrics/values": np.array(list(result["metrics"].values())),
+        **{f"trace/{name}": array for name, array in result["trace"].items()},
+        **{
+            f"{table}/{name}": column
+            for table, columns in tables.items()
+            for name, column in columns.items()
+            if not _is_text(column)
+        },
+    }
+    with written_whole(path) as file:
+        np.savez_compressed(file, allow_pickle=False, **arrays)
+
+
+def _is_text(column: np.ndarray[Any, Any]) -> bool:
+    """Whether a column holds texts or tuples."""
+    return column.dtype.kind in "OU"
+
+
+def _texts(columns: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, list[Any] | None]:
+    """List the columns of a table in order, with the values of those that are no arrays."""
+    return {name: each.tolist() if _is_text(each) else None for name, each in columns.items()}
+
+
+def read_run(path: str | os.PathLike[str], make: Callable[..., R]) -> R:
+    """Read what `write_run` wrote; see `crawler2d.load`.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    make : callable
+        Takes what `Record` does.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be read, or is no run, damaged or of a newer format.
+    """
+    try:
+        with open(path, "rb") as file:
+            if file.read(len(SIGNATURE)) != SIGNATURE:
+                raise StoreError(f"{path} {_OTHER}")
+            file.seek(0)
+            with _entries(file, path) as entries:
+                about = _about(entries, path)
+                return make(*_arguments(entries, about, path))
+    except StoreError:
+        raise
+    except OSError as error:
+        raise StoreError(f"{path} cannot be read: {error.strerror or error}") from None
+    except Exception as error:  # there is no end to what a changed file may raise
+        fault = f"{type(error).__name__}: {error}"
+        raise StoreError(f"{path} is damaged ({fault}): {_AGAIN}") from error
+
+
+def _entries(file: Any, path: str | os.PathLike[str]) -> Any:
+    """Open the arrays of a file whose checksums are right."""
+    try:
+        entries = np.load(file, allow_pickle=False)
+        if entries.zip.testzip() is None:  # before anything is made of it
+            return entries
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
+        pass
+    raise StoreError(f"{path} {_CUT}")
+
+
+def _about(entries: Any, path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read what the file says of itself, and whether this program can read the rest."""
+    try:
+        about = json.loads(str(entries["about"]))
+    except (KeyError, ValueError):
+        about = None
+    if not isinstance(about, dict) or about.get("format") != _FORMAT:
+        raise StoreError(f"{path} {_OTHER}")
+    if about["version"] > _VERSION:
+        raise StoreError(
+            f"{path} is of format {about['version']}, of crawler2d {about['build']['version']};"
+            f" this one reads up to {_VERSION}: update crawler2d"
+        )
+    return about
+
+
+def _arguments(
+    entries: Any, about: dict[str, Any], path: str | os.PathLike[str]
+) -> tuple[Scenario, dict[str, Any], None, tuple[Scenario, float] | None]:
+    """Read what a `Record` is made of."""
+    tables = {
+        table: {
+            name: entries[f"{table}/{name}"] if texts is None else texts
+            for name, texts in columns.items()
+        }
+        for table, columns in about["tables"].items()
+    }
+    diagnosis = None
+    if text := str(entries["diagnosis"]):
+        diagnosis = read_diagnosis(text)
+        diagnosis["contacts"] = tables.pop(_OF_STOP)
+    result = {
+        **{name: tables[name] for name in _TABLES},
+        "outcome": about["outcome"],
+        "build": about["build"],
+        "wall_time": about["wall_time"],
+        "diagnosis": diagnosis,
+        "metrics": _metrics(entries),
+        "trace": {
+            name.removeprefix("trace/"): entries[name]
+            for name in entries.files
+            if name.startswith("trace/")
+        },
+    }
+    trunk = about["trunk"]
+    try:
+        branched_off = None if trunk is None else (Scenario.from_json(trunk[0]), float(trunk[1]))
+        return Scenario.from_json(str(entries["scenario"])), result, None, branched_off
+    except ScenarioError as error:
+        by = about["build"]["version"]
+        raise StoreError(
+            f"{path} has a scenario that this crawler2d refuses, and {by} did not: {error}"
+        ) from error
+
+
+def _metrics(entries: Any) -> dict[str, float]:
+    names, values = entries["metrics/names"].tolist(), entries["metrics/values"].tolist()
+    return dict(zip(names, values, strict=True))
