@@ -377,7 +377,7 @@ def test_the_page_has_the_records_of_its_runs_thinned(
 ) -> None:
     ((*_, runs, _),) = simulate_replays(of_file)
     assert file_page.data("runs-0") == [json.loads(json.dumps(recording(run))) for run in runs]
-    monkeypatch.setattr("crawler2d.audits.page._MOST", 30)
+    monkeypatch.setattr("crawler2d.pictures.page.pair._MOST", 30)
     for thinned, run in zip(Page(of_file.to_html()).data("runs-0"), runs, strict=True):
         assert thinned["samples"] == run.time.size > 31
         assert thinned["frames"]["count"] <= 31

@@ -16,8 +16,15 @@ from crawler2d.audits.verdicts import BELT, OWN, ObstacleRuns
 from crawler2d.drawings.svg import escape
 from crawler2d.errors import ignore_doubts
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.pictures.page import as_json, fill_page, read_part, scene_script
-from crawler2d.pictures.page.recording import recording
+from crawler2d.pictures.page import fill_page, read_part
+from crawler2d.pictures.page.pair import (
+    INTERVAL,
+    pair_data,
+    pair_figure,
+    pair_parts,
+    pair_script,
+    pair_style,
+)
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import simulate_many
 
@@ -29,12 +36,6 @@ if TYPE_CHECKING:
 __all__ = ["audit_page", "simulate_replays"]
 
 _HERE = "crawler2d.audits.page"
-
-_INTERVAL = 0.04
-"""[s] Between samples: 25 pictures a second, a quarter of the usual."""
-
-_MOST = 300
-"""Samples of a run in the page: those of slow and of long runs are farther apart."""
 
 
 class Replay(NamedTuple):
@@ -83,7 +84,7 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
         runs = simulate_many(
             [scenario for pair in scenarios for scenario in pair],
             threads=threads,
-            sample_interval=_INTERVAL,
+            sample_interval=INTERVAL,
             trials=TRIED,
             on_error="record",  # with these draws the other robot may break a rule
         )
@@ -139,22 +140,10 @@ def _closest(audit: AuditRecord) -> list[Replay]:
 
 def _replay_section(audit: AuditRecord, each: Replay, number: int) -> str:
     """Write the place of the pictures, what stopped the robot, and what was drawn."""
-    figures = "".join(map(_figure, ("the model", each.other), each.runs))
+    figures = "".join(map(pair_figure, ("the model", each.other), each.runs))
     return (
         f'<div class="runs" id="replay-{number}"{" hidden" if number else ""}>'
         f'<div class="pair">{figures}</div>{_diagnosis(audit, each)}</div>'
-    )
-
-
-def _figure(name: str, run: Run) -> str:
-    if run.error is not None:
-        return f"<p><b>{escape(name)}</b> no result: {escape(str(run.error))}</p>"
-    end = f"{words.ending(run)} after {run.metrics['time']:.1f} s"
-    look = {"seized": "bad", "cleared": "good"}.get(words.ending(run), "quiet")
-    return (
-        f'<figure><figcaption><b>{escape(name)}</b> <strong class="{look}">{end}</strong>'
-        f'</figcaption><canvas tabindex="0" role="img" aria-label="{escape(name)}, side view:'
-        f' {end}" aria-describedby="keys"></canvas></figure>'
     )
 
 
@@ -198,8 +187,8 @@ def audit_page(
     runs = simulate_replays(audit, threads=threads)
     return fill_page(
         "audit.html",
-        read_part("replay.css") + read_part("audit.css", _HERE),
-        scene_script(read_part("audit.js", _HERE)),
+        pair_style() + read_part("audit.css", _HERE),
+        pair_script(read_part("audit.js", _HERE)),
         _HERE,
         title=escape(f"{audit.robot.name}: audit"),
         name=escape(audit.robot.name),
@@ -218,7 +207,8 @@ def audit_page(
         robot=sections.robot_section(audit),
         command=escape(sections.command(audit)),
         made=sections.method_section(audit),
-        data="\n".join(_data(each, number) for number, each in enumerate(runs)),
+        data="\n".join(pair_data(each.runs, f"runs-{number}") for number, each in enumerate(runs)),
+        **pair_parts(),
     )
 
 
@@ -229,9 +219,3 @@ def _options(runs: Sequence[Replay]) -> str:
         f" {words.percent(each.verdict.seized.rate)} seized</option>"
         for number, each in enumerate(runs)
     )
-
-
-def _data(each: Replay, number: int) -> str:
-    """Write what is drawn of runs as inert text."""
-    shown = [recording(run, most=_MOST) for run in each.runs if run.error is None]
-    return f'<script type="application/json" id="runs-{number}">{as_json(shown)}</script>'

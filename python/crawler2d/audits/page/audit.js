@@ -1,65 +1,15 @@
-// The page of an audit: the runs over one obstacle side by side, on one clock.
+// The page of an audit: the runs over one obstacle side by side.
 
 const made = new Map(); // the scenes of each obstacle that was looked at
-const player = new Player(draw);
-let scenes = [];
-let colors = readColors();
 
-// A run that is over stays as it ended.
-function draw(time) {
-  for (const scene of scenes) scene.draw(Math.min(time, scene.end), colors);
-  element("scrub").value = String(time);
-  element("scrub").setAttribute("aria-valuetext", `${time.toFixed(1)} seconds`);
-  element("clock").textContent = `${time.toFixed(1)} / ${player.end.toFixed(1)} s`;
-}
-
-// Both pictures show the same place, in which the second robot gets past the goal and is over; arrows
-// have one length for one force.
-function scenesOf(number) {
-  const runs = JSON.parse(element(`runs-${number}`).textContent);
-  const [{ robot: { length }, ground: { goal } }] = runs;
-  const past = goal === null ? Infinity : goal + length;
-  const extent = [0, 1, 2, 3].map((side) =>
-    Math[side % 2 ? "max" : "min"](...runs.map((run) => run.extent[side])));
-  extent[1] = Math.min(extent[1], Math.max(runs[0].extent[1], past + length / 2));
-  const canvases = element(`replay-${number}`).querySelectorAll("canvas");
-  const both = runs.map((run, k) =>
-    new Scene(canvases[k], { ...run, extent, robot: { ...run.robot, length } }, new Recording(run)));
-  const { forceScale, speedScale } = both[0];
-  for (const scene of both) {
-    const { canvas, camera, recording } = scene;
-    const last = recording.x.findIndex((x) => x > past);
-    const end = last > 0 ? recording.time[last] : recording.end;
-    Object.assign(scene, { end, forceScale, speedScale });
-    const changed = () => player.changed();
-    watchPointer(canvas, camera, changed, true);
-    canvas.addEventListener("keydown", ({ key }) => {
-      if (key === "+" || key === "-") camera.zoom(key === "+" ? 1.25 : 0.8);
-      else if (key === "0") camera.reset();
-      changed();
-    });
-  }
-  return both;
-}
-
-function resize() {
-  for (const { canvas, camera } of scenes) fit(canvas, camera);
-  player.changed();
-}
-
-// Shows an obstacle: it plays, or for those who want no motion stands as it ended.
 function choose(number) {
   for (const each of document.querySelectorAll(".runs")) each.hidden = each.id !== `replay-${number}`;
   element("obstacle").value = number;
-  if (!made.has(number)) made.set(number, scenesOf(number));
-  scenes = made.get(number);
-  player.time = player.end = Math.max(...scenes.map(({ end }) => end));
-  element("scrub").max = String(player.end);
-  // Slow robots are shown in a quarter of a minute, too.
-  const speeds = [...element("speed").options].map(({ value }) => Number(value));
-  element("speed").value = String(speeds.find((speed) => speed >= 1 && player.end / speed < 15) ?? 10);
-  player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
-  resize();
+  if (!made.has(number)) {
+    const runs = JSON.parse(element(`runs-${number}`).textContent);
+    made.set(number, scenesOf(runs, element(`replay-${number}`).querySelectorAll("canvas")));
+  }
+  show(made.get(number));
 }
 
 // The way to a replay shows it.
@@ -74,16 +24,11 @@ function follow() {
 
 function main() {
   element("obstacle").addEventListener("change", (event) => choose(event.target.value));
-  element("scrub").addEventListener("input", (event) => player.seek(Number(event.target.value)));
   for (const link of document.querySelectorAll('a[href^="#replay-"]')) {
     link.addEventListener("click", () => setTimeout(follow));
   }
   addEventListener("hashchange", follow);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    colors = readColors();
-    player.changed();
-  });
-  new ResizeObserver(resize).observe(element("stage"));
+  listen();
   if (!follow()) choose("0");
 }
 

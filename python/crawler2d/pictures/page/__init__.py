@@ -20,7 +20,15 @@ from crawler2d.pictures.scenes import ghosts
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
-__all__ = ["as_json", "embed", "fill_page", "read_part", "replay_page", "scene_script"]
+__all__ = [
+    "as_json",
+    "embed",
+    "fill_page",
+    "main_figures",
+    "read_part",
+    "replay_page",
+    "scene_script",
+]
 
 _HERE = "crawler2d.pictures.page"
 
@@ -112,7 +120,7 @@ def as_json(data: Any) -> str:
     return json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP)
 
 
-def _figures(run: Record) -> list[tuple[str, str]]:
+def main_figures(run: Record) -> list[tuple[str, str]]:
     """Choose the metrics of most interest: label, and value with unit."""
     chosen = []
     for name, label, scale, unit, digits in _FIGURES:
@@ -152,7 +160,7 @@ def replay_page(run: Record, time: float | None = None) -> str:
         trials=_trials(run),
         sentence=f'<p class="sentence">{escape(run.reason)}</p>' if run.reason else "",
         thinned=_thinned(data["every"], data["samples"]),
-        figures=_listed(_figures(run)),
+        figures=_listed(main_figures(run)),
         all_figures=_listed(_all_figures(run)),
         identity=run.scenario.identity[:16],
         data=as_json(data),
