@@ -1,17 +1,28 @@
-"""The commands of the package: `crawler2d audit` and `crawler2d atlas`."""
+"""Simulate tracked robots in side view, and say which track models seize on an obstacle.
+
+Each command has a --help of its own.
+"""
 
 from __future__ import annotations
 
 import argparse
+import os
+import signal
 import sys
-from collections.abc import Callable, Mapping, Sequence
+import textwrap
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib import import_module
 from typing import NamedTuple, NoReturn
 
-from crawler2d.commands import atlas, audit
+from crawler2d._core import build_info
 from crawler2d.common.keywords import suggestion
-from crawler2d.errors import Crawler2dError
+from crawler2d.errors import Crawler2dError, ScenarioWarning
 
 __all__ = ["Command", "main", "run_command"]
+
+_COMMANDS = ("demo", "run", "view", "audit", "atlas", "schema", "info", "completion")
 
 _MOVED = {
     "study": "python -m research seizure",
@@ -22,7 +33,10 @@ _MOVED = {
 
 
 class Command(NamedTuple):
-    """A subcommand: what it says of itself, its options, and what it does with them."""
+    """A subcommand: what it says of itself, its options, and what it does with them.
+
+    Its options come with `parser`, that of the whole command line.
+    """
 
     text: str
     add_arguments: Callable[[argparse.ArgumentParser], None]
@@ -30,24 +44,69 @@ class Command(NamedTuple):
 
 
 def run_command(
-    prog: str, text: str, commands: Mapping[str, Command], given: Sequence[str] | None
+    prog: str,
+    text: str,
+    commands: Mapping[str, Command],
+    given: Sequence[str] | None,
+    *,
+    version: str | None = None,
 ) -> int:
-    """Run the subcommand that is given on a command line; returns its exit status."""
-    parser = _Parser(prog=prog, description=text)
+    """Run the subcommand that is given on a command line; returns its exit status.
+
+    Parameters
+    ----------
+    prog, text : str
+        Name and description of the program.
+    commands : mapping of str to Command
+        Its subcommands.
+    given : sequence of str, optional
+        The command line; None takes that of the process.
+    version : str, optional
+        What ``--version`` prints; None: there is no such option.
+
+    Notes
+    -----
+    An error and Ctrl-C end in one line; the notes of a KeyboardInterrupt say what is kept.
+    """
+    given = sys.argv[1:] if given is None else given
+    parser = _Parser(prog=prog, description=text, formatter_class=_Help)
+    if version is not None:
+        parser.add_argument("--version", action="version", version=version)
+    if given and not given[0].startswith("-") and given[0] not in commands:
+        parser.error(f"{given[0]} is no command{suggestion(given[0], commands)}")
     choices = parser.add_subparsers(dest="command", required=True, metavar="command")
     parsers = {}
     for name, each in commands.items():
         first = each.text.partition("\n")[0].rstrip(".")
-        parsers[name] = choices.add_parser(name, help=first, description=each.text)
+        parsers[name] = choices.add_parser(
+            name, help=first, description=each.text, formatter_class=_Help
+        )
         each.add_arguments(parsers[name])
     options, unknown = parser.parse_known_args(given)
     if unknown:
         parsers[options.command].refuse(unknown)
+    options.parser = parser
+    called = f"{prog} {options.command}"
     try:
-        return commands[options.command].run(options)
-    except Crawler2dError as error:
-        print(f"{prog} {options.command}: {error}", file=sys.stderr)  # noqa: T201
+        with _doubts_in_one_line(called):
+            status = commands[options.command].run(options)
+        sys.stdout.flush()
+    except KeyboardInterrupt as interrupt:
+        kept = "; ".join(getattr(interrupt, "__notes__", ()))
+        _tell(called, f"interrupted{kept and f': {kept}'}")
+        return 128 + signal.SIGINT
+    except BrokenPipeError:
+        # What reads has seen enough, as `head` does. Python would complain when it ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + 13  # SIGPIPE, where there is one
+    except OSError as error:
+        is_own = isinstance(error, Crawler2dError) or error.filename is None
+        _tell(called, str(error) if is_own else f"{error.filename}: {error.strerror}")
         return 2
+    except (Crawler2dError, ImportError) as error:
+        _tell(called, str(error))
+        return 2
+    return status
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -55,14 +114,54 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else arguments
     if given and given[0] in _MOVED:
         now = _MOVED[given[0]]
-        print(f"crawler2d {given[0]} is now `{now}`, in a clone of the project", file=sys.stderr)  # noqa: T201
+        _tell(f"crawler2d {given[0]}", f"is now `{now}`, in a clone of the project")
         return 2
-    named = {"audit": audit, "atlas": atlas}
-    commands = {
-        name: Command(module.__doc__ or name, module.add_arguments, module.run)
-        for name, module in named.items()
-    }
-    return run_command("crawler2d", __doc__, commands, given)
+    # Only what is needed is imported: the audit takes as long as all the rest.
+    is_alone = bool(given) and given[0] in _COMMANDS and given[0] != "completion"
+    named = (given[0],) if is_alone else () if "--version" in given else _COMMANDS
+    commands = {}
+    for name in named:
+        module = import_module(f"crawler2d.commands.{name}")
+        commands[name] = Command(module.__doc__ or name, module.add_arguments, module.run)
+    return run_command("crawler2d", __doc__, commands, given, version=_version())
+
+
+def _version() -> str:
+    core = "core {build_id} ({profile}, {target})".format_map(build_info())
+    return f"crawler2d {build_info()['version']}, {core}"
+
+
+def _tell(called: str, text: str) -> None:
+    """Print one line to standard error."""
+    # A terminal shows ^C where the line would begin.
+    begin = "\n" if text.startswith("interrupted") and sys.stderr.isatty() else ""
+    print(f"{begin}{called}: {' '.join(text.split())}", file=sys.stderr)  # noqa: T201
+
+
+@contextmanager
+def _doubts_in_one_line(called: str) -> Iterator[None]:
+    """Show doubts about a scenario without the line of code that simulates it."""
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *where: object) -> None:
+            if issubclass(category, ScenarioWarning):
+                _tell(called, f"warning: {message}")
+            else:
+                others(message, category, *where)  # type: ignore[arg-type]
+
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
+
+
+class _Help(argparse.HelpFormatter):
+    """Keeps the paragraphs of a description apart."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return "\n\n".join(
+            textwrap.fill(" ".join(each.split()), width, initial_indent=indent)
+            for each in text.strip().split("\n\n")
+        )
 
 
 class _Parser(argparse.ArgumentParser):

@@ -1,0 +1,107 @@
+"""What commands share: they read scenarios, check where they will write, and show pages."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import webbrowser
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.scenario import Scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = [
+    "OUT",
+    "check_place",
+    "keeping",
+    "read_data",
+    "read_scenario",
+    "scenario_of",
+    "show_page",
+]
+
+OUT = Path("out")
+"""Folder of the pages whose place is not given."""
+
+STANDARD_INPUT = Path("-")
+
+
+def read_data(path: Path) -> bytes:
+    """Read a file; ``-`` is the standard input.
+
+    Raises
+    ------
+    ScenarioError
+        If it cannot be read.
+    """
+    if path == STANDARD_INPUT:
+        return sys.stdin.buffer.read()
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        rule = f"must be a file that can be read ({error.strerror or error})"
+        raise ScenarioError("FILE", str(path), rule) from None
+
+
+def read_scenario(path: Path) -> Scenario:
+    """Read a scenario file; errors are those of `read_data` and `scenario_of`."""
+    return scenario_of(read_data(path), path)
+
+
+def scenario_of(data: bytes, path: Path) -> Scenario:
+    """Read a scenario from the content of a file.
+
+    Raises
+    ------
+    ScenarioError
+        If it is no scenario, or the scenario breaks a rule.
+    """
+    rule, start = "must be a scenario as JSON, as Scenario.to_json writes it", data.lstrip()[:2]
+    other = ""
+    if not start:
+        other = "; it is empty"
+    elif start == b"PK":
+        other = f"; if it is a saved run: crawler2d view {shlex.quote(str(path))}"
+    elif start.startswith(b"<"):
+        other = f"; if it is a model file: crawler2d audit {shlex.quote(str(path))}"
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        other = other or "; it is no text in UTF-8"
+    if other:
+        raise ScenarioError("FILE", str(path), f"{rule}{other}")
+    return Scenario.from_json(text)
+
+
+def check_place(option: str, path: Path | None) -> None:
+    """Refuse a place that could not be written after the work; None asks for no file.
+
+    Raises
+    ------
+    ScenarioError
+        If it is no file in a folder that exists.
+    """
+    if path is not None and (not path.parent.is_dir() or (path.exists() and not path.is_file())):
+        raise ScenarioError(option, str(path), "must be a file in a folder that exists")
+
+
+@contextmanager
+def keeping(written: list[Path]) -> Iterator[None]:
+    """Let Ctrl-C say which of the files that were asked for is there."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        names = " and ".join(map(str, written))
+        interrupt.add_note(f"{names} is complete" if names else "no file was written")
+        raise
+
+
+def show_page(path: Path) -> None:
+    """Open a page in the browser of the system, or say that there is none."""
+    if not webbrowser.open(path.resolve().as_uri()):
+        print(f"no browser was found: open {path} yourself", file=sys.stderr)

@@ -1,0 +1,89 @@
+"""Simulate a scenario file, and say how it ended and why.
+
+It prints the outcome, the diagnosis of a stop, and the main figures with their units.
+
+Exit status: 0 if the robot cleared the obstacle, 1 if the run ended otherwise, 2 if the file or an
+option is bad or the run has no result, 130 after Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crawler2d.commands.files import check_place, keeping, read_scenario
+from crawler2d.common.units import METRICS
+from crawler2d.pictures.page import main_figures
+from crawler2d.results.outcome import Outcome
+from crawler2d.runs.batch import simulate
+
+if TYPE_CHECKING:
+    from crawler2d.runs.run import Run
+
+__all__ = ["add_arguments", "in_words", "run"]
+
+_WIDTH = 80
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``crawler2d run``."""
+    parser.add_argument(
+        "file", type=Path, metavar="FILE", help="a scenario as JSON; - is the standard input"
+    )
+    parser.add_argument("--html", type=Path, metavar="PAGE", help="write a page that replays it")
+    parser.add_argument(
+        "--save", type=Path, metavar="FILE", help="write the run, for crawler2d view and load"
+    )
+    parser.add_argument("--json", action="store_true", help="print plain data instead")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Simulate a scenario file; returns the exit status."""
+    check_place("--html", options.html)
+    check_place("--save", options.save)
+    scenario = read_scenario(options.file)
+    written: list[Path] = []
+    with keeping(written):
+        finished = simulate(scenario)
+        if options.save is not None:
+            written.append(finished.save(options.save))
+        if options.html is not None:
+            written.append(finished.to_html(options.html))
+        if options.json:
+            print(json.dumps(_plain(finished), indent=2, allow_nan=False))
+        else:
+            print(in_words(finished))
+            for path in written:
+                print(f"written: {path}")
+    return 0 if finished.outcome is Outcome.CLEARED else 1
+
+
+def in_words(run: Run) -> str:
+    """Write how a run ended, why, and its main figures, as lines."""
+    lines = [run.title]
+    if run.reason:
+        lines += ["", textwrap.fill(run.reason, _WIDTH)]
+    figures = main_figures(run)
+    wide = max(len(label) for label, _ in figures)
+    return "\n".join([*lines, "", *(f"{label:{wide}}  {value}" for label, value in figures)])
+
+
+def _plain(run: Run) -> dict[str, Any]:
+    """Collect what is known of a run as plain data; what is not finite is None."""
+    metrics = {
+        name: {"value": value if math.isfinite(value) else None, "unit": METRICS[name]}
+        for name, value in run.metrics.items()
+    }
+    return {
+        "subject": run.subject,
+        "scenario": run.scenario.identity,
+        "outcome": str(run.outcome),
+        "reason": run.reason,
+        "mechanism": None if run.mechanism is None else str(run.mechanism),
+        "metrics": metrics,
+        "build": dict(run.build),
+    }

@@ -1,0 +1,137 @@
+"""How commands end: after Ctrl-C, in a pipe that is closed, and with which status."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.__main__ import Command, main, run_command
+from tests.shared import ROBOT
+
+SOLVER = c2d.Solver(time_step=1e-3)
+LONG = c2d.Scenario(ROBOT, c2d.terrains.flat(length=900.0), duration=10000.0, solver=SOLVER)
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to a child")
+
+
+def started(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-m", "crawler2d", *arguments],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        cwd=folder,
+        text=True,
+    )
+
+
+def interrupted(process: subprocess.Popen[str], text: str) -> tuple[int, str, str]:
+    """Interrupt a program after it has read a text; return its status and what it said."""
+    assert process.stdin is not None
+    process.stdin.write(text)
+    process.stdin.close()
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    process.stdin = None
+    try:
+        out, err = process.communicate(timeout=30.0)
+    finally:
+        process.kill()
+    return process.returncode, out, err
+
+
+@pytest.mark.parametrize("command", ["run", "view"])
+def test_ctrl_c_ends_a_simulation_in_one_line(tmp_path: Path, command: str) -> None:
+    """It reads its file from a pipe: once that is read, it is not importing any more."""
+    text = LONG.to_json()
+    with started(tmp_path, command, "-") as process:
+        status, out, err = interrupted(process, f"{text}{' ' * 200_000}")
+    assert (status, out) == (130, "")
+    assert err == f"crawler2d {command}: interrupted: no file was written\n"
+    assert not list(tmp_path.rglob("*.html"))
+
+
+def call(text: str, error: BaseException, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    """Run a command that ends with an error."""
+
+    def fail(_: object) -> int:
+        raise error
+
+    status = run_command(
+        "program", text, {"work": Command("Work.", lambda _: None, fail)}, ["work"]
+    )
+    return status, capsys.readouterr().err
+
+
+def test_ctrl_c_says_what_a_command_has_kept(capsys: pytest.CaptureFixture[str]) -> None:
+    interrupt = KeyboardInterrupt()
+    assert call("", interrupt, capsys) == (130, "program work: interrupted\n")
+    interrupt.add_note("run.npz is complete")
+    assert call("", interrupt, capsys) == (
+        130,
+        "program work: interrupted: run.npz is complete\n",
+    )
+
+
+def test_ctrl_c_after_the_first_file_says_that_it_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    Path("it.json").write_text(LONG.replace({"duration": 0.1}).to_json())
+    monkeypatch.setattr(c2d.Run, "to_html", interrupt)
+    arguments = ["run", "it.json", "--save", "run.npz", "--html", "run.html"]
+    assert main(arguments) == 130
+    assert capsys.readouterr().err.endswith("interrupted: run.npz is complete\n")
+    assert c2d.load("run.npz").has_history
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (c2d.ScenarioError("a", 1, "must\nbe b"), "a must be b, got 1"),
+        (c2d.StoreError("a.sqlite is damaged"), "a.sqlite is damaged"),
+        (ImportError("this needs x: pip install crawler2d[x]"), "this needs x: pip install"),
+        (PermissionError(13, "Permission denied", "a.html"), "a.html: Permission denied"),
+    ],
+)
+def test_an_error_is_one_line(
+    error: Exception, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, err = call("", error, capsys)
+    assert status == 2
+    assert err.startswith(f"program work: {said}")
+    assert len(err.splitlines()) == 1
+
+
+def test_a_reader_that_has_seen_enough_is_no_error(tmp_path: Path) -> None:
+    with started(tmp_path, "schema") as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        process.stdout = None
+        _, err = process.communicate(timeout=30.0)
+    assert (process.returncode, err) == (141, "")
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_what_the_program_says_of_itself_goes_to_the_standard_output(option: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "crawler2d", option],
+        env={**os.environ, "COLUMNS": "80"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stderr == ""
+    assert max(map(len, done.stdout.splitlines())) <= 80
+    info = c2d.build_info()
+    if option == "--version":
+        (line,) = done.stdout.splitlines()
+        assert line.startswith(f"crawler2d {info['version']}, core {info['build_id']} (release,")
