@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from crawler2d.__main__ import main
-from crawler2d.commands.atlas import licence_of, main_files
+from crawler2d.commands.atlas import Entry, licence_of, main_files
 from tests.reading.carts import FILES, WHEELS, urdf
 
 
@@ -57,3 +57,28 @@ def test_a_folder_that_is_none_is_refused(
 
 def test_a_repository_without_a_licence_says_so(tmp_path: Path) -> None:
     assert licence_of(tmp_path) == "licence: none found"
+
+
+def test_after_ctrl_c_the_page_has_what_was_done(
+    forest: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    page = tmp_path / "atlas.html"
+    done: list[Path] = []
+
+    def entry(_: Path, path: Path, **__: object) -> Entry:
+        if len(done) == 1:
+            raise KeyboardInterrupt
+        done.append(path)
+        return Entry(path=path, refusal="not read here")
+
+    monkeypatch.setattr("crawler2d.commands.atlas._entry", entry)
+    assert main(["atlas", str(forest), "--html", str(page)]) == 130
+    err = capsys.readouterr().err
+    assert err == f"crawler2d atlas: interrupted: {page} has the first 1 of the files\n"
+    assert "not read here" in page.read_text(encoding="utf-8")
+    page.unlink()
+    assert main(["atlas", str(forest), "--html", str(page)]) == 130
+    assert capsys.readouterr().err == "crawler2d atlas: interrupted: no page was written\n"

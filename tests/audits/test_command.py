@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import functools
 import html
 import importlib
 import inspect
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
@@ -78,17 +80,21 @@ def test_the_command_says_whether_it_seizes(
     assert out.strip() == found.in_words
 
 
-@pytest.mark.parametrize("interrupt", [KeyboardInterrupt(), c2d.BatchInterrupted([], "a.sqlite")])
+@pytest.mark.parametrize(
+    "interrupt", [KeyboardInterrupt, functools.partial(c2d.BatchInterrupted, [], "a.sqlite")]
+)
 def test_after_ctrl_c_the_command_says_what_is_kept(
-    capsys: Any, monkeypatch: Any, interrupt: BaseException
+    capsys: Any, monkeypatch: Any, interrupt: Callable[[], BaseException]
 ) -> None:
-    monkeypatch.setattr(command, "audit", Mock(side_effect=interrupt))
+    monkeypatch.setattr(command, "audit", Mock(side_effect=interrupt()))
     status, _, err = run(capsys, "any.sdf", "--store", "a.sqlite")
     assert status == 130
-    assert err.strip().startswith("interrupted: a.sqlite keeps every finished run")
+    assert err.startswith("crawler2d audit: interrupted: a.sqlite keeps every finished run")
+    monkeypatch.setattr(command, "audit", Mock(side_effect=interrupt()))
     status, _, err = run(capsys, "any.sdf")
     assert status == 130
-    assert err.strip() == "interrupted: no run is kept; --store FILE keeps every finished run"
+    kept = "no run is kept; --store FILE keeps every finished run"
+    assert err == f"crawler2d audit: interrupted: {kept}\n"
 
 
 @pytest.fixture

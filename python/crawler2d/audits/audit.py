@@ -36,6 +36,7 @@ from crawler2d.audits.text import head_of, lint_of, rest_of, row_of, text_of
 from crawler2d.audits.verdicts import BELT, OWN, Verdict
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
+from crawler2d.common.files import write_text
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, ScenarioWarning, warn
 from crawler2d.parameters.robot import Robot
@@ -187,10 +188,7 @@ class Audit(AuditRecord):
         from crawler2d.audits.page import audit_page  # noqa: PLC0415
 
         text = audit_page(self, diffs_of(self), threads=threads)
-        if path is None:
-            return text
-        Path(path).write_text(text, encoding="utf-8", newline="\n")
-        return Path(path)
+        return text if path is None else write_text(path, text)
 
 
 @takes_keywords

@@ -26,6 +26,7 @@ from crawler2d import _core
 from crawler2d.audits.issues import SEIZES, Check, Issue, repository_of
 from crawler2d.audits.lint import SEVERITIES
 from crawler2d.audits.verdicts import Proportion, Verdict
+from crawler2d.common.files import write_text
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import to_dict
 from crawler2d.reading.log import list_names
@@ -84,7 +85,7 @@ def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) ->
     text = _LIST.sub(
         lambda found: f"[{' '.join(map(str.strip, found[1].splitlines())).strip()}]", text
     )
-    path.write_text(f"{text}\n", encoding="utf-8")
+    write_text(path, f"{text}\n")
 
 
 def entry_of(check: Check) -> Plain:

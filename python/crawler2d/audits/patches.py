@@ -10,6 +10,7 @@ import numpy as np
 
 from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
+from crawler2d.common.files import write_text
 from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.robot import Robot
 from crawler2d.patching.patch import add_label, patch_file
@@ -50,8 +51,7 @@ class Change:
     def write(self, path: Path) -> Path:
         """Write it, with its own suffix if it has one; return the path."""
         path = path.with_suffix(self.suffix) if self.suffix else path
-        path.write_text(self.text, encoding="utf-8")
-        return path
+        return write_text(path, self.text)
 
 
 def best_change(audit: AuditRecord) -> Change | None:

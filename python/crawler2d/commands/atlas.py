@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import os
 import re
-import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.drawings import draw_robot
 from crawler2d.common.files import write_text
 from crawler2d.drawings.svg import escape
-from crawler2d.errors import Crawler2dError, ScenarioWarning
+from crawler2d.errors import Crawler2dError, ScenarioError, ScenarioWarning
 from crawler2d.pictures.page import fill_page, read_part
 from crawler2d.reading.reading import Reading, read_robot
 
@@ -73,20 +72,22 @@ def run(options: argparse.Namespace) -> int:
     """Write the atlas of a folder; returns the exit status."""
     folder: Path = options.folder
     if not folder.is_dir():
-        print(f"atlas: {folder} must be a folder", file=sys.stderr)
-        return 2
-    files = list(main_files(folder))
+        raise ScenarioError("FOLDER", str(folder), "must be a folder")
     entries: list[Entry] = []
-    options.html.parent.mkdir(parents=True, exist_ok=True)
-    for number, path in enumerate(files, 1):
-        print(f"{number} of {len(files)}: {path}", flush=True)
-        try:
-            entries.append(_entry(folder, path, samples=options.samples, threads=options.threads))
-        except KeyboardInterrupt:
-            print(f"interrupted; {options.html} has what was done", file=sys.stderr)
-            return 130
-        _show(entries[-1])
-        write_text(options.html, atlas_page(folder, entries, samples=options.samples))
+    try:
+        files = list(main_files(folder))
+        options.html.parent.mkdir(parents=True, exist_ok=True)
+        for number, path in enumerate(files, 1):
+            print(f"{number} of {len(files)}: {path}", flush=True)
+            entry = _entry(folder, path, samples=options.samples, threads=options.threads)
+            _show(entry)
+            page = atlas_page(folder, [*entries, entry], samples=options.samples)
+            write_text(options.html, page)
+            entries.append(entry)
+    except KeyboardInterrupt as interrupt:
+        done = f"{options.html} has the first {len(entries)} of the files"
+        interrupt.add_note(done if entries else "no page was written")
+        raise
     print(f"{_conclusion(entries)}\nThe page is in {options.html}" if entries else "no model file")
     return 0
 

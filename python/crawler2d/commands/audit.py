@@ -25,6 +25,7 @@ from crawler2d.audits.record import READING, as_options
 from crawler2d.audits.runs import LivePrinter
 from crawler2d.audits.text import LintResult, lint_only, plain_of
 from crawler2d.audits.verdicts import least_samples
+from crawler2d.common.files import write_text
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.engines import ENGINES
 from crawler2d.reading.loading import TOLERANCE
@@ -128,14 +129,14 @@ def run(options: argparse.Namespace) -> int:
                 found.append((file, error))  # the reports have it, and the other files theirs
                 _print_error(error)
         count = _report(found, options, baseline, out)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         kept = "no run is kept; --store FILE keeps every finished run"
         if options.store is not None:
             kept = (
                 f"{options.store} keeps every finished run: the same command continues from there"
             )
-        print(f"\ninterrupted: {kept}", file=sys.stderr)
-        return 130
+        interrupt.add_note(kept)
+        raise
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
         _print_error(error)
         return 2
@@ -219,7 +220,7 @@ def _write_audit(found: Audit, file: Path, options: argparse.Namespace, live: Li
         live.print(f"\nThe page is in {path}")
         if found.reading is not None and found.reading.path.suffix == ".xacro":
             expanded = path.with_name(f"{path.stem}-expanded.urdf")
-            expanded.write_text(found.reading.text, encoding="utf-8")
+            write_text(expanded, found.reading.text)
             live.print(f"The lines are those of {expanded}")
     if options.patch is not None:
         change = best_change(found)
@@ -249,7 +250,7 @@ def _report(
         checks = [_compare(check, baseline, options.baseline, out) for check in checks]
     for path, report in ((options.junit, junit_of), (options.sarif, sarif_of)):
         if path is not None:
-            path.write_text(report(checks), encoding="utf-8")
+            write_text(path, report(checks))
     if options.update_baseline:
         write_baseline(options.baseline, checks, baseline)
         print(f"\nThe baseline is in {options.baseline}", file=out)
