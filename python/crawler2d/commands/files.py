@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sys
 import webbrowser
@@ -86,8 +87,12 @@ def check_place(option: str, path: Path | None) -> None:
     ScenarioError
         If it is no file in a folder that exists.
     """
-    if path is not None and (not path.parent.is_dir() or (path.exists() and not path.is_file())):
-        raise ScenarioError(option, str(path), "must be a file in a folder that exists")
+    if path is None:
+        return
+    is_taken = path.exists() and not path.is_file()
+    if is_taken or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        rule = "must be a file in a folder that exists and can be written"
+        raise ScenarioError(option, str(path), rule)
 
 
 @contextmanager
