@@ -24,6 +24,9 @@ __all__ = ["Command", "main", "run_command"]
 
 _COMMANDS = ("demo", "run", "view", "audit", "atlas", "schema", "info", "completion")
 
+_SIGPIPE = 13
+"""Not every system has it."""
+
 _MOVED = {
     "study": "python -m research seizure",
     "paper": "python -m research paper",
@@ -90,23 +93,30 @@ def run_command(
     try:
         with _doubts_in_one_line(called):
             status = commands[options.command].run(options)
-        sys.stdout.flush()
+        print(end="", flush=True)  # noqa: T201 - nothing may fail later, unseen
     except KeyboardInterrupt as interrupt:
         kept = "; ".join(getattr(interrupt, "__notes__", ()))
         _tell(called, f"interrupted{kept and f': {kept}'}")
         return 128 + signal.SIGINT
     except BrokenPipeError:
-        # What reads has seen enough, as `head` does. Python would complain when it ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 128 + 13  # SIGPIPE, where there is one
+        _give_up_output()  # what reads has seen enough, as `head` does
+        return 128 + _SIGPIPE
     except OSError as error:
-        is_own = isinstance(error, Crawler2dError) or error.filename is None
-        _tell(called, str(error) if is_own else f"{error.filename}: {error.strerror}")
+        is_own = isinstance(error, Crawler2dError)
+        place = error.filename or "standard output"
+        _tell(called, str(error) if is_own else f"{place}: {error.strerror or error}")
+        if not is_own and not error.filename:
+            _give_up_output()
         return 2
     except (Crawler2dError, ImportError) as error:
         _tell(called, str(error))
         return 2
     return status
+
+
+def _give_up_output() -> None:
+    """Let what could not be printed go: Python would complain of it when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

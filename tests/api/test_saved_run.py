@@ -253,8 +253,9 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_a_failure_leaves_the_file_that_was_there(stopped: c2d.Run, tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
     path.write_text("before")
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(OSError, match="No space left") as caught:
         stopped.save(path)
+    assert caught.value.filename == str(path)
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
 

@@ -120,6 +120,21 @@ def test_a_reader_that_has_seen_enough_is_no_error(tmp_path: Path) -> None:
     assert (process.returncode, err) == (141, "")
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
+def test_an_output_that_is_full_is_one_line(tmp_path: Path) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "crawler2d", "schema"],
+            cwd=tmp_path,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert done.stderr == "crawler2d schema: standard output: No space left on device\n"
+
+
 @pytest.mark.parametrize("option", ["--help", "--version"])
 def test_what_the_program_says_of_itself_goes_to_the_standard_output(option: str) -> None:
     done = subprocess.run(

@@ -41,9 +41,9 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
             yield file
         part.replace(place)
     except OSError as error:
-        if error.filename != str(part):
+        if error.errno is None or error.filename not in (None, str(part)):
             raise
-        # The name of the part would tell its user nothing.
+        # Writing names no file, and the name of the part would tell a user nothing.
         raise OSError(error.errno, error.strerror, os.fspath(path)) from None
     finally:
         part.unlink(missing_ok=True)

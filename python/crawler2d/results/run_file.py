@@ -102,20 +102,22 @@ def read_run(path: str | os.PathLike[str], make: Callable[..., R]) -> R:
         If the file cannot be read, or is no run, damaged or of a newer format.
     """
     try:
-        with open(path, "rb") as file:
-            if file.read(len(SIGNATURE)) != SIGNATURE:
-                raise StoreError(f"{path} {_OTHER}")
-            file.seek(0)
+        file = open(path, "rb")  # noqa: SIM115 - what fails later is another fault
+    except OSError as error:
+        raise StoreError(f"{path} cannot be read: {error.strerror or error}") from None
+    with file:
+        if file.read(len(SIGNATURE)) != SIGNATURE:
+            raise StoreError(f"{path} {_OTHER}")
+        file.seek(0)
+        try:
             with _entries(file, path) as entries:
                 about = _about(entries, path)
                 return make(*_arguments(entries, about, path))
-    except StoreError:
-        raise
-    except OSError as error:
-        raise StoreError(f"{path} cannot be read: {error.strerror or error}") from None
-    except Exception as error:  # there is no end to what a changed file may raise
-        fault = f"{type(error).__name__}: {error}"
-        raise StoreError(f"{path} is damaged ({fault}): {_AGAIN}") from error
+        except StoreError:
+            raise
+        except Exception as error:  # there is no end to what a changed file may raise
+            fault = f"{type(error).__name__}: {error}"
+            raise StoreError(f"{path} is damaged ({fault}): {_AGAIN}") from error
 
 
 def _entries(file: Any, path: str | os.PathLike[str]) -> Any:
@@ -124,7 +126,7 @@ def _entries(file: Any, path: str | os.PathLike[str]) -> Any:
         entries = np.load(file, allow_pickle=False)
         if entries.zip.testzip() is None:  # before anything is made of it
             return entries
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError):
         pass
     raise StoreError(f"{path} {_CUT}")
 
