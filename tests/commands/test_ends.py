@@ -120,6 +120,18 @@ def test_a_reader_that_has_seen_enough_is_no_error(tmp_path: Path) -> None:
     assert (process.returncode, err) == (141, "")
 
 
+def test_files_are_written_whether_or_not_anyone_reads(tmp_path: Path) -> None:
+    scenario = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
+    (tmp_path / "it.json").write_text(scenario.to_json())
+    with started(tmp_path, "run", "it.json", "--save", "run.npz") as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        process.stdout = None
+        _, err = process.communicate(timeout=30.0)
+    assert (process.returncode, err) == (141, "")
+    assert c2d.load(tmp_path / "run.npz").scenario == scenario
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
 def test_an_output_that_is_full_is_one_line(tmp_path: Path) -> None:
     with open("/dev/full", "w") as full:

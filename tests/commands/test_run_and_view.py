@@ -192,8 +192,9 @@ def test_a_file_that_cannot_be_written_is_named(ran: Ran, monkeypatch: pytest.Mo
         raise OSError(28, "No space left on device", str(part))
 
     monkeypatch.setattr("crawler2d.common.files.Path.replace", full)
-    status, _, err = ran("run", "clears.json", "--html", "page.html")
+    status, out, err = ran("run", "clears.json", "--html", "page.html")
     assert status == 2
+    assert out.splitlines()[0] == c2d.simulate(CLEARS).title  # what it found is not lost
     assert err.splitlines() == ["crawler2d run: page.html: No space left on device"]
     assert not list(Path().glob("*.html"))
     assert not list(Path().glob(".*"))

@@ -49,18 +49,16 @@ def run(options: argparse.Namespace) -> int:
     written: list[Path] = []
     with keeping(written):
         finished = simulate(scenario)
-        # First of all, for a file may turn out not to be writable after a run of hours.
-        if options.json:
-            print(json.dumps(_plain(finished), indent=2, allow_nan=False), flush=True)
-        else:
-            print(in_words(finished), flush=True)
-        if options.save is not None:
-            written.append(finished.save(options.save))
-        if options.html is not None:
-            written.append(finished.to_html(options.html))
-    if not options.json:
-        for path in written:
-            print(f"written: {path}")
+        try:
+            if options.save is not None:
+                written.append(finished.save(options.save))
+            if options.html is not None:
+                written.append(finished.to_html(options.html))
+        finally:  # a file that cannot be written must not lose what a run of hours has found
+            if options.json:
+                print(json.dumps(_plain(finished), indent=2, allow_nan=False))
+            else:
+                print(in_words(finished), *(f"written: {path}" for path in written), sep="\n")
     return 0 if finished.outcome is Outcome.CLEARED else 1
 
 
