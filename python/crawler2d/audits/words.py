@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from crawler2d.audits.repairs import Repair, RepairSearch
     from crawler2d.audits.sampling import Assumption
     from crawler2d.audits.verdicts import Proportion, Verdict
-    from crawler2d.results.record import Record
 
 __all__ = [
     "JAM_HEAD",
@@ -40,7 +39,6 @@ __all__ = [
     "comparison",
     "conclusion",
     "confirmation",
-    "ending",
     "holding_friction",
     "jam_row",
     "missing_results",
@@ -161,11 +159,6 @@ def jam_row(each: Verdict) -> tuple[str, ...]:
     place = f"{each.where} of the {each.carrier}"
     speeds = "/".join(f"{100 * rate.rate:.0f}" for rate in each.seized_at.values()) + " %"
     return each.obstacle, place, "/".join(map(str, each.there)), speeds, at, ", ".join(freed)
-
-
-def ending(run: Record) -> str:
-    """Say how a run ended."""
-    return "no result" if run.outcome is None else str(run.outcome).replace("_", " ")
 
 
 def wheel_names(audit: AuditRecord) -> str:
