@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass
 from typing import Literal
 
-from crawler2d.parameters.fields import Parameters
+from crawler2d.parameters.heights import HasHeights
 
 __all__ = [
     "Barrier",
@@ -28,7 +28,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ground(Parameters, path="terrain"):
+class Ground(HasHeights):
     """What the robot touches of any terrain but `Lanes`, whose lanes have it each.
 
     Parameters
@@ -235,6 +235,11 @@ class DiagonalBarrier(GroundWithEdges, kind="diagonal_barrier"):
     height: float = 0.05
     thickness: float = 0.1
 
+    @property
+    def _turn(self) -> float:
+        """[rad] By how much a part of it is turned about the vertical."""
+        return self.yaw
+
 
 @dataclass(frozen=True, slots=True)
 class RandomStepfield(GroundWithEdges, kind="random_stepfield"):
@@ -280,6 +285,11 @@ class RandomStepfield(GroundWithEdges, kind="random_stepfield"):
     barrier_thickness: float = 0.1
     barrier_yaw: float = 0.0
 
+    @property
+    def _turn(self) -> float:
+        """[rad] By how much a part of it is turned about the vertical."""
+        return self.barrier_yaw if self.barrier_height else 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class Points(GroundWithEdges, kind="points"):
@@ -313,7 +323,7 @@ Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points
 
 
 @dataclass(frozen=True, slots=True)
-class Lanes(Parameters, kind="lanes", path="terrain"):
+class Lanes(HasHeights, kind="lanes"):
     """A profile under each track and one under the belly.
 
     Each track has half of the moving track mass and half of the motor force; roll and yaw are held.

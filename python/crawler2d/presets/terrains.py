@@ -6,7 +6,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from crawler2d.common.arrays import real_number
-from crawler2d.common.keywords import limits_hint
+from crawler2d.common.keywords import limits_hint, refuse_unknown
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.fields import field_hints
 from crawler2d.parameters.terrain import (
     Barrier,
     DiagonalBarrier,
@@ -21,14 +23,18 @@ from crawler2d.parameters.terrain import (
     Stairs,
     Step,
 )
+from crawler2d.presets.surveys import read_survey, simplified
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from numpy.typing import ArrayLike
 
 __all__ = [
     "barrier",
     "diagonal_barrier",
     "flat",
+    "from_csv",
     "from_points",
     "gap",
     "half_round",
@@ -169,3 +175,70 @@ def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:
     (0.0, 0.05)
     """
     return Points(cast("Any", points), goal=goal, **fields)
+
+
+def from_csv(
+    path: str | PathLike[str],
+    *,
+    goal: float,
+    origin: float = 0.0,
+    simplify: float | None = None,
+    **fields: float,
+) -> Points:
+    r"""Make a terrain of a surveyed profile.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A text file with a point on each line: x and y [m] in order, from left to right or from
+        right to left, as for `from_points`. A comma, a semicolon, a tab or spaces separate them,
+        and decimals have a point. The first line may name the columns; empty lines are skipped,
+        and so is what follows a "#".
+    goal : float
+        [m] The x that the whole robot must pass.
+    origin : float
+        [m] The x of the file that becomes x = 0. The robot starts to the left of the first edge at
+        or beyond it, on ground that the file must have.
+    simplify : float, optional
+        [m] Leave out points that lie within this distance of the line through the others (Douglas
+        and Peucker). The points that stay do not move, so an edge that stays is where it was
+        surveyed; but lower edges vanish, a row of points round an edge becomes one corner or a few,
+        and the faces beside an edge turn by up to this distance over their length. Round edges with
+        `edge_radius`. Ground in a track counts from `criteria.intrusion_depth` on, 0.5 mm: take a
+        fraction of that where runs seize, and compare. None keeps every point.
+    **fields : float
+        Further fields of `Points`, such as `edge_radius` [m] and `friction` [-].
+
+    Returns
+    -------
+    Points
+        The terrain.
+
+    Raises
+    ------
+    ScenarioError
+        If a line has anything but two finite numbers, x goes back, or the file has fewer than two
+        points or is no text in UTF-8: with its path, the line and the value. If `origin` is no
+        number, or `simplify` none from 0 on.
+    ArgumentError
+        If a keyword is neither one of these nor a field of `Points`.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "kerb.csv")
+    >>> _ = path.write_text("x;y\n10;0\n11;0.001\n12;0\n12;0.08\n15;0.08\n")
+    >>> from_csv(path, goal=0.0, origin=12.0, simplify=0.002).points
+    ((-2.0, 0.0), (0.0, 0.0), (0.0, 0.08), (3.0, 0.08))
+    """
+    of_points = [name for name in field_hints(Points) if name != "points"]
+    refuse_unknown("from_csv", fields, ["origin", "simplify", *of_points])
+    points = read_survey(path)
+    if simplify is not None:
+        tolerance = real_number(simplify, "simplify")
+        if not tolerance >= 0.0:
+            raise ScenarioError("simplify", tolerance, "must be >= 0 m")
+        points = simplified(points, tolerance)
+    return from_points(points - (real_number(origin, "origin"), 0.0), goal=goal, **fields)
