@@ -254,6 +254,9 @@ def _summary(value: Any, array: np.ndarray[Any, Any]) -> object:
 # Rows of a table that a notebook shows.
 _SHOWN = 10
 
+# Columns that hold a tuple of whole numbers in each row.
+_TUPLES = ("bodies", "edges")
+
 
 class Table(Mapping[str, "NDArray[Any]"]):
     """Columns of equal length, read-only, by name.
@@ -269,6 +272,12 @@ class Table(Mapping[str, "NDArray[Any]"]):
     >>> table = Table({"x": [0.0, 0.5], "kind": ["stop", "stop"]})
     >>> len(table), list(table), table["x"].tolist()
     (2, ['x', 'kind'], [0.0, 0.5])
+
+    pyarrow, polars and DuckDB take it as it is:
+
+    >>> import pyarrow
+    >>> pyarrow.table(table).schema.names
+    ['x', 'kind']
     """
 
     __slots__ = ("_frozen", "_source")
@@ -323,6 +332,23 @@ class Table(Mapping[str, "NDArray[Any]"]):
         frame: pandas.DataFrame = frames.DataFrame({n: c.copy() for n, c in self._columns.items()})
         return frame
 
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Export to packages that read Arrow; columns of numbers are not copied.
+
+        ``polars.from_dataframe(table)``, ``pyarrow.table(table)``, and SQL of DuckDB on the name of
+        a variable that holds it. A tuple becomes a list of whole numbers, an outline a list of
+        points. ``polars.DataFrame(table)`` takes the columns one by one instead, and has objects
+        for these.
+
+        Raises
+        ------
+        ImportError
+            If pyarrow is missing; the message names the extra to install.
+        """
+        arrow = extra("pyarrow", "files")
+        columns = {name: _arrow_column(arrow, name, each) for name, each in self.items()}
+        return arrow.table(columns).__arrow_c_stream__(requested_schema)
+
     def _repr_html_(self) -> str:
         """Show the first rows in a notebook."""
         import html  # noqa: PLC0415 - costs nothing until used
@@ -353,6 +379,17 @@ def _column(values: Any) -> NDArray[Any]:
             column[index] = tuple(row)
         return column
     return np.array(rows) if rows else np.empty(0, dtype=object)
+
+
+def _arrow_column(arrow: Any, name: str, column: NDArray[Any]) -> Any:
+    """Convert a column to Arrow; of a column without rows only the name tells its type."""
+    if name in _TUPLES:
+        return arrow.array(column, arrow.list_(arrow.int64()))
+    if name == "outline":
+        points = arrow.list_(arrow.list_(arrow.float64()))
+        return arrow.array([each.tolist() for each in column], points)
+    is_unknown = column.dtype == object and not column.size
+    return arrow.array(column, arrow.string() if is_unknown else None)
 
 
 def _cell(value: object) -> str:
