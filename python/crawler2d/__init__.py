@@ -49,6 +49,7 @@ from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import BatchInterrupted, simulate, simulate_many
+from crawler2d.runs.film import animate
 from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
 from crawler2d.variation import variability
@@ -108,6 +109,7 @@ __all__ = [
     "StoreError",
     "TrackOutline",
     "Until",
+    "animate",
     "audit",
     "build_info",
     "check_store",

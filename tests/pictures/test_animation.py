@@ -34,6 +34,21 @@ def seized() -> c2d.Run:
     return c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
 
 
+def film_of(
+    run: c2d.Run, times: Any, *, pace: float = 1.0, follow: bool | None = None, width: int = 300
+) -> Film:
+    """A film of one run as `Run.animate` makes it."""
+    return Film(
+        [run],
+        times,
+        labels=[run.subject],
+        pace=pace,
+        follow=follow,
+        beside=False,
+        width=width,
+    )
+
+
 def frames_of(path: Path) -> list[tuple[int, Any]]:
     """[ms] Durations of the frames of a GIF, and their pixels."""
     found = []
@@ -91,7 +106,7 @@ def test_a_frame_shows_the_robot_between_two_samples(seized: c2d.Run) -> None:
 
 def test_a_film_ends_with_the_outcome_and_begins_without(seized: c2d.Run) -> None:
     times = np.array([0.0, 1.0, float(seized.time[-1])])
-    film = Film(seized, times, pace=2.0, follow=None, width=300)
+    film = film_of(seized, times, pace=2.0)
     (ax,) = film.figure.axes
     told = []
     for number in range(3):
@@ -109,7 +124,7 @@ def test_a_film_ends_with_the_outcome_and_begins_without(seized: c2d.Run) -> Non
 
 def test_a_film_draws_each_body_once_and_moves_it(seized: c2d.Run) -> None:
     times = np.linspace(0.0, float(seized.time[-1]), 5)
-    film = Film(seized, times, pace=1.0, follow=None, width=300)
+    film = film_of(seized, times)
     (ax,) = film.figure.axes
     count = len(ax.get_lines())
     scene = scene_of(seized, times)
@@ -127,7 +142,7 @@ def test_the_view_follows_a_robot_that_goes_far() -> None:
     near = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=1.0)
     for run, follow, moves in [(far, None, True), (near, None, False), (far, False, False)]:
         times = np.linspace(0.0, float(run.time[-1]), 7)
-        film = Film(run, times, pace=1.0, follow=follow, width=300)
+        film = film_of(run, times, follow=follow)
         (ax,) = film.figure.axes
         views = []
         scene = scene_of(run, times)
@@ -203,6 +218,36 @@ def test_a_film_that_fails_leaves_the_old_one_and_nothing_else(
     assert list(tmp_path.iterdir()) == [old]
     with pytest.raises(OSError, match="nowhere"):
         short.animate(tmp_path / "nowhere" / "run.gif")
+
+
+def test_a_folder_in_place_of_the_file_is_an_error_before_anything_is_drawn(
+    short: c2d.Run, tmp_path: Path
+) -> None:
+    folder = tmp_path / "run.gif"
+    folder.mkdir()
+    drawn: list[tuple[int, int]] = []
+    with pytest.raises(IsADirectoryError, match=r"run\.gif"):
+        short.animate(folder, progress=lambda *each: drawn.append(each))
+    assert drawn == []
+    assert list(tmp_path.iterdir()) == [folder]
+
+
+def test_the_comment_of_a_film_says_what_made_it(short: c2d.Run, tmp_path: Path) -> None:
+    made = f"crawler2d {c2d.__version__}, scenario {short.scenario.identity}"
+    assert short.provenance == made
+    with Image.open(short.animate(tmp_path / "run.gif", fps=2.0, width=200)) as image:
+        assert image.info["comment"].decode() == made
+    if has_ffmpeg:
+        path = short.animate(tmp_path / "run.mp4", fps=2.0, width=200)
+        assert made.encode() in path.read_bytes()
+
+
+def test_the_provenance_of_a_branch_names_its_trunk(short: c2d.Run) -> None:
+    branch = short.branch(0.25, track=c2d.BeltTrack(), duration=0.25)
+    own, trunk = branch.scenario.identity, short.scenario.identity
+    assert own != trunk
+    made = f"crawler2d {c2d.__version__}, scenario {own}, branched off scenario {trunk} at 0.25 s"
+    assert branch.provenance == made
 
 
 def test_a_film_leaves_no_figure_open(short: c2d.Run, tmp_path: Path) -> None:

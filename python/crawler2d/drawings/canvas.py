@@ -20,10 +20,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Canvas",
+    "arrange",
     "axes_or_new",
     "below_axis",
+    "blank_axes",
     "check_axes",
     "draw_height",
+    "draw_legend",
     "draw_length",
     "draw_radius",
     "set_title",
@@ -73,12 +76,8 @@ class Canvas:
         left, right, bottom, top = extent
         self._figure: Figure | None = None
         if ax is None:
-            figure = figure or extra("matplotlib.pyplot", "plot").figure()
-            self._figure = figure
-            width = _WIDTH - _LEFT - _RIGHT
-            height = min(max(width * (top - bottom) / (right - left), _HEIGHTS[0]), _HEIGHTS[1])
-            figure.set_size_inches(_WIDTH, height)
-            ax = figure.add_axes((0.0, 0.0, width / _WIDTH, 1.0))
+            self._figure = figure or extra("matplotlib.pyplot", "plot").figure()
+            (ax,) = blank_axes(self._figure, extent)
         self.ax = check_axes(ax, "ax")
         self.ax.set(
             xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal"
@@ -86,34 +85,78 @@ class Canvas:
 
     def caption(self, *paragraphs: str) -> Axes:
         """Write the title above the drawing and its legend below; return the Axes."""
-        ax, legend = self.ax, self._legend()
-        self.title = set_title(ax, *paragraphs)
+        self.title = set_title(self.ax, *paragraphs)
+        legend = draw_legend(self.ax, [self.ax])
         if self._figure is not None:
-            above, below = (_inches(each) + 2.0 * _CLEAR for each in (self.title, legend))
-            below += _AXIS
-            drawing = _inches(ax)
-            whole = above + drawing + below
-            self._figure.set_figheight(whole)
-            width = (_WIDTH - _LEFT - _RIGHT) / _WIDTH
-            ax.set_position((_LEFT / _WIDTH, below / whole, width, drawing / whole))
-        return ax
+            arrange(self._figure, [self.ax], [self.title], legend)
+        return self.ax
 
-    def _legend(self) -> Any:
-        """Explain what is drawn, in as many columns as are no wider than the drawing."""
-        ax = self.ax
-        for columns in (4, 3, 2, 1):
-            legend = ax.legend(
-                loc="upper center",
-                bbox_to_anchor=(0.5, 0.0),
-                bbox_transform=below_axis(ax, _AXIS),
-                fontsize="small",
-                ncols=columns,
-                columnspacing=1.2,
-                handlelength=1.6,
-            )
-            if legend.get_window_extent().width <= ax.bbox.width:
-                break
-        return legend
+
+def blank_axes(
+    figure: Figure, extent: Extent, count: int = 1, *, beside: bool = False
+) -> list[Axes]:
+    """Add Axes of the size that drawings of an extent take, for `arrange` to put in their places.
+
+    Parameters
+    ----------
+    figure : Figure
+        All of it.
+    extent : tuple of 4 floats
+        [m] Left, right, bottom and top of each drawing.
+    count : int
+        How many.
+    beside : bool
+        Whether they will be beside each other, not one above the other.
+    """
+    left, right, bottom, top = extent
+    columns, rows = (count, 1) if beside else (1, count)
+    width = _WIDTH - _LEFT - _RIGHT
+    height = min(max(width * (top - bottom) / (right - left), _HEIGHTS[0]), _HEIGHTS[1])
+    figure.set_size_inches(columns * _WIDTH, rows * height)
+    size = (0.0, 0.0, width / (columns * _WIDTH), 1.0 / rows)
+    return [figure.add_axes(size, label=f"drawing {number}") for number in range(count)]
+
+
+def arrange(
+    figure: Figure, axes: list[Axes], titles: list[Text], legend: Any, *, beside: bool = False
+) -> None:
+    """Put Axes with their titles beside or below each other, and the legend of all below."""
+    columns, rows = (len(axes), 1) if beside else (1, len(axes))
+    above = max(_inches(title) for title in titles) + 2.0 * _CLEAR
+    drawing = _inches(axes[0])
+    below = _inches(legend) + 2.0 * _CLEAR
+    cell = above + drawing + _AXIS
+    whole = rows * cell + below
+    figure.set_figheight(whole)
+    width, height = (_WIDTH - _LEFT - _RIGHT) / (columns * _WIDTH), drawing / whole
+    for number, ax in enumerate(axes):
+        column, row = (number, 0) if beside else (0, number)
+        left = (column * _WIDTH + _LEFT) / (columns * _WIDTH)
+        bottom = below + (rows - 1 - row) * cell + _AXIS
+        ax.set_position((left, bottom / whole, width, height))
+
+
+def draw_legend(ax: Axes, axes: list[Axes]) -> Any:
+    """Explain what is drawn in some Axes, below one of them and in columns no wider than it."""
+    explained: dict[str, Any] = {}
+    for each in axes:
+        handles, labels = each.get_legend_handles_labels()
+        explained = dict(zip(labels, handles, strict=True)) | explained
+    for columns in (4, 3, 2, 1):
+        legend = ax.legend(
+            list(explained.values()),
+            list(explained),
+            loc="upper center",
+            bbox_to_anchor=(0.5, 0.0),
+            bbox_transform=below_axis(ax, _AXIS),
+            fontsize="small",
+            ncols=columns,
+            columnspacing=1.2,
+            handlelength=1.6,
+        )
+        if legend.get_window_extent().width <= ax.bbox.width:
+            break
+    return legend
 
 
 def _inches(artist: Any) -> float:

@@ -1,10 +1,11 @@
-"""A run as a film: the side view with the contact forces, as a GIF or an MP4."""
+"""Runs as a film: their side views with the contact forces, as a GIF or an MP4."""
 
 from __future__ import annotations
 
+import errno
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
+from crawler2d.drawings.canvas import arrange, blank_axes, draw_legend, set_title
 from crawler2d.drawings.scene import RED
 from crawler2d.drawings.views import Outlines, draw_goal, scene_canvas
 from crawler2d.errors import ScenarioError
@@ -20,6 +22,7 @@ from crawler2d.pictures.scenes import Envelopes, draw_forces, scene_of, usual_fo
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -43,16 +46,18 @@ _FIGURE_WIDTH = 9.0
 
 
 def animate(
-    run: Record,
+    runs: Sequence[Record],
     path: str | os.PathLike[str],
     *,
+    labels: Sequence[str],
     fps: float,
     speed: float,
     follow: bool | None,
+    beside: bool,
     width: int,
     counted: Callable[[int], AbstractContextManager[Callable[[int], None]]],
 ) -> Path:
-    """Write a run as a film; see `Run.animate`.
+    """Write runs as one film; see `Run.animate` and `crawler2d.animate`.
 
     Given the number of frames, `counted` opens what is called with the number of frames drawn
     since its last call. The file appears once it is complete.
@@ -64,29 +69,34 @@ def animate(
     fps = _in_range(fps, "fps", (1.0, 50.0))
     speed = _in_range(speed, "speed", (1e-3, 1e3))
     width = round(_in_range(width, "width", (200.0, 4000.0)))
-    start, end = float(run.time[0]), float(run.time[-1])
+    start, end = min(float(run.time[0]) for run in runs), max(float(run.time[-1]) for run in runs)
     count = math.ceil((end - start) * fps / speed - 1e-9) + 1
     if count > _MOST_FRAMES:
         raise ScenarioError("speed", speed, f"must give at most {_MOST_FRAMES} frames, not {count}")
     times = np.minimum(start + np.arange(count) * speed / fps, end)
-    film = Film(run, times, pace=speed, follow=follow, width=width)
+    about = "; ".join(run.provenance for run in runs)
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     partial = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
-    shown = 0
-    with counted(count) as report:
+    partial.touch()  # here it fails if nothing can be written
+    try:
+        film = Film(
+            runs, times, labels=labels, pace=speed, follow=follow, beside=beside, width=width
+        )
+        with counted(count) as report:
+            shown = 0
 
-        def show(number: int) -> None:
-            nonlocal shown
-            film.show(number)
-            if number == shown:  # some are drawn twice, for the palette or to be held
-                shown += 1
-                report(1)
+            def show(number: int) -> None:
+                nonlocal shown
+                film.show(number)
+                if number == shown:  # some are drawn twice, for the palette or to be held
+                    shown += 1
+                    report(1)
 
-        partial.touch()  # here it fails if nothing can be written
-        try:
-            write(partial, film.figure, show, count, fps)
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+            write(partial, film.figure, show, count, fps, about=about)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
     return path
 
 
@@ -98,7 +108,7 @@ def _in_range(value: float, name: str, bounds: tuple[float, float]) -> float:
 
 
 def _write_gif(
-    partial: Path, figure: Any, show: Callable[[int], None], count: int, fps: float
+    partial: Path, figure: Any, show: Callable[[int], None], count: int, fps: float, *, about: str
 ) -> None:
     """Write a GIF with one palette for all frames, so that what stands still costs nothing."""
     images = extra("PIL.Image", "animation")
@@ -116,7 +126,8 @@ def _write_gif(
     durations = 10 * np.diff(ends, prepend=0)
     durations[-1] += round(1e3 * _HOLD)
     first = next(frames)
-    first.save(partial, save_all=True, append_images=frames, duration=durations.tolist(), loop=0)
+    timing: Any = {"duration": durations.tolist(), "loop": 0}
+    first.save(partial, save_all=True, append_images=frames, comment=about, **timing)
 
 
 def palette_of(images: Any, pixels: NDArray[np.uint8]) -> Any:
@@ -133,7 +144,13 @@ def palette_of(images: Any, pixels: NDArray[np.uint8]) -> Any:
 
 
 def _write_mp4(
-    partial: Path, figure: Figure, show: Callable[[int], None], count: int, fps: float
+    partial: Path,
+    figure: Figure,
+    show: Callable[[int], None],
+    count: int,
+    fps: float,
+    *,
+    about: str,
 ) -> None:
     """Write an MP4 that browsers can play, with any ffmpeg."""
     matplotlib = extra("matplotlib", "animation")
@@ -144,7 +161,7 @@ def _write_mp4(
         options["animation.ffmpeg_path"] = ffmpeg.get_ffmpeg_exe()
     held = [count - 1] * round(fps * _HOLD)
     with matplotlib.rc_context(options):
-        writer = writers.FFMpegWriter(fps=fps, codec="h264")
+        writer = writers.FFMpegWriter(fps=fps, codec="h264", metadata={"comment": about})
         with writer.saving(figure, partial, dpi=figure.dpi):
             for number in [*range(count), *held]:
                 show(number)
@@ -152,49 +169,86 @@ def _write_mp4(
 
 
 class Film:
-    """The side view of a run in a figure of its own, at one of several instants at a time.
+    """The side views of runs in a figure of their own, at one of several instants at a time.
+
+    All are to one scale, those of forces included, and show the same stretch of ground.
 
     Parameters
     ----------
-    run : Run
-        A run with history.
+    runs : sequence of Run
+        Runs with history.
     times : ndarray, shape (k,)
-        [s] The instants.
+        [s] The instants; a run stands still before it begins and once it has ended.
+    labels : sequence of str
+        What to call each.
     pace : float
         [-] How many times faster than real time they are shown.
-    follow, width
-        See `Run.animate`.
+    follow, beside, width
+        See `crawler2d.animate`.
     """
 
     def __init__(
         self,
-        run: Record,
+        runs: Sequence[Record],
         times: NDArray[np.float64],
         *,
+        labels: Sequence[str],
         pace: float,
         follow: bool | None,
+        beside: bool,
         width: int,
     ) -> None:
         figures = extra("matplotlib.figure", "animation")
         agg = extra("matplotlib.backends.backend_agg", "animation")
-        scene = scene_of(run, times)
-        self._run, self._times = run, times
-        self._pace = "" if pace == 1.0 else f" ({pace:g} x real time)"
-        self._samples = np.searchsorted(0.5 * (run.time[1:] + run.time[:-1]), times)
-        extent = scene.extent()
-        self._views = _views(scene, extent, follow=follow)
         self.figure = figures.Figure(dpi=width / _FIGURE_WIDTH)
         agg.FigureCanvasAgg(self.figure)
-        canvas = scene_canvas(scene, tuple(self._views[0]), None, self.figure)
-        ax = self._ax = canvas.ax
+        scenes = [scene_of(run, np.clip(times, run.time[0], run.time[-1])) for run in runs]
+        extents = np.array([scene.extent() for scene in scenes])
+        left, bottom = extents[:, ::2].min(axis=0).tolist()
+        right, top = extents[:, 1::2].max(axis=0).tolist()
+        views = _views(scenes, (left, right, bottom, top), follow=follow)
+        axes = blank_axes(self.figure, tuple(views[0][0]), len(runs), beside=beside)
+        most = max(usual_force(run) for run in runs)
+        note = "" if pace == 1.0 else f" ({pace:g} x real time)"
+        self._pictures = [
+            _Picture(run, scene, of_run, ax, most=most, label=label, times=times, note=note)
+            for run, scene, of_run, ax, label in zip(runs, scenes, views, axes, labels, strict=True)
+        ]
+        legend = draw_legend(axes[0] if beside else axes[-1], axes)
+        titles = [picture.title for picture in self._pictures]
+        arrange(self.figure, axes, titles, legend, beside=beside)
+
+    def show(self, number: int) -> None:
+        """Draw a frame."""
+        for picture in self._pictures:
+            picture.show(number)
+
+
+class _Picture:
+    """One run of a film in Axes, shown in a view [m] for each frame; see `Film`."""
+
+    def __init__(
+        self,
+        run: Record,
+        scene: Scene,
+        views: NDArray[np.float64],
+        ax: Axes,
+        *,
+        most: float,
+        label: str,
+        times: NDArray[np.float64],
+        note: str,
+    ) -> None:
+        self._run, self._views, self._ax, self._most = run, views, ax, most
+        self._label, self._times, self._note = label, times, note
+        self._samples = np.searchsorted(0.5 * (run.time[1:] + run.time[:-1]), times)
+        scene_canvas(scene, tuple(views[0]), ax)
         draw_goal(scene.goal, ax)
         self._moving: list[Outlines | Envelopes] = [Outlines(scene, ax), Envelopes(scene, ax)]
-        self._most = usual_force(run)
-        label = f"contact forces, the longest {self._most:.0f} N"
-        ax.plot([], [], color=RED, linewidth=2.5, label=label)
+        forces = f"contact forces, the longest {most:.0f} N"
+        ax.plot([], [], color=RED, linewidth=2.5, label=forces)
         self._arrows: list[Any] = []
-        canvas.caption(run.title)
-        self._title = canvas.title
+        self.title = set_title(ax, f"{label}: {run.ending}")
 
     def show(self, number: int) -> None:
         """Draw a frame."""
@@ -206,26 +260,31 @@ class Film:
         for arrow in self._arrows:
             arrow.remove()
         self._arrows = draw_forces(self._run, int(self._samples[number]), self._ax, self._most)
-        time, run = self._times[number], self._run
-        is_last = number == len(self._times) - 1
-        self._title.set_text(run.title if is_last else f"{run.subject}: {time:.2f} s{self._pace}")
+        time, run = float(self._times[number]), self._run
+        now = run.ending if time >= run.time[-1] else f"{time:.2f} s{self._note}"
+        self.title.set_text(f"{self._label}: {now}")
 
 
-def _views(scene: Scene, extent: Extent, *, follow: bool | None) -> NDArray[np.float64]:
-    """[m] Left, right, bottom and top of what each frame shows."""
+def _views(
+    scenes: Sequence[Scene], extent: Extent, *, follow: bool | None
+) -> list[NDArray[np.float64]]:
+    """[m] Left, right, bottom and top of what each frame of each run shows."""
     left, right, bottom, top = extent
-    start, end, _, _ = scene.robot_extent()
-    length = end - start
+    length = max(end - start for start, end, _, _ in (scene.robot_extent() for scene in scenes))
     if follow is None:
         follow = right - left > _WIDEST * length
-    places = scene.carriers[0].poses[:, :2]
+    places = [scene.carriers[0].poses[:, :2] for scene in scenes]
     if not follow:
-        return np.tile(extent, (len(places), 1))
-    sides = [
-        _window(places[:, 0], (left, right), _WINDOW[0] * length),
-        _window(places[:, 1], (bottom, top), _WINDOW[1] * length),
+        return [np.tile(extent, (len(each), 1)) for each in places]
+    return [
+        np.column_stack(
+            [
+                _window(each[:, 0], (left, right), _WINDOW[0] * length),
+                _window(each[:, 1], (bottom, top), _WINDOW[1] * length),
+            ]
+        )
+        for each in places
     ]
-    return np.column_stack(sides)
 
 
 def _window(

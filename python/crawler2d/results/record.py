@@ -270,12 +270,45 @@ class Record:
     @property
     def title(self) -> str:
         """What ran and how it ended, in one line for tables and plots."""
+        return f"{self.subject}: {self.ending}"
+
+    @property
+    def ending(self) -> str:
+        """How it ended, in a few words."""
         if self.error is not None:
-            return f"{self.subject}: {type(self.error).__name__}"
+            return type(self.error).__name__
         # A run ends when the goal has been held for a while; it was cleared before.
         is_cleared = self.outcome is Outcome.CLEARED
         time = self.metrics["time_to_clear" if is_cleared else "time"]
-        return f"{self.subject}: {self.outcome} after {time:.2f} s"
+        return f"{self.outcome} after {time:.2f} s"
+
+    @property
+    def provenance(self) -> str:
+        """What made it: the version of crawler2d and the identity of the scenario, for files.
+
+        Films have it as their comment, and pages in their last line. Identities include seeds.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario breaks a rule.
+
+        Examples
+        --------
+        >>> import io
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.05), duration=1.0)
+        >>> about = {"Description": run.provenance}
+        >>> run.plot().figure.savefig(io.BytesIO(), format="svg", metadata=about)
+        >>> run.scenario.identity in run.provenance
+        True
+        """
+        made = f"crawler2d {_core.build_info()['version']}, scenario {self.scenario.identity}"
+        if self.trunk is None:
+            return made
+        scenario, time = self.trunk
+        return f"{made}, branched off scenario {scenario.identity} at {time!r} s"
 
     @property
     def subject(self) -> str:

@@ -30,11 +30,10 @@ from crawler2d.runs.branch import (
     try_variant,
 )
 from crawler2d.runs.cross_check import CrossCheck, compare_engines
-from crawler2d.runs.progress import Progress, Reporter, reporter
+from crawler2d.runs.progress import Progress, reporter
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from contextlib import AbstractContextManager
     from os import PathLike
     from pathlib import Path
 
@@ -521,6 +520,8 @@ class Run(Record):
     ) -> Path:
         """Write a film of the side view with the contact forces, which ends with the outcome.
 
+        `crawler2d.animate` puts several runs into one. The comment of the file is `provenance`.
+
         Parameters
         ----------
         path : str or path-like
@@ -556,11 +557,16 @@ class Run(Record):
         """
         from crawler2d.pictures.animation import animate  # noqa: PLC0415 - optional
 
-        def counted(frames: int) -> AbstractContextManager[Reporter]:
-            return reporter(progress, frames, unit="frame")
-
         return animate(
-            self, path, fps=fps, speed=speed, follow=follow, width=width, counted=counted
+            [self],
+            path,
+            labels=[self.subject],
+            fps=fps,
+            speed=speed,
+            follow=follow,
+            beside=False,
+            width=width,
+            counted=partial(reporter, progress, unit="frame"),
         )
 
     @overload

@@ -140,7 +140,6 @@ def _all_figures(run: Record) -> list[tuple[str, str]]:
 def replay_page(run: Record, time: float | None = None) -> str:
     """Write the page of a run; see `Run.to_html`."""
     data = recording(run, time)
-    subject, _, ending = run.title.rpartition(": ")
     outcome = "" if run.outcome is None else str(run.outcome).replace("_", "-")
     mechanism = ""
     if run.mechanism is not None:
@@ -152,8 +151,8 @@ def replay_page(run: Record, time: float | None = None) -> str:
         read_part("replay.css"),
         scene_script(read_part("strip.js"), read_part("replay.js")),
         title=escape(run.title),
-        subject=escape(subject),
-        ending=escape(ending.replace("_", " ")),
+        subject=escape(run.subject),
+        ending=escape(run.ending.replace("_", " ")),
         outcome_class=escape(outcome),
         outcome_meaning="" if run.outcome is None else _tooltip(run.outcome.meaning),
         mechanism=mechanism,

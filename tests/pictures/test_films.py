@@ -1,0 +1,191 @@
+"""Films of several runs: one time, one scale, a title for each, and nothing half written."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import crawler2d as c2d
+from crawler2d.pictures.animation import Film
+from tests.shared import ROBOT, refused
+
+STEP = c2d.terrains.step(0.075)
+TRACKS: dict[str, Any] = {
+    "belt": c2d.BeltTrack(),
+    "wheels": c2d.LineOfWheels(4, wheel_radius=0.0608),
+}
+
+
+@pytest.fixture(scope="module")
+def pair() -> list[c2d.Run]:
+    """A belt that is over the step after 3 s, and wheels that go on for two seconds more."""
+    return [
+        c2d.simulate(ROBOT.with_track(TRACKS["belt"]), STEP, duration=3.0),
+        c2d.simulate(ROBOT.with_track(TRACKS["wheels"]), STEP, duration=5.0),
+    ]
+
+
+def film_of(runs: list[c2d.Run], times: Any, **options: Any) -> Film:
+    chosen: dict[str, Any] = {"pace": 1.0, "follow": None, "beside": False, "width": 300}
+    return Film(runs, np.array(times), labels=list(TRACKS), **chosen | options)
+
+
+def titles(film: Film) -> list[str]:
+    return [ax.get_title(loc="left") for ax in film.figure.axes]
+
+
+def test_each_picture_has_the_time_until_its_run_has_ended(pair: list[c2d.Run]) -> None:
+    film = film_of(pair, [0.0, 2.0, 4.0, 5.0])
+    told = []
+    for number in range(4):
+        film.show(number)
+        told.append(titles(film))
+    assert told == [
+        ["belt: 0.00 s", "wheels: 0.00 s"],
+        ["belt: 2.00 s", "wheels: 2.00 s"],
+        [f"belt: {pair[0].ending}", "wheels: 4.00 s"],
+        [f"belt: {pair[0].ending}", f"wheels: {pair[1].ending}"],
+    ]
+
+
+def outlines(film: Film) -> list[Any]:
+    """[m] All lines of the first picture."""
+    return [np.array(line.get_xydata()) for line in film.figure.axes[0].get_lines()]
+
+
+def test_a_run_that_has_ended_stands_still(pair: list[c2d.Run]) -> None:
+    film = film_of(pair, [2.0, 3.0, 4.0, 5.0])
+    drawn = []
+    for number in range(4):
+        film.show(number)
+        drawn.append(outlines(film))
+    same = [all(map(np.array_equal, drawn[1], each)) for each in drawn]
+    assert same == [False, True, True, True]
+
+
+def test_a_branch_stands_still_until_it_branches_off(pair: list[c2d.Run]) -> None:
+    branch = pair[1].branch(2.0, track=c2d.BeltTrack(), duration=1.0)
+    film = film_of([branch, pair[1]], [0.0, 1.0, 2.0, 2.5])
+    drawn = []
+    for number in range(4):
+        film.show(number)
+        drawn.append(outlines(film))
+    same = [all(map(np.array_equal, drawn[0], each)) for each in drawn]
+    assert same == [True, True, True, False]
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("follow", [False, True])
+def test_all_pictures_have_one_size_and_one_scale(
+    pair: list[c2d.Run], beside: bool, follow: bool
+) -> None:
+    film = film_of(pair, [0.0, 3.0, 5.0], beside=beside, follow=follow)
+    for number in range(3):
+        film.show(number)
+        film.figure.canvas.draw()
+        one, other = film.figure.axes
+        assert one.bbox.size == pytest.approx(other.bbox.size)
+        spans = [np.diff([ax.get_xlim(), ax.get_ylim()], axis=1) for ax in (one, other)]
+        assert spans[0] == pytest.approx(spans[1])
+        apart = abs(one.bbox.min - other.bbox.min) >= one.bbox.size
+        assert apart.tolist() == [beside, not beside]
+        whole = film.figure.bbox
+        for ax in (one, other):
+            box = ax.get_tightbbox()
+            assert whole.xmin <= box.xmin < box.xmax <= whole.xmax
+            assert whole.ymin <= box.ymin < box.ymax <= whole.ymax
+
+
+def test_one_legend_explains_what_any_picture_shows(pair: list[c2d.Run]) -> None:
+    film = film_of(pair, [0.0])
+    legends = [ax.get_legend() for ax in film.figure.axes]
+    assert legends[0] is None
+    told = [text.get_text() for text in legends[1].get_texts()]
+    assert len(told) == len(set(told))
+    assert any(text.startswith("envelope") for text in told)
+    assert sum(text.startswith("contact forces") for text in told) == 1
+
+
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_film_of_two_has_as_many_frames_as_the_longer_run(
+    pair: list[c2d.Run], tmp_path: Path, beside: bool
+) -> None:
+    calls: list[tuple[int, int]] = []
+    path = c2d.animate(
+        pair,
+        tmp_path / "pair.gif",
+        fps=4.0,
+        width=300,
+        beside=beside,
+        progress=lambda *each: calls.append(each),
+    )
+    assert calls == [(done, 21) for done in range(22)]
+    with Image.open(path) as image:
+        assert image.size[0] == (600 if beside else 300)
+        assert image.info["comment"].decode() == "; ".join(run.provenance for run in pair)
+        assert getattr(image, "n_frames", 1) > 10  # equal ones are one
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_without_labels_pictures_are_called_by_their_tracks(
+    pair: list[c2d.Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[Film] = []
+    build = Film.__init__
+
+    def keep(self: Film, *args: Any, **options: Any) -> None:
+        build(self, *args, **options)
+        made.append(self)
+
+    monkeypatch.setattr(Film, "__init__", keep)
+    c2d.animate(pair, tmp_path / "pair.gif", fps=1.0, width=200, progress=False)
+    assert titles(made[0]) == [
+        f"smooth belt: {pair[0].ending}",
+        f"4 round wheels in a line: {pair[1].ending}",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("make", "path"),
+    [
+        (lambda _pair: {"runs": []}, "runs"),
+        (lambda pair: {"runs": pair[0]}, "runs"),
+        (lambda pair: {"runs": pair * 7}, "runs"),
+        (lambda pair: {"runs": [pair[0], pair[1].scenario]}, "runs[1]"),
+        (lambda pair: {"runs": pair, "labels": ["one"]}, "labels"),
+        (lambda pair: {"runs": pair, "labels": "ab"}, "labels"),
+        (lambda pair: {"runs": pair, "labels": ["one", 2]}, "labels"),
+        (lambda pair: {"runs": pair, "beside": 1}, "beside"),
+        (lambda pair: {"runs": pair, "follow": "no"}, "follow"),
+        (lambda pair: {"runs": pair, "progress": "yes"}, "progress"),
+        (lambda pair: {"runs": pair, "path": "pair.avi"}, "path"),
+        (lambda pair: {"runs": pair, "speed": 0.0}, "speed"),
+    ],
+)
+def test_what_makes_no_film_is_refused_and_leaves_nothing(
+    pair: list[c2d.Run], tmp_path: Path, make: Any, path: str
+) -> None:
+    chosen = make(pair)
+    file = tmp_path / chosen.pop("path", "pair.gif")
+    assert refused(lambda: c2d.animate(path=file, **chosen)).path == path
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_without_history_makes_no_film(pair: list[c2d.Run], tmp_path: Path) -> None:
+    summary = c2d.simulate(ROBOT, STEP, duration=0.2, record="summary")
+    with pytest.raises(AttributeError, match="no history"):
+        c2d.animate([pair[0], summary], tmp_path / "pair.gif")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_is_not_there_is_an_error_before_anything_is_drawn(
+    pair: list[c2d.Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: Any, **__: Any) -> None:
+        raise AssertionError("drawn")
+
+    monkeypatch.setattr(Film, "__init__", fail)
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        c2d.animate(pair, tmp_path / "nowhere" / "pair.gif")
