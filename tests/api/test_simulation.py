@@ -214,3 +214,72 @@ def test_the_repr_says_how_far_it_is(scenario: Scenario) -> None:
     sim = c2d.Simulation(scenario)
     sim.advance(0.25)
     assert repr(sim) == "Simulation(engineer at 0.250 s)"
+
+
+def used(scenario: Scenario) -> c2d.Simulation:
+    """A simulation that has been driven, commanded and pushed."""
+    sim = c2d.Simulation(scenario)
+    sim.advance(1.0)
+    sim.command(speed=-0.2, push=20.0)
+    sim.advance(0.5)
+    return sim
+
+
+def test_after_a_reset_it_goes_the_way_of_a_new_one_bit_by_bit(scenario: Scenario) -> None:
+    sim, new = used(scenario), c2d.Simulation(scenario)
+    assert sim.snapshot() != new.snapshot()
+    sim.reset()
+    assert sim.time == 0.0
+    for _ in range(2):
+        assert sim.snapshot() == new.snapshot()
+        for each in (sim, new):
+            each.advance(1.5)
+
+
+def test_a_reset_forgets_the_outcome(seizing: Scenario) -> None:
+    sim = c2d.Simulation(seizing)
+    sim.advance(10.0)
+    assert sim.state().outcome is c2d.Outcome.SEIZED
+    sim.reset()
+    assert sim.state().outcome is None
+
+
+def test_a_reset_can_change_the_start_and_keeps_it(scenario: Scenario) -> None:
+    start = c2d.Start(approach=0.3, track_phase=0.01)
+    sim, new = used(scenario), c2d.Simulation(scenario.replace({"start": start}))
+    sim.reset(start)
+    assert sim.scenario == new.scenario
+    assert sim.snapshot() == new.snapshot()
+    sim.advance(1.0)
+    sim.reset()
+    assert sim.snapshot() == new.snapshot()
+
+
+def test_a_restored_simulation_can_be_reset_to_its_start(scenario: Scenario) -> None:
+    sim = c2d.Simulation.from_snapshot(used(scenario).snapshot())
+    sim.reset()
+    assert sim.snapshot() == c2d.Simulation(scenario).snapshot()
+
+
+@pytest.mark.parametrize(
+    ("start", "path"), [(c2d.Start(approach=-1.0), "start.approach"), (0.3, "start")]
+)
+def test_an_impossible_start_is_refused_and_changes_nothing(
+    scenario: Scenario, start: Any, path: str
+) -> None:
+    sim = used(scenario)
+    before = sim.snapshot()
+    with pytest.raises(c2d.ScenarioError) as caught:
+        sim.reset(start)
+    assert caught.value.path == path
+    assert sim.snapshot() == before
+    assert sim.scenario == scenario
+
+
+def test_doubts_are_told_once_and_not_at_every_reset(scenario: Scenario) -> None:
+    doubtful = scenario.replace({"gravity": 40.0})
+    with pytest.warns(c2d.ScenarioWarning, match="gravity"):
+        sim = c2d.Simulation(doubtful)
+    sim.reset()  # warnings are errors
+    with pytest.warns(c2d.ScenarioWarning, match="gravity"):
+        sim.reset(c2d.Start())

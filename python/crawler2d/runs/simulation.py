@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from crawler2d import _core
 from crawler2d.common.arrays import Table, freeze_array, real_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.scenario import Scenario, check_scenario
+from crawler2d.parameters.settings import Start
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.outcome import Outcome
 
@@ -152,6 +153,39 @@ class Simulation(TakesKeywords):
         self._core.command(
             *(None if value is None else real_number(value, name) for name, value in given.items())
         )
+
+    @takes_keywords
+    def reset(self, start: Start | None = None) -> None:
+        """Go back to time 0 and forget all commands: as if it were new, bit by bit.
+
+        Parameters
+        ----------
+        start : Start, optional
+            Another start, which becomes that of `scenario`. None takes the scenario's.
+
+        Raises
+        ------
+        ScenarioError
+            If the start breaks a rule; then nothing changes.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.step(0.05)))
+        >>> for approach in (0.1, 0.5):
+        ...     sim.reset(c2d.Start(approach=approach))
+        ...     sim.advance(4.0)
+        ...     print(sim.state().outcome)
+        cleared
+        None
+        """
+        if start is None:
+            with ignore_doubts():  # told when it was made
+                self._core = _core.Simulation(self.scenario.to_json())
+            return
+        changed = type(self)(self.scenario.replace({"start": start}))
+        self.scenario, self._core = changed.scenario, changed._core
 
     def snapshot(self) -> bytes:
         """Write the complete state.
