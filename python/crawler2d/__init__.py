@@ -49,6 +49,7 @@ from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import BatchInterrupted, simulate, simulate_many
+from crawler2d.runs.explore import explore
 from crawler2d.runs.film import animate
 from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
@@ -114,6 +115,7 @@ __all__ = [
     "build_info",
     "check_store",
     "compare",
+    "explore",
     "join_stores",
     "load",
     "newcombe",

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from crawler2d.parameters.scenario import Scenario
     from crawler2d.parameters.settings import Drive
     from crawler2d.parameters.track import Track
+    from crawler2d.pictures.replay import Replay
     from crawler2d.results.findings import TrialResult
 
 __all__ = ["Run"]
@@ -653,6 +654,40 @@ class Run(Record):
 
         write_run(self, Path(path))
         return Path(path)
+
+    @takes_keywords
+    def widget(self, *, time: float | None = None) -> Replay:
+        """Replay the run in a widget of a live notebook, whose time can be read and set.
+
+        Parameters
+        ----------
+        time : float, optional
+            [s] Instant at which it opens; None takes the end if the run stopped, else the
+            beginning.
+
+        Returns
+        -------
+        Replay
+            A widget. Its `time` [s] is the instant that is shown, for `observe` and `jslink` of
+            ipywidgets; `show` replays another run in its place.
+
+        Raises
+        ------
+        ImportError
+            If anywidget is missing; the message names the extra to install.
+        AttributeError
+            If the run was recorded with ``record="summary"``.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> replay = c2d.simulate(robot, c2d.terrains.step(0.05)).widget()
+        >>> replay.time = 1.5
+        """
+        from crawler2d.pictures.replay import Replay  # noqa: PLC0415 - optional
+
+        return Replay(self, time)
 
     def _repr_html_(self) -> str:
         """Replay the run in a notebook, or show its metrics if there is no history."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
 __all__ = [
+    "FRAME_HEIGHT",
     "as_json",
     "embed",
     "fill_page",
@@ -46,7 +47,7 @@ _SCENE = (
 )
 
 # [px] Fits header, picture, controls and time strip; the metrics below need scrolling.
-_FRAME_HEIGHT = 820
+FRAME_HEIGHT = 820
 
 # Escaped as \u sequences, these mean the same in JSON and nothing in HTML.
 _MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
@@ -213,7 +214,7 @@ def embed(run: Record) -> str:
     return (
         f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
         f'title="{escape(run.title)}" '
-        f'style="width: 100%; height: {_FRAME_HEIGHT}px; border: 0"></iframe>'
+        f'style="width: 100%; height: {FRAME_HEIGHT}px; border: 0"></iframe>'
     )
 
 

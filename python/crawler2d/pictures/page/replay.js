@@ -27,6 +27,8 @@ function tell(time) {
   element("readout").textContent =
     `x ${shown(moment.x, 3)} m · y ${shown(moment.y, 3)} m · ${shown(degrees, 1)}° · ` +
     `track ${shown(moment.speed, 2)} m/s`;
+  // For a widget, which is the only one to listen.
+  if (embedded) window.parent.postMessage({ crawler2d: time }, "*");
 }
 
 // Goes to a frame and pauses there.
@@ -103,6 +105,9 @@ function main() {
   element("follow").addEventListener("change", (event) => follow(event.target.checked));
   element("reset").addEventListener("click", reset);
   document.addEventListener("keydown", press);
+  window.addEventListener("message", ({ source, data: told }) => {
+    if (source === window.parent && Number.isFinite(told?.crawler2d)) seek(recording.nearestFrame(told.crawler2d));
+  });
   watchPointer(scene.canvas, camera, changed, embedded);
   const scrubStrip = (event) => {
     if (event.buttons & 1) seek(recording.nearestFrame(strip.time(event.offsetX)));

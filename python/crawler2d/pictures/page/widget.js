@@ -1,0 +1,43 @@
+// The page of a run as a widget of a notebook, in a frame; another run gets a frame of its own.
+
+function render({ model, el }) {
+  const stack = document.createElement("div");
+  stack.style.cssText = `position: relative; width: 100%; height: ${model.get("height")}px`;
+  el.append(stack);
+  const reported = () => stack.lastElementChild?.reported;
+
+  const show = () => {
+    const frame = document.createElement("iframe");
+    frame.sandbox = "allow-scripts"; // the page can reach neither the notebook nor the network
+    frame.style.cssText = "position: absolute; inset: 0; width: 100%; height: 100%; border: 0; visibility: hidden";
+    // Until it is drawn the one before it stays, so that nothing flickers.
+    frame.addEventListener("load", () => {
+      while (frame.previousSibling) frame.previousSibling.remove();
+      frame.style.visibility = "visible";
+    });
+    frame.srcdoc = model.get("page");
+    stack.append(frame);
+  };
+
+  const seek = () => {
+    const time = model.get("time");
+    if (time !== reported()) stack.lastElementChild.contentWindow.postMessage({ crawler2d: time }, "*");
+  };
+
+  const hear = (event) => {
+    const frame = stack.lastElementChild;
+    const time = event.data?.crawler2d;
+    if (event.source !== frame?.contentWindow || !Number.isFinite(time) || time === frame.reported) return;
+    frame.reported = time;
+    model.set("time", time);
+    model.save_changes();
+  };
+
+  show();
+  model.on("change:page", show);
+  model.on("change:time", seek);
+  window.addEventListener("message", hear);
+  return () => window.removeEventListener("message", hear);
+}
+
+export default { render };

@@ -1,0 +1,159 @@
+"""Sliders over the replay of a run, in a live notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from crawler2d.common.arrays import real_number
+from crawler2d.common.extras import extra
+from crawler2d.common.keywords import suggestion
+from crawler2d.common.units import unit_of
+from crawler2d.errors import Crawler2dError, ScenarioError, ignore_doubts
+from crawler2d.parameters.fields import is_whole, known_paths, read_path
+from crawler2d.parameters.scenario import Scenario, check_scenario
+from crawler2d.runs.batch import simulate
+from crawler2d.runs.run import Run
+
+__all__ = ["Explorer", "explore"]
+
+# Steps of a slider from one end to the other.
+_STEPS = 100
+
+
+def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
+    """Change numbers of a scenario with sliders, and see how the robot drives then.
+
+    Each change simulates the scenario anew; belts and round wheels take less than 0.2 s.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where to begin.
+    **ranges : tuple of two floats
+        Lowest and highest value of each number: by its name, if no other has that name, such as
+        ``height=(0.02, 0.15)``, or by its path, ``**{"terrain.height": (0.02, 0.15)}``.
+
+    Returns
+    -------
+    Explorer
+        A notebook shows it. Its `run` and its `scenario` are those of the present values.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario breaks a rule; if a name is unknown or ambiguous, or belongs to no number;
+        if a range is not two numbers, the lower first.
+    ImportError
+        If anywidget is missing; the message names the extra to install.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+    >>> scenario = c2d.Scenario(robot, c2d.terrains.step(0.05))
+    >>> found = c2d.explore(scenario, height=(0.02, 0.15), friction=(0.3, 1.2))
+    >>> str(found.run.outcome)
+    'cleared'
+    >>> found.sliders["terrain.height"].value = 0.1
+    >>> str(found.run.outcome), found.scenario.terrain.height
+    ('seized', 0.1)
+    """
+    scenario = check_scenario(scenario)
+    if not ranges:
+        raise ScenarioError("ranges", None, "must have at least one, such as height=(0.02, 0.15)")
+    paths = {_path(scenario, name): bounds for name, bounds in ranges.items()}
+    return Explorer(scenario, {path: _bounds(path, each) for path, each in paths.items()})
+
+
+def _path(scenario: Scenario, name: str) -> str:
+    """Find the path of a number by its last part."""
+    known = list(known_paths(scenario))
+    found = [name] if "." in name else [p for p in known if p.rpartition(".")[2] == name]
+    if not found:
+        hint = suggestion(name, [], known)
+        raise ScenarioError(name, None, f"must be the name of a number of the scenario{hint}")
+    if len(found) > 1:
+        raise ScenarioError(name, None, f"must be one of them, by its path: {', '.join(found)}")
+    if type(read_path(scenario, found[0])) not in (int, float):
+        raise ScenarioError(found[0], read_path(scenario, found[0]), "must be a number to vary")
+    return found[0]
+
+
+def _bounds(path: str, bounds: Any) -> tuple[float, float]:
+    if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
+        raise ScenarioError(path, bounds, "must have a range (lowest, highest)")
+    low, high = (real_number(each, path) for each in bounds)
+    if not low < high:
+        raise ScenarioError(path, bounds, "must have a range (lowest, highest), the lower first")
+    return low, high
+
+
+class Explorer:
+    """Sliders over the replay of a run; see `explore`.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        With the values of the sliders.
+    run : Run
+        Its run. Where the values break a rule, the one before; the notebook says which.
+    sliders : dict of str to Widget
+        By path.
+    replay : Replay
+        See `Run.widget`.
+    """
+
+    scenario: Scenario
+    run: Run
+
+    def __init__(self, scenario: Scenario, ranges: Mapping[str, tuple[float, float]]) -> None:
+        widgets = extra("ipywidgets", "notebook")
+        self.sliders = {
+            path: _slider(widgets, scenario, path, bounds) for path, bounds in ranges.items()
+        }
+        self.scenario = scenario.replace(self._values())
+        self.run = simulate(self.scenario)
+        self.replay = self.run.widget()
+        self._message = widgets.Label()
+        self._box = widgets.VBox([*self.sliders.values(), self._message, self.replay])
+        for slider in self.sliders.values():
+            slider.observe(self._change, names="value")
+
+    def _values(self) -> dict[str, float]:
+        return {path: slider.value for path, slider in self.sliders.items()}
+
+    def _change(self, _: object) -> None:
+        scenario = self.scenario.replace(self._values())
+        try:
+            with ignore_doubts():  # at every move of a slider they would fill the notebook
+                run = simulate(scenario)
+        except Crawler2dError as error:
+            self._message.value = str(error)
+            return
+        self._message.value = ""
+        self.scenario, self.run = scenario, run
+        self.replay.show(run)
+
+    def _repr_mimebundle_(self, **options: Any) -> Any:
+        """Show it in a notebook."""
+        return self._box._repr_mimebundle_(**options)
+
+
+def _slider(widgets: Any, scenario: Scenario, path: str, bounds: tuple[float, float]) -> Any:
+    """Make a slider that begins at the value of the scenario, or at the nearer end."""
+    low, high = bounds
+    value = min(max(read_path(scenario, path), low), high)
+    unit = unit_of(path)
+    label = path if unit in (None, "1") else f"{path} [{unit}]"
+    look: dict[str, Any] = {
+        "description": label,
+        "style": {"description_width": "initial"},
+        "layout": {"width": "100%"},
+    }
+    if is_whole(scenario, path):
+        return widgets.IntSlider(value=round(value), min=round(low), max=round(high), **look)
+    step = (high - low) / _STEPS
+    return widgets.FloatSlider(
+        value=value, min=low, max=high, step=step, readout_format=".4g", **look
+    )
