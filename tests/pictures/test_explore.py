@@ -65,6 +65,24 @@ def test_a_slider_begins_at_the_nearer_end_if_the_value_is_outside() -> None:
     assert found.scenario == BASE.replace({"terrain.height": 0.06})
 
 
+@pytest.mark.parametrize(
+    ("bounds", "given", "begins", "step"),
+    [
+        ((0.02, 0.15), 0.05, 0.05, 0.001),
+        ((0.0, 0.1), 0.05, 0.05, 0.001),
+        ((0.02, 0.15), 0.0523, 0.052, 0.001),
+        ((0.0, 3.0), 0.05, 0.04, 0.02),
+    ],
+)
+def test_what_a_slider_shows_is_what_is_simulated(
+    bounds: tuple[float, float], given: float, begins: float, step: float
+) -> None:
+    found = c2d.explore(BASE.replace({"terrain.height": given}), height=bounds)
+    slider = found.sliders["terrain.height"]
+    assert (slider.value, slider.step) == (begins, step)
+    assert found.run.scenario == BASE.replace({"terrain.height": begins})
+
+
 def test_whole_numbers_have_whole_sliders_and_paths_name_what_names_do_not() -> None:
     found = c2d.explore(BASE, count=(2, 6), **{"robot.mass": (10.0, 30.0)})
     count, mass = found.sliders.values()
@@ -81,10 +99,10 @@ def test_values_that_break_a_rule_keep_the_run_and_say_which() -> None:
     found.sliders["terrain.height"].value = 0.02
     assert found.run is before
     assert found.scenario is before.scenario
-    told = found._message.value
-    assert told.startswith("terrain.edge_radius must fit the edge")
+    assert found._message.value.startswith("terrain.edge_radius must fit the edge")
+    assert found._message.layout.display is None
     found.sliders["terrain.height"].value = 0.06
-    assert found._message.value == ""
+    assert found._message.layout.display == "none"
     assert found.run.scenario == base.replace({"terrain.height": 0.06})
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,14 +18,15 @@ from crawler2d.runs.run import Run
 
 __all__ = ["Explorer", "explore"]
 
-# Steps of a slider from one end to the other.
+# Steps of a slider from one end to the other, at least.
 _STEPS = 100
 
 
 def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
     """Change numbers of a scenario with sliders, and see how the robot drives then.
 
-    Each change simulates the scenario anew; belts and round wheels take less than 0.2 s.
+    Each change simulates the scenario anew; belts and round wheels take less than 0.2 s. Sliders
+    begin at the nearest of their values to that of the scenario.
 
     Parameters
     ----------
@@ -112,10 +114,13 @@ class Explorer:
         self.sliders = {
             path: _slider(widgets, scenario, path, bounds) for path, bounds in ranges.items()
         }
+        width = max(len(slider.description) for slider in self.sliders.values())
+        for slider in self.sliders.values():
+            slider.style.description_width = f"{width}ch"
         self.scenario = scenario.replace(self._values())
         self.run = simulate(self.scenario)
         self.replay = self.run.widget()
-        self._message = widgets.Label()
+        self._message = widgets.Label(layout={"display": "none"})
         self._box = widgets.VBox([*self.sliders.values(), self._message, self.replay])
         for slider in self.sliders.values():
             slider.observe(self._change, names="value")
@@ -129,9 +134,9 @@ class Explorer:
             with ignore_doubts():  # at every move of a slider they would fill the notebook
                 run = simulate(scenario)
         except Crawler2dError as error:
-            self._message.value = str(error)
+            self._message.value, self._message.layout.display = str(error), None
             return
-        self._message.value = ""
+        self._message.layout.display = "none"
         self.scenario, self.run = scenario, run
         self.replay.show(run)
 
@@ -141,19 +146,25 @@ class Explorer:
 
 
 def _slider(widgets: Any, scenario: Scenario, path: str, bounds: tuple[float, float]) -> Any:
-    """Make a slider that begins at the value of the scenario, or at the nearer end."""
+    """Make a slider that begins as near to the value of the scenario as it can be set."""
     low, high = bounds
     value = min(max(read_path(scenario, path), low), high)
-    unit = unit_of(path)
-    label = path if unit in (None, "1") else f"{path} [{unit}]"
-    look: dict[str, Any] = {
-        "description": label,
-        "style": {"description_width": "initial"},
-        "layout": {"width": "100%"},
-    }
+    look: dict[str, Any] = {"description": _label(path), "layout": {"width": "100%"}}
     if is_whole(scenario, path):
         return widgets.IntSlider(value=round(value), min=round(low), max=round(high), **look)
-    step = (high - low) / _STEPS
-    return widgets.FloatSlider(
-        value=value, min=low, max=high, step=step, readout_format=".4g", **look
-    )
+    step = _round_step((high - low) / _STEPS)
+    value = round(low + step * round((value - low) / step), 12)  # 0.05, not 0.05000000000000001
+    look["readout_format"] = ".4g"
+    return widgets.FloatSlider(value=value, min=low, max=high, step=step, **look)
+
+
+def _label(path: str) -> str:
+    unit = unit_of(path)
+    return path if unit in (None, "1") else f"{path} [{unit}]"
+
+
+def _round_step(most: float) -> float:
+    """Find the largest of 1, 2, 5, 10, ... and their tenths that is no larger."""
+    power = math.floor(math.log10(most))
+    factor = next(factor for factor in (5, 2, 1) if factor * 10.0**power <= most * (1.0 + 1e-9))
+    return float(f"{factor}e{power}")

@@ -5,18 +5,26 @@ function render({ model, el }) {
   stack.style.cssText = `position: relative; width: 100%; height: ${model.get("height")}px`;
   el.append(stack);
   const reported = () => stack.lastElementChild?.reported;
+  let shown = null; // the page that is loading or loaded
 
   const show = () => {
     const frame = document.createElement("iframe");
     frame.sandbox = "allow-scripts"; // the page can reach neither the notebook nor the network
     frame.style.cssText = "position: absolute; inset: 0; width: 100%; height: 100%; border: 0; visibility: hidden";
-    // Until it is drawn the one before it stays, so that nothing flickers.
     frame.addEventListener("load", () => {
+      // Until now the one before it stayed, so that nothing flickers.
       while (frame.previousSibling) frame.previousSibling.remove();
       frame.style.visibility = "visible";
+      frame.loaded = true;
+      if (model.get("page") !== shown) show();
     });
-    frame.srcdoc = model.get("page");
+    shown = frame.srcdoc = model.get("page");
     stack.append(frame);
+  };
+
+  // One at a time: while a slider moves, pages come faster than they load.
+  const change = () => {
+    if (stack.lastElementChild.loaded) show();
   };
 
   const seek = () => {
@@ -34,7 +42,7 @@ function render({ model, el }) {
   };
 
   show();
-  model.on("change:page", show);
+  model.on("change:page", change);
   model.on("change:time", seek);
   window.addEventListener("message", hear);
   return () => window.removeEventListener("message", hear);
