@@ -108,6 +108,34 @@ def test_one_legend_explains_what_any_picture_shows(pair: list[c2d.Run]) -> None
     assert sum(text.startswith("contact forces") for text in told) == 1
 
 
+def test_arrows_of_robots_of_any_size_are_to_one_scale() -> None:
+    small, large = (
+        c2d.simulate(
+            c2d.Robot.simple(mass, axle_distance=length, radius=0.1 * length),
+            c2d.terrains.flat(),
+            duration=1.0,
+        )
+        for mass, length in ((20.0, 0.4), (40.0, 0.8))
+    )
+    film = Film(
+        [small, large],
+        np.array([1.0]),
+        labels=["small", "large"],
+        pace=1.0,
+        follow=None,
+        beside=False,
+        width=300,
+    )
+    film.show(0)
+    scales = []
+    for run, ax in zip((small, large), film.figure.axes, strict=True):
+        (arrows,) = [each for each in ax.collections if hasattr(each, "U")]
+        last = run.contacts["time"] == run.time[-1]
+        force = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])[last]
+        scales.append(np.hypot(arrows.U, arrows.V).max() / force.max())
+    assert scales[0] == pytest.approx(scales[1])
+
+
 @pytest.mark.parametrize("beside", [False, True])
 def test_a_film_of_two_has_as_many_frames_as_the_longer_run(
     pair: list[c2d.Run], tmp_path: Path, beside: bool

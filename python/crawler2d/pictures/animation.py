@@ -208,12 +208,18 @@ class Film:
         right, top = extents[:, 1::2].max(axis=0).tolist()
         views = _views(scenes, (left, right, bottom, top), follow=follow)
         axes = blank_axes(self.figure, tuple(views[0][0]), len(runs), beside=beside)
-        most = max(usual_force(run) for run in runs)
+        # Arrows are as long as their robots are, so forces are scaled by that.
+        sizes = [run.scenario.robot.outline.axle_distance for run in runs]
+        scale = max(usual_force(run) / size for run, size in zip(runs, sizes, strict=True))
+        forces = f"contact forces, the longest {scale * max(sizes):.0f} N"
         note = "" if pace == 1.0 else f" ({pace:g} x real time)"
         self._pictures = [
-            _Picture(run, scene, of_run, ax, most=most, label=label, times=times, note=note)
-            for run, scene, of_run, ax, label in zip(runs, scenes, views, axes, labels, strict=True)
+            _Picture(run, scene, of_run, ax, most=scale * size, label=label, times=times, note=note)
+            for run, scene, of_run, ax, size, label in zip(
+                runs, scenes, views, axes, sizes, labels, strict=True
+            )
         ]
+        axes[0].plot([], [], color=RED, linewidth=2.5, label=forces)
         legend = draw_legend(axes[0] if beside else axes[-1], axes)
         titles = [picture.title for picture in self._pictures]
         arrange(self.figure, axes, titles, legend, beside=beside)
@@ -245,8 +251,6 @@ class _Picture:
         scene_canvas(scene, tuple(views[0]), ax)
         draw_goal(scene.goal, ax)
         self._moving: list[Outlines | Envelopes] = [Outlines(scene, ax), Envelopes(scene, ax)]
-        forces = f"contact forces, the longest {most:.0f} N"
-        ax.plot([], [], color=RED, linewidth=2.5, label=forces)
         self._arrows: list[Any] = []
         self.title = set_title(ax, f"{label}: {run.ending}")
 
