@@ -134,6 +134,11 @@ def test_what_cannot_be_varied_is_refused(base: c2d.Scenario, ranges: Any, path:
     assert refused(lambda: c2d.explore(base, **ranges)).path == path
 
 
+def test_a_misspelt_name_is_answered_with_the_nearest_path() -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"did you mean terrain\.height\?"):
+        c2d.explore(BASE, hight=(0.02, 0.15))
+
+
 def test_a_notebook_shows_sliders_and_replay() -> None:
     found = c2d.explore(BASE, height=(0.02, 0.15))
     shown = found._repr_mimebundle_()
