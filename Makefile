@@ -185,5 +185,5 @@ $(VENV)/.browser: $(VENV)/.dependencies
 # An old core of another kind (abi3 or not) would be preferred silently: it goes first.
 $(VENV)/.built: $(VENV)/.dependencies $(SOURCES)
 	@rm -f python/crawler2d/_core*.so python/crawler2d/_core*.pyd
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,animation,analysis,progress,files,dask,models,notebook,sensitivity,cli
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras all
 	@touch $@

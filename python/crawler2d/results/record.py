@@ -304,7 +304,7 @@ class Record:
         >>> run.scenario.identity in run.provenance
         True
         """
-        made = f"crawler2d {_core.build_info()['version']}, scenario {self.scenario.identity}"
+        made = f"crawler2d {self.build['version']}, scenario {self.scenario.identity}"
         if self.trunk is None:
             return made
         scenario, time = self.trunk
