@@ -53,13 +53,15 @@ TRIALS = {
 """What is changed at a stop, one thing at a time."""
 
 
-def glossary_text(words: dict[str, str]) -> str:
-    """List words and their meanings for the end of a docstring."""
-    return "\n".join(f"- {word}: {meaning}" for word, meaning in words.items())
+def glossary_text(words: dict[str, str], indent: str = "") -> str:
+    """List words and their meanings for a docstring, all lines but the first indented."""
+    return f"\n{indent}".join(f"- {word}: {meaning}" for word, meaning in words.items())
 
 
 class Outcome(StrEnum):
     """How a run ended; if several apply, the first in this list.
+
+    {meanings}
 
     Examples
     --------
@@ -90,6 +92,6 @@ class Outcome(StrEnum):
 
 
 if Outcome.__doc__ is not None:  # not so with python -OO
-    Outcome.__doc__ += "\n" + glossary_text(OUTCOMES)
+    Outcome.__doc__ = Outcome.__doc__.replace("{meanings}", glossary_text(OUTCOMES, "    "))
 
 _STOPS = frozenset(_core.kinds()["stop"])

@@ -1,0 +1,52 @@
+"""Builds the documentation site into out/site; `make docs` runs it.
+
+Sphinx reads the pages of the repository in out/site-pages, in the folders in which they are here: what it generates
+stays out of the clone, and every link means the same on the site and on GitHub.
+"""
+
+import shutil
+import sys
+from pathlib import Path
+
+from check import faults_in
+from sphinx.cmd.build import build_main
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+OUT = ROOT / "out"
+SITE = OUT / "site"
+PAGES = OUT / "site-pages"
+
+FOLDERS = {"docs": "*", "studies": "*", "python/crawler2d": "*.py"}
+FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE")
+"""The pages, and what they link to."""
+
+
+def lay_out() -> None:
+    """Copy every file that is read; of what is generated, the gallery stays, for it takes a minute."""
+    PAGES.mkdir(parents=True, exist_ok=True)
+    for folder, pattern in FOLDERS.items():
+        shutil.rmtree(PAGES / folder, ignore_errors=True)
+        for path in (ROOT / folder).rglob(pattern):
+            if path.is_file() and "__pycache__" not in path.parts:
+                copy = PAGES / path.relative_to(ROOT)
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(path, copy)
+    for name in FILES:
+        shutil.copy2(ROOT / name, PAGES / name)
+
+
+def main() -> int:
+    """Build and check; return the exit status."""
+    lay_out()
+    options = ["--fail-on-warning", "--keep-going", "--nitpicky", "-q", "-c", str(HERE)]
+    if status := build_main([*options, "-d", str(OUT / "site-trees"), str(PAGES), str(SITE)]):
+        return status
+    shutil.copyfile(HERE / "start.html", SITE / "index.html")
+    faults = faults_in(SITE)
+    print("\n".join(faults) or f"{SITE / 'index.html'}: no broken link, nothing loaded from elsewhere")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

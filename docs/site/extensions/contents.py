@@ -1,0 +1,31 @@
+"""The README of a folder is its page: links to the folder lead there, and it lists what the folder holds."""
+
+import posixpath
+import re
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+FOLDER = re.compile(r"(?<=\]\()[\w./-]+(?=\))")
+PAGE = re.compile(r"\]\(([\w./-]+)\.(?:md|ipynb)\)")
+
+
+def read_page(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Lead links to folders to their READMEs, and put the pages of a README in the contents."""
+    page = Path(app.srcdir, docname)
+
+    def readme(link: re.Match[str]) -> str:
+        has_one = (page.parent / link[0] / "README.md").is_file()
+        return posixpath.join(link[0], "README.md") if has_one else link[0]
+
+    if Path(f"{page}.md").is_file():
+        source[0] = FOLDER.sub(readme, source[0])
+    if page.name == "README" and page.parent != Path(app.srcdir):
+        pages = "\n".join(dict.fromkeys(PAGE.findall(source[0])))
+        source[0] += f"\n```{{toctree}}\n:hidden:\n\n{pages}\n```\n"
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Follow the reading of pages."""
+    app.connect("source-read", read_page)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
