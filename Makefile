@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines docs format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -90,6 +90,10 @@ compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs
 	$(BIN)/python -m benches.engines run $(ARGS)
 	$(BIN)/python -m benches.engines table $(ARGS)
 
+docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network
+	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
+	$(BIN)/python docs/site/build.py
+
 format: $(VENV)/.dependencies ## format all code
 	cargo fmt --all
 	$(BIN)/ruff check --fix-only --quiet .
@@ -163,6 +167,10 @@ $(BIN)/cargo-mutants: | tools
 
 $(VENV)/.peers: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers
+	@touch $@
+
+$(VENV)/.docs: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs
 	@touch $@
 
 $(VENV)/.engines: $(VENV)/.dependencies

@@ -1,7 +1,7 @@
 """Builds the documentation site into out/site; `make docs` runs it.
 
-Sphinx reads the pages of the repository in out/site-pages, in the folders in which they are here: what it generates
-stays out of the clone, and every link means the same on the site and on GitHub.
+Sphinx reads the pages in out/site-pages, in the folders in which they are in the repository: what
+it generates stays out of these, and every link means the same on the site and on GitHub.
 """
 
 import shutil
@@ -23,7 +23,7 @@ FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE")
 
 
 def lay_out() -> None:
-    """Copy every file that is read; of what is generated, the gallery stays, for it takes a minute."""
+    """Copy every file that is read; what is generated of the gallery stays: it takes a minute."""
     PAGES.mkdir(parents=True, exist_ok=True)
     for folder, pattern in FOLDERS.items():
         shutil.rmtree(PAGES / folder, ignore_errors=True)
@@ -44,7 +44,9 @@ def main() -> int:
         return status
     shutil.copyfile(HERE / "start.html", SITE / "index.html")
     faults = faults_in(SITE)
-    print("\n".join(faults) or f"{SITE / 'index.html'}: no broken link, nothing loaded from elsewhere")
+    print(
+        "\n".join(faults) or f"{SITE / 'index.html'}: no broken link, nothing loaded from elsewhere"
+    )
     return 1 if faults else 0
 
 

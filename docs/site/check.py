@@ -1,4 +1,4 @@
-"""Checks of the built site: links lead somewhere, nothing is loaded from elsewhere, pictures have a text."""
+"""Checks of the built site: links lead somewhere, all is loaded from here, pictures have a text."""
 
 import re
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-LOADS = {"img": "src", "script": "src", "iframe": "src", "source": "src", "object": "data"}
+LOADS = {"img": "src", "link": "href", "script": "src", "iframe": "src", "object": "data"}
 """Elements that load what an attribute names."""
 
 IN_STYLES = re.compile(r"""(?:url\(|@import)\s*['"]?((?:https?:)?//[^'")\s]+)""")
@@ -29,9 +29,7 @@ class Page(HTMLParser):
         self.anchors |= {values[name] for name in ("id", "name") if name in values}
         if tag == "a" and "href" in values:
             self.links.add(values["href"])
-        elif tag == "link" and not {"canonical", "search", "next", "prev", "index", "genindex", "author"} & set(values.get("rel", "").split()):
-            self.loads.add(values.get("href", ""))
-        elif tag in LOADS and LOADS[tag] in values:
+        if LOADS.get(tag) in values:
             self.loads.add(values[LOADS[tag]])
         if tag == "img" and not values.get("alt"):
             self.without_text.append(values.get("src", ""))
@@ -40,36 +38,29 @@ class Page(HTMLParser):
             self.loads |= Page(values["srcdoc"]).loads
 
 
-def is_elsewhere(link: str) -> bool:
-    """Tell whether a link leaves the site."""
-    parts = urlsplit(link)
-    return bool(parts.netloc) or parts.scheme not in {"", "data"}
-
-
 def faults_in(site: Path) -> list[str]:
     """List the faults of all pages of a site."""
-    return [f"{path.relative_to(site)}: {fault}" for path, fault in sorted(_faults(site))]
-
-
-def _faults(site: Path) -> Iterator[tuple[Path, str]]:
-    pages = {path: Page(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
-    if len(pages) < 2:
-        yield site, "has no pages"
-    for path, page in pages.items():
-        for link in page.loads:
-            if is_elsewhere(link):
-                yield path, f"loads {link}"
-        for link in page.links | page.loads:
-            if not is_elsewhere(link) and not link.startswith("data:") and link != "#":
-                parts = urlsplit(link)
-                target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
-                if not target.is_file():
-                    yield path, f"links to {link}, which is not there"
-                elif parts.fragment and target in pages:
-                    if unquote(parts.fragment) not in pages[target].anchors:
-                        yield path, f"links to {link}, an anchor that is not there"
-        for picture in page.without_text:
-            yield path, f"shows {picture} without a text"
+    pages = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(site.rglob("*.html"))}
+    faults = [f"{path}: {fault}" for path in pages for fault in _faults_of(path, pages)]
     for path in site.rglob("*.css"):
-        for link in IN_STYLES.findall(path.read_text(encoding="utf-8")):
-            yield path, f"loads {link}"
+        found = IN_STYLES.findall(path.read_text(encoding="utf-8"))
+        faults += [f"{path}: loads {link}" for link in found]
+    return faults if pages else [f"{site}: has no pages"]
+
+
+def _faults_of(path: Path, pages: dict[Path, Page]) -> Iterator[str]:
+    page = pages[path]
+    for link in sorted(page.links | page.loads):
+        parts = urlsplit(link)
+        if parts.netloc or parts.scheme:
+            if link in page.loads and parts.scheme != "data":
+                yield f"loads {link}"
+            continue
+        target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+        anchors = pages[target].anchors if target in pages else set()
+        if not target.is_file():
+            yield f"links to {link}, which is not there"
+        elif target in pages and parts.fragment and unquote(parts.fragment) not in anchors:
+            yield f"links to {link}, an anchor that is not there"
+    for picture in page.without_text:
+        yield f"shows {picture} without a text"

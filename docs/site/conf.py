@@ -6,7 +6,6 @@ from pathlib import Path
 
 import matplotlib as mpl
 from numpydoc.xref import DEFAULT_LINKS
-from sphinx_gallery.sorting import ExplicitOrder
 
 import crawler2d as c2d
 
@@ -18,7 +17,7 @@ DEFAULT_LINKS.clear()  # numpydoc's links to Python and NumPy: their inventories
 
 project = "crawler2d"
 author = "The crawler2d developers"
-copyright = author  # noqa: A001 - Sphinx reads this name
+copyright = author
 version = release = str(c2d.build_info()["version"])
 
 extensions = [

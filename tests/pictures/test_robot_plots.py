@@ -18,6 +18,7 @@ ROBOTS = {
     **{name: getattr(c2d.robots, name)() for name in c2d.robots.__all__},
     **{f"public {name}": getattr(c2d.robots, name)(track="public") for name in ("absolem", "marv")},
     **{name: scenario.robot for name, scenario in VARIANTS.items()},
+    "a motor for each wheel": c2d.read_robot(c2d.samples.path()).robot,
     "unequal ends": dataclasses.replace(
         ROBOT, outline=dataclasses.replace(ROBOT.outline, front_radius=0.05)
     ),

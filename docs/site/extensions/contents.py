@@ -1,4 +1,4 @@
-"""The README of a folder is its page: links to the folder lead there, and it lists what the folder holds."""
+"""The README of a folder is its page on the site, and lists what the folder holds."""
 
 import posixpath
 import re

@@ -28,7 +28,8 @@ def spellings(name: str) -> Iterator[str]:
         yield f"crawler2d.{VARIABLES[first]}.{rest}"
     for module in MODULES:
         yield f"crawler2d.{module}.{name}"
-    yield f"crawler2d.terrains.{CAPITAL.sub('_', name).lower()}"  # the class `HalfRound` is half_round
+    # The class `HalfRound` is the function half_round.
+    yield f"crawler2d.terrains.{CAPITAL.sub('_', name).lower()}"
 
 
 def find(env: BuildEnvironment, text: str) -> tuple[str, str] | None:
@@ -75,7 +76,7 @@ def resolve_name(
     return make_refnode(app.builder, node["refdoc"], *target, content)
 
 
-def leave_gallery(app: Sphinx, docname: str, source: list[str]) -> None:
+def leave_gallery(_app: Sphinx, docname: str, source: list[str]) -> None:
     """Leave the code of the gallery to sphinx-gallery, which links names itself."""
     if docname.startswith("gallery/"):
         source[0] = f".. autolink-skip:: file\n\n{source[0]}"

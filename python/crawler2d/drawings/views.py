@@ -227,7 +227,9 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
 
 def _outline(scenario: dict[str, Any]) -> NDArray[np.float64]:
     """[m] The closed outline of the track as built: that of a belt."""
-    robot = {**scenario["robot"], "track": {"kind": "belt"}, "flippers": None}
+    drivetrain = {**scenario["robot"]["drivetrain"], "torque_sharing": "track"}
+    belt = {"track": {"kind": "belt"}, "drivetrain": drivetrain, "flippers": None}
+    robot = {**scenario["robot"], **belt}
     geometry = _core.geometry(json.dumps({**scenario, "robot": robot}))
     return close_line(geometry["carriers"][0]["envelope"])
 

@@ -1,0 +1,30 @@
+"""
+Every track model on one step
+=============================
+
+One robot, one step of 60 mm, and what stands for its track. Mass, centre of mass and moment of
+inertia are the same.
+"""
+
+import matplotlib.pyplot as plt
+
+import crawler2d as c2d
+
+models = (
+    c2d.BeltTrack(),
+    c2d.GrouserBeltTrack(),
+    c2d.SegmentalTrack(),
+    c2d.LineOfWheels(4, wheel_radius=0.0608),
+    c2d.LineOfWheels(5),
+    c2d.CircumferentialWheels(24),
+    c2d.HybridWheels([(-0.18, 0.0, 0.064), (0.0, -0.03, 0.034), (0.18, 0.0, 0.064)]),
+    c2d.ForceTrack(),
+)
+robot = c2d.robots.engineer(flippers=None).without_rotors()
+figure, axes = plt.subplots(4, 2, figsize=(10, 11), layout="constrained", sharex=True, sharey=True)
+for ax, track in zip(axes.flat, models, strict=True):
+    run = c2d.simulate(robot.with_track(track), c2d.terrains.step(0.06))
+    run.plot(ax, time=run.time[-1], trials=False)
+    ax.set_xlim(-0.6, 0.6)
+    ax.set_title(f"{track.in_words}: {run.outcome}", loc="left")
+    ax.get_legend().remove()
