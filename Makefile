@@ -92,7 +92,7 @@ compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs
 
 docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network
 	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
-	$(BIN)/python docs/site/build.py
+	$(BIN)/python docs/site/build.py $(ARGS)
 
 format: $(VENV)/.dependencies ## format all code
 	cargo fmt --all

@@ -22,4 +22,5 @@ for name, fraction in {"in step": 0.0, "a third": 1 / 3, "a half": 1 / 2}.items(
         run.time[late], 1000 * (run.position[late, 1] - run.position[late, 1].max()), label=name
     )
 ax.set(xlabel="time [s]", ylabel="height [mm]", xlim=(1.0, 2.0))
+ax.set_title("Height of a robot on five gear wheels, below its highest", loc="left")
 ax.legend(loc="lower right")

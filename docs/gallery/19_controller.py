@@ -24,4 +24,5 @@ times = [state.time for state in states]
 ax.plot(times, [state.chassis_angle for state in states], label="chassis angle [rad]")
 ax.plot(times, [state.track_speed for state in states], label="track speed [m/s]")
 ax.set_xlabel("time [s]")
+ax.set_title("Slower while the nose rises", loc="left")
 ax.legend()

@@ -23,10 +23,8 @@ FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE")
 
 
 def lay_out() -> None:
-    """Copy every file that is read; what is generated of the gallery stays: it takes a minute."""
-    PAGES.mkdir(parents=True, exist_ok=True)
+    """Copy every file that is read."""
     for folder, pattern in FOLDERS.items():
-        shutil.rmtree(PAGES / folder, ignore_errors=True)
         for path in (ROOT / folder).rglob(pattern):
             if path.is_file() and "__pycache__" not in path.parts:
                 copy = PAGES / path.relative_to(ROOT)
@@ -36,19 +34,21 @@ def lay_out() -> None:
         shutil.copy2(ROOT / name, PAGES / name)
 
 
-def main() -> int:
-    """Build and check; return the exit status."""
+def main(arguments: list[str]) -> int:
+    """Build and check, with further arguments for Sphinx; return the exit status."""
+    for folder in (PAGES, SITE):
+        shutil.rmtree(folder, ignore_errors=True)
     lay_out()
-    options = ["--fail-on-warning", "--keep-going", "--nitpicky", "-q", "-c", str(HERE)]
-    if status := build_main([*options, "-d", str(OUT / "site-trees"), str(PAGES), str(SITE)]):
+    options = ["-q", "--nitpicky", "--fail-on-warning", "--keep-going", "-c", str(HERE)]
+    trees = ["-d", str(PAGES / ".trees")]
+    if status := build_main([*options, *arguments, *trees, str(PAGES), str(SITE)]):
         return status
     shutil.copyfile(HERE / "start.html", SITE / "index.html")
     faults = faults_in(SITE)
-    print(
-        "\n".join(faults) or f"{SITE / 'index.html'}: no broken link, nothing loaded from elsewhere"
-    )
+    pages = len(list(SITE.rglob("*.html")))
+    print("\n".join(faults) or f"{pages} pages, no broken link: {SITE / 'index.html'}")
     return 1 if faults else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

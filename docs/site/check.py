@@ -9,6 +9,9 @@ from urllib.parse import unquote, urlsplit
 LOADS = {"img": "src", "link": "href", "script": "src", "iframe": "src", "object": "data"}
 """Elements that load what an attribute names."""
 
+NAME = (".png", ".svg")
+"""How a text ends that is but the name of the file; one that is empty says that titles suffice."""
+
 IN_STYLES = re.compile(r"""(?:url\(|@import)\s*['"]?((?:https?:)?//[^'")\s]+)""")
 
 
@@ -31,7 +34,7 @@ class Page(HTMLParser):
             self.links.add(values["href"])
         if LOADS.get(tag) in values:
             self.loads.add(values[LOADS[tag]])
-        if tag == "img" and not values.get("alt"):
+        if tag == "img" and values.get("alt", ".png").endswith(NAME):
             self.without_text.append(values.get("src", ""))
         self.loads |= set(IN_STYLES.findall(values.get("style", "")))
         if "srcdoc" in values:
@@ -40,7 +43,11 @@ class Page(HTMLParser):
 
 def faults_in(site: Path) -> list[str]:
     """List the faults of all pages of a site."""
-    pages = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(site.rglob("*.html"))}
+    pages = {
+        path: Page(path.read_text(encoding="utf-8"))
+        for path in sorted(site.rglob("*.html"))
+        if "_static" not in path.parts
+    }
     faults = [f"{path}: {fault}" for path in pages for fault in _faults_of(path, pages)]
     for path in site.rglob("*.css"):
         found = IN_STYLES.findall(path.read_text(encoding="utf-8"))

@@ -36,7 +36,7 @@ extensions = [
 nitpicky = True
 root_doc = "docs/index"
 source_suffix = {".rst": "restructuredtext", ".md": "myst-nb", ".ipynb": "myst-nb"}
-exclude_patterns = ["docs/site", "docs/gallery"]
+exclude_patterns = ["docs/site", "docs/gallery", ".trees"]
 templates_path = [str(HERE / "templates")]
 default_role = "py:obj"
 
@@ -57,11 +57,11 @@ numpydoc_show_class_members = False
 numpydoc_xref_param_type = True
 numpydoc_xref_ignore = "all"  # words of a type that name nothing of ours
 documented = re.findall(
-    r"^   (?:[\w.]+\.)?([A-Z]\w+)$",
+    r"^   ((?:[\w.]+\.)?[A-Z]\w+)$",
     "".join(page.read_text("utf-8") for page in (HERE.parent / "reference").glob("*.rst")),
     re.MULTILINE,
 )
-numpydoc_xref_aliases = {name: name for name in documented}
+numpydoc_xref_aliases = {name.rpartition(".")[2]: f"crawler2d.{name}" for name in documented}
 codeautolink_concat_default = True
 
 gallery = HERE.parent / "gallery"
@@ -78,7 +78,6 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "notebook_extensions": set(),
     "remove_config_comments": True,
-    "plot_gallery": True,
     "image_srcset": ["2x"],
 }
 
@@ -90,7 +89,8 @@ html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
     "navbar_align": "left",
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 7,
+    "secondary_sidebar_items": {"**": ["page-toc"], "docs/index": []},
     "show_toc_level": 2,
     "navigation_with_keys": False,
     "footer_start": ["copyright"],

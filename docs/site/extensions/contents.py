@@ -2,9 +2,12 @@
 
 import posixpath
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
+from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.transforms.post_transforms import SphinxPostTransform
 
 FOLDER = re.compile(r"(?<=\]\()[\w./-]+(?=\))")
 PAGE = re.compile(r"\]\(([\w./-]+)\.(?:md|ipynb)\)")
@@ -25,7 +28,27 @@ def read_page(app: Sphinx, docname: str, source: list[str]) -> None:
         source[0] += f"\n```{{toctree}}\n:hidden:\n\n{pages}\n```\n"
 
 
+class NameFigures(SphinxPostTransform):
+    """Give the figures of notebooks the title of their section as text."""
+
+    default_priority = 20  # after myst-nb has chosen the form of each output
+
+    def run(self) -> None:
+        """Name the figures of one page."""
+        for image in self.document.findall(nodes.image):
+            section = next(_sections_around(image), None)
+            if "alt" not in image and section is not None:
+                image["alt"] = f"Figure: {section.next_node(nodes.title).astext()}"
+
+
+def _sections_around(node: nodes.Node) -> Iterator[nodes.section]:
+    while node := node.parent:
+        if isinstance(node, nodes.section):
+            yield node
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Follow the reading of pages."""
     app.connect("source-read", read_page)
+    app.add_post_transform(NameFigures)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

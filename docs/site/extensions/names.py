@@ -72,13 +72,14 @@ def resolve_name(
     if node.get("refdomain") != "py" or node["reftype"] not in {"obj", "class"}:
         return None
     if (target := find(env, node["reftarget"])) is None:
+        content["classes"] = []  # those of a link
         return content if node["reftype"] == "obj" else None
     return make_refnode(app.builder, node["refdoc"], *target, content)
 
 
 def leave_gallery(_app: Sphinx, docname: str, source: list[str]) -> None:
     """Leave the code of the gallery to sphinx-gallery, which links names itself."""
-    if docname.startswith("gallery/"):
+    if docname.startswith("gallery/") and docname != "gallery/index":
         source[0] = f".. autolink-skip:: file\n\n{source[0]}"
 
 

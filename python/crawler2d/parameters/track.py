@@ -76,7 +76,7 @@ Wheel = RoundWheel | GearWheel
 
 @dataclass(frozen=True, slots=True)
 class LineOfWheels(Parameters, kind="line", path="robot.track"):
-    """Driven wheels on the straight line between the end axles, evenly spaced (LWA, Figs. 1 to 3).
+    """Driven wheels on the straight line between the end axles, evenly spaced (LWA, Figures 1-3).
 
     An outline of more than two discs is refused.
 
@@ -113,7 +113,7 @@ class LineOfWheels(Parameters, kind="line", path="robot.track"):
 
 @dataclass(frozen=True, slots=True)
 class CircumferentialWheels(Parameters, kind="circumferential", path="robot.track"):
-    """Small driven wheels all round the outline, each touching it from inside (CWA, Figs. 6, 7).
+    """Small driven wheels all round the outline, each touching it from inside (CWA, Figures 6, 7).
 
     The first wheel sits at the rear end of the lower run; the others follow in the direction of
     belt travel: up round the rear, then forward on top. Their centres lie inside the outline, at
@@ -150,7 +150,7 @@ class CircumferentialWheels(Parameters, kind="circumferential", path="robot.trac
 
 @dataclass(frozen=True, slots=True)
 class HybridWheels(Parameters, kind="hybrid", path="robot.track"):
-    """Driven wheels of various sizes, placed by hand (Fig. 8), all with one surface speed.
+    """Driven wheels of various sizes, placed by hand (Figure 8), all with one surface speed.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
-    """A chain of rigid shoes linked by pins, on a guide or on wheels (section 2.3, Figs. 9, 10).
+    """A chain of rigid shoes linked by pins, on a guide or on wheels (section 2.3, Figures 9, 10).
 
     Every shoe is a body. The outer faces of the plates run along the roots of the outline and the
     pins along the middle of the plates, so that the robot stands as high as the real one. Grousers
