@@ -2,7 +2,7 @@
 Every track model on one step
 =============================
 
-One robot, one step of 60 mm, and what stands for its track. Mass, centre of mass and moment of
+One robot, one step of 75 mm, and what stands for its track. Mass, centre of mass and moment of
 inertia are the same.
 """
 
@@ -21,10 +21,10 @@ models = (
     c2d.ForceTrack(),
 )
 robot = c2d.robots.engineer(flippers=None).without_rotors()
-figure, axes = plt.subplots(4, 2, figsize=(10, 11), layout="constrained", sharex=True, sharey=True)
+figure, axes = plt.subplots(4, 2, figsize=(10, 8), layout="constrained", sharex=True, sharey=True)
 for ax, track in zip(axes.flat, models, strict=True):
-    run = c2d.simulate(robot.with_track(track), c2d.terrains.step(0.06))
+    run = c2d.simulate(robot.with_track(track), c2d.terrains.step(0.075))
     run.plot(ax, time=run.time[-1], trials=False)
-    ax.set_xlim(-0.6, 0.6)
+    ax.set_xlim(-0.6, 0.8)
     ax.set_title(f"{track.in_words}: {run.outcome}", loc="left")
     ax.get_legend().remove()

@@ -2,8 +2,7 @@
 Grousers
 ========
 
-A belt with grousers hooks onto an edge on which a smooth belt slips: here on ground as slippery as
-wet tiles.
+A belt with grousers hooks onto an edge on which a smooth belt slips: here on slippery ground.
 """
 
 import matplotlib.pyplot as plt
@@ -17,3 +16,4 @@ for ax, track in zip(axes, (c2d.BeltTrack(), c2d.GrouserBeltTrack()), strict=Tru
     run = c2d.simulate(robot.with_track(track), step)
     run.plot(ax, time=[0.0, run.time[-1]], trials=False)
     ax.set_xlim(-0.9, 0.9)
+    ax.get_legend().remove()

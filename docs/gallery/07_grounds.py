@@ -13,7 +13,7 @@ import crawler2d as c2d
 grounds = {
     "barrier": c2d.terrains.barrier(0.06, 0.10),
     "knife edge": c2d.terrains.knife_edge(0.06),
-    "gap": c2d.terrains.gap(0.20),
+    "gap": c2d.terrains.gap(0.20, depth=0.10),
     "ridge": c2d.terrains.ridge(0.06, edge_angle=1.2),
     "half round": c2d.terrains.half_round(0.06),
     "stairs": c2d.terrains.stairs(count=3, rise=0.05, run=0.25),

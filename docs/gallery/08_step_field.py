@@ -8,8 +8,8 @@ one (lane 2) meet different ground, and still carry one body.
 
 import crawler2d as c2d
 
-robot = c2d.robots.engineer(flippers=None)
-run = c2d.simulate(robot, c2d.terrains.random_stepfield(3))
+robot = c2d.robots.engineer(flippers=None, track=c2d.GrouserBeltTrack())
+run = c2d.simulate(robot, c2d.terrains.random_stepfield(2))
 run.plot()
 
 # %%

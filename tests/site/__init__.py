@@ -1,0 +1,1 @@
+"""The documentation site: what it must hold, without building it."""
