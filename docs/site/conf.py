@@ -3,6 +3,7 @@
 import re
 import sys
 from pathlib import Path
+from pkgutil import resolve_name
 
 import matplotlib as mpl
 from numpydoc.xref import DEFAULT_LINKS
@@ -63,6 +64,14 @@ documented = re.findall(
 )
 numpydoc_xref_aliases = {name.rpartition(".")[2]: f"crawler2d.{name}" for name in documented}
 codeautolink_concat_default = True
+# Where a class is defined, and where its members are documented.
+public = {name: resolve_name(f"crawler2d.{name}") for name in documented}
+codeautolink_inventory_map = {
+    f"{cls.__module__}.{cls.__qualname__}.{member}": f"crawler2d.{name}.{member}"
+    for name, cls in public.items()
+    for member in dir(cls)
+    if isinstance(cls, type) and not member.startswith("_")
+}
 
 gallery = HERE.parent / "gallery"
 sphinx_gallery_conf = {
@@ -87,6 +96,15 @@ html_static_path = [str(HERE / "static")]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False
+# Pages that have no others below them.
+html_sidebars: dict[str, list[str]] = {
+    "CHANGELOG": [],
+    "CONTRIBUTING": [],
+    "docs/accuracy": [],
+    "docs/engines": [],
+    "docs/index": [],
+    "docs/physics": [],
+}
 html_theme_options = {
     "navbar_align": "left",
     "header_links_before_dropdown": 7,
