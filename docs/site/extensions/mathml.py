@@ -1,33 +1,29 @@
-"""Mathematics as MathML, which browsers draw without a script: docutils translates it."""
-
-import re
+"""Mathematics as MathML, which browsers draw without a script: latex2mathml translates it."""
 
 from docutils import nodes
-from docutils.utils.math import MathError
-from docutils.utils.math.latex2mathml import tex2mathml
+from latex2mathml.converter import convert
 from sphinx.application import Sphinx
+from sphinx.errors import SphinxError
 from sphinx.writers.html5 import HTML5Translator
 
-BARE = re.compile(r"frac *\d\d")
-"""A fraction without braces, which docutils takes for one number over what follows."""
 
-
-def translate(formula: str, *, is_block: bool) -> str:
-    """Translate TeX into MathML, or raise an error that names what is not known."""
-    if BARE.search(formula):
-        raise MathError(f"a fraction without braces: {formula}")
-    return tex2mathml(formula, as_block=is_block)
+def translate(formula: str, display: str) -> str:
+    """Translate TeX; a command that is not known would be left as it is."""
+    result = convert(formula, display=display)
+    if "\\" in result:
+        raise SphinxError(f"latex2mathml does not know a command in: {formula}")
+    return result
 
 
 def write_inline(writer: HTML5Translator, node: nodes.math) -> None:
     """Write a formula within a line."""
-    writer.body.append(translate(node.astext(), is_block=False))
+    writer.body.append(translate(node.astext(), "inline"))
     raise nodes.SkipNode
 
 
 def write_block(writer: HTML5Translator, node: nodes.math_block) -> None:
     """Write a displayed formula, which scrolls where it is wider than the page."""
-    formula = translate(node.astext(), is_block=True)
+    formula = translate(node.astext(), "block")
     writer.body.append(f'<div class="formula" tabindex="0">{formula}</div>')
     raise nodes.SkipNode
 
