@@ -39,7 +39,16 @@ def main(arguments: list[str]) -> int:
     for folder in (PAGES, SITE):
         shutil.rmtree(folder, ignore_errors=True)
     lay_out()
-    options = ["-q", "--nitpicky", "--fail-on-warning", "--keep-going", "-c", str(HERE)]
+    options = [
+        "-q",
+        "-j",
+        "auto",
+        "--nitpicky",
+        "--fail-on-warning",
+        "--keep-going",
+        "-c",
+        str(HERE),
+    ]
     trees = ["-d", str(PAGES / ".trees")]
     if status := build_main([*options, *arguments, *trees, str(PAGES), str(SITE)]):
         return status
