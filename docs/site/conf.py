@@ -81,6 +81,7 @@ sphinx_gallery_conf = {
     "within_subsection_order": "FileNameSortKey",
     "backreferences_dir": "gallery/backreferences",
     "doc_module": ("crawler2d",),
+    "ignore_repr_types": r"matplotlib\.",  # the picture is there
     "show_signature": False,
     "show_memory": False,
     "write_computation_times": False,
