@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines docs format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser check bench bench-agreement bench-accuracy bench-engine bench-instructions bench-map bench-models bench-peers bench-scaling compare-engines docs format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -35,6 +35,7 @@ test: ## all tests (Rust, Python, documentation) and all checks
 CARGO_TEST := cargo test --release --package crawler2d-core --package crawler2d-python
 test-rust: | tools
 	$(CARGO_TEST)
+	$(PYTHON) -m benches.instructions
 test-python: $(VENV)/.built
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 test-debug: | tools
@@ -56,8 +57,14 @@ check: $(VENV)/.built ## format, lint, types, walls, stubs and documentation, no
 atlas: $(VENV)/.built ## audit every model file in a tree of repositories, FOLDER=..., on one page; a minute a robot
 	$(BIN)/python -m crawler2d atlas $(FOLDER) $(ARGS)
 
-bench: | tools ## benchmarks
+bench: | tools ## what a simulated second of each track model costs, two minutes
 	cargo bench
+
+bench-engine: | tools ## the same beside rapier's dynamics, minutes
+	cargo bench --bench engine
+
+bench-instructions: | tools ## the same in instructions, beside those that are kept; ARGS=--write keeps those of now; needs valgrind
+	$(PYTHON) -m benches.instructions $(ARGS)
 
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)

@@ -1,6 +1,6 @@
 //! The scenes that the benchmarks time, from scenario files shared with the tests.
 
-use crawler2d_core::{Engine, Scenario, ValidScenario};
+use crawler2d_core::{Engine, Scenario, Simulation, ValidScenario};
 
 /// [s] Length of a step of rapier's dynamics: the default there.
 pub const ENGINE_STEP: f64 = 2.5e-4;
@@ -23,9 +23,10 @@ macro_rules! scene {
 }
 
 /// A robot of 20 kg on 5 wheels in line or 24 all round, round or with 12 or 10 grousers, in front of a step of
-/// 0.15 m or on a field of 20 blocks; and the Engineer in front of a step: on a belt, without and with grousers, on
-/// chains of 22 shoes on a guide and with a sprocket, and with its flippers.
-pub const SCENES: [Scene; 13] = [
+/// 0.15 m or on a field of 20 blocks; and the Engineer in front of a step: on a belt, without and with grousers, moved
+/// by a force on wheels, on wheels of two sizes, on 3 gear wheels, on chains of 22 shoes on a guide and with a
+/// sprocket, and with its flippers.
+pub const SCENES: [Scene; 16] = [
     scene!("peer_lwa5_round_step"),
     scene!("peer_lwa5_gear_step"),
     scene!("peer_cwa24_round_step"),
@@ -36,12 +37,26 @@ pub const SCENES: [Scene; 13] = [
     scene!("peer_cwa24_gear_field"),
     scene!("engineer_belt_step"),
     scene!("engineer_grouser_belt_step"),
+    scene!("engineer_force_step"),
+    scene!("engineer_hybrid_step"),
+    scene!("engineer_gear3_step"),
     scene!("engineer_chain_step"),
     scene!("engineer_sprocket_step"),
     scene!("engineer_flippers_step"),
 ];
 
 impl Scene {
+    /// The scene of a name.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn named(name: &str) -> &'static Self {
+        SCENES
+            .iter()
+            .find(|scene| scene.name == name)
+            .expect("a scene of that name")
+    }
+
     /// The scenario.
     ///
     /// # Panics
@@ -66,11 +81,23 @@ impl Scene {
         ValidScenario::new(&scenario).ok()
     }
 
-    /// [s] An instant at which the robot is on its obstacle: one second, plus the time to the obstacle and a third of
-    /// its length at the commanded speed.
-    pub fn in_the_climb(&self) -> f64 {
+    /// A simulation in the middle of its climb: after one second, plus the time to the obstacle and a third of its
+    /// length at the commanded speed.
+    ///
+    /// # Panics
+    /// If it does not get there.
+    pub fn climbing(&self, checked: &ValidScenario) -> Simulation {
         let scenario = self.scenario();
         let way = scenario.start.approach + scenario.robot.outline.axle_distance() / 3.0;
-        1.0 + way / scenario.drive.speed
+        let mut simulation = Simulation::new(checked);
+        simulation
+            .advance(1.0 + way / scenario.drive.speed)
+            .expect("a finite state");
+        simulation
     }
+}
+
+/// [ms] A time of `seconds` [s].
+pub fn milliseconds(seconds: f64) -> u64 {
+    (1e3 * seconds).round() as u64
 }
