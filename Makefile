@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser check bench bench-agreement bench-accuracy bench-engine bench-instructions bench-map bench-models bench-peers bench-scaling compare-engines docs format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-instructions bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -43,6 +43,9 @@ test-debug: | tools
 
 test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs and audits in a real browser
 	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/browser
+
+test-explorer: $(VENV)/.built $(VENV)/.browser ## the explorer in a real browser, and its core against the usual one
+	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/explorer
 
 check: $(VENV)/.built ## format, lint, types, walls, stubs and documentation, nothing changed
 	cargo fmt --all --check
@@ -100,6 +103,10 @@ compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs
 docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network
 	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
 	$(BIN)/python docs/site/build.py $(ARGS)
+
+# Rust's standard library for browsers comes from rustup (rustup target add wasm32-unknown-unknown) or from Debian.
+explorer: $(VENV)/.built ## write out/explorer.html, one page that simulates by itself; ten minutes at first
+	$(BIN)/python -m explorer
 
 format: $(VENV)/.dependencies ## format all code
 	cargo fmt --all

@@ -14,7 +14,7 @@ from crawler2d.common.bodies import BodyKind
 from crawler2d.results.findings import Intrusion, Mechanism, TrialResult
 from crawler2d.results.outcome import Outcome
 
-__all__ = ["Diagnosis", "body_name", "in_words", "sentence", "trial_text"]
+__all__ = ["Diagnosis", "body_name", "in_words", "sentence", "trial_text", "vocabulary"]
 
 _NAMES = {
     BodyKind.BELT: "the belt",
@@ -442,3 +442,18 @@ def _balance(d: Diagnosis) -> str:
 
 def _percent(fraction: float) -> str:
     return f"{100 * fraction:.0f} %"
+
+
+def vocabulary() -> dict[str, Any]:
+    """List words and limits of the sentence, for a page that writes it of the core's own data."""
+    return {
+        "names": {kind.value: name for kind, name in _NAMES.items()},
+        "in_chain": [kind.value for kind in BodyKind if kind.is_in_chain],
+        "belly": BodyKind.BELLY.value,
+        "changes": _CHANGES,
+        "ends": _ENDS,
+        "grips": _GRIPS,
+        "least_fraction": _LEAST_FRACTION,
+        "least_depth": _LEAST_DEPTH,
+        "least_slip": _LEAST_SLIP,
+    }

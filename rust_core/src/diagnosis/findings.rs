@@ -226,9 +226,16 @@ impl Change {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     changes: [bool; Change::ALL.len()],
+    nothing: bool,
 }
 
 impl Wanted {
+    /// Not even those: the outcome is the symptom, sooner.
+    pub const NOTHING: Self = Self {
+        changes: [false; Change::ALL.len()],
+        nothing: true,
+    };
+
     /// These changes.
     pub fn of(changes: impl IntoIterator<Item = Change>) -> Self {
         let mut wanted = Self::default();
@@ -236,6 +243,10 @@ impl Wanted {
             wanted.changes[change as usize] = true;
         }
         wanted
+    }
+
+    pub(crate) fn is_nothing(self) -> bool {
+        self.nothing
     }
 
     pub(crate) fn changes(self) -> impl Iterator<Item = Change> {

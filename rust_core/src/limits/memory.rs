@@ -12,6 +12,8 @@ const DEFAULT: f64 = 8.0; // [GiB]
 const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
 /// Bytes for all the small parts of a request that are not counted.
 const SPARE: u64 = 32 << 20;
+/// Bytes that a request in a web page may take.
+const OF_A_PAGE: u64 = 512 << 20;
 
 /// What is left of the memory that a request may take.
 pub(crate) struct Budget {
@@ -161,6 +163,10 @@ fn limit() -> Result<u64, LimitError> {
 
 /// [bytes] How much of this the system has now; nothing is written to it, so none is used.
 fn given_now(most: u64) -> u64 {
+    // What a web page once gave to the core it does not take back, even if none of it was used.
+    if cfg!(target_family = "wasm") {
+        return most.min(OF_A_PAGE);
+    }
     let mut bytes = most;
     while bytes > 1 << 20 {
         let asked = usize::try_from(bytes).unwrap_or(usize::MAX);

@@ -1,6 +1,7 @@
 //! Runs: scenarios are checked and built, then simulated step by step or to the end, alone or in batches.
 
 mod batch;
+mod clock;
 mod escape_force;
 mod metrics;
 mod poses;

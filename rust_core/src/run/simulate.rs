@@ -1,7 +1,6 @@
 //! Runs of a scenario: to its end, to a stop of which something is asked, or until it tips over.
 
-use std::time::Instant;
-
+use super::clock::Clock;
 use super::metrics::Sinkage;
 use super::record::{ContactTable, Record, Recorder, Trace, batch_budget};
 use super::trials;
@@ -42,7 +41,7 @@ pub struct Run {
     pub shoes: usize,
     /// Number of ends with flippers.
     pub flippers: usize,
-    /// [s] Computing time; kept apart from the metrics, which repeat bit by bit.
+    /// [s] Computing time; kept apart from the metrics, which repeat bit by bit. Not a number without a clock.
     pub wall_time: f64,
 }
 
@@ -62,9 +61,9 @@ pub(crate) fn simulate_within(
     record: Record,
     limits: Limits,
 ) -> Result<Run, Error> {
-    let begin = Instant::now();
+    let clock = Clock::start();
     let end = checked.scenario().duration;
-    advance(&mut Simulation::new(checked), end, record, limits, begin)
+    advance(&mut Simulation::new(checked), end, record, limits, clock)
 }
 
 /// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration, with a push that
@@ -79,13 +78,13 @@ pub fn branch(
     record: Record,
     cancel: &Cancel,
 ) -> Result<Run, Error> {
-    let begin = Instant::now();
+    let clock = Clock::start();
     let budget = batch_budget(std::slice::from_ref(variant), record, 1)?;
     let trunk = Simulation::replayed(scenario, at, cancel)?;
     let mut simulation = trunk.branch(variant);
     simulation.raise_push(push.0, push.1)?;
     let end = simulation.time() + variant.scenario().duration;
-    advance(&mut simulation, end, record, (&budget, cancel), begin)
+    advance(&mut simulation, end, record, (&budget, cancel), clock)
 }
 
 /// The scenario of a trial made at a stop of `scenario` at the time `at` [s], and its run; `None` if the change makes no
@@ -100,14 +99,14 @@ pub fn run_of_trial(
     record: Record,
     cancel: &Cancel,
 ) -> Result<Option<(Scenario, Run)>, Error> {
-    let begin = Instant::now();
+    let clock = Clock::start();
     let stop = Simulation::replayed(scenario, at, cancel)?;
     let Some(mut started) = trials::start(&stop, change)? else {
         return Ok(None);
     };
     let budget = batch_budget(std::slice::from_ref(scenario), record, 1)?;
     let end = started.time() + trials::duration(&stop, change);
-    let run = advance(&mut started, end, record, (&budget, cancel), begin)?;
+    let run = advance(&mut started, end, record, (&budget, cancel), clock)?;
     Ok(Some((started.scenario().clone(), run)))
 }
 
@@ -133,7 +132,7 @@ fn advance(
     end: f64,
     record: Record,
     (budget, cancel): Limits,
-    begin: Instant,
+    clock: Clock,
 ) -> Result<Run, Error> {
     let start = simulation.reading();
     let recorder = record
@@ -174,7 +173,7 @@ fn advance(
         drives: simulation.drives(),
         shoes: simulation.shoes().len(),
         flippers: simulation.flipper_angles().count(),
-        wall_time: begin.elapsed().as_secs_f64(),
+        wall_time: clock.elapsed(),
     })
 }
 

@@ -32,6 +32,9 @@ pub fn diagnose(
     let Some(mut found) = stop.examine() else {
         return Ok(None);
     };
+    if wanted.is_nothing() {
+        return Ok(Some(found));
+    }
     let mut series = TrialSeries::new(stop, &found, cancel);
     let passing = series.frees(Change::Nothing)?;
     let leaves = !passing && found.jammed && series.frees(Change::Rebuilt)?;

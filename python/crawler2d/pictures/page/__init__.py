@@ -81,7 +81,13 @@ def scene_script(*parts: str) -> str:
 
 
 def fill_page(
-    file: str, style: str, script: str = "", package: str = _HERE, /, **values: object
+    file: str,
+    style: str,
+    script: str = "",
+    package: str = _HERE,
+    /,
+    script_sources: str = "",
+    **values: object,
 ) -> str:
     """Fill the body of a page, below the head that all pages have.
 
@@ -95,6 +101,8 @@ def fill_page(
         What it runs; "" allows none.
     package : str
         Where the body is.
+    script_sources : str
+        What its security policy allows besides that script.
     **values : object
         For its placeholders, as HTML; `title` is that of the head.
     """
@@ -107,6 +115,7 @@ def fill_page(
         script=script,
         style_hashes=_policy(style),
         script_hashes=_policy(script) if script else "'none'",
+        script_sources=script_sources,
     )
 
 

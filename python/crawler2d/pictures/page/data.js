@@ -2,6 +2,7 @@
 
 // Little-endian, as Python wrote it; every machine that shows the page is little-endian, too.
 function unpack(column) {
+  if (ArrayBuffer.isView(column)) return column; // as the explorer has it from the core
   const bytes = Uint8Array.from(atob(column.data), (letter) => letter.charCodeAt(0));
   if (column.bits === 32) return new Float32Array(bytes.buffer);
   const counts = column.bits === 16 ? new Uint16Array(bytes.buffer) : bytes;

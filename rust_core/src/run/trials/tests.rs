@@ -45,6 +45,19 @@ fn why(scenario: &Scenario, wanted: Wanted) -> Diagnosis {
     run.diagnosis.expect("it has stopped")
 }
 
+#[test]
+fn of_a_stop_of_which_nothing_is_wanted_only_the_symptom_is_known() {
+    let scenario = wheels(4, 0.08);
+    let judged = why(&scenario, Wanted::default());
+    let seen = why(&scenario, Wanted::NOTHING);
+    assert!(seen.jammed && seen.trials.is_empty() && !judged.trials.is_empty());
+    assert_eq!(
+        (seen.outcome, judged.outcome),
+        (judged.symptom, Outcome::Seized)
+    );
+    assert_eq!(seen.time.to_bits(), judged.time.to_bits());
+}
+
 fn freed(found: &Diagnosis) -> Vec<&str> {
     let freed = found.trials.iter().filter(|trial| trial.freed);
     freed.map(|trial| trial.name).collect()

@@ -1,0 +1,58 @@
+// The core as the page sees it: of the requests that wait the newest wins.
+
+// [ms] How long a newer request waits for an older one before that is given up.
+const PATIENCE = 120;
+
+class Core {
+  constructor(module, source) {
+    this.module = module;
+    this.source = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    this.start();
+  }
+
+  start() {
+    this.worker = new Worker(this.source);
+    this.worker.postMessage({ module: this.module });
+    this.worker.onmessage = ({ data }) => this.take(data);
+    this.busy = null;
+  }
+
+  // Takes a request as JSON; resolves with the answer, or with nothing if a newer request came first.
+  ask(request) {
+    return new Promise((resolve) => {
+      this.waiting?.resolve(null);
+      this.waiting = { request, resolve };
+      if (!this.busy) this.send();
+      else setTimeout((busy) => this.giveUp(busy), PATIENCE, this.busy);
+    });
+  }
+
+  send() {
+    this.busy = this.waiting;
+    this.waiting = null;
+    if (this.busy) this.worker.postMessage({ request: this.busy.request });
+  }
+
+  giveUp(busy) {
+    if (this.busy !== busy || !this.waiting) return;
+    this.worker.terminate();
+    busy.resolve(null);
+    this.start();
+    this.send();
+  }
+
+  take({ text, numbers }) {
+    const { resolve } = this.busy;
+    const answer = JSON.parse(text, (_, value) =>
+      (value?.first === undefined ? value : numbers.subarray(value.first, value.first + value.count)));
+    resolve(this.waiting ? null : answer);
+    this.send();
+  }
+}
+
+// The module that a page has as gzipped bytes in base 64.
+async function compiled(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const unzipped = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compile(await new Response(unzipped).arrayBuffer());
+}

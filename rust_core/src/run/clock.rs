@@ -1,0 +1,21 @@
+//! Computing time, where there is a clock.
+
+use std::time::Instant;
+
+/// Runs from when it was started.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock(Option<Instant>);
+
+impl Clock {
+    pub(super) fn start() -> Self {
+        // The standard library has no clock in a web page, and panics if it is asked for one.
+        let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
+        Self(has_clock.then(Instant::now))
+    }
+
+    /// [s] Time since then; not a number without a clock.
+    pub(super) fn elapsed(self) -> f64 {
+        self.0
+            .map_or(f64::NAN, |begin| begin.elapsed().as_secs_f64())
+    }
+}

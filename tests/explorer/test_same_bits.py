@@ -1,0 +1,132 @@
+"""The core in a browser is the core: what it says of a run is the same to the last bit."""
+
+import base64
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.pictures.page.recording import recording
+from tests.explorer.conftest import ask
+from tests.fuzz.drawn_robots import Draw
+from tests.fuzz.drawn_scenes import drawn_scenario
+from tests.shared import ROBOT, VARIANTS
+
+FILES = sorted((Path(__file__).parents[1] / "scenarios").glob("*.json"))
+DRAWN = 20
+WHEELS = c2d.LineOfWheels(4, wheel_radius=0.0608)
+SCENARIOS = {
+    **{path.stem: Scenario.from_json(path.read_text(encoding="utf-8")) for path in FILES},
+    **VARIANTS,
+    **{f"drawn {seed}": drawn_scenario(Draw(seed)) for seed in range(DRAWN)},
+    "the README's": Scenario(ROBOT.with_track(WHEELS), c2d.terrains.step(0.075)),
+}
+INTERVAL = 0.02
+pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
+
+
+def test_there_are_enough_scenarios_of_every_track() -> None:
+    tracks = {scenario.robot.track.kind for scenario in SCENARIOS.values()}
+    assert len(SCENARIOS) > 50
+    assert tracks == {type(each.robot.track).kind for each in VARIANTS.values()}
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_run_has_the_same_bits(asked: Page, name: str) -> None:
+    scenario = SCENARIOS[name]
+    answer = ask(asked, scenario.to_json(), ["torque x 2", "friction x 2"])
+    try:
+        run = c2d.simulate(scenario, record="summary", trials="auto")
+    except c2d.Crawler2dError as error:
+        message = str(error)
+    else:
+        message = ""
+    assert answer.get("error", {}).get("message", "") == message
+    if message:
+        return
+    # JSON has no infinite numbers.
+    metrics = {each: v if math.isfinite(v) else None for each, v in run.metrics.items()}
+    assert answer["metrics"] == metrics
+    assert answer["outcome"] == run.outcome
+    assert answer["sentence"] == str(run.diagnosis or "")
+    untried = ask(asked, scenario.to_json())
+    assert untried["metrics"] == metrics
+    if run.diagnosis is not None:
+        assert untried["diagnosis"]["trials"] == []
+        assert untried["outcome"] == run.diagnosis.symptom
+
+
+def test_among_them_are_stops_and_what_ends_them() -> None:
+    run = c2d.simulate(SCENARIOS["the README's"])
+    assert str(run.diagnosis).count(";") > 3
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_page_draws_what_a_replay_draws(asked: Page, name: str) -> None:
+    scenario = VARIANTS[name].replace({"duration": 3.0})
+    shown = ask(asked, scenario.to_json(), None, INTERVAL)["drawing"]
+    run = c2d.simulate(scenario, sample_interval=INTERVAL)
+    compare("", plain(shown), plain(recording(run)))
+
+
+def plain(drawing: Any) -> Any:
+    """Put the values of columns and outlines where they are referred to."""
+    robot = drawing["robot"]
+    columns, outlines = (
+        [unpacked(each) for each in robot.pop(name)] for name in ("columns", "outlines")
+    )
+    count = drawing["frames"]["count"]
+
+    def resolved(value: Any, name: str = "") -> Any:
+        if name in ("outlines", "grousers"):
+            return [outlines[index] for index in value]
+        if isinstance(value, dict) and "column" in value:
+            return columns[value["column"]]
+        if isinstance(value, dict) and "data" in value:
+            return unpacked(value)
+        if isinstance(value, dict):
+            return {key: resolved(each, key) for key, each in value.items()}
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            return [resolved(each) for each in value]
+        moves = name in ("x", "y", "angle", "travel") and isinstance(value, float | int)
+        return np.full(count, value) if moves else value
+
+    robot["mass_center"] = [resolved(each, "x") for each in robot["mass_center"]]
+    for name in ("samples", "every", "first", "ghosts"):
+        drawing.pop(name, None)
+    return resolved(drawing)
+
+
+def unpacked(item: Any) -> np.ndarray[Any, Any]:
+    """Reverse `pack`; the explorer's columns are lists."""
+    if isinstance(item, list):
+        return np.array(item)
+    kind = {8: "<u1", 16: "<u2", 32: "<f4"}[item["bits"]]
+    counts = np.frombuffer(base64.b64decode(item["data"]), kind).astype(float)
+    return counts if item["bits"] == 32 else item["start"] + item["step"] * counts
+
+
+def compare(path: str, shown: Any, expected: Any) -> None:
+    """Compare all of two drawings: names exactly, numbers within what a replay rounds them to."""
+    if isinstance(expected, dict):
+        assert shown.keys() == expected.keys(), path
+        for name in expected:
+            compare(f"{path}.{name}", shown[name], expected[name])
+    elif isinstance(expected, list) and expected and not isinstance(expected[0], float | int):
+        assert len(shown) == len(expected), path
+        for i, (one, other) in enumerate(zip(shown, expected, strict=True)):
+            compare(f"{path}[{i}]", one, other)
+    elif isinstance(expected, str | bool | None):
+        assert shown == expected, path
+    else:
+        # Forces to a hundredth of the usual one, angles about a belt to a thousandth.
+        usual = 1e-2 * WEIGHT if path.endswith("_force") else 2e-3
+        np.testing.assert_allclose(shown, expected, rtol=1e-6, atol=usual, err_msg=path)
+
+
+WEIGHT = 21.2 * 9.81
