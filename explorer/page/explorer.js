@@ -17,8 +17,8 @@ const requested = (scenario, trials, interval) =>
 
 // One of the two robots: its core, its picture, its caption, and its last answer.
 class View {
-  constructor(figure, core, subject) {
-    Object.assign(this, { figure, core, subject, answer: null, scene: null });
+  constructor(figure, sentence, core, subject) {
+    Object.assign(this, { figure, sentence, core, subject, answer: null, scene: null });
     this.canvas = figure.querySelector("canvas");
     // Set to the stretch that both robots visit as soon as it is known.
     this.camera = new Camera([0, 1, 0, 1], 1);
@@ -63,7 +63,7 @@ class View {
     return `${judged ? spaced(outcome) : "stopped"} after ${metrics.time.toFixed(1)} s`;
   }
 
-  // The outcome and the sentence below the picture.
+  // The outcome above the picture, and the sentence.
   tell() {
     const { error, judged, outcome, diagnosis, doubts } = this.answer;
     const part = (name) => this.figure.querySelector(`.${name}`);
@@ -75,7 +75,7 @@ class View {
     part("mechanism").title = tables.words.mechanisms[diagnosis?.mechanism] ?? "";
     const sentence = diagnosis ? new Sentence(diagnosis, tables.words).text() : tables.words.outcomes[outcome];
     const doubtful = (doubts ?? []).map(({ path, reason }) => ` ${path} ${reason}.`).join("");
-    part("sentence").textContent = error ? error.message : `${sentence}.${doubtful}`;
+    this.sentence.textContent = error ? error.message : `${sentence}.${doubtful}`;
     this.figure.classList.toggle("stale", Boolean(error));
     this.canvas.setAttribute("aria-label", `${subject}, side view: ${this.ending}`);
   }
@@ -122,8 +122,8 @@ async function judge() {
 
 const shown = () => views.map(({ scene }) => scene).filter(Boolean);
 
-// [m] Where the rear end of the robot is past the goal.
-const past = ({ drawing: { robot, ground } }) => ground.goal + robot.length;
+// [m] Where the robot is well past the goal, which its rear end has to reach.
+const past = ({ drawing: { robot, ground } }) => ground.goal + 0.7 * robot.length;
 
 // Takes over what has been simulated; a robot that was seen at its end is seen at its new end.
 function show() {
@@ -149,9 +149,10 @@ function look() {
   const extents = scenes.map(({ drawing }) => drawing.extent);
   const side = (i) => Math[i % 2 ? "max" : "min"](...extents.map((extent) => extent[i]));
   const { length } = scenes[0].drawing.robot;
-  const right = Math.min(side(1), past(scenes[0]) + length / 2);
+  const right = Math.min(side(1), past(scenes[0]) + 0.6 * length);
+  const bottom = side(2) - 0.3 * length; // room for what is written into the ground
   for (const { camera } of scenes) {
-    Object.assign(camera, { left: side(0), right, bottom: side(2), top: side(3), robotLength: length });
+    Object.assign(camera, { left: side(0), right, bottom, top: side(3), robotLength: length });
     if (!camera.touched) camera.reset();
   }
   changed();
@@ -207,9 +208,9 @@ async function copy(name, text) {
 async function main() {
   const module = await compiled(element("core").textContent);
   const source = element("worker").textContent;
-  const figures = document.querySelectorAll(".pair figure");
+  const [figures, sentences] = [".pair figure", ".sentences p"].map((each) => document.querySelectorAll(each));
   views = [trackInWords, () => tables.words.tracks.belt].map((subject, i) =>
-    new View(figures[i], new Core(module, source), subject));
+    new View(figures[i], sentences[i], new Core(module, source), subject));
   controls = new Controls(element("fields"), state, update);
   handles = new Handles(element("handles"), state, update);
   state.hash = location.hash.slice(1);

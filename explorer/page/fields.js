@@ -2,20 +2,20 @@
 
 const FIELDS = [
   {
-    group: "track", path: "robot.track.kind", label: "model of the track",
+    group: "track", path: "robot.track.kind", label: "model",
     choices: [
       ["line", "wheels in a line"], ["circumferential", "wheels all round"],
       ["grouser_belt", "belt with grousers"], ["segmental", "chain of shoes"],
     ],
   },
   {
-    group: "track", path: "robot.track.wheel.kind", label: "shape of the wheels",
+    group: "track", path: "robot.track.wheel.kind", label: "wheel shape",
     choices: [["round", "round"], ["gear", "with grousers"]],
   },
-  { group: "track", path: "robot.track.count", label: "wheels", range: [2, 40, 1], unit: "" },
-  { group: "track", path: "robot.track.wheel_radius", label: "radius of the wheels", range: [0.01, 0.09, 0.0002], unit: "mm" },
-  { group: "track", path: "robot.outline.axle_distance", label: "distance of the end axles", range: [0.2, 0.6, 0.005], unit: "mm" },
-  { group: "track", path: "robot.outline.grouser_height", label: "height of the grousers", range: [0.002, 0.03, 0.001], unit: "mm" },
+  { group: "track", path: "robot.track.count", label: "number of wheels", range: [2, 40, 1], unit: "" },
+  { group: "track", path: "robot.track.wheel_radius", label: "wheel radius", range: [0.01, 0.09, 0.0002], unit: "mm" },
+  { group: "track", path: "robot.outline.axle_distance", label: "axle distance", range: [0.2, 0.6, 0.005], unit: "mm" },
+  { group: "track", path: "robot.outline.grouser_height", label: "grouser height", range: [0.002, 0.03, 0.001], unit: "mm" },
   {
     group: "ground", path: "terrain.kind", label: "obstacle",
     choices: [
@@ -26,13 +26,13 @@ const FIELDS = [
   { group: "ground", path: "terrain.height", label: "height", range: [0.005, 0.2, 0.001], unit: "mm" },
   { group: "ground", path: "terrain.radius", label: "radius", range: [0.005, 0.2, 0.001], unit: "mm" },
   { group: "ground", path: "terrain.width", label: "width", range: [0.01, 0.4, 0.002], unit: "mm" },
-  { group: "ground", path: "terrain.rise", label: "rise of a stair", range: [0.01, 0.2, 0.001], unit: "mm" },
+  { group: "ground", path: "terrain.rise", label: "rise", range: [0.01, 0.2, 0.001], unit: "mm" },
   { group: "ground", path: "terrain.thickness", label: "thickness", range: [0.01, 0.4, 0.002], unit: "mm" },
-  { group: "ground", path: "terrain.edge_radius", label: "radius of the edges", range: [0, 0.03, 0.0005], unit: "mm" },
+  { group: "ground", path: "terrain.edge_radius", label: "edge radius", range: [0, 0.03, 0.0005], unit: "mm" },
   { group: "ground", path: "terrain.friction", label: "friction", range: [0.1, 1.5, 0.02], unit: "" },
-  { group: "robot", path: "robot.center_of_mass[0]", label: "centre of mass, forward", range: [-0.15, 0.15, 0.002], unit: "mm" },
-  { group: "robot", path: "robot.center_of_mass[1]", label: "centre of mass, up", range: [-0.05, 0.15, 0.002], unit: "mm" },
-  { group: "robot", path: "robot.drivetrain.max_torque", label: "torque at a sprocket", range: [0.5, 20, 0.1], unit: "N m" },
+  { group: "robot", path: "robot.center_of_mass[0]", label: "centre of mass, x", range: [-0.15, 0.15, 0.002], unit: "mm" },
+  { group: "robot", path: "robot.center_of_mass[1]", label: "centre of mass, y", range: [-0.05, 0.15, 0.002], unit: "mm" },
+  { group: "robot", path: "robot.drivetrain.max_torque", label: "sprocket torque", range: [0.5, 20, 0.1], unit: "N m" },
   { group: "robot", path: "drive.speed", label: "speed", range: [0.05, 1.2, 0.05], unit: "m/s" },
 ];
 
@@ -51,6 +51,16 @@ function applies({ path }, state) {
   return ["grouser_belt", "segmental"].includes(kind) || wheel?.kind === "gear";
 }
 
+// How far the wheels of a line are apart; nothing of other tracks.
+function spacing({ robot: { track, outline } }) {
+  if (track.kind !== "line") return "";
+  const apart = outline.axle_distance / (track.count - 1);
+  const gap = apart - 2 * track.wheel_radius;
+  const millimetres = `${(1e3 * Math.abs(gap)).toFixed(1)} mm`;
+  const how = Math.abs(gap) < 5e-4 ? "they touch" : gap > 0 ? `gaps of ${millimetres}` : `they overlap by ${millimetres}`;
+  return `wheels ${(1e3 * apart).toFixed(1)} mm apart: ${how}`;
+}
+
 // Sliders and lists; `changed` is called with each change, and with whether that is the last of a movement.
 class Controls {
   constructor(place, state, changed) {
@@ -62,6 +72,10 @@ class Controls {
       legend.textContent = title;
       set.append(legend, ...this.rows.filter(({ field }) => field.group === group).map(({ row }) => row));
       place.append(set);
+      if (group !== "track") continue;
+      this.note = document.createElement("p");
+      this.note.className = "note";
+      set.append(this.note);
     }
     for (const { field, input } of this.rows) {
       const take = (isLast) => {
@@ -75,6 +89,7 @@ class Controls {
 
   // Shows what the state has.
   show() {
+    this.note.textContent = spacing(this.state.scenario);
     for (const { field, row, input, output } of this.rows) {
       row.hidden = !applies(field, this.state);
       if (row.hidden) continue;

@@ -42,6 +42,8 @@ FAINT = """() => {
 
 
 def part(page: Page, which: str, number: int = 1) -> str:
+    if which == "sentence":
+        return str(page.text_content(f".sentences p:nth-child({number})"))
     return str(page.inner_text(f".pair figure:nth-child({number}) .{which}"))
 
 
