@@ -1,7 +1,7 @@
-// The core as the page sees it: of the requests that wait the newest wins.
+// The core as the page sees it: one request at a time, and of those that wait the newest.
 
-// [ms] How long a newer request waits for an older one before that is given up.
-const PATIENCE = 120;
+// [ms] How long a newer request waits for a run, or for trials, before that is given up.
+const PATIENCE = { run: 1000, trials: 60 };
 
 class Core {
   constructor(module, source) {
@@ -18,12 +18,12 @@ class Core {
   }
 
   // Takes a request as JSON; resolves with the answer, or with nothing if a newer request came first.
-  ask(request) {
+  ask(request, what = "run") {
     return new Promise((resolve) => {
       this.waiting?.resolve(null);
-      this.waiting = { request, resolve };
+      this.waiting = { request, resolve, what };
       if (!this.busy) this.send();
-      else setTimeout((busy) => this.giveUp(busy), PATIENCE, this.busy);
+      else setTimeout((busy) => this.giveUp(busy), PATIENCE[this.busy.what], this.busy);
     });
   }
 
@@ -45,7 +45,7 @@ class Core {
     const { resolve } = this.busy;
     const answer = JSON.parse(text, (_, value) =>
       (value?.first === undefined ? value : numbers.subarray(value.first, value.first + value.count)));
-    resolve(this.waiting ? null : answer);
+    resolve(answer);
     this.send();
   }
 }

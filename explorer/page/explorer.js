@@ -51,7 +51,7 @@ class View {
   async judge() {
     const { text } = this;
     if (!this.answer || this.answer.error || this.answer.judged) return;
-    const judged = await this.core.ask(requested(text, tables.trials, null));
+    const judged = await this.core.ask(requested(text, tables.trials, null), "trials");
     if (!judged || text !== this.text) return;
     this.answer = { ...judged, drawing: this.answer.drawing };
     this.tell();
