@@ -38,7 +38,7 @@ pub(crate) fn of(carriers: &[Carrier], ground: &Ground) -> [f64; 4] {
     let surface = heights(ground, left, right);
     let lowest = surface.iter().copied().fold(low, f64::min);
     let highest = surface.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    [left, right, lowest - MARGIN, (highest + MARGIN).max(high)]
+    [left, right, lowest - MARGIN, highest.max(high)]
 }
 
 struct Extent([f64; 4]);
