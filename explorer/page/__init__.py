@@ -39,7 +39,7 @@ _GROUNDS = (
     c2d.terrains.barrier(0.06, 0.08),
     c2d.terrains.ridge(0.06, 1.57),
     c2d.terrains.half_round(0.06),
-    c2d.terrains.gap(0.15),
+    c2d.terrains.gap(0.15, depth=0.1),
     c2d.terrains.stairs(rise=0.06),
 )
 _WHEELS = (c2d.RoundWheel(), c2d.GearWheel())

@@ -75,6 +75,7 @@ class View {
     part("mechanism").title = tables.words.mechanisms[diagnosis?.mechanism] ?? "";
     const sentence = diagnosis ? new Sentence(diagnosis, tables.words).text() : tables.words.outcomes[outcome];
     const doubtful = (doubts ?? []).map(({ path, reason }) => ` ${path} ${reason}.`).join("");
+    this.sentence.className = error ? "error" : "";
     this.sentence.textContent = error ? error.message : `${sentence}.${doubtful}`;
     this.figure.classList.toggle("stale", Boolean(error));
     this.canvas.setAttribute("aria-label", `${subject}, side view: ${this.ending}`);
@@ -128,6 +129,7 @@ const past = ({ drawing: { robot, ground } }) => ground.goal + 0.7 * robot.lengt
 // Takes over what has been simulated; a robot that was seen at its end is seen at its new end.
 function show() {
   const scenes = shown();
+  if (!scenes.length) return;
   const atEnd = player.time >= player.end;
   const [{ forceScale, speedScale }] = scenes;
   for (const scene of scenes) {

@@ -190,6 +190,20 @@ def test_a_broken_rule_is_named(page: Page) -> None:
     assert "after" in part(page, "ending")
 
 
+def test_a_page_that_begins_with_a_broken_rule_says_so(asked: Page) -> None:
+    asked.evaluate(
+        "location.hash = 'robot.track.kind=circumferential&robot.track.wheel_radius=0.09'"
+    )
+    asked.reload()
+    settled(asked)
+    assert part(asked, "ending") == "not simulated"
+    assert part(asked, "ending", 2).startswith("cleared after ")
+    asked.fill("[id='field-robot.track.wheel_radius']", "0.015")
+    settled(asked)
+    assert "after" in part(asked, "ending")
+    assert asked.locator("canvas").first.evaluate(COLOURS) > 20
+
+
 def test_the_keyboard_is_enough(page: Page) -> None:
     end = clock(page)
     page.focus("#scrub")
