@@ -41,7 +41,7 @@ def test_there_are_enough_scenarios_of_every_track() -> None:
 def test_a_run_has_the_same_bits(asked: Page, name: str) -> None:
     scenario = SCENARIOS[name]
     answer = ask(asked, scenario.to_json(), ["torque x 2", "friction x 2"])
-    broken: tuple[str, object, str] | None = None
+    broken = None
     try:
         run = c2d.simulate(scenario, record="summary", trials="auto")
     except c2d.ScenarioError as error:
