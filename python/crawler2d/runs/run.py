@@ -1,17 +1,16 @@
-"""A finished run, which can be branched, drawn, replayed and exported."""
+"""A finished run, which can be branched, tried at its stop, and compared with another engine."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
 from textwrap import indent
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Literal
 
 from crawler2d import _core
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.units import table_of_metrics
 from crawler2d.errors import ScenarioError
-from crawler2d.results.record import Record
 from crawler2d.results.tip_over import TipOver, find_tip_over
 from crawler2d.runs.branch import (
     EscapeForce,
@@ -30,27 +29,22 @@ from crawler2d.runs.branch import (
     try_variant,
 )
 from crawler2d.runs.cross_check import CrossCheck, compare_engines
-from crawler2d.runs.progress import Progress, reporter
+from crawler2d.runs.shown_run import ShownRun
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from os import PathLike
-    from pathlib import Path
+    from collections.abc import Callable
 
-    import xarray
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
     from crawler2d.parameters.scenario import Scenario
     from crawler2d.parameters.settings import Drive
     from crawler2d.parameters.track import Track
-    from crawler2d.pictures.replay import Replay
     from crawler2d.results.findings import TrialResult
 
 __all__ = ["Run"]
 
 
-class Run(Record):
+class Run(ShownRun):
     """One finished run, as `simulate` returns it.
 
     Its arrays are read-only and share their first dimension, the n samples of `time`. With
@@ -416,284 +410,6 @@ class Run(Record):
         True
         """
         return compare_engines(self, _with_history, announce=announce)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Copy the history to a labelled dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            One variable per array, dimensions `time`, `axis` ("x", "y") and `drive`, units in the
-            attributes; outcome, metrics and scenario are attributes of the dataset.
-
-        Raises
-        ------
-        ImportError
-            If xarray is missing; the message names the extra to install.
-        AttributeError
-            If the run was recorded with ``record="summary"``.
-        """
-        from crawler2d.runs.dataset import to_dataset  # noqa: PLC0415 - optional
-
-        return to_dataset(self)
-
-    @takes_keywords
-    def plot(
-        self, ax: Axes | None = None, *, time: ArrayLike | None = None, trials: bool = True
-    ) -> Axes:
-        """Draw the side view: ground, robot at some instants, and its contacts at the last of them.
-
-        Parameters
-        ----------
-        ax : Axes, optional
-            Where to draw; None makes a figure.
-        time : array_like, shape (k,), optional
-            [s] When to draw the robot; None draws it about every robot length.
-        trials : bool
-            Whether to draw where the trials ended that freed the robot, if its stop is drawn.
-
-        Returns
-        -------
-        Axes
-            With x and y in metres, to one scale.
-
-        Raises
-        ------
-        ImportError
-            If matplotlib is missing; the message names the extra to install.
-        AttributeError
-            If the run was recorded with ``record="summary"``.
-
-        Examples
-        --------
-        Side view and history in one figure:
-
-        >>> import matplotlib.pyplot as plt
-        >>> import crawler2d as c2d
-        >>> robot = c2d.robots.engineer(flippers=None)
-        >>> run = c2d.simulate(robot, c2d.terrains.step(0.05))
-        >>> figure, (side, *history) = plt.subplots(4, figsize=(8, 9), layout="constrained")
-        >>> run.plot(side) is side
-        True
-        >>> angle, speed, force = run.plot_history(history)
-        >>> speed.get_ylabel()
-        'speed [m/s]'
-        """
-        from crawler2d.pictures.side_view import plot_run  # noqa: PLC0415 - optional
-
-        return plot_run(self, ax, time, trials=trials)
-
-    @takes_keywords
-    def plot_history(self, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes, Axes]:
-        """Draw chassis angle, speeds and drive force over time, stops shaded.
-
-        Parameters
-        ----------
-        axes : sequence of 3 Axes, optional
-            Where to draw; None makes a figure.
-
-        Returns
-        -------
-        tuple of 3 Axes
-            Chassis angle; commanded speed, speed of the track and of the chassis; drive force.
-
-        Raises
-        ------
-        ImportError
-            If matplotlib is missing; the message names the extra to install.
-        AttributeError
-            If the run was recorded with ``record="summary"``.
-        """
-        from crawler2d.pictures.side_view import plot_history  # noqa: PLC0415 - optional
-
-        return plot_history(self, axes)
-
-    @takes_keywords
-    def animate(
-        self,
-        path: str | PathLike[str],
-        *,
-        fps: float = 25.0,
-        speed: float = 1.0,
-        follow: bool | None = None,
-        width: int = 800,
-        progress: bool | Progress | None = True,
-    ) -> Path:
-        """Write a film of the side view with the contact forces, which ends with the outcome.
-
-        `crawler2d.animate` puts several runs into one. The comment of the file is `provenance`.
-
-        Parameters
-        ----------
-        path : str or path-like
-            Where to write it. Its suffix says what: ``.gif`` for slides and web pages, ``.mp4`` for
-            a smaller file that can be paused.
-        fps : float
-            [1/s] Frames per second, from 1 to 50.
-        speed : float
-            [-] How many times faster than real time; below 1 is slow motion.
-        follow : bool, optional
-            Whether the view moves with the robot. False shows all that it visits; None does so
-            unless the robot would be too small to see.
-        width : int
-            [px] Width of the film, from 200 to 4000.
-        progress : bool or callable
-            As for `simulate_many`; frames are counted.
-
-        Returns
-        -------
-        Path
-            The written file. It appears once it is complete.
-
-        Raises
-        ------
-        ScenarioError
-            If the path has another suffix, or a number is out of range.
-        ImportError
-            If matplotlib, or for an MP4 ffmpeg is missing; the message names the extra to install.
-        AttributeError
-            If the run was recorded with ``record="summary"``.
-        OSError
-            If the file cannot be written.
-        """
-        from crawler2d.pictures.animation import animate  # noqa: PLC0415 - optional
-
-        return animate(
-            [self],
-            path,
-            labels=[self.subject],
-            fps=fps,
-            speed=speed,
-            follow=follow,
-            beside=False,
-            width=width,
-            counted=partial(reporter, progress, unit="frame"),
-        )
-
-    @overload
-    def to_html(self, path: None = None, *, time: float | None = None) -> str: ...
-
-    @overload
-    def to_html(self, path: str | PathLike[str], *, time: float | None = None) -> Path: ...
-
-    @takes_keywords
-    def to_html(
-        self, path: str | PathLike[str] | None = None, *, time: float | None = None
-    ) -> str | Path:
-        """Write one self-contained HTML page that replays the run.
-
-        A run of more than 3000 samples is thinned to at most 3000, and the page says so.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Where to write the page; None returns its text.
-        time : float, optional
-            [s] Instant at which the page opens; None takes the end if the run stopped, else the
-            beginning.
-
-        Returns
-        -------
-        str or Path
-            The text, or the path of the written file.
-
-        Raises
-        ------
-        OSError
-            If the file cannot be written.
-        AttributeError
-            If the run was recorded with ``record="summary"``.
-        """
-        # Imported only when used.
-        from crawler2d.common.files import write_text  # noqa: PLC0415
-        from crawler2d.pictures.page import replay_page  # noqa: PLC0415
-
-        text = replay_page(self, time)
-        return text if path is None else write_text(path, text)
-
-    @takes_keywords
-    def save(self, path: str | PathLike[str]) -> Path:
-        """Write the run to one file, which `crawler2d.load` reads.
-
-        The file is a NumPy ``.npz``: the scenario as JSON, every array and table, metrics,
-        diagnosis and `build`. What was at the path is replaced once the file is complete.
-
-        Parameters
-        ----------
-        path : str or path-like
-            Where to write it; ``.npz`` is the usual suffix.
-
-        Returns
-        -------
-        Path
-            The written file.
-
-        Raises
-        ------
-        ScenarioError
-            If the run has no result, see `error`.
-        OSError
-            If the file cannot be written.
-
-        Examples
-        --------
-        The history needs nothing but NumPy to be read:
-
-        >>> import tempfile
-        >>> import numpy as np
-        >>> import crawler2d as c2d
-        >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
-        >>> path = run.save(f"{tempfile.mkdtemp()}/step.npz")
-        >>> np.load(path)["trace/position"].shape == run.position.shape
-        True
-        """
-        # Imported only when used.
-        from pathlib import Path  # noqa: PLC0415
-
-        from crawler2d.results.run_file import write_run  # noqa: PLC0415
-
-        write_run(self, Path(path))
-        return Path(path)
-
-    @takes_keywords
-    def widget(self, *, time: float | None = None) -> Replay:
-        """Replay the run in a widget of a live notebook, whose time can be read and set.
-
-        Parameters
-        ----------
-        time : float, optional
-            [s] Instant at which it opens; None takes the end if the run stopped, else the
-            beginning.
-
-        Returns
-        -------
-        Replay
-            A widget. Its `time` [s] is the instant that is shown, for `observe` and `jslink` of
-            ipywidgets; `show` replays another run in its place.
-
-        Raises
-        ------
-        ImportError
-            If anywidget is missing; the message names the extra to install.
-        AttributeError
-            If the run was recorded with ``record="summary"``.
-
-        Examples
-        --------
-        >>> import crawler2d as c2d
-        >>> robot = c2d.robots.engineer(flippers=None)
-        >>> replay = c2d.simulate(robot, c2d.terrains.step(0.05)).widget()
-        >>> replay.time = 1.5
-        """
-        from crawler2d.pictures.replay import Replay  # noqa: PLC0415 - optional
-
-        return Replay(self, time)
-
-    def _repr_html_(self) -> str:
-        """Replay the run in a notebook, or show its metrics if there is no history."""
-        from crawler2d.pictures.page import embed  # noqa: PLC0415 - costs nothing until used
-
-        return embed(self)
 
 
 Run.__doc__ = (Run.__doc__ or "").replace("    {metrics}", indent(table_of_metrics(), "    "))
