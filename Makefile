@@ -35,7 +35,6 @@ test: ## all tests (Rust, Python, documentation) and all checks
 CARGO_TEST := cargo test --release --package crawler2d-core --package crawler2d-python
 test-rust: | tools
 	$(CARGO_TEST)
-	$(PYTHON) -m benches.instructions
 test-python: $(VENV)/.built
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 test-debug: | tools
@@ -100,7 +99,7 @@ compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs
 	$(BIN)/python -m benches.engines run $(ARGS)
 	$(BIN)/python -m benches.engines table $(ARGS)
 
-docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network
+docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network; with the explorer if that was made
 	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
 	$(BIN)/python docs/site/build.py $(ARGS)
 
@@ -204,8 +203,9 @@ $(VENV)/.browser: $(VENV)/.dependencies
 		echo "test-browser needs chromium or chrome on the PATH (Debian: apt-get install chromium)" >&2; \
 		exit 1; fi
 
-# An old core of another kind (abi3 or not) would be preferred silently: it goes first.
+# An old core of another kind (abi3 or not) would be preferred silently: it goes first. Maturin cannot install the extra
+# `all`, which names the others.
 $(VENV)/.built: $(VENV)/.dependencies $(SOURCES)
 	@rm -f python/crawler2d/_core*.so python/crawler2d/_core*.pyd
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras all
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,animation,analysis,progress,files,dask,models,notebook,sensitivity,cli
 	@touch $@

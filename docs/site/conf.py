@@ -91,6 +91,12 @@ sphinx_gallery_conf = {
     "image_srcset": ["2x"],
 }
 
+# The explorer is compiled for browsers, which takes more than Python: it is there if it was made.
+explorer = ROOT / "out" / "explorer.html"
+if explorer.is_file():
+    tags.add("explorer")  # noqa: F821 - Sphinx gives it
+    html_extra_path = [str(explorer)]
+
 html_theme = "pydata_sphinx_theme"
 html_title = "crawler2d"
 html_static_path = [str(HERE / "static")]
