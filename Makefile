@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-instructions bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -64,9 +64,6 @@ bench: | tools ## what a simulated second of each track model costs, two minutes
 
 bench-engine: | tools ## the same beside rapier's dynamics, minutes
 	cargo bench --bench engine
-
-bench-instructions: | tools ## the same in instructions, beside those that are kept; ARGS=--write keeps those of now; needs valgrind
-	$(PYTHON) -m benches.instructions $(ARGS)
 
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)

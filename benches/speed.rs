@@ -4,7 +4,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use crawler2d_benches::{SCENES, Scene, milliseconds};
+use crawler2d_benches::{SCENES, milliseconds};
 use crawler2d_core::{Record, simulate};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 
@@ -29,7 +29,10 @@ fn pieces(criterion: &mut Criterion) {
 }
 
 fn runs(criterion: &mut Criterion) {
-    let checked = Scene::named("engineer_belt_step").checked();
+    let belt = SCENES
+        .iter()
+        .find(|scene| scene.name == "engineer_belt_step");
+    let checked = belt.expect("it is one of them").checked();
     let run = simulate(&checked, Record::default()).expect("a valid scene");
     let mut group = criterion.benchmark_group("run");
     group.throughput(Throughput::Elements(milliseconds(run.metrics.time)));

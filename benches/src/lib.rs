@@ -46,17 +46,6 @@ pub const SCENES: [Scene; 16] = [
 ];
 
 impl Scene {
-    /// The scene of a name.
-    ///
-    /// # Panics
-    /// If there is none.
-    pub fn named(name: &str) -> &'static Self {
-        SCENES
-            .iter()
-            .find(|scene| scene.name == name)
-            .expect("a scene of that name")
-    }
-
     /// The scenario.
     ///
     /// # Panics
