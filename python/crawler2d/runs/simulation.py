@@ -181,7 +181,7 @@ class Simulation(TakesKeywords):
         None
         """
         if start is None:
-            with ignore_doubts():  # told when it was made
+            with ignore_doubts():  # they were given when it was made
                 self._core = _core.Simulation(self.scenario.to_json())
             return
         changed = type(self)(self.scenario.replace({"start": start}))

@@ -1,8 +1,8 @@
 //! Each shared scenario takes no more instructions than are kept in `counts.json`: valgrind counts those of its first
 //! 1.5 s, in which the robot comes to its obstacle.
 //!
-//! Unlike times, counts are the same in every run of a build. They depend on the compiler and the kind of processor, so
-//! those of another one are shown and not judged. `CRAWLER2D_KEEP_COUNTS=1` keeps those of now.
+//! Unlike times, counts hardly differ from run to run: by what loading takes, some ten thousand. They depend on the
+//! compiler and the kind of processor, so those of another one are shown and not judged. `CRAWLER2D_KEEP_COUNTS=1` keeps those of now.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
