@@ -16,6 +16,7 @@ from pathlib import Path
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.drawings import draw_robot
+from crawler2d.commands.files import OUT
 from crawler2d.common.files import write_text
 from crawler2d.drawings.svg import escape
 from crawler2d.errors import Crawler2dError, ScenarioError, ScenarioWarning
@@ -24,7 +25,7 @@ from crawler2d.reading.reading import Reading, read_robot
 
 __all__ = ["Entry", "add_arguments", "main_files", "run"]
 
-_OUT = Path("out/atlas.html")
+_PAGE = OUT / "atlas.html"
 _HERE = "crawler2d.commands"
 _SAMPLES = 40
 
@@ -62,7 +63,7 @@ class Entry:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     parser.add_argument("folder", type=Path, help="a folder of repositories")
-    parser.add_argument("--html", type=Path, default=_OUT, help=f"the page (default: {_OUT})")
+    parser.add_argument("--html", type=Path, default=_PAGE, help=f"the page (default: {_PAGE})")
     samples = f"of what is not known of each robot (default: {_SAMPLES})"
     parser.add_argument("--samples", type=int, default=_SAMPLES, help=samples)
     parser.add_argument("--threads", type=int, help="default: all cores")

@@ -25,6 +25,7 @@ from crawler2d.audits.record import READING, as_options
 from crawler2d.audits.runs import LivePrinter
 from crawler2d.audits.text import LintResult, lint_only, plain_of
 from crawler2d.audits.verdicts import least_samples
+from crawler2d.commands.files import OUT
 from crawler2d.common.files import write_text
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.engines import ENGINES
@@ -32,9 +33,6 @@ from crawler2d.reading.loading import TOLERANCE
 from crawler2d.reading.meshes import MeshRule
 
 __all__ = ["add_arguments", "run"]
-
-_OUT = Path("out")
-"""Folder of the page, as of the other programs."""
 
 _Results = Sequence[tuple[Path, Audit | LintResult | ScenarioError]]
 """Each file with what was found in it, or why it could not be read."""
@@ -214,8 +212,8 @@ def _write_audit(found: Audit, file: Path, options: argparse.Namespace, live: Li
     if not options.no_html:
         path: Path | None = options.html
         if path is None:
-            _OUT.mkdir(parents=True, exist_ok=True)
-            path = _OUT / f"audit-{_short(file, options.file)}.html"
+            OUT.mkdir(parents=True, exist_ok=True)
+            path = OUT / f"audit-{_short(file, options.file)}.html"
         found.to_html(path, threads=options.threads)
         live.print(f"\nThe page is in {path}")
         if found.reading is not None and found.reading.path.suffix == ".xacro":
