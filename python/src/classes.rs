@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{ContactTable, End, Error, Outcome, ValidScenario};
+use crawler2d_core::{ByHand, ContactTable, End, Error, Log, Outcome, ValidScenario};
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
@@ -19,8 +19,9 @@ use crate::{calls, convert};
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Simulation {
     inner: Arc<Inner>,
-    /// Held by the thread that advances: of two at once, one would count the other's steps as its own.
-    turn: Mutex<()>,
+    /// What it was asked to do; held by the thread that advances: of two at once, one would count the other's steps as
+    /// its own.
+    turn: Mutex<Log>,
     /// Its steps take so long that Ctrl-C must not have to wait for one.
     is_slow: AtomicBool,
     /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
@@ -59,16 +60,17 @@ impl Simulation {
             Ok((simulation, checked.doubts().to_vec()))
         })?;
         calls::warn(py, &doubts)?;
-        Ok(Self::of(simulation))
+        Ok(Self::of(simulation, Log::default()))
     }
 
     /// Restores a simulation from a snapshot.
     #[staticmethod]
     fn from_snapshot(py: Python<'_>, snapshot: PyBackedBytes) -> PyResult<Self> {
-        let simulation = run_interruptible(py, move |_| {
-            crawler2d_core::Simulation::from_snapshot(&snapshot)
+        let (simulation, log) = run_interruptible(py, move |_| {
+            let simulation = crawler2d_core::Simulation::from_snapshot(&snapshot)?;
+            Ok((simulation, Log::after(snapshot.to_vec())))
         })?;
-        Ok(Self::of(simulation))
+        Ok(Self::of(simulation, log))
     }
 
     /// Writes the complete state.
@@ -107,9 +109,138 @@ impl Simulation {
                 "must be >= 0 s and <= 100000 s",
             ));
         }
-        let _turn = self.turn(py)?;
+        let mut log = self.turn(py)?;
+        let end = self.with(py, |simulation| Ok(simulation.time()))? + duration;
+        log.note_steps(end);
+        self.advance_to(py, end)
+    }
+
+    /// Commands a new speed or new flipper angles, or pushes the robot.
+    #[pyo3(signature = (speed = None, flipper_angle = None, rear_flipper_angle = None, push = None))]
+    fn command(
+        &self,
+        py: Python<'_>,
+        speed: Option<f64>,
+        flipper_angle: Option<f64>,
+        rear_flipper_angle: Option<f64>,
+        push: Option<f64>,
+    ) -> PyResult<()> {
+        let mut log = self.turn(py)?;
+        self.outcome(py)?;
+        let commands = ByHand {
+            speed,
+            flipper_angles: [(End::Front, flipper_angle), (End::Rear, rear_flipper_angle)],
+            push,
+        };
+        self.with(py, |simulation| simulation.command_all(&commands))?;
+        log.note_commands(commands);
+        Ok(())
+    }
+
+    /// All that it has done so far, simulated once more with its history.
+    fn to_run<'py>(
+        &self,
+        py: Python<'py>,
+        sample_interval: f64,
+        trials: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let record = convert::record(sample_interval, "full", &trials)?;
+        let log = self.turn(py)?.clone();
+        let scenario = self.with(py, |simulation| Ok(simulation.scenario().clone()))?;
+        let run = run_interruptible(py, move |cancel| log.replay(&scenario, record, cancel))?;
+        convert::run(py, run)
+    }
+
+    /// The current state.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (reading, contacts, flippers, drives, shoes) = self.with(py, |simulation| {
+            Ok((
+                simulation.reading(),
+                simulation.contact_table(),
+                simulation.flipper_angles().collect::<Vec<_>>(),
+                simulation.drive_positions().collect::<Vec<_>>(),
+                simulation.shoe_poses().collect::<Vec<_>>(),
+            ))
+        })?;
+        let outcome = self.outcome(py)?;
+        let state = PyDict::new(py);
+        state.set_item("position", convert::pair(py, reading.position))?;
+        state.set_item("velocity", convert::pair(py, reading.velocity))?;
+        convert::put! {
+            state, reading:
+            time chassis_angle angular_velocity commanded_speed track_speed track_position
+        }
+        state.set_item("flipper_angles", flippers.into_pyarray(py))?;
+        state.set_item("drive_positions", drives.into_pyarray(py))?;
+        state.set_item("shoe_poses", convert::rows(py, &shoes))?;
+        state.set_item("contacts", Bound::new(py, Contacts(contacts))?)?;
+        state.set_item("outcome", outcome.map(Outcome::name))?;
+        Ok(state)
+    }
+
+    /// The ground inside the envelope of the track now.
+    fn intrusions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = self.with(py, |simulation| Ok(simulation.intrusions()))?;
+        convert::intrusions(py, &found)
+    }
+
+    /// [s] Simulated time.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+        self.with(py, |simulation| Ok(simulation.time()))
+    }
+}
+
+impl Simulation {
+    fn of(simulation: crawler2d_core::Simulation, log: Log) -> Self {
+        /// Number of points of the ground and of parts of the robot from which a step may take long.
+        const MANY: (usize, usize) = (10_000, 200);
+
+        let (points, parts) = simulation.size();
+        Self {
+            is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
+            inner: Arc::new(Mutex::new(Some(simulation))),
+            turn: Mutex::new(log),
+            outcome: Mutex::new(None),
+        }
+    }
+
+    /// The outcome, if it is certain.
+    fn outcome(&self, py: Python<'_>) -> PyResult<Option<Outcome>> {
+        let known = || self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = *known();
+        if found.is_some() || !self.with(py, |simulation| Ok(simulation.is_over()))? {
+            return Ok(found);
+        }
+        let inner = Arc::clone(&self.inner);
+        let outcome = run_interruptible(py, move |cancel| {
+            call(&inner, |simulation| {
+                crawler2d_core::outcome_of(simulation, cancel)
+            })
+        })?;
+        Ok(Some(*known().get_or_insert(outcome)))
+    }
+
+    /// Waits until no other thread advances it; Ctrl-C is answered meanwhile. The log says how far it has come.
+    fn turn(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Log>> {
+        let mut log = loop {
+            match self.turn.try_lock() {
+                Ok(turn) => break turn,
+                Err(TryLockError::Poisoned(turn)) => break turn.into_inner(),
+                Err(TryLockError::WouldBlock) => {
+                    py.detach(|| thread::sleep(BETWEEN_ATTEMPTS));
+                    py.check_signals()?;
+                }
+            }
+        };
+        // Ctrl-C may have ended the last advance before its end, in the middle of a step that nobody waited for.
+        log.has_reached(self.with(py, |simulation| Ok(simulation.time()))?);
+        Ok(log)
+    }
+
+    /// Takes steps up to the time `end` [s]; Ctrl-C is answered meanwhile.
+    fn advance_to(&self, py: Python<'_>, end: f64) -> PyResult<()> {
         let mut time = self.with(py, |simulation| Ok(simulation.time()))?;
-        let end = time + duration;
         while time < end && !self.is_slow.load(Ordering::Relaxed) {
             time = self.with(py, |simulation| self.steps_between_looks(simulation, end))?;
             py.check_signals()?;
@@ -135,103 +266,6 @@ impl Simulation {
         // Other load on the machine may have made it look slow.
         self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
         Ok(())
-    }
-
-    /// Commands a new speed or new flipper angles, or pushes the robot.
-    #[pyo3(signature = (speed = None, flipper_angle = None, rear_flipper_angle = None, push = None))]
-    fn command(
-        &self,
-        py: Python<'_>,
-        speed: Option<f64>,
-        flipper_angle: Option<f64>,
-        rear_flipper_angle: Option<f64>,
-        push: Option<f64>,
-    ) -> PyResult<()> {
-        self.outcome(py)?;
-        self.with(py, |simulation| {
-            let ends = [(End::Front, flipper_angle), (End::Rear, rear_flipper_angle)];
-            simulation.command_all(speed, ends, push)
-        })
-    }
-
-    /// The current state.
-    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (reading, contacts, flippers) = self.with(py, |simulation| {
-            Ok((
-                simulation.reading(),
-                simulation.contact_table(),
-                simulation.flipper_angles().collect::<Vec<_>>(),
-            ))
-        })?;
-        let outcome = self.outcome(py)?;
-        let state = PyDict::new(py);
-        state.set_item("position", convert::pair(py, reading.position))?;
-        state.set_item("velocity", convert::pair(py, reading.velocity))?;
-        convert::put! {
-            state, reading:
-            time chassis_angle angular_velocity commanded_speed track_speed track_position
-        }
-        state.set_item("flipper_angles", flippers.into_pyarray(py))?;
-        state.set_item("contacts", Bound::new(py, Contacts(contacts))?)?;
-        state.set_item("outcome", outcome.map(Outcome::name))?;
-        Ok(state)
-    }
-
-    /// The ground inside the envelope of the track now.
-    fn intrusions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let found = self.with(py, |simulation| Ok(simulation.intrusions()))?;
-        convert::intrusions(py, &found)
-    }
-
-    /// [s] Simulated time.
-    #[getter]
-    fn time(&self, py: Python<'_>) -> PyResult<f64> {
-        self.with(py, |simulation| Ok(simulation.time()))
-    }
-}
-
-impl Simulation {
-    fn of(simulation: crawler2d_core::Simulation) -> Self {
-        /// Number of points of the ground and of parts of the robot from which a step may take long.
-        const MANY: (usize, usize) = (10_000, 200);
-
-        let (points, parts) = simulation.size();
-        Self {
-            is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
-            inner: Arc::new(Mutex::new(Some(simulation))),
-            turn: Mutex::new(()),
-            outcome: Mutex::new(None),
-        }
-    }
-
-    /// The outcome, if it is certain.
-    fn outcome(&self, py: Python<'_>) -> PyResult<Option<Outcome>> {
-        let known = || self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = *known();
-        if found.is_some() || !self.with(py, |simulation| Ok(simulation.is_over()))? {
-            return Ok(found);
-        }
-        let inner = Arc::clone(&self.inner);
-        let outcome = run_interruptible(py, move |cancel| {
-            call(&inner, |simulation| {
-                crawler2d_core::outcome_of(simulation, cancel)
-            })
-        })?;
-        Ok(Some(*known().get_or_insert(outcome)))
-    }
-
-    /// Waits until no other thread advances it; Ctrl-C is answered meanwhile.
-    fn turn(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ()>> {
-        loop {
-            match self.turn.try_lock() {
-                Ok(turn) => return Ok(turn),
-                Err(TryLockError::Poisoned(turn)) => return Ok(turn.into_inner()),
-                Err(TryLockError::WouldBlock) => {
-                    py.detach(|| thread::sleep(BETWEEN_ATTEMPTS));
-                    py.check_signals()?;
-                }
-            }
-        }
     }
 
     /// Takes steps up to the time `end` [s], and no more than fit between two checks for Ctrl-C; returns the time.

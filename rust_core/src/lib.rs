@@ -48,9 +48,9 @@ pub use robot::{
     Shape, Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    ContactTable, EscapeForce, Finished, Metric, Metrics, Poses, Progress, Record, Run, Simulation,
-    TipOver, Trace, ValidScenario, balance, branch, diagnose, escape_force, make_trials,
-    outcome_of, poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
+    ByHand, ContactTable, EscapeForce, Finished, Log, Metric, Metrics, Poses, Progress, Record,
+    Run, Simulation, TipOver, Trace, ValidScenario, balance, branch, diagnose, escape_force,
+    make_trials, outcome_of, poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

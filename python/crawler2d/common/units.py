@@ -46,7 +46,11 @@ _FIELDS_BY_UNIT = {
 FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in names.split()}
 """Unit of every number of a scenario, by the name of its field."""
 
-_FIELDS_BY_PLACE = {"robot.flippers.torque_limit": "N m"}
+_FIELDS_BY_PLACE = {
+    "robot.flippers.torque_limit": "N m",
+    "drive.gait.front": "rad",
+    "drive.gait.rear": "rad",
+}
 
 _COLUMNS = {
     "drive.schedule": ("s", "m/s"),

@@ -14,7 +14,7 @@ import reprlib
 import sys
 import types
 import typing
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import Any, ClassVar, TypeVar, cast
 
 from crawler2d.common.arrays import read_rows, read_scalar, real_number
@@ -123,6 +123,8 @@ class Parameters(TakesKeywords):
 def _check_type(value: Any, hint: Any, path: str) -> None:
     """Refuse a value of a type that a field does not have."""
     kinds = alternatives(hint)
+    if callable(value) and not isinstance(value, type) and _takes_functions(hint):
+        return
     if type(value) in kinds and not isinstance(value, (str, int)):  # numbers, objects, None
         return
     if isinstance(value, str) and any(kind is str or _choices(kind) for kind in kinds):
@@ -137,6 +139,10 @@ def _check_type(value: Any, hint: Any, path: str) -> None:
         or (type(value) is bool and bool in kinds)
     ):
         raise ScenarioError(path, value, f"must be {_expected(hint)}{_remedy(value, kinds)}")
+
+
+def _takes_functions(hint: Any) -> bool:
+    return any(typing.get_origin(kind) is Callable for kind in alternatives(hint))
 
 
 def _choices(kind: Any) -> tuple[str, ...]:
@@ -154,6 +160,7 @@ def _expected(hint: Any) -> str:
     for kind in alternatives(hint):
         words += [f"one of {', '.join(_choices(kind))}"] if _choices(kind) else []
         words += [_WORDS[kind]] if kind in _WORDS else []
+    words += ["a function"] if _takes_functions(hint) else []
     return " or ".join(words)
 
 
@@ -209,12 +216,20 @@ def to_dict(parameters: Parameters) -> dict[str, Any]:
     """Convert a parameter object to dicts, lists, numbers and strings.
 
     Every field is present, but those of `omitted_defaults` only if they differ from their defaults.
+
+    Raises
+    ------
+    ScenarioError
+        If a field is a function.
     """
     cls = type(parameters)
     values: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
     for field in fields_of(cls):
         name = field.name
-        if name not in cls.omitted_defaults or getattr(parameters, name) != field.default:
+        if callable(value := getattr(parameters, name)):
+            rule = "must not be a function, which only a Simulation can call"
+            raise ScenarioError(f"{cls.default_path}.{name}", value, rule)
+        if name not in cls.omitted_defaults or value != field.default:
             for each in parameters.written_as.get(name, (name,)):
                 values[each] = _json_value(getattr(parameters, each))
     return values

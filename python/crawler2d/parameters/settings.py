@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.fields import Parameters, to_dict
@@ -23,16 +24,24 @@ class Hold(Parameters, kind="hold", path="drive.gait"):
         [rad] Relative to the chassis, upwards > 0; of the flippers at both ends.
     schedule : array_like, shape (n, 2), optional
         Increasing times [s], and the angles [rad] that apply from then on.
+    front, rear : float, optional
+        [rad] Of the flippers at that end, all the time; None follows `angle` and `schedule`.
 
     Examples
     --------
-    >>> import crawler2d as c2d
-    >>> c2d.Drive(gait=Hold(0.8, [(3.0, 0.0)])).gait.schedule
+    The front flippers go down after three seconds, the rear ones stay:
+
+    >>> Hold(0.8, [(3.0, 0.0)], rear=-0.3).schedule
     ((3.0, 0.0),)
     """
 
+    omitted_defaults: ClassVar[tuple[str, ...]] = ("front", "rear")
+
     angle: float = 0.0
     schedule: tuple[tuple[float, float], ...] | None = None
+    _: KW_ONLY
+    front: float | None = None
+    rear: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,9 +86,12 @@ class Drive(Parameters, path="drive"):
         [m/s] Track speed; above 0 drives towards +x.
     schedule : array_like, shape (n, 2), optional
         Increasing times [s], and the speeds [m/s] that apply from then on.
-    gait : Hold or Climb, optional
+    gait : Hold, Climb or callable, optional
         How the flippers move; None holds them where they start. It has no effect on a robot
-        without flippers, so that a sweep may remove the flippers and keep the gait.
+        without flippers, so that a sweep may remove the flippers and keep the gait. A function is
+        for a `Simulation` alone, which calls it every 10 ms of simulated time with its `State`. It
+        returns the angle [rad] of all flippers, or a pair of those at the front and at the rear;
+        None leaves them where they are to be.
 
     Examples
     --------
@@ -91,7 +103,7 @@ class Drive(Parameters, path="drive"):
 
     speed: float = 0.4
     schedule: tuple[tuple[float, float], ...] | None = None
-    gait: Gait | None = None
+    gait: Gait | Callable[..., Any] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

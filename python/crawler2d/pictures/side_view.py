@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
+    from crawler2d.drawings.scene import Scene
     from crawler2d.results.record import Record
 
-__all__ = ["plot_both", "plot_history", "plot_run"]
+__all__ = ["plot_both", "plot_history", "plot_instant", "plot_run"]
 
 _GHOSTS = (SKY, ORANGE, GREEN, PURPLE, "#7F7F7F")
 """Of the ends of trials."""
@@ -60,21 +61,38 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
         right = max([right, *(end + reach for end in ends)])
     canvas = scene_canvas(scene, (left, right, bottom, top), ax)
     ax = canvas.ax
-    for sample in samples:
-        Outlines(scene, ax, alpha=1.0 if sample == shown else 0.3).show(int(sample))
+    for sample in samples[:-1]:
+        Outlines(scene, ax, alpha=0.3).show(int(sample))
     ax.plot(*run.position.T, label="path of the chassis origin", color=BLUE, **_PATH)
     looks = itertools.cycle(itertools.product(("-", "--"), _GHOSTS))
     for ghost, (dashes, color) in zip(freed, looks, strict=False):
         look: Any = {"color": color, "linestyle": dashes, "linewidth": 0.8}
         label = f"end of the trial: {ghost.change}"
         draw_lines(ghost_lines(scene, ghost), ax, label, **look, alpha=0.8, zorder=1.5)
-    draw_slip(run, shown, ax)
-    draw_forces(run, shown, ax)
-    Envelopes(scene, ax).show(shown)
+    _draw_sample(run, scene, shown, ax)
     draw_edges(run, scene, shown, ax)
     if left < scene.goal < right:
         draw_goal(scene.goal, ax)
     return canvas.caption(run.title, *filter(None, [run.reason]))
+
+
+def plot_instant(run: Record, ax: Axes | None) -> Axes:
+    """Draw the only sample of a run: ground, robot, contacts; see `Simulation.plot`."""
+    scene = scene_of(run)
+    left, right, _, _ = extent = scene.extent()
+    canvas = scene_canvas(scene, extent, ax)
+    _draw_sample(run, scene, 0, canvas.ax)
+    if left < scene.goal < right:
+        draw_goal(scene.goal, canvas.ax)
+    return canvas.caption(f"{run.subject}: {run.time[0]:.2f} s")
+
+
+def _draw_sample(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
+    """Draw the robot at a sample, the forces and slip of its contacts, and its envelopes."""
+    Outlines(scene, ax).show(sample)
+    draw_slip(run, sample, ax)
+    draw_forces(run, sample, ax)
+    Envelopes(scene, ax).show(sample)
 
 
 def _drawing_times(run: Record) -> NDArray[np.float64]:

@@ -65,7 +65,7 @@ class Record:
     error : Crawler2dError, optional
         The reason if there is no result.
     trunk : tuple of Scenario and float, optional
-        For a branch: the scenario it branched off from, and when [s].
+        For a branch, or a run of a `Simulation`: the scenario it set out from, and when [s].
     """
 
     def __init__(

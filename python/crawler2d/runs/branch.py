@@ -159,9 +159,10 @@ def try_variant(
 
 
 def refuse_without_result(run: Record) -> None:
-    """Refuse a run that ended with an error, and a branch, which its scenario does not define."""
+    """Refuse a run that ended with an error, and one that its scenario does not define."""
     if run.trunk is not None:
-        raise ScenarioError("run", run, "must not be a branch itself: take the original run")
+        rule = "must not be a branch itself, nor of a Simulation: take the original run"
+        raise ScenarioError("run", run, rule)
     if run.error is not None:
         raise ScenarioError("run", run, f"must have a result, not the error {run.error}")
 

@@ -26,7 +26,6 @@ from crawler2d.results.diagnosis import body_name
 from crawler2d.results.findings import Balance
 from crawler2d.results.record import Record
 from crawler2d.runs.branch import refuse_without_result
-from crawler2d.runs.simulation import Simulation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -273,7 +272,7 @@ def _expected_time(run: Record, scenario: Scenario) -> tuple[float, float]:
 
     By the time of its first steps, here and now: costs of models differ by a factor of a hundred.
     """
-    simulation = Simulation(scenario)
+    simulation = _core.Simulation(scenario.to_json())
     begin = time.perf_counter()
     simulation.advance(_SAMPLE)
     pace = (time.perf_counter() - begin) / _SAMPLE

@@ -73,7 +73,7 @@ class Run(ShownRun):
     error : Crawler2dError or None
         Why there is no result, in a batch that was interrupted or has ``on_error="record"``.
     trunk : tuple of Scenario and float, or None
-        For a branch: the scenario it branched off from, and when [s].
+        For a branch, or a run of a `Simulation`: the scenario it set out from, and when [s].
 
     Notes
     -----

@@ -5,20 +5,36 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from crawler2d import _core
 from crawler2d.common.arrays import Table, freeze_array, real_number
+from crawler2d.common.bodies import POSE_COLUMNS
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.parameters.settings import Start
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.outcome import Outcome
+from crawler2d.results.record import Record
+from crawler2d.runs.branch import Trials, check_recording, trial_names
+from crawler2d.runs.run import Run
 
 if TYPE_CHECKING:
-    import numpy as np
+    from collections.abc import Callable
+
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from crawler2d.parameters.flippers import Flippers
+
 __all__ = ["Simulation", "State"]
+
+_BETWEEN_DECISIONS = 0.01
+"""[s] Between two calls of a gait that is a function."""
+
+_SAME_TIME = 1e-9
+"""[s] Times that differ by less differ by rounding."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,6 +55,10 @@ class State:
         [m/s] Surface speed of the track, mean over the drives.
     track_position : float
         [m] How far the track surface has run, mean over the drives.
+    drive_positions : ndarray, shape (d,)
+        [m] The same of each of d drives.
+    shoe_poses : ndarray, shape (s, 3)
+        [m, m, rad] Middle between the pins and direction of travel of each shoe of a chain.
     flipper_angles : ndarray, shape (k,)
         [rad] Of the flippers at each of k ends, front first, relative to the chassis, upwards > 0.
     contacts : Table
@@ -55,6 +75,8 @@ class State:
     commanded_speed: float
     track_speed: float
     track_position: float
+    drive_positions: NDArray[np.float64]
+    shoe_poses: NDArray[np.float64]
     flipper_angles: NDArray[np.float64]
     contacts: Table
     outcome: Outcome | None
@@ -85,11 +107,29 @@ class Simulation(TakesKeywords):
     >>> sim.advance(1.5)
     >>> round(sim.state().track_speed, 3)
     0.1
+
+    A gait of one's own lifts the front flippers against the pitch of the chassis:
+
+    >>> def keep_level(state):
+    ...     return 0.6 - state.chassis_angle, 0.0
+    >>> drive = c2d.Drive(gait=keep_level)
+    >>> sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat(), drive=drive))
+    >>> sim.advance(2.0)
+    >>> sim.state().flipper_angles.round(2).tolist()
+    [0.6]
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        self.scenario = check_scenario(scenario)
-        self._core = _core.Simulation(scenario.to_json())
+        self._set_out(check_scenario(scenario))
+
+    def _set_out(self, scenario: Scenario) -> None:
+        """Place the robot of a scenario at its start."""
+        gait = scenario.drive.gait
+        function = gait if callable(gait) else None
+        simulated = scenario if function is None else scenario.replace({"drive.gait": None})
+        self._core = _core.Simulation(simulated.to_json())
+        self.scenario, self._simulated = scenario, simulated
+        self._since, self._gait, self._decisions = 0.0, function, 0
 
     @property
     def time(self) -> float:
@@ -113,7 +153,33 @@ class Simulation(TakesKeywords):
         SimulationDiverged
             If the state became non-finite; the simulation cannot continue.
         """
-        self._core.advance(real_number(duration, "duration"))
+        duration = real_number(duration, "duration")
+        gait, flippers = self._gait, self._simulated.robot.flippers
+        if gait is None or flippers is None or not duration > 0.0:
+            self._core.advance(duration)
+            return
+        end = self.time + duration
+        while (left := end - self.time) > _SAME_TIME:
+            ahead = self._decisions * _BETWEEN_DECISIONS - self.time
+            if ahead <= _SAME_TIME:
+                self._follow(gait, flippers)
+                ahead = self._decisions * _BETWEEN_DECISIONS - self.time
+            self._core.advance(left if left < ahead + _SAME_TIME else ahead)
+
+    def _follow(self, gait: Callable[[State], Any], flippers: Flippers) -> None:
+        """Ask a function where the flippers are to be, and command it."""
+        self._decisions += 1
+        angles = gait(self.state())
+        if angles is None:
+            return
+        both = list(angles) if np.ndim(angles) else [angles, angles]
+        if len(both) != 2:
+            rule = "must return an angle, a pair of angles (front, rear), or None"
+            raise ScenarioError("drive.gait", angles, rule)
+        names = {"front": "flipper_angle", "rear": "rear_flipper_angle"}
+        given = zip(names.items(), both, strict=True)
+        at = flippers.ends
+        self.command(**{name: angle for (end, name), angle in given if at in (end, "both")})
 
     @takes_keywords
     def command(
@@ -180,12 +246,88 @@ class Simulation(TakesKeywords):
         cleared
         None
         """
-        if start is None:
-            with ignore_doubts():  # they were given when it was made
-                self._core = _core.Simulation(self.scenario.to_json())
+        if start is not None:
+            self._set_out(self.scenario.replace({"start": start}))
             return
-        changed = type(self)(self.scenario.replace({"start": start}))
-        self.scenario, self._core = changed.scenario, changed._core
+        with ignore_doubts():  # they were given when it was made
+            self._set_out(self.scenario)
+
+    @takes_keywords
+    def to_run(self, *, sample_interval: float = 0.01, trials: Trials = None) -> Run:
+        """Return all that it has done so far as a run, with its history.
+
+        It is simulated once more with the same commands, and so bit by bit the same; a simulation
+        that goes on from a snapshot, as a copy does, has its run from there on.
+
+        Parameters
+        ----------
+        sample_interval : float
+            [s] Time between samples of the history.
+        trials : {"auto", "all"}, sequence of str or None
+            As for `simulate`: what to try if the robot has stopped.
+
+        Returns
+        -------
+        Run
+            To be plotted, saved and explained like any other. Its scenario does not hold what was
+            commanded, so it cannot be repeated: `trunk` says from where it set out, and `branch`
+            and `trials` are refused.
+
+        Raises
+        ------
+        SimulationDiverged
+            If the state became non-finite.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.step(0.05)))
+        >>> sim.advance(1.0)
+        >>> sim.command(speed=-0.2)
+        >>> sim.advance(1.0)
+        >>> run = sim.to_run()
+        >>> bool((run.position[-1] == sim.state().position).all()), run.time.size
+        (True, 201)
+        """
+        kept, _ = check_recording(sample_interval, "full")
+        result = self._core.to_run(kept, list(trial_names(trials)))
+        return Run(self._simulated, result, trunk=(self._simulated, self._since))
+
+    @takes_keywords
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the side view at this instant: ground, robot, contact forces and slip.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw; None makes a figure.
+
+        Returns
+        -------
+        Axes
+            With x and y in metres, to one scale.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.step(0.05)))
+        >>> sim.advance(1.5)
+        >>> sim.plot().get_xlabel()
+        'x [m]'
+        """
+        from crawler2d.pictures.side_view import plot_instant  # noqa: PLC0415 - optional
+
+        state = self.state()
+        trace = {name: np.array([getattr(state, name)]) for name in ("time", *POSE_COLUMNS)}
+        result = {"outcome": Outcome.TIMED_OUT, "trace": trace, "contacts": state.contacts}
+        return plot_instant(Record(self._simulated, result), ax)
 
     def snapshot(self) -> bytes:
         """Write the complete state.
@@ -194,7 +336,15 @@ class Simulation(TakesKeywords):
         -------
         bytes
             For `from_snapshot` of the same build of crawler2d: about 10 kB plus the scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If its gait is a function, or another engine moves it.
         """
+        if self._gait is not None:
+            rule = "must not be a function for a snapshot or a copy, which hold no code"
+            raise ScenarioError("drive.gait", self._gait, rule)
         return self._core.snapshot()
 
     @classmethod
@@ -238,8 +388,10 @@ class Simulation(TakesKeywords):
         if not isinstance(snapshot, (bytes, bytearray, memoryview)):
             raise ScenarioError("snapshot", snapshot, "must be bytes")
         simulation = cls.__new__(cls)
-        simulation._core = _core.Simulation.from_snapshot(bytes(snapshot))
-        simulation.scenario = Scenario.from_json(simulation._core.scenario())
+        core = _core.Simulation.from_snapshot(bytes(snapshot))
+        simulation.scenario = simulation._simulated = Scenario.from_json(core.scenario())
+        simulation._core, simulation._since = core, core.time
+        simulation._gait, simulation._decisions = None, 0
         return simulation
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -266,7 +418,7 @@ class Simulation(TakesKeywords):
             A read-only copy; advancing the simulation does not change it.
         """
         state = self._core.state()
-        for name in ("position", "velocity", "flipper_angles"):
+        for name in ("position", "velocity", "drive_positions", "shoe_poses", "flipper_angles"):
             state[name] = freeze_array(state[name])
         state["contacts"] = Table(state["contacts"].columns)
         state["outcome"] = None if state["outcome"] is None else Outcome(state["outcome"])

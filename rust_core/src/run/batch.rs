@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::record::{STACK, batch_budget};
-use super::simulate::{Run, simulate_within};
+use super::recording::Run;
+use super::simulate::simulate_within;
 use super::{Record, ValidScenario};
 use crate::error::{Error, LimitError, caught};
 use crate::limits::Cancel;

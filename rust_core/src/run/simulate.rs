@@ -1,49 +1,17 @@
 //! Runs of a scenario: to its end, to a stop of which something is asked, or until it tips over.
 
 use super::clock::Clock;
-use super::metrics::Sinkage;
-use super::record::{ContactTable, Record, Recorder, Trace, batch_budget};
+use super::record::{Record, batch_budget};
+use super::recording::{Recording, Run};
 use super::trials;
-use super::{Metrics, Simulation, ValidScenario};
-use crate::diagnosis::{Balance, Change, Diagnosis};
+use super::{Simulation, ValidScenario};
+use crate::diagnosis::{Balance, Change};
 use crate::error::Error;
 use crate::geometry::Vector;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
-use crate::observe::{Event, Outcome};
-use crate::scenario::{Doubt, Scenario};
-use crate::terrain::Edge;
-
-/// The results of a run.
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Why it stopped, if it ended in a stop.
-    pub diagnosis: Option<Diagnosis>,
-    /// Figures of the whole run.
-    pub metrics: Metrics,
-    /// [m] How deep the robot was in the ground, by its outline alone, at some instants.
-    pub depth: f64,
-    /// Results that are unlikely to be right.
-    pub doubts: Vec<Doubt>,
-    /// History, if recorded.
-    pub trace: Trace,
-    /// Contacts, if recorded.
-    pub contacts: ContactTable,
-    /// Corners of the ground.
-    pub edges: Vec<Edge>,
-    /// Stops and intrusions.
-    pub events: Vec<Event>,
-    /// Number of drives.
-    pub drives: usize,
-    /// Number of shoes of all chains.
-    pub shoes: usize,
-    /// Number of ends with flippers.
-    pub flippers: usize,
-    /// [s] Computing time; kept apart from the metrics, which repeat bit by bit. Not a number without a clock.
-    pub wall_time: f64,
-}
+use crate::observe::Outcome;
+use crate::scenario::Scenario;
 
 /// Simulates a scenario to its end.
 ///
@@ -134,47 +102,13 @@ fn advance(
     (budget, cancel): Limits,
     clock: Clock,
 ) -> Result<Run, Error> {
-    let start = simulation.reading();
-    let recorder = record
-        .history
-        .then(|| Recorder::new(simulation, record, budget));
-    let mut recorder = recorder.transpose()?;
-    let mut sinkage = Sinkage::from(simulation);
+    let mut recording = Recording::begin(simulation, record, budget, clock)?;
     while simulation.time() < end && !simulation.is_over() {
         simulation.step_until(end)?;
-        sinkage.step(simulation);
-        if let Some(recorder) = &mut recorder {
-            recorder.step(simulation)?;
-        }
+        recording.step(simulation)?;
         cancel.check()?;
     }
-    let recorded = recorder.map(|recorder| recorder.finish(simulation));
-    let (trace, contacts) = recorded.transpose()?.unwrap_or_default();
-    let events = simulation.events();
-    let diagnosis = trials::diagnose(simulation, record.trials, cancel)?;
-    let ended = simulation.monitor().ended_as().unwrap_or(Outcome::TimedOut);
-    let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
-    let mut metrics = Metrics::of(simulation, &start, &events);
-    let doubts = Vec::from_iter(sinkage.doubt(simulation));
-    // Where contacts were not found they do not tell how deep it was.
-    for doubt in &doubts {
-        metrics.max_penetration = metrics.max_penetration.max(doubt.value);
-    }
-    Ok(Run {
-        outcome,
-        diagnosis,
-        metrics,
-        depth: sinkage.deepest,
-        doubts,
-        trace,
-        contacts,
-        edges: simulation.ground().edges(),
-        events,
-        drives: simulation.drives(),
-        shoes: simulation.shoes().len(),
-        flippers: simulation.flipper_angles().count(),
-        wall_time: clock.elapsed(),
-    })
+    recording.finish(simulation, cancel)
 }
 
 /// The last instant at which a robot that tipped over stood over its contacts.

@@ -14,6 +14,7 @@ mod tests;
 use std::sync::Arc;
 
 use self::attempt::{Attempt, LastStep, Scratch};
+pub use self::by_hand::ByHand;
 use self::commands::{Commands, DriverView, ramp_time, set_point};
 use super::ValidScenario;
 use super::step_length::{SAME_TIME, StepControl, StepRule};
@@ -305,6 +306,17 @@ impl Simulation {
     /// [N s] Momentum of the whole robot.
     pub fn momentum(&self) -> Vector {
         self.dynamics.momentum(&self.state)
+    }
+
+    /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
+    pub fn shoe_poses(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let pose = |shoe: &Shoe| [shoe.center.x, shoe.center.y, shoe.angle];
+        self.state.shoes.iter().map(pose)
+    }
+
+    /// [m] How far the surface of each drive has run.
+    pub fn drive_positions(&self) -> impl Iterator<Item = f64> + '_ {
+        self.state.drives.iter().map(|drive| drive.position)
     }
 
     /// The shoes of all chains.

@@ -391,6 +391,8 @@ fn variant_of(scenario: &Scenario, change: Change) -> Option<Scenario> {
             variant.drive.gait = Some(Gait::Hold(Hold {
                 angle: 0.0,
                 schedule: None,
+                front: None,
+                rear: None,
             }));
         }
     }

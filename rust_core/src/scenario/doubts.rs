@@ -110,6 +110,11 @@ impl Scenario {
         match &drive.gait {
             Some(Gait::Hold(hold)) => {
                 doubts.angle("drive.gait.angle", hold.angle);
+                for (end, angle) in [("front", hold.front), ("rear", hold.rear)] {
+                    if let Some(angle) = angle {
+                        doubts.angle(format!("drive.gait.{end}"), angle);
+                    }
+                }
                 for (i, [_, angle]) in hold.schedule.iter().flatten().enumerate() {
                     doubts.angle(format!("drive.gait.schedule[{i}][1]"), *angle);
                 }

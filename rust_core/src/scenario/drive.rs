@@ -41,6 +41,12 @@ object! {
         angle: f64 = number(ANGLE),
         /// [s], [rad] Increasing times and the angles that apply from then on; `None` keeps the angle.
         schedule: Option<Vec<[f64; 2]>> = schedule(("angle", ANGLE)),
+        /// [rad] Of the front flippers all the time; `None` follows the angle and its schedule.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        front: Option<f64> = if_given(|f, name| f.optional_number(name, ANGLE)),
+        /// [rad] The same of the rear ones.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        rear: Option<f64> = if_given(|f, name| f.optional_number(name, ANGLE)),
     }
 }
 

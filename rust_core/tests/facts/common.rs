@@ -77,6 +77,8 @@ pub(crate) fn hold(angle: f64) -> Gait {
     Gait::Hold(Hold {
         angle,
         schedule: None,
+        front: None,
+        rear: None,
     })
 }
 

@@ -138,6 +138,8 @@ fn drawn_drive(draw: &mut Draw, has_flippers: bool) -> Drive {
                 Gait::Hold(Hold {
                     angle: draw.between(-1.5, 3.0),
                     schedule: angles,
+                    front: None,
+                    rear: None,
                 })
             } else {
                 Gait::Climb(Climb {

@@ -85,6 +85,8 @@ fn a_schedule_is_followed_at_the_limit_of_the_rate() {
         gait: Some(Gait::Hold(Hold {
             angle: 0.0,
             schedule: Some(vec![[0.5, 1.0], [2.5, 0.6]]),
+            front: None,
+            rear: None,
         })),
     };
     scenario.duration = 3.0;
@@ -152,6 +154,8 @@ fn contact_forces_bear_weight_and_inertia_while_arms_move() {
             gait: Some(Gait::Hold(Hold {
                 angle: 0.5,
                 schedule: Some(vec![[0.2, -0.6]]),
+                front: None,
+                rear: None,
             })),
         };
         let mut simulation = after(&scenario, 0.1);

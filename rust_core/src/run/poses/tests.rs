@@ -39,6 +39,8 @@ fn scenarios() -> Vec<(String, Scenario)> {
         found[4].drive.gait = Some(Gait::Hold(Hold {
             angle: 0.7,
             schedule: None,
+            front: None,
+            rear: None,
         }));
     }
     let lanes = found.clone().into_iter().map(|mut scenario| {

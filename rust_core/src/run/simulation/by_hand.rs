@@ -5,6 +5,17 @@ use super::commands::Push;
 use crate::error::Error;
 use crate::scenario::{Drive, End, Flippers, ScenarioError};
 
+/// Commands by hand; what is `None` remains.
+#[derive(Clone, Copy, Debug)]
+pub struct ByHand {
+    /// [m/s] Speed of the tracks.
+    pub speed: Option<f64>,
+    /// [rad] Angles of the flippers.
+    pub flipper_angles: [(End, Option<f64>); 2],
+    /// [N] Push at the centre of mass.
+    pub push: Option<f64>,
+}
+
 impl Simulation {
     /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
     ///
@@ -52,19 +63,14 @@ impl Simulation {
     ///
     /// # Errors
     /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
-    pub fn command_all(
-        &mut self,
-        speed: Option<f64>,
-        flipper_angles: [(End, Option<f64>); 2],
-        push: Option<f64>,
-    ) -> Result<(), Error> {
+    pub fn command_all(&mut self, commands: &ByHand) -> Result<(), Error> {
         let before = self.commands;
         let mut give = || {
-            push.map_or(Ok(()), |push| self.set_push(push))?;
-            for (end, angle) in flipper_angles {
+            commands.push.map_or(Ok(()), |push| self.set_push(push))?;
+            for (end, angle) in commands.flipper_angles {
                 angle.map_or(Ok(()), |angle| self.set_flipper_angle(end, angle))?;
             }
-            speed.map_or(Ok(()), |speed| self.set_speed(speed))
+            commands.speed.map_or(Ok(()), |speed| self.set_speed(speed))
         };
         let given = give();
         if given.is_err() {

@@ -127,7 +127,10 @@ impl Driver {
     pub(crate) fn targets(&mut self, drive: &Drive, start: f64, sight: DriverView) -> [Target; 2] {
         let of_gait = match &drive.gait {
             None => [Target::fixed(start); 2],
-            Some(Gait::Hold(hold)) => [Target::fixed(hold.angle_at(sight.time)); 2],
+            Some(Gait::Hold(hold)) => {
+                let angle = hold.angle_at(sight.time);
+                [hold.front, hold.rear].map(|end| Target::fixed(end.unwrap_or(angle)))
+            }
             Some(Gait::Climb(climb)) => self.climb(climb, start, sight),
         };
         std::array::from_fn(|end| self.by_hand[end].map_or(of_gait[end], Target::fixed))

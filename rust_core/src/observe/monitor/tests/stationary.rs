@@ -143,6 +143,8 @@ fn what_may_still_change_by_itself_does_not_stay() {
     let gait = Gait::Hold(Hold {
         angle: 0.5,
         schedule: None,
+        front: None,
+        rear: None,
     });
     let with_gait = |s: &mut Scenario| s.drive.gait = Some(gait.clone());
     assert!(ends(&with_gait), "there are no flippers to move");

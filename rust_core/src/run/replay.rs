@@ -1,0 +1,87 @@
+//! What a simulation was asked to do, step by step, from which the same run is made again with its history.
+
+use super::clock::Clock;
+use super::record::{Record, batch_budget};
+use super::recording::{Recording, Run};
+use super::{ByHand, Simulation, ValidScenario};
+use crate::error::Error;
+use crate::limits::Cancel;
+use crate::scenario::Scenario;
+
+/// All that a simulation was asked to do since its start or a snapshot; the same steps give the same bits.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    /// Where it began; `None` is the start of its scenario.
+    snapshot: Option<Vec<u8>>,
+    entries: Vec<Entry>,
+}
+
+#[derive(Clone, Debug)]
+enum Entry {
+    /// Steps that were to end at one time [s], and how far they came.
+    Steps {
+        end: f64,
+        reached: f64,
+    },
+    ByHand(Box<ByHand>),
+}
+
+impl Log {
+    /// Of a simulation that goes on from a snapshot.
+    pub fn after(snapshot: Vec<u8>) -> Self {
+        Self {
+            snapshot: Some(snapshot),
+            entries: Vec::new(),
+        }
+    }
+
+    /// Notes steps that are to end at a time [s].
+    pub fn note_steps(&mut self, end: f64) {
+        self.entries.push(Entry::Steps { end, reached: end });
+    }
+
+    /// Notes the time [s] at which the last steps ended.
+    pub fn has_reached(&mut self, time: f64) {
+        if let Some(Entry::Steps { reached, .. }) = self.entries.last_mut() {
+            *reached = time;
+        }
+    }
+
+    /// Notes commands that were taken.
+    pub fn note_commands(&mut self, commands: ByHand) {
+        self.entries.push(Entry::ByHand(Box::new(commands)));
+    }
+
+    /// Simulates it once more, and keeps what `record` says.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::simulate), and [`Error::Interrupted`] once `cancel` is asked.
+    pub fn replay(
+        &self,
+        scenario: &Scenario,
+        record: Record,
+        cancel: &Cancel,
+    ) -> Result<Run, Error> {
+        let clock = Clock::start();
+        let checked = ValidScenario::new(scenario)?;
+        let budget = batch_budget(std::slice::from_ref(&checked), record, 1)?;
+        let mut simulation = match &self.snapshot {
+            Some(snapshot) => Simulation::from_snapshot(snapshot)?,
+            None => Simulation::new(&checked),
+        };
+        let mut recording = Recording::begin(&simulation, record, &budget, clock)?;
+        for entry in &self.entries {
+            match entry {
+                Entry::ByHand(commands) => simulation.command_all(commands)?,
+                Entry::Steps { end, reached } => {
+                    while simulation.time() < *reached {
+                        simulation.step_until(*end)?;
+                        recording.step(&simulation)?;
+                        cancel.check()?;
+                    }
+                }
+            }
+        }
+        recording.finish(&simulation, cancel)
+    }
+}
