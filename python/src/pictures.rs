@@ -18,7 +18,10 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Boun
     for mount in model.mounts() {
         carriers.append(carrier(py, model, (mount, ground.tracks - 1))?)?;
     }
-    let frictions = ground.lanes.iter().map(|lane| lane.friction.coefficient);
+    let frictions = ground
+        .lanes
+        .iter()
+        .map(|lane| lane.friction.most().coefficient);
     let result = PyDict::new(py);
     result.set_item("lanes", lanes)?;
     result.set_item("frictions", frictions.collect::<Vec<f64>>())?;

@@ -60,5 +60,5 @@ pub use scenario::{
     SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Surface, Terrain, TorqueSharing, Track,
     TrackOutline, Wheel,
 };
-pub use terrain::{Edge, Ground, Profile, Side};
+pub use terrain::{Edge, Ground, GroundFriction, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

@@ -100,7 +100,7 @@ class Metrics(dict[str, float]):
         return Metrics, (dict(self),)
 
 
-_ROWS = {2: "a point (x, y)", 3: "a circle (x, y, radius)"}
+_ROWS = {None: "a number", 2: "a point (x, y)", 3: "a circle (x, y, radius)"}
 
 # float64 holds every whole number up to here exactly.
 _EXACT = 2**53
@@ -176,24 +176,25 @@ def read_bool(value: object, path: str) -> bool:
     return bool(value)
 
 
-def read_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
+def read_rows(value: Any, path: str, *, rows: bool, columns: int | None) -> Any:
     """Copy an array-like of real numbers to tuples of floats, exactly.
 
     Parameters
     ----------
-    value : array_like, shape (n, columns) or (columns,)
+    value : array_like, shape (n, columns), (columns,) or (n,)
         Any layout, byte order and size of float or integer; None stays None.
     path : str
         Path of the field, for messages.
     rows : bool
         True for a list of rows; False for one row.
-    columns : int
-        Numbers per row: 2 for a point (x, y), 3 for a circle (x, y, radius).
+    columns : int, optional
+        Numbers per row: 2 for a point (x, y), 3 for a circle (x, y, radius); None for numbers that
+        are no rows.
 
     Returns
     -------
     tuple or None
-        A tuple of rows, or one row.
+        A tuple of rows, one row, or numbers.
 
     Raises
     ------
@@ -215,15 +216,17 @@ def read_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
     if array.dtype.kind not in "iuf":
         rule = f"must hold real numbers, not {array.dtype}"
         raise ScenarioError(path, _summary(value, array), rule)
-    if (array.shape[1:] if rows else array.shape) != (columns,):
-        rule = f"must have shape {f'(n, {columns})' if rows else f'({columns},)'}"
+    row = () if columns is None else (columns,)
+    if array.ndim == 0 or (array.shape[1:] if rows else array.shape) != row:
+        shape = ("n", *row) if rows else row
+        rule = f"must have shape ({', '.join(map(str, shape))}{',' * (len(shape) == 1)})"
         raise ScenarioError(path, f"shape {array.shape}", rule)
     with np.errstate(over="ignore"):
         exact = array.astype(np.float64)
     if not _equals(array, exact):
         raise ScenarioError(path, _summary(value, array), "must hold numbers that fit in float64")
     numbers = (exact + 0.0).tolist()  # -0.0 becomes 0.0
-    return tuple(map(tuple, numbers)) if rows else tuple(numbers)
+    return tuple(map(tuple, numbers)) if array.ndim > 1 else tuple(numbers)
 
 
 def _equals(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> bool:
@@ -232,14 +235,14 @@ def _equals(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> bool:
     return bool(np.array_equal(exact.astype(array.dtype), array, equal_nan=True))
 
 
-def _row_error(value: Any, path: str, columns: int) -> ScenarioError:
+def _row_error(value: Any, path: str, columns: int | None) -> ScenarioError:
     """Name the first row of a ragged list that has the wrong number of numbers."""
     for index, row in enumerate(value if isinstance(value, (list, tuple)) else ()):
         try:
             shape = np.shape(row)
         except Exception:  # as above
             shape = ()
-        if shape != (columns,):
+        if shape != (() if columns is None else (columns,)):
             return ScenarioError(f"{path}[{index}]", row, f"must be {_ROWS[columns]}")
     return ScenarioError(path, value, f"must be a list, each {_ROWS[columns]}")
 

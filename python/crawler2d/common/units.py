@@ -38,7 +38,7 @@ _FIELDS_BY_UNIT = {
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
         " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts"
         " restitution return_roller_count road_wheel_count seed shoe_count skid_friction"
-        " sliding_speed stationary_windows stop_pitches stop_progress torque_limit"
+        " segment_friction sliding_speed stationary_windows stop_pitches stop_progress torque_limit"
         " wheel_count"
     ),
 }

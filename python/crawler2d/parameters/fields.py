@@ -23,15 +23,17 @@ from crawler2d.errors import ScenarioError
 
 P = TypeVar("P", bound="Parameters")
 
-ROWS = {
+ROWS: dict[Any, tuple[str | None, int | None]] = {
     tuple[float, float]: (None, 2),
+    tuple[float, ...]: ("n", None),
     tuple[tuple[float, float], ...]: ("n", 2),
     tuple[tuple[float, float, float], ...]: ("n", 3),
 }
-"""Rows and columns of the fields that hold arrays; None for rows means a single row, not nested."""
+"""Rows and columns of the fields that hold arrays; None for either means numbers, not nested."""
 
 _ROWS = {
     (None, 2): "a point (x, y)",
+    ("n", None): "a list of numbers",
     ("n", 2): "a list of points (x, y)",
     ("n", 3): "a list of circles (x, y, radius)",
 }
@@ -201,7 +203,7 @@ def alternatives(hint: Any) -> tuple[Any, ...]:
 
 
 @functools.cache
-def shape_of_rows(hint: Any) -> tuple[str | None, int] | None:
+def shape_of_rows(hint: Any) -> tuple[str | None, int | None] | None:
     """Look up the rows and columns of an array field; None for any other field."""
     return next((ROWS[a] for a in alternatives(hint) if a in ROWS), None)
 

@@ -126,6 +126,9 @@ def _value(hint: Any, name: str, limits: dict[Place, Json]) -> Json:
     if shape is None:
         return {"type": types[0] if len(types) == 1 else types, **limits.get((name, None), {})}
     rows, columns = shape
+    if columns is None:
+        cell = {"type": "number", **limits[name, 0]}
+        return {"type": ["array", *types], "items": cell}
     cells = [{"type": "number", **limits[name, column]} for column in range(columns)]
     row = {"type": "array", "prefixItems": cells, "items": False, "minItems": columns}
     value = row if rows is None else {"type": "array", "items": row}
@@ -208,6 +211,8 @@ def _wrong(hint: Any, path: str) -> Any:
     kinds, shape, nested = alternatives(hint), shape_of_rows(hint), nested_classes(hint)
     if shape is not None:
         rows, columns = shape
+        if columns is None:
+            return [_BELOW] * 2
         return [_BELOW] * columns if rows is None else [[_BELOW] * columns for _ in range(2)]
     if nested:
         return None if type(None) in kinds else _part(path, nested)

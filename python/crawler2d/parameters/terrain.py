@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from crawler2d.parameters.heights import HasHeights
 
@@ -306,16 +306,31 @@ class Points(GroundWithEdges, kind="points"):
         [m] Radius of every convex edge; 0 is sharp.
     friction : float
         [-] Coulomb friction between robot and ground.
+    segment_friction : array_like, shape (n - 1,), optional
+        [-] Of each segment between two points, in place of `friction`; at a corner the larger of
+        two. Not in rapier.
 
     Raises
     ------
     ScenarioError
-        If `points` does not hold real numbers, is masked or has another shape.
+        If `points` or `segment_friction` does not hold real numbers, is masked or has another
+        shape.
+
+    Examples
+    --------
+    A step with a wet face:
+
+    >>> points = [(-2, 0), (0, 0), (0, 0.05), (2, 0.05)]
+    >>> Points(points, goal=0.0, segment_friction=[0.9, 0.2, 0.9]).segment_friction
+    (0.9, 0.2, 0.9)
     """
+
+    omitted_defaults: ClassVar[tuple[str, ...]] = ("segment_friction",)
 
     points: tuple[tuple[float, float], ...]
     _: KW_ONLY
     goal: float
+    segment_friction: tuple[float, ...] | None = None
 
 
 Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points

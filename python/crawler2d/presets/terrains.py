@@ -147,7 +147,7 @@ def stepfield_with_barrier(
     return replace(field, barrier_height=height)
 
 
-def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:
+def from_points(points: ArrayLike, *, goal: float, **fields: Any) -> Points:
     """Make a terrain of any polyline.
 
     Parameters
@@ -156,8 +156,9 @@ def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:
         [m] Points (x, y) from left to right or from right to left; copied.
     goal : float
         [m] The x that the whole robot must pass.
-    **fields : float
-        Further fields of `Points`, such as `edge_radius` [m] and `friction` [-].
+    **fields
+        Further fields of `Points`, such as `edge_radius` [m], `friction` and `segment_friction`
+        [-].
 
     Returns
     -------

@@ -77,10 +77,10 @@ impl Scene<'_> {
         place.bears(self.lanes, &self.model.parts, contact)
     }
 
-    /// Friction coefficient of a part on the ground.
-    fn friction(&self, part: usize) -> f64 {
-        let part = &self.model.parts[part];
-        let friction = self.lanes[part.lane].friction;
+    /// Friction coefficient at a contact.
+    fn friction(&self, contact: &Contact) -> f64 {
+        let part = &self.model.parts[contact.part];
+        let friction = self.lanes[part.lane].friction.at(contact.point);
         friction.at_most(part.friction_limit).coefficient
     }
 
@@ -93,7 +93,7 @@ impl Scene<'_> {
         /// Share of the friction cone that a rattling contact must use, on average.
         const WHILE_RATTLING: f64 = 0.95;
 
-        let limit = self.friction(contact.part) * contact.normal_force;
+        let limit = self.friction(contact) * contact.normal_force;
         self.is_moving(contact.surface_speed)
             && contact.friction_force.abs() >= WHILE_RATTLING * limit
     }
@@ -237,7 +237,7 @@ impl Scene<'_> {
             tangent,
             drive: part.drive,
             hinge,
-            friction: self.friction(contact.part),
+            friction: self.friction(contact),
             slides,
         }
     }

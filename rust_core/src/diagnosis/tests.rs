@@ -45,6 +45,7 @@ impl Stage {
             points: [vec![[-4.0, 0.0]], posts, vec![[4.0, 0.0]]].concat(),
             goal: 1.0,
             surface: Surface::sharp(0.9),
+            segment_friction: None,
         };
         let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
         let model = Model::on(&scenario.robot, &ground).expect("it can be built");

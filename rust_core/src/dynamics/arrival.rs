@@ -58,10 +58,9 @@ impl Dynamics {
         self.lags.extend(of_drives.chain(of_contacts));
     }
 
-    /// [s] When the first of these comes to 0, from the middle of a step, `half` [s] after its beginning; none if that
-    /// makes no difference to the accuracy, with steps of a given length, and with chains.
-    pub(super) fn first_arrival(&self, half: f64) -> Option<f64> {
-        let accuracy = self.solver.accuracy.filter(|_| self.chains.is_empty())?;
+    /// [s] When the first of these comes to 0, from the middle of a step, `half` [s] after its beginning; none if the
+    /// whole step is off by no more than `accuracy` [m].
+    pub(super) fn first_arrival(&self, half: f64, accuracy: f64) -> Option<f64> {
         let problem = &self.problem;
         let drives = &problem.motors[self.model.drive_motors()];
         let of_drives = drives.iter().map(|motor| match motor.hold {

@@ -49,9 +49,9 @@ use touch::{Start, Touch};
 use crate::contact::Contact;
 use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
-use crate::scenario::{Friction, Solver};
+use crate::scenario::Solver;
 use crate::solver::{Effort, Problem};
-use crate::terrain::Profile;
+use crate::terrain::{GroundFriction, Profile};
 
 use crate::units::Seconds;
 pub use chains::ChainReading;
@@ -74,7 +74,7 @@ const SELF_STRESS_TIME: Seconds = Seconds(0.1);
 pub(crate) struct Dynamics {
     model: Model,
     /// Friction of each lane.
-    frictions: Vec<Friction>,
+    frictions: Vec<GroundFriction>,
     gravity: f64,
     solver: Solver,
     /// The robot's bodies, motors and contacts as the solver sees them, ...
@@ -103,7 +103,7 @@ pub(crate) struct Dynamics {
 impl Dynamics {
     pub(crate) fn new(
         model: Model,
-        frictions: Vec<Friction>,
+        frictions: Vec<GroundFriction>,
         gravity: f64,
         solver: Solver,
     ) -> Self {
@@ -195,7 +195,8 @@ impl Dynamics {
                 Mount::Shoe(shoe) => Touch::of_shoe(contact, last, shoe, &start),
                 Mount::Chassis | Mount::Flipper(_) => Touch::new(contact, last, &start),
             };
-            solved.friction = self.frictions[part.lane].at_most(part.friction_limit);
+            let ground = self.frictions[part.lane].at(contact.point);
+            solved.friction = ground.at_most(part.friction_limit);
             solved.mass = mass_on_spring(&self.model, part.mount);
             touch.friction_guess *= fading;
             self.touches.push(touch);
@@ -231,9 +232,13 @@ impl Dynamics {
         self.close_gaps(h);
         self.guess(half);
         self.drive_to_middle(state, set_point, half);
-        self.note_lags(set_point);
+        // Steps of a given length, those of chains and those that end with an impact are not cut.
+        let cut_to = (self.solver.accuracy).filter(|_| self.chains.is_empty() && !strikes);
+        if cut_to.is_some() {
+            self.note_lags(set_point);
+        }
         self.solve(state, half);
-        if let Some(time) = self.first_arrival(half).filter(|_| !strikes) {
+        if let Some(time) = cut_to.and_then(|accuracy| self.first_arrival(half, accuracy)) {
             return Err(time);
         }
         self.moved.copy(state);

@@ -5,7 +5,8 @@ use approx::assert_relative_eq;
 use super::*;
 use crate::draw::Draw;
 use crate::geometry::{Vector, direction};
-use crate::scenario::{Scenario, Track};
+use crate::scenario::{Friction, Scenario, Track};
+use crate::terrain::GroundFriction;
 
 pub(super) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
@@ -22,7 +23,7 @@ pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     (
         Dynamics::new(
             model,
-            vec![Friction::dry(0.5)],
+            vec![GroundFriction::everywhere(Friction::dry(0.5))],
             scenario.gravity,
             scenario.solver,
         ),

@@ -180,7 +180,7 @@ fn profile(lane: &Profile, number: usize) -> Collider {
     let builder = ColliderBuilder::oriented_polyline(points, None);
     on_lane(
         builder,
-        lane.friction,
+        lane.friction.most(),
         number,
         [Group::GROUP_1, Group::GROUP_2],
     )
@@ -191,6 +191,7 @@ fn profile(lane: &Profile, number: usize) -> Collider {
 fn collider(part: &Part, number: usize, ground: &Ground) -> ColliderBuilder {
     let friction = ground.lanes[part.lane]
         .friction
+        .most()
         .at_most(part.friction_limit);
     let builder = ColliderBuilder::compound(pieces(part)).density(0.0);
     let sides = [Group::GROUP_2, Group::GROUP_1];

@@ -22,6 +22,10 @@ pub(crate) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
         return Ok(());
     }
     check_settings(scenario)?;
+    if let Some(path) = scenario.terrain.path_of_segments("terrain") {
+        let rule = "must be null where solver.engine is rapier, whose lanes have one friction each";
+        return Err(ScenarioError::new(path, "a list", rule));
+    }
     let robot = &scenario.robot;
     check_motors(&robot.drivetrain)?;
     if let Some((kind, reason)) = refused(&robot.track) {

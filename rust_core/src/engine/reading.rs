@@ -118,7 +118,10 @@ impl EngineWorld {
             .parent()
             .unwrap_or_else(|| unreachable!("a part has a body"));
         let lane = &ground.lanes[model.parts[part].lane];
-        let friction = lane.friction.at_most(model.parts[part].friction_limit);
+        let friction = lane
+            .friction
+            .most()
+            .at_most(model.parts[part].friction_limit);
         pair.manifolds().iter().flat_map(move |manifold| {
             let (segment, normal) = if ground_first {
                 (manifold.subshape1, manifold.data.normal)

@@ -109,7 +109,11 @@ impl Simulation {
         let step_rule = StepRule::of(scenario, &model.parts);
         let dynamics = Dynamics::new(
             model,
-            ground.lanes.iter().map(|lane| lane.friction).collect(),
+            ground
+                .lanes
+                .iter()
+                .map(|lane| lane.friction.clone())
+                .collect(),
             scenario.gravity,
             scenario.solver.clone(),
         );

@@ -271,6 +271,29 @@ impl<'a> Fields<'a> {
             .collect()
     }
 
+    /// Reads a list of numbers, or null.
+    pub(crate) fn numbers(
+        &mut self,
+        name: &'static str,
+        range: Range,
+        most: usize,
+    ) -> Checked<Option<Vec<f64>>> {
+        self.unless_null(name, |f, name| {
+            let value = f.value(name)?;
+            let Value::Array(cells) = value else {
+                return Err(f.error(name, value, "must be a list of numbers"));
+            };
+            if cells.len() > most {
+                let (count, rule) = (cells.len(), format!("must have at most {most} numbers"));
+                return Err(f.error(name, format!("{count} numbers"), rule));
+            }
+            let (path, cells) = (f.path(name), cells.iter().enumerate());
+            cells
+                .map(|(i, cell)| in_range(&format!("{path}[{i}]"), cell, range))
+                .collect()
+        })
+    }
+
     /// Reads a list of points.
     pub(crate) fn points(
         &mut self,

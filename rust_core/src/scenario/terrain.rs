@@ -21,6 +21,8 @@ pub struct Friction {
     pub coefficient: f64,
 }
 
+const COEFFICIENT: Range = Range::between(0.0, 100.0, "");
+
 impl Friction {
     /// Dry, as Coulomb has it.
     pub const fn dry(coefficient: f64) -> Self {
@@ -50,7 +52,7 @@ impl Friction {
 impl FromJson for Friction {
     fn read(f: &mut Fields) -> Checked<Self> {
         Ok(Self {
-            coefficient: f.number("friction", Range::between(0.0, 100.0, ""))?,
+            coefficient: f.number("friction", COEFFICIENT)?,
         })
     }
 }
@@ -184,6 +186,9 @@ kinds! {
             /// Of its faces and edges.
             #[serde(flatten)]
             surface: Surface = flat(),
+            /// Friction of each segment between two points; `None` is the same everywhere.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            segment_friction: Option<Vec<f64>> = if_given(|f, name| f.numbers(name, COEFFICIENT, MAX_POINTS)),
         },
         /// A profile for each track and one for the belly.
         "lanes" Lanes {
@@ -237,6 +242,28 @@ object! {
 }
 
 impl Terrain {
+    /// Path of the first lane's friction of each segment, if any has them.
+    pub(crate) fn path_of_segments(&self, path: &str) -> Option<String> {
+        match self {
+            Self::Points {
+                segment_friction: Some(_),
+                ..
+            } => Some(format!("{path}.segment_friction")),
+            Self::Lanes {
+                left,
+                right,
+                middle,
+            } => {
+                let lanes = [("left", left), ("right", right)].into_iter();
+                let lanes = lanes.chain(middle.iter().map(|lane| ("middle", lane)));
+                let mut found =
+                    lanes.map(|(name, lane)| lane.path_of_segments(&format!("{path}.{name}")));
+                found.find_map(|each| each)
+            }
+            _ => None,
+        }
+    }
+
     /// Multiplies the friction of all its lanes.
     pub(crate) fn scale_friction(&mut self, factor: f64) {
         match self {
@@ -250,8 +277,18 @@ impl Terrain {
             | Self::Gap { surface, .. }
             | Self::Stairs { surface, .. }
             | Self::DiagonalBarrier { surface, .. }
-            | Self::RandomStepfield(Stepfield { surface, .. })
-            | Self::Points { surface, .. } => surface.friction.coefficient *= factor,
+            | Self::RandomStepfield(Stepfield { surface, .. }) => {
+                surface.friction.coefficient *= factor;
+            }
+            Self::Points {
+                surface,
+                segment_friction,
+                ..
+            } => {
+                let segments = segment_friction.iter_mut().flatten();
+                let all = segments.chain(std::iter::once(&mut surface.friction.coefficient));
+                all.for_each(|coefficient| *coefficient *= factor);
+            }
             Self::Lanes {
                 left,
                 right,

@@ -1,5 +1,6 @@
 //! Builds the profiles on which contacts are computed from the described terrain.
 
+mod friction;
 mod obstacle;
 mod profile;
 mod straight;
@@ -12,6 +13,7 @@ pub(crate) use straight::{FINE, STRAIGHT};
 
 use crate::geometry::Vector;
 use crate::scenario::{Scenario, ScenarioError, Surface, Terrain};
+pub use friction::GroundFriction;
 pub use profile::{Edge, Profile, Side};
 
 /// The ground of a scenario.
@@ -197,7 +199,22 @@ fn described(path: &str, terrain: &Terrain) -> Result<(Profile, f64), ScenarioEr
         goal,
         surface,
     } = obstacle::of(terrain);
-    let profile = Profile::new(path, &points, surface, true)?;
+    let mut profile = Profile::new(path, &points, surface, true)?;
+    if let Terrain::Points {
+        segment_friction: Some(frictions),
+        ..
+    } = terrain
+    {
+        let segments = points.len() - 1;
+        if frictions.len() != segments {
+            let path = format!("{path}.segment_friction");
+            let value = format!("{} numbers", frictions.len());
+            let rule =
+                format!("must have one number for each of {segments} segments between points");
+            return Err(ScenarioError::new(path, value, rule));
+        }
+        profile.friction = GroundFriction::of_segments(&points, frictions, surface.edge_radius);
+    }
     let (low, high) = profile.extent();
     if !(low..=high).contains(&goal) {
         let rule = format!("must lie on the terrain, from {low} to {high} m");
@@ -245,7 +262,7 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
     points.pop();
     let surface = Surface {
         edge_radius: 0.0,
-        friction: a.friction.or_larger(b.friction),
+        friction: a.friction.most().or_larger(b.friction.most()),
     };
     Profile::new(path, &points, surface, true)
 }

@@ -79,6 +79,7 @@ pub(super) fn of(terrain: &Terrain) -> Obstacle {
             points,
             goal,
             surface,
+            ..
         } => Obstacle {
             points: points.clone(),
             goal: *goal,

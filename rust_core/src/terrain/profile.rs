@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use super::friction::GroundFriction;
 use super::straight::{COLLINEAR, bends, without_collinear};
 use crate::geometry::{Vector, left_of};
-use crate::scenario::{Friction, ScenarioError, Surface};
+use crate::scenario::{ScenarioError, Surface};
 use crate::units::Metres;
 
 /// [rad] Turn of one facet of a rounded edge; at a radius of 20 mm, it is 0.8 um below its true arc.
@@ -53,7 +54,7 @@ pub struct Profile {
     /// Corners of the described ground.
     pub edges: Vec<Edge>,
     /// With the robot.
-    pub friction: Friction,
+    pub friction: GroundFriction,
     /// Number of points left out because they repeat or continue their neighbours.
     pub merged: usize,
     /// Indices of the points at which it bends.
@@ -121,7 +122,7 @@ impl Profile {
             points: Vec::new(),
             edge_of_point: Vec::new(),
             edges: Vec::new(),
-            friction: surface.friction,
+            friction: GroundFriction::everywhere(surface.friction),
             merged,
             bends: Vec::new(),
         };

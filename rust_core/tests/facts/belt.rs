@@ -74,6 +74,7 @@ fn pit(slope: f64, friction: f64) -> Terrain {
         points,
         goal: 8.0,
         surface: Surface::sharp(friction),
+        segment_friction: None,
     }
 }
 

@@ -223,6 +223,7 @@ pub(crate) fn before_a_gap(base: &Scenario, width: f64) -> Scenario {
         points,
         goal: width,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     };
     scenario
 }

@@ -277,6 +277,7 @@ pub(crate) fn slope(angle: f64, friction: f64) -> Terrain {
         points,
         goal: 19.0 * c,
         surface: Surface::sharp(friction),
+        segment_friction: None,
     }
 }
 

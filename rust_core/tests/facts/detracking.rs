@@ -35,6 +35,7 @@ fn trials(seed: u64) -> Vec<Trial> {
                 points,
                 goal: last[0] + 59.0,
                 surface: Surface::sharp(0.9),
+                segment_friction: None,
             },
             commands: commands.to_vec(),
         }

@@ -229,6 +229,7 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
                 points,
                 goal: x,
                 surface: Surface::rounded(edge_radius, friction),
+                segment_friction: None,
             }
         }
     }

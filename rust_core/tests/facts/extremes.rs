@@ -29,6 +29,7 @@ fn no_fall_is_so_fast_that_the_ground_is_missed() {
                 points: vec![[-5.0, height], [0.0, height], [0.0, 0.0], [8.0, 0.0]],
                 goal: 7.0,
                 surface: Surface::sharp(0.9),
+                segment_friction: None,
             };
             scenario.criteria.tip_over_angle = 3.1;
             scenario.drive.speed = 1.0;
@@ -54,6 +55,7 @@ fn a_belt_that_slides_over_an_edge_stays_on_it() {
             points: vec![[-5.0, 0.5], [0.0, 0.5], [0.0, 0.0], [8.0, 0.0]],
             goal: 7.0,
             surface: Surface::sharp(0.9),
+            segment_friction: None,
         };
         scenario.drive.speed = 1.0;
         let mut simulation = Simulation::new(&checked(&scenario));
@@ -86,6 +88,7 @@ fn no_block_gets_deeper_into_a_robot_than_a_millimetre() {
             points: points.clone(),
             goal: x + 1.0,
             surface: Surface::sharp(0.9),
+            segment_friction: None,
         };
         scenario.drive.speed = 0.8;
         scenario.robot.drivetrain.max_acceleration = 2.0;
@@ -144,6 +147,7 @@ fn extreme_but_legal_scenes_run_with_finite_numbers() {
                 points: vec![[-5.0, 0.0], [0.0, 0.0], [0.001_745, 1.0], [5.0, 1.0]],
                 goal: 1.0,
                 surface: Surface::sharp(0.9),
+                segment_friction: None,
             };
         }),
         ("a step of ten radii", |s| s.terrain = step(0.64, 0.9)),

@@ -16,6 +16,7 @@ fn rails() -> Terrain {
         points,
         goal: 19.0,
         surface: Surface::sharp(0.05),
+        segment_friction: None,
     }
 }
 

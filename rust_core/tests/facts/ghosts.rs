@@ -138,6 +138,7 @@ fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
         points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],
         goal: x,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     };
     for (name, scenario) in scenarios() {
         let path = |x: f64| {

@@ -107,6 +107,7 @@ fn a_shift_by_a_hundred_metres_changes_hundredths_of_a_millimetre_at_most() {
             points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],
             goal: x,
             surface: Surface::sharp(0.9),
+            segment_friction: None,
         };
         scenario.start.approach = 1.0;
         fixed(&mut scenario, 1e-3);
@@ -139,6 +140,7 @@ fn a_flank_against_a_rail_pulls_with_all_the_motors_have() {
         points,
         goal: 4.9,
         surface: Surface::sharp(0.05),
+        segment_friction: None,
     };
     let force = 2.0 * 2.0 / 0.052;
     for (share, holds) in [(0.97, true), (1.05, false)] {

@@ -33,6 +33,7 @@ fn level(height: f64, friction: f64) -> Terrain {
         points: vec![[-5.0, height], [5.0, height]],
         goal: 4.0,
         surface: Surface::sharp(friction),
+        segment_friction: None,
     }
 }
 

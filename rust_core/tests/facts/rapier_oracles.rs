@@ -288,6 +288,7 @@ fn a_robot_in_the_air_falls_freely_in_rapier() {
         ],
         goal: 59.0,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     };
     // The speed that is read is that of the chassis, which sways by three millionths of this as it turns with its wheels.
     agree("fall [m/s2]", &scenario, (G, 1e-5), |scenario| {

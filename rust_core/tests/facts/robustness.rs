@@ -52,6 +52,7 @@ fn run_finite_and_stay_out(seed: u64, cases: u32, drawn: fn(&mut Draw) -> Scenar
                 .find(lane)
                 .expect("a lane")
                 .friction
+                .most()
                 .coefficient;
             let (normal, tangent) = (run.contacts.normal_force[i], run.contacts.friction_force[i]);
             assert!(
@@ -159,6 +160,7 @@ fn with_points(points: Vec<[f64; 2]>) -> Result<ValidScenario, Error> {
         points,
         goal: 1.0,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     };
     ValidScenario::new(&scenario)
 }
@@ -239,6 +241,7 @@ fn robot_that_drives_off_the_ground_has_left_the_terrain() {
         points: vec![[-5.0, 0.0], [0.2, 0.0], [0.3, -0.01], [1.0, -0.01]],
         goal: 1.0,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     };
     let run = run(&scenario);
     assert_eq!(run.outcome.name(), "left_terrain");
@@ -263,6 +266,7 @@ fn offset_of_the_whole_scene_changes_nothing() {
             points,
             goal: x,
             surface: Surface::sharp(0.9),
+            segment_friction: None,
         };
         scenario.robot.track = line(5);
         scenario.duration = 0.9; // the front wheel is about to meet the edge

@@ -21,6 +21,7 @@ fn points(points: &[[f64; 2]], edge_radius: f64) -> Terrain {
         points: points.to_vec(),
         goal: points[points.len() - 2][0],
         surface: Surface::rounded(edge_radius, FRICTION),
+        segment_friction: None,
     }
 }
 

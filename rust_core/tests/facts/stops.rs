@@ -291,6 +291,7 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
         ],
         goal: 1.0,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     };
     let mut loaded = 0;
     for friction in [0.5, 0.6, 0.7] {

@@ -111,6 +111,7 @@ fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
                 points,
                 goal: 0.0,
                 surface: Surface::rounded(edge_radius, friction),
+                segment_friction: None,
             }
         }
     }

@@ -4,6 +4,7 @@ use super::*;
 use crate::geometry::{Rotation, Twist, cross, left_of};
 use crate::robot::Model;
 use crate::scenario::{Friction, Scenario};
+use crate::terrain::GroundFriction;
 
 /// Momentum [kg m/s], angular momentum about the origin [kg m^2/s] and kinetic energy [J] of the shoes.
 fn sums(dynamics: &Dynamics, state: &State) -> (Vector, f64, f64) {
@@ -38,7 +39,12 @@ fn whirling() -> (Dynamics, State) {
             turn,
         };
     }
-    let dynamics = Dynamics::new(model, vec![Friction::dry(0.9)], 0.0, scenario.solver);
+    let dynamics = Dynamics::new(
+        model,
+        vec![GroundFriction::everywhere(Friction::dry(0.9))],
+        0.0,
+        scenario.solver,
+    );
     (dynamics, state)
 }
 

@@ -7,6 +7,7 @@ use crate::dynamics::tests::STEP;
 use crate::robot::Flipper;
 use crate::robot::Model;
 use crate::scenario::{Ends, Flippers, Friction, Scenario};
+use crate::terrain::GroundFriction;
 
 /// The Engineer with arms at both ends.
 fn scenario(torque_limit: f64) -> Scenario {
@@ -32,7 +33,12 @@ fn built(scenario: &Scenario) -> (Dynamics, State) {
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
     let solver = scenario.solver.clone();
-    let dynamics = Dynamics::new(model, vec![Friction::dry(0.5)], scenario.gravity, solver);
+    let dynamics = Dynamics::new(
+        model,
+        vec![GroundFriction::everywhere(Friction::dry(0.5))],
+        scenario.gravity,
+        solver,
+    );
     (dynamics, state)
 }
 

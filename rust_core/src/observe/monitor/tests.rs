@@ -38,6 +38,7 @@ fn ground(points: &[[f64; 2]]) -> Terrain {
         points: points.to_vec(),
         goal: 1.0,
         surface: Surface::sharp(0.9),
+        segment_friction: None,
     }
 }
 

@@ -46,7 +46,7 @@ impl Lane {
         Self {
             faces,
             convex,
-            friction: ground.lanes[0].friction.coefficient,
+            friction: ground.lanes[0].friction.most().coefficient,
         }
     }
 

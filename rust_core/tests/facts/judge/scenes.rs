@@ -56,6 +56,7 @@ fn blocks(draw: &mut Draw, height: f64, friction: f64) -> Terrain {
         points,
         goal: 0.75,
         surface: Surface::sharp(friction),
+        segment_friction: None,
     }
 }
 
