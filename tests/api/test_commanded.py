@@ -1,5 +1,6 @@
 """Simulations that are commanded by hand or by a function, and what becomes of them as runs."""
 
+import _thread
 import copy
 import pickle
 import threading
@@ -59,6 +60,20 @@ def test_a_refused_command_is_no_part_of_the_run(scenario: Scenario) -> None:
         sim.command(speed=1e3)
     sim.advance(0.2)
     assert np.array_equal(sim.to_run().position[-1], sim.state().position)
+
+
+def test_a_run_repeats_an_advance_that_was_interrupted() -> None:
+    track = c2d.LineOfWheels(4, wheel_radius=0.0608)
+    robot = c2d.robots.engineer(flippers=None, track=track)
+    sim = c2d.Simulation(Scenario(robot, c2d.terrains.step(0.13)))
+    threading.Timer(0.05, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        sim.advance(1e4)
+    sim.command(speed=-0.1)
+    sim.advance(0.013)
+    run = sim.to_run()
+    assert run.time[-1] == sim.time
+    assert np.array_equal(run.position[-1], sim.state().position)
 
 
 def test_a_run_of_a_copy_begins_where_it_was_copied(scenario: Scenario) -> None:
