@@ -15,13 +15,15 @@ from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d import _core
+from crawler2d.drawings.canvas import moved
+from crawler2d.drawings.palette import look_of
 from crawler2d.errors import raise_first
 from crawler2d.parameters.fields import json_pointer
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.parameters.track import Track
 from crawler2d.runs.progress import reporter, thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted
-from research.figures import add_legend, make_panels, style
+from research.figures import add_legend, make_panels
 from research.models import study_models
 from research.study import Job, Study
 from research.tables import aligned_table, group_by, mm
@@ -54,8 +56,8 @@ _UNIT = 0.001
 _COUNT = 150
 _FIRST = 32
 _REACH = 8
-# Models with a colour of their own in the figure; others are dashed.
-_COLORS = 7
+# [point] From the interval of one model to that of the next.
+_ASIDE = 1.2
 # [m] Distance to the edge left at full speed, before draws of +- 46 mm.
 _STEADY = 0.1
 # [s], [m] A run may last this long and as long as this takes at full speed; it goes some 1.4 m.
@@ -236,21 +238,13 @@ def plot_drive(rows: Sequence[HighestEdge]) -> Figure:
         obstacle, speed = obstacles[line], speeds[column]
         for index, model in enumerate(models):
             own = cases.get((model, obstacle, speed), [])
-            # Moved apart, so that intervals do not hide each other.
-            aside = 0.06 * (index - 0.5 * (len(models) - 1))
-            below = [1e3 * (row.height - row.low) for row in own]
-            above = [1e3 * (row.high - row.height) for row in own]
-            ax.errorbar(
-                [drives.index(row.drive) + aside for row in own],
-                [1e3 * row.height for row in own],
-                [below, above],
-                **style(index),
-                linestyle="-" if index < _COLORS else "--",
-                markersize=4.0,
-                linewidth=1.2,
-                elinewidth=0.7,
-                label=model,
-            )
+            look, places = look_of(index), [drives.index(row.drive) for row in own]
+            heights = [1e3 * row.height for row in own]
+            ax.plot(places, heights, **look, markersize=4.0, linewidth=1.2, label=model)
+            # Side by side, so that intervals do not hide each other.
+            beside = moved(ax, _ASIDE * (index - 0.5 * (len(models) - 1)))
+            lows, highs = [1e3 * row.low for row in own], [1e3 * row.high for row in own]
+            ax.vlines(places, lows, highs, look["color"], linewidth=0.7, transform=beside)
         ax.set_title(f"{obstacle}, {speed:g} m/s", fontsize="medium")
         ax.set_xticks(range(len(drives)), drives, fontsize="small")
         ax.grid(alpha=0.25)

@@ -1,13 +1,14 @@
-"""What all figures have in common: colours, panels, legends, rates, and a chart of dots."""
+"""What all figures have in common: panels, legends, rates, and a chart of dots."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crawler2d.common.extras import extra
-from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
+from crawler2d.drawings.palette import look_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,20 +16,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 GREY = "#666666"
-
-# Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
-_COLORS = (BLACK, BLUE, PURPLE, ORANGE, RED, GREEN, SKY, BLACK, BLUE, PURPLE)
-LINES = tuple(zip(_COLORS, "osPD^vX*<>", strict=True))
-"""Colours and markers of up to ten lines."""
-THREE = tuple(zip((BLUE, ORANGE, GREEN), "os^", strict=True))
-"""Those of up to three."""
-FIVE = tuple(zip((BLUE, RED, GREEN, PURPLE, "#000000"), "os^Dx", strict=True))
-"""Those of up to five, as in a chart of dots."""
-
-
-def style(index: int, looks: Sequence[tuple[str, str]] = LINES) -> dict[str, Any]:
-    """Return colour and marker of a line by its place in a set."""
-    return dict(zip(("color", "marker"), looks[index % len(looks)], strict=True))
 
 
 def make_panels(
@@ -50,6 +37,17 @@ def add_legend(figure: Figure, ax: Axes, place: str, **more: Any) -> None:
     handles, labels = ax.get_legend_handles_labels()
     options: Any = {"loc": f"outside {place}", "ncols": len(labels)} | more
     figure.legend(handles, labels, **options)
+
+
+def join_legends(figure: Figure, axes: Sequence[Axes]) -> None:
+    """Put one legend below drawings in place of their own, without what each has measured."""
+    shown: dict[str, Any] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            shown.setdefault(re.split(r", up to|: \d", label)[0], handle)
+        if (own := ax.get_legend()) is not None:
+            own.remove()
+    figure.legend(shown.values(), shown, loc="outside lower center", ncols=2, fontsize="small")
 
 
 def light_grid(ax: Axes) -> None:
@@ -92,10 +90,11 @@ def draw_dots(
     """
     figure, ((ax,),) = make_panels(1, 1, (7.0, 1.2 + 0.28 * len(rows)))
     series = list(dict.fromkeys(name for values in rows.values() for name in values))
-    for name, (color, marker) in zip(series, FIVE, strict=False):
+    for index, name in enumerate(series):
         points = [(values[name], y) for y, values in enumerate(rows.values()) if name in values]
         x, y = zip(*points, strict=True)
-        ax.plot(x, y, marker, color=color, label=name, markersize=6, alpha=0.8)
+        dots = look_of(index) | {"linestyle": ""}
+        ax.plot(x, y, **dots, label=name, markersize=6, alpha=0.8)
     ax.set(xlabel=label, xscale=scale, yticks=range(len(rows)), yticklabels=list(rows))
     ax.invert_yaxis()
     light_grid(ax)

@@ -12,9 +12,9 @@ import numpy as np
 import xarray
 
 import crawler2d as c2d
-from crawler2d.drawings.scene import BLACK
+from crawler2d.drawings.palette import BLACK, look_of
 from crawler2d.sweeps.rates import rates_of
-from research.figures import THREE, add_legend, draw_rates, make_panels, style
+from research.figures import add_legend, draw_rates, join_legends, make_panels
 from research.models import StudyModel, study_robot
 from research.paper import RPM, TABLE_2, TABLE_3
 from research.tables import aligned_table, cells_of, counts, gaps, group_by, in_mm, mm, percent
@@ -424,7 +424,7 @@ def plot_rates(cells: Sequence[Cell]) -> Figure:
     for index, (ax, model) in enumerate(zip(axes.flat, models, strict=False)):
         for place, (obstacle, width) in enumerate(zip(obstacles, _WIDTHS, strict=False)):
             line = {"linewidth": width, "markersize": 2.0 + width, "label": obstacle}
-            draw_rates(ax, own[model, obstacle], alpha=0.15, **style(place, THREE), **line)
+            draw_rates(ax, own[model, obstacle], alpha=0.15, **look_of(place), **line)
         ax.set_title(model, fontsize="medium")
         ax.set_ylim(-5.0, 105.0)
         if index % columns == 0:
@@ -461,7 +461,7 @@ def plot_phases(phases: Sequence[Phase]) -> Figure:
             ax.plot(
                 [phase.phase_fraction for phase in own],
                 [getattr(phase, name) for phase in own],
-                **style(index, THREE),
+                **look_of(index),
                 markersize=4,
                 label=f"{count} gear wheels",
             )
@@ -489,7 +489,9 @@ def plot_posts(runs: Mapping[tuple[float, bool], c2d.Run]) -> Figure:
         ax.set_title(title, loc="left", fontsize="medium")
         ax.set(xlim=(-0.42, 0.22), ylim=(-0.03, 0.23))
         ax.label_outer()
-        ax.get_legend().remove()
+    join_legends(figure, axes.ravel().tolist()[: len(stuck)])
+    for ax in axes.ravel()[len(stuck) :]:
+        ax.set_visible(False)
     return figure
 
 

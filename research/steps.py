@@ -13,9 +13,10 @@ import numpy as np
 import xarray
 
 import crawler2d as c2d
+from crawler2d.drawings.palette import look_of
 from crawler2d.sweeps.rates import rates_of
 from research import seizure
-from research.figures import draw_rates, make_panels, style
+from research.figures import draw_rates, make_panels
 from research.models import FRICTION, StudyModel, study_models, study_robot
 from research.paper import TABLE_3
 from research.seizure_tables import Cell, cells, rates_text, rates_title, write_runs
@@ -111,7 +112,7 @@ def plot_chains(cells: Sequence[Cell]) -> Figure:
     for ax, shown in ((left, models[:_TRACKS]), (right, [models[0], *models[_TRACKS:]])):
         for model in shown:
             line = {"markersize": 4.5, "linewidth": 1.6, "label": model}
-            draw_rates(ax, by_model[model], alpha=0.13, **style(models.index(model)), **line)
+            draw_rates(ax, by_model[model], alpha=0.13, **look_of(models.index(model)), **line)
         ax.set(xlabel="height of the step [mm]", ylim=(-4.0, 104.0))
         ax.legend(fontsize="small", loc="upper right")
     left.set_ylabel("cleared [%]")

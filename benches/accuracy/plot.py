@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
 from benches.accuracy.findings import Finding, Study, models, size_of_difference
-from crawler2d.drawings.scene import BLUE, RED
+from crawler2d.drawings.palette import BLUE, RED
 from research.figures import GREY, add_legend, light_grid, make_panels, save_svg
 
 _COLUMNS = 5

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benches.scaling.report import Curve, curves, deviations
-from research.figures import FIVE, GREY, add_legend, light_grid, make_panels, save_svg, style
+from crawler2d.drawings.palette import look_of
+from research.figures import GREY, add_legend, light_grid, make_panels, save_svg
 from research.tables import group_by
 
 _LABELS = {
@@ -85,7 +86,7 @@ def _threads(rows: Sequence[dict[str, Any]]) -> Figure:
 
 
 def _style(index: int) -> dict[str, Any]:
-    return style(index, FIVE) | {"markersize": 5}
+    return look_of(index) | {"markersize": 5}
 
 
 def _whole_decades(axes: Sequence[Axes]) -> None:

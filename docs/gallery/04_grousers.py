@@ -16,4 +16,8 @@ for ax, track in zip(axes, (c2d.BeltTrack(), c2d.GrouserBeltTrack()), strict=Tru
     run = c2d.simulate(robot.with_track(track), step)
     run.plot(ax, time=[0.0, run.time[-1]], trials=False)
     ax.set_xlim(-0.9, 0.9)
+    ax.label_outer()
     ax.get_legend().remove()
+handles, labels = axes[0].get_legend_handles_labels()
+shown = [label.partition(", up to")[0] for label in labels]  # each picture has its own scale
+figure.legend(handles, shown, loc="outside lower center", ncols=4)

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 
 import crawler2d as c2d
 
+plt.style.use("crawler2d.lines")  # colours that the colour-blind tell apart, and dashes
 robot = c2d.robots.engineer(flippers=None)
 figure, ax = plt.subplots(figsize=(8, 4), layout="constrained")
 for name, fraction in {"in step": 0.0, "a third": 1 / 3, "a half": 1 / 2}.items():
@@ -23,4 +24,4 @@ for name, fraction in {"in step": 0.0, "a third": 1 / 3, "a half": 1 / 2}.items(
     )
 ax.set(xlabel="time [s]", ylabel="height [mm]", xlim=(1.0, 2.0))
 ax.set_title("Height of a robot on five gear wheels, below its highest", loc="left")
-ax.legend(loc="lower right")
+figure.legend(loc="outside lower center", ncols=3)

@@ -25,3 +25,6 @@ for ax, (name, ground) in zip(axes.flat, grounds.items(), strict=True):
     run.plot(ax, time=run.time[[run.time.size // 2, -1]])
     ax.set_title(f"{name}: {run.outcome}", loc="left")
     ax.get_legend().remove()
+handles, labels = axes[0, 0].get_legend_handles_labels()
+shown = [label.partition(", up to")[0] for label in labels]  # each picture has its own scale
+figure.legend(handles, shown, loc="outside lower center", ncols=3)

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 
 import crawler2d as c2d
 
+plt.style.use("crawler2d.lines")  # colours that the colour-blind tell apart, and dashes
 robot = c2d.robots.engineer(flippers=None)
 sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.step(0.075)))
 while sim.time < 6.0:

@@ -20,7 +20,7 @@ from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d.common.extras import extra
-from crawler2d.drawings.scene import BLACK, GREEN, RED, VIOLET
+from crawler2d.drawings.palette import BLACK, GREEN, RED, VIOLET
 from crawler2d.presets.unknowns import RUN_UP
 from research import paper
 from research.models import study_robot

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import crawler2d as c2d
-from crawler2d.drawings.scene import BLACK, BLUE, ORANGE, Scene
+from crawler2d.drawings.palette import BLACK, BLUE, ORANGE
+from crawler2d.drawings.scene import Scene
 from crawler2d.parameters.track import Track
 from crawler2d.sweeps.figure_dataset import FigureDataset
-from research.figures import make_panels
+from research.figures import join_legends, make_panels
 from research.models import study_robot
 from research.paper import CWA_ROUND, LWA_ROUND, TABLE_1
 from research.paper.design import READINGS, Work, layouts
@@ -265,11 +266,12 @@ def plot_layouts() -> Figure:
     for ax, drawn in zip(axes.flat, DRAWINGS, strict=True):
         robot = study_robot(track=drawn.track)
         if drawn.view == "robot":
-            robot.plot(ax).legend().remove()
+            robot.plot(ax)
         else:
             _draw_wheel(ax, robot, with_angle=drawn.view == "angle")
         ax.set_title(f"Fig. {drawn.number}: {drawn.caption}", loc="left", fontsize="medium")
         ax.set(xlabel="", ylabel="")
+    join_legends(figure, axes.ravel().tolist())
     figure.suptitle("The paper's figures as models of the Engineer, in its chassis frame [m]")
     return figure
 
@@ -283,7 +285,7 @@ def plot_stuck(stuck: Sequence[Stuck]) -> Figure:
         ax.set_title(f"Fig. {each.figure}: {each.model}, {each.where}", loc="left")
         x, y = run.position[-1]
         ax.set(xlim=(x - 0.35, x + 0.65), ylim=(y - 0.25, y + 0.4))
-        ax.get_legend().remove()
+    join_legends(figure, axes.ravel().tolist())
     return figure
 
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import crawler2d as c2d
-from crawler2d.drawings.scene import BLACK
+from crawler2d.drawings.palette import BLACK, look_of
 from crawler2d.parameters.terrain import RandomStepfield
 from crawler2d.results.record import Row
 from crawler2d.sweeps.figure_dataset import FigureDataset
 from crawler2d.sweeps.store import Store
-from research.figures import THREE, add_legend, make_panels, style
+from research.figures import add_legend, make_panels
 from research.paper import PAPER_RUNS, TABLE_2, WITHIN, agreement
 from research.paper.design import READINGS, SETTINGS, Setting, Work, layouts, models_of
 from research.tables import cells_of, counts, group_by, markdown_table, percent
@@ -352,10 +352,10 @@ def plot_table_2(rows: Sequence[Comparison]) -> Figure:
                 x = place + 0.16 * (step - 1.5)
                 look = {"color": BLACK, "marker": "D"}
                 if step:
-                    look = style(settings.index(label), THREE)
+                    look = look_of(settings.index(label))
                 ax.vlines(x, 100 * low, 100 * high, color=look["color"], linewidth=1.6)
                 named = {"label": label} if place == 0 else {}
-                ax.plot(x, 100 * rate, linestyle="", **look, **named)
+                ax.plot(x, 100 * rate, **look | {"linestyle": ""}, **named)
         ax.set_xticks(range(len(models)), [model.replace(", ", ",\n") for model in models])
         ax.tick_params(axis="x", labelsize="small", rotation=20)
         ax.set(ylim=(-4.0, 104.0), xlim=(-0.5, len(models) - 0.5))

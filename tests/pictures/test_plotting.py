@@ -29,6 +29,18 @@ def test_a_plot_is_a_side_view_and_the_history_three_strips(run: c2d.Run) -> Non
         ax.figure.canvas.draw()
 
 
+def test_the_legend_of_the_history_covers_no_line(run: c2d.Run) -> None:
+    _, speed, _ = run.plot_history()
+    speed.figure.canvas.draw()
+    legend: Any = speed.get_legend()
+    assert legend.get_window_extent().y0 >= speed.get_window_extent().y1
+    assert [text.get_text() for text in legend.get_texts()][:3] == [
+        "track",
+        "chassis, along x",
+        "commanded",
+    ]
+
+
 def test_the_side_view_shows_the_whole_path(run: c2d.Run) -> None:
     side = run.plot()
     left, right = side.get_xlim()

@@ -137,6 +137,27 @@ def test_slopes_and_gaps_are_climbed_up_to_their_limit() -> None:
     assert list(steep["model"].values) == [ROBOT.track.in_words]
 
 
+def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    found = found_of(until=c2d.Until(threshold=0.5, most=10))
+    ax = found.plot()
+    ax.figure.canvas.draw()
+    tried = (1e3 * np.array(HEIGHTS)).tolist()
+    assert [list(line.get_xdata()) for line in ax.get_lines()] == [tried] * len(MODELS)
+    assert {*tried} <= {*ax.get_xticks(), *ax.get_xticks(minor=True)}
+    places = []
+    for bars in ax.collections:
+        ends = np.array(bars.get_segments())
+        assert ends[:, :, 0].tolist() == [[x, x] for x in tried]
+        places.append(bars.get_transform().transform(ends[0])[0, 0])
+    # They are some points apart on the paper, about the place itself.
+    (middle, _), gap = ax.transData.transform((tried[0], 0.0)), 3.5 * ax.figure.dpi / 72.0
+    assert places == pytest.approx([middle - 0.5 * gap, middle + 0.5 * gap])
+    assert ax.get_legend().get_window_extent().y1 < ax.get_window_extent().y0
+    plt.close("all")
+
+
 def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 

@@ -29,6 +29,7 @@ __all__ = [
     "draw_legend",
     "draw_length",
     "draw_radius",
+    "moved",
     "set_title",
 ]
 
@@ -183,6 +184,12 @@ def below_axis(ax: Axes, distance: float) -> Any:
     """Measure [inch] from the lower edge of Axes, past ticks and label, which are never scaled."""
     move = extra("matplotlib.transforms", "plot").ScaledTranslation
     return ax.transAxes + move(0.0, -distance, ax.figure.dpi_scale_trans)
+
+
+def moved(ax: Axes, aside: float) -> Any:
+    """Measure as the axes do, but move all to the right by a distance [point] on the paper."""
+    move = extra("matplotlib.transforms", "plot").ScaledTranslation
+    return ax.transData + move(aside / 72.0, 0.0, ax.figure.dpi_scale_trans)
 
 
 def set_title(ax: Axes, *paragraphs: str) -> Text:

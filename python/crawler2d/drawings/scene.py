@@ -12,22 +12,13 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.common.bodies import POSE_COLUMNS, BodyKind, Lane, body_poses
+from crawler2d.drawings.palette import BLACK, GRAY, GREEN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "BLACK",
-    "BLUE",
-    "GRAY",
-    "GREEN",
-    "GROUND",
-    "ORANGE",
-    "PURPLE",
-    "RED",
-    "SKY",
     "STYLES",
-    "VIOLET",
     "Carrier",
     "Circuit",
     "Extent",
@@ -39,12 +30,6 @@ __all__ = [
     "place",
     "relative",
 ]
-
-BLACK, ORANGE, SKY, GREEN = "#222222", "#E69F00", "#56B4E9", "#009E73"
-BLUE, RED, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
-# Dark enough for a thin line on what is filled with it.
-VIOLET = "#A3327B"
-GRAY, GROUND = "#AAAAAA", "#D9D2C5"
 
 Extent = tuple[float, float, float, float]
 """[m] Left, right, bottom and top."""

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.common.bodies import discs_in, end_discs, is_centered_pair
-from crawler2d.drawings.scene import BLACK, GREEN, GROUND, STYLES, Extent, Look, Scene, extent_of
+from crawler2d.drawings.palette import BLACK, GREEN, GROUND
+from crawler2d.drawings.scene import STYLES, Extent, Look, Scene, extent_of
 from crawler2d.errors import ignore_doubts
 
 if TYPE_CHECKING:

@@ -11,18 +11,8 @@ from crawler2d import _core
 from crawler2d.common.bodies import discs_in, end_discs
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import Canvas, draw_height, draw_length, draw_radius
-from crawler2d.drawings.scene import (
-    BLACK,
-    GRAY,
-    GREEN,
-    GROUND,
-    STYLES,
-    Extent,
-    Look,
-    Scene,
-    close_line,
-    extent_of,
-)
+from crawler2d.drawings.palette import BLACK, GRAY, GREEN, GROUND
+from crawler2d.drawings.scene import STYLES, Extent, Look, Scene, close_line, extent_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -14,7 +14,7 @@ import numpy as np
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import arrange, blank_axes, draw_legend, set_title
-from crawler2d.drawings.scene import RED
+from crawler2d.drawings.palette import RED
 from crawler2d.drawings.views import Outlines, draw_goal, scene_canvas
 from crawler2d.errors import ScenarioError
 from crawler2d.pictures.scenes import Envelopes, draw_forces, scene_of, usual_force

@@ -13,14 +13,27 @@ import numpy as np
 
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import axes_or_new, below_axis
-from crawler2d.drawings.scene import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, VIOLET
+from crawler2d.drawings.palette import (
+    BLACK,
+    BLUE,
+    GRAY,
+    GREEN,
+    ORANGE,
+    PALE,
+    PURPLE,
+    RED,
+    SKY,
+    VIOLET,
+)
 from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
 __all__ = [
+    "LOOKS",
     "legend_below",
     "one_model",
     "plot_map",
@@ -33,16 +46,22 @@ __all__ = [
 _SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
 """Factor and unit in which people read a quantity."""
 
-_COLORS = {
-    "cleared": GREEN,
-    "seized": RED,
-    "cycling": PURPLE,
-    "hung_up": ORANGE,
-    "stalled": BLUE,
-    "slipping": SKY,
-    "tipped_over": VIOLET,
+LOOKS = {
+    "cleared": (GREEN, ""),
+    "seized": (RED, "//"),
+    "cycling": (PURPLE, ".."),
+    "hung_up": (ORANGE, "\\\\"),
+    "stalled": (BLUE, "--"),
+    "slipping": (SKY, "||"),
+    "tipped_over": (VIOLET, "xx"),
+    "timed_out": (PALE, ""),
+    "left_terrain": (PALE, "++"),
+    "detracked": (PALE, "oo"),
+    "diverged": (BLACK, ""),
+    "refused": (BLACK, "//"),
+    "failed": (BLACK, ".."),
 }
-"""Of the common outcomes, in the order of a bar; the others are grey and come last."""
+"""Colours and hatching of the outcomes, in the order of a bar."""
 
 _ROW, _REST = 0.28, 1.5
 """[inch] Height of a bar, and of what is above and below all of them."""
@@ -55,11 +74,11 @@ _LEGEND = 22.0
 
 _CLEARED, _OTHERWISE = "cleared", "otherwise"
 
-_FAINT = 0.45
-"""[-] Opacity of what was not simulated."""
+_HATCH, _DOTS = "////", ".."
+"""Marks of what is not certain, and of what was not simulated."""
 
-_HATCH = "////"
-"""Hatching of what is not certain."""
+_RIM = 2.5
+"""[point] Width of the line round where most runs have the outcome of a map."""
 
 _BELOW = 46.0 / 72.0
 """[inch] From the axes to the legend, past ticks and label."""
@@ -125,7 +144,9 @@ def plot_outcomes(data: xarray.Dataset, ax: Axes | None) -> Axes:
         outcome = name.removeprefix("ended_")
         fraction = part / np.maximum(runs, 1)
         label = outcome.replace("_", " ")
-        ax.barh(at, fraction, 0.8, left, color=_COLORS.get(outcome, GRAY), label=label)
+        color, hatch = LOOKS[outcome]
+        style: dict[str, Any] = {"color": color, "hatch": hatch, "edgecolor": "white"}
+        ax.barh(at, fraction, 0.8, left, **style, linewidth=0.5, label=label)
         left += fraction
     for place, count, (rate, low, high) in zip(at, runs, rates, strict=True):
         text = f"{rate:.2f} ({low:.2f} to {high:.2f}), {count} runs"
@@ -149,13 +170,11 @@ def plot_outcomes(data: xarray.Dataset, ax: Axes | None) -> Axes:
 
 
 def _rank(name: str) -> int:
-    outcomes = list(_COLORS)
-    outcome = name.removeprefix("ended_")
-    return outcomes.index(outcome) if outcome in outcomes else len(outcomes)
+    return list(LOOKS).index(name.removeprefix("ended_"))
 
 
 def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw how most runs of every cell end: hatched if not certain, faint if not simulated."""
+    """Draw how most runs of every cell end: hatched if not certain, dotted if not simulated."""
     data = one_model(data)
     ending = data["ending"]
     if ending.ndim != 2:
@@ -164,7 +183,8 @@ def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
     ax = axes_or_new(ax, (8.0, 6.0))
     (scale_x, label_x), (scale_y, label_y) = readable(data[x]), readable(data[y])
     at = scale_x * data[x].to_numpy(), scale_y * data[y].to_numpy()
-    colors = {_OTHERWISE: GRAY, data.attrs["outcome"]: RED, _CLEARED: GREEN}
+    outcome = data.attrs["outcome"]
+    colors = {_OTHERWISE: PALE, outcome: RED, _CLEARED: GREEN}
     kinds = list(colors)
     numbers = np.vectorize(kinds.index)(ending.to_numpy())
     guessed = np.isfinite(data["around"].to_numpy())
@@ -175,11 +195,16 @@ def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
         "vmax": len(kinds) - 0.5,
         "shading": "nearest",
     }
-    for faint, hatched in itertools.product((False, True), repeat=2):
-        style: dict[str, Any] = {"alpha": _FAINT} if faint else {}
-        style |= {"hatch": _HATCH, "edgecolor": BLACK, "linewidth": 0.0} if hatched else {}
-        others = (guessed != faint) | (unsure != hatched)
+    for dotted, hatched in itertools.product((False, True), repeat=2):
+        marks = _HATCH * hatched + _DOTS * dotted
+        style: dict[str, Any] = {}
+        if marks:
+            style = {"hatch": marks, "edgecolor": BLACK, "linewidth": 0.0}
+        others = (guessed != dotted) | (unsure != hatched)
         ax.pcolor(*at, np.ma.masked_array(numbers, others), **scale, **style)
+    inside = (ending == outcome).to_numpy()
+    if inside.any() and outcome != _CLEARED:
+        _draw_rim(ax, at, inside)
     ax.set(xlabel=label_x, ylabel=label_y)
     banded = "band_low" in data
     title = populations(data.attrs, banded=banded, what="how most runs end,")
@@ -189,6 +214,31 @@ def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
     own = {name: color for name, color in colors.items() if (ending == name).any()}
     _legend(ax, own, guessed=bool(guessed.any()), unsure=bool(unsure.any()), banded=banded)
     return ax
+
+
+def _draw_rim(
+    ax: Axes, at: tuple[NDArray[np.float64], NDArray[np.float64]], inside: NDArray[np.bool_]
+) -> None:
+    """Draw the line round the cells that have an outcome, for those who see its colour badly."""
+    x, y = (_edges(each) for each in at)
+    padded = np.pad(inside, 1)
+    sides = [
+        ((x[j], y[i]), (x[j], y[i + 1]))
+        for i, j in np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1])
+    ] + [
+        ((x[j], y[i]), (x[j + 1], y[i]))
+        for i, j in np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1])
+    ]
+    lines = extra("matplotlib.collections", "plot").LineCollection
+    ax.add_collection(lines(sides, colors=BLACK, linewidths=_RIM, capstyle="round"))
+
+
+def _edges(middles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where cells end, halfway between their middles."""
+    between = 0.5 * (middles[1:] + middles[:-1])
+    return np.concatenate(
+        [2.0 * middles[:1] - between[:1], between, 2.0 * middles[-1:] - between[-1:]]
+    )
 
 
 def _certainty(data: xarray.Dataset, *, banded: bool) -> str:
@@ -208,7 +258,11 @@ def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, ba
     patch = extra("matplotlib.patches", "plot").Patch
     labels = {_CLEARED: "most runs clear", _OTHERWISE: "most runs fail otherwise"}
     handles = [
-        patch(facecolor=color, label=labels.get(name, f"most runs end {name.replace('_', ' ')}"))
+        patch(
+            facecolor=color,
+            edgecolor=BLACK if color == RED else color,
+            label=labels.get(name, f"most runs end {name.replace('_', ' ')}"),
+        )
         for name, color in colors.items()
     ]
     if unsure:
@@ -217,8 +271,8 @@ def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, ba
         text = f"hatched: {text}"
         handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_HATCH, label=text))
     if guessed:
-        text = f"faint: not simulated, all around it {'' if banded else 'certainly '}end so"
-        handles.append(patch(facecolor=GRAY, alpha=_FAINT, label=text))
+        text = f"dotted: not simulated, all around it {'' if banded else 'certainly '}end so"
+        handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_DOTS, label=text))
     legend_below(ax, handles=handles)
 
 

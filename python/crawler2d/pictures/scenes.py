@@ -10,7 +10,8 @@ import numpy as np
 
 from crawler2d.common.bodies import POSE_COLUMNS, body_poses
 from crawler2d.common.extras import extra
-from crawler2d.drawings.scene import BLUE, RED, VIOLET, Look, Scene, close_line, place, relative
+from crawler2d.drawings.palette import BLUE, RED, VIOLET
+from crawler2d.drawings.scene import Look, Scene, close_line, place, relative
 from crawler2d.results.diagnosis import trial_text
 from crawler2d.results.outcome import TRIALS
 
@@ -43,6 +44,8 @@ _SPEED_LENGTH = 0.22
 # These start this far below the surface, as a fraction of the axle distance, where they hide
 # nothing.
 _BELOW = 0.03
+# Of their shafts, as a fraction of the width of the Axes.
+_WIDTH = 0.004
 # Arrows below this fraction of the longest would be mere dots, and are left out.
 _SHORTEST = 0.02
 # Percentile that sets the scale for a whole run: an impact lasts one sample, and at its scale all
@@ -100,6 +103,7 @@ def draw_forces(
     most: float | None = None,
     *,
     color: str = RED,
+    width: float = _WIDTH,
     where: str = "",
 ) -> list[Any]:
     """Draw the contact forces on the robot.
@@ -117,6 +121,8 @@ def draw_forces(
         the weight.
     color : str
         Of the arrows.
+    width : float
+        [-] Of their shafts, as a fraction of the width of the Axes.
     where : str
         What the legend adds, to distinguish them from others.
 
@@ -133,7 +139,7 @@ def draw_forces(
         most = _largest(force, _weight(run))
     length = _FORCE_LENGTH * run.scenario.robot.outline.axle_distance
     label = f"contact force{where}, up to {{:.0f}} N"
-    return _draw_arrows(ax, places, force, (most, length), color=color, label=label)
+    return _draw_arrows(ax, places, force, (most, length), color=color, width=width, label=label)
 
 
 def draw_slip(run: Record, sample: int, ax: Axes) -> list[Any]:
@@ -168,6 +174,7 @@ def _draw_arrows(
     scale: tuple[float, float],
     *,
     color: str,
+    width: float = _WIDTH,
     label: str,
 ) -> list[Any]:
     """Draw arrows from the places; `scale` is the largest size and its length [m]."""
@@ -184,7 +191,7 @@ def _draw_arrows(
             angles="xy",
             scale_units="xy",
             scale=1.0,
-            width=0.004,
+            width=width,
             label=label.format(sizes.max()),
             zorder=4,
         )

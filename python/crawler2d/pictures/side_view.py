@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,8 @@ import numpy as np
 
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import check_axes, set_title
-from crawler2d.drawings.scene import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, extent_of
+from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, look_of
+from crawler2d.drawings.scene import extent_of
 from crawler2d.drawings.views import Outlines, draw_goal, draw_lines, scene_canvas
 from crawler2d.errors import ScenarioError
 from crawler2d.pictures.scenes import (
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_both", "plot_history", "plot_instant", "plot_run"]
 
-_GHOSTS = (SKY, ORANGE, GREEN, PURPLE, "#7F7F7F")
-"""Of the ends of trials."""
+_GHOSTS = (SKY, ORANGE, GREEN, PURPLE)
+"""Colours of the ends of trials."""
 
 _MOST_POSES = 7
 """Of the robot in one side view."""
@@ -64,9 +64,8 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
     for sample in samples[:-1]:
         Outlines(scene, ax, alpha=0.3).show(int(sample))
     ax.plot(*run.position.T, label="path of the chassis origin", color=BLUE, **_PATH)
-    looks = itertools.cycle(itertools.product(("-", "--"), _GHOSTS))
-    for ghost, (dashes, color) in zip(freed, looks, strict=False):
-        look: Any = {"color": color, "linestyle": dashes, "linewidth": 0.8}
+    for number, ghost in enumerate(freed):
+        look: Any = look_of(number, _GHOSTS) | {"marker": "", "linewidth": 1.0}
         label = f"end of the trial: {ghost.change}"
         draw_lines(ghost_lines(scene, ghost), ax, label, **look, alpha=0.8, zorder=1.5)
     _draw_sample(run, scene, shown, ax)
@@ -125,11 +124,15 @@ def plot_both(
     Outlines(first, ax).show(runs[0].time.size - 1)
     look: Any = {"color": ORANGE, "linewidth": 1.0, "linestyle": "--", "zorder": 2.5}
     draw_lines(second.outlines(runs[1].time.size - 1), ax, f"robot in {names[1]}", **look)
-    looks = ((BLUE, RED, "-"), (ORANGE, PURPLE, "--"))
-    for run, name, (color, arrows, style) in zip(runs, names, looks, strict=True):
-        ax.plot(*run.position.T, label=f"path in {name}", color=color, linestyle=style, **_PATH)
+    # What is drawn first is broader, so that it is seen where both are the same.
+    looks: Any = (
+        ({"color": BLUE, "linewidth": 2.4}, {"color": RED, "width": 0.007}),
+        ({"color": ORANGE, "linestyle": "--"}, {"color": PURPLE}),
+    )
+    for run, name, (path, arrows) in zip(runs, names, looks, strict=True):
+        ax.plot(*run.position.T, label=f"path in {name}", **_PATH | path)
         if run.diagnosis is not None:
-            draw_forces(run, run.time.size - 1, ax, color=arrows, where=f" in {name}")
+            draw_forces(run, run.time.size - 1, ax, where=f" in {name}", **arrows)
     if parted_at is not None:
         where = runs[0].position[np.searchsorted(runs[0].time, parted_at)]
         look = {"marker": "o", "color": BLACK, "linestyle": "none", "markersize": 5, "zorder": 3.5}
@@ -150,9 +153,10 @@ def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, 
     angle, speed, force = (check_axes(ax, f"axes[{row}]") for row, ax in enumerate(axes))
     angle.plot(time, np.degrees(run.chassis_angle), color=BLUE)
     angle.set_ylabel("chassis\nangle [deg]")
-    speed.plot(time, run.commanded_speed, color=BLACK, linestyle="--", label="commanded")
-    speed.plot(time, run.track_speed, color=BLUE, label="track")
+    speed.plot(time, run.track_speed, color=BLUE, linewidth=2.5, label="track")
     speed.plot(time, run.velocity[:, 0], color=ORANGE, label="chassis, along x")
+    look: Any = {"color": BLACK, "linestyle": "--", "linewidth": 1.0}
+    speed.plot(time, run.commanded_speed, **look, label="commanded")
     speed.set_ylabel("speed [m/s]")
     force.plot(time, run.drive_force, color=RED)
     force.set(ylabel="drive\nforce [N]", xlabel="time [s]")
@@ -162,9 +166,10 @@ def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, 
         ax.grid(alpha=0.3)
         ax.margins(x=0.0)
         for number, (start, end) in enumerate(stops):
-            look: Any = {"color": ORANGE, "alpha": 0.15, "linewidth": 0.0}
+            look = {"color": ORANGE, "alpha": 0.15, "linewidth": 0.0}
             ax.axvspan(start, end, label=None if number else "stopped", **look)
-    speed.margins(y=0.25)  # room for the legend
-    speed.legend(loc="best", fontsize="small", ncols=4)
+    # Above the strip, where it covers no line.
+    above: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "frameon": False}
+    speed.legend(**above, fontsize="small", ncols=4, borderaxespad=0.0)
     set_title(angle, run.title)
     return angle, speed, force

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d.drawings.canvas import axes_or_new, set_title
-from crawler2d.drawings.scene import BLACK, BLUE, GRAY, GREEN, ORANGE, RED, SKY, VIOLET
+from crawler2d.drawings.canvas import axes_or_new, moved, set_title
+from crawler2d.drawings.palette import BLACK, BLUE, GRAY, GREEN, ORANGE, look_of
 from crawler2d.errors import ScenarioError
 from crawler2d.pictures.rates import (
     legend_below,
@@ -42,16 +43,15 @@ _ROW, _REST = 0.6, 1.6
 _BAR = 0.36
 """[-] Of a row, the thickness of each of its two bars."""
 
-_COLORS = (BLUE, ORANGE, GREEN, RED, SKY, VIOLET, BLACK)
+_ASIDE = 3.5, 6.0
+"""[point] From one line's interval to the next one's at the same place, and the same of bands."""
 
-_MARKERS = "osD^vPX"
-
-_APART = 0.06
-"""[-] Fraction of the figure's width that the points of all lines at one place take."""
+_LARGEST, _LEAST = 8.0, 3.5
+"""[point] Size of the first line's markers; those of later lines are smaller, down to the least."""
 
 
 def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw every candidate at its cost and lowest rate; diamonds are the fresh runs of two."""
+    """Draw every candidate's lowest rate in order of cost, and the fresh runs of two."""
     ax = axes_or_new(ax, (8.0, 6.0))
     two = [data.attrs["winner"], data.attrs["runner_up"]]
     names = data["candidate"].to_numpy().tolist()
@@ -66,18 +66,24 @@ def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
             continue
         style: dict[str, Any] = {"color": BLUE, "alpha": opacity}
         ax.vlines(at[chosen], low[chosen], high[chosen], linewidth=1.2, **style)
-        ax.plot(at[chosen], rate[chosen], "o", markersize=5.0, label=label, **style)
+        filled = BLUE if last else "none"
+        style |= {"linestyle": "", "marker": "o", "markersize": 5.0, "markerfacecolor": filled}
+        ax.plot(at[chosen], rate[chosen], label=label, **style)
     goal = data.attrs["at_least"]
     ax.axhline(goal, color=BLACK, linestyle="--", linewidth=1.0, label=f"goal: {goal:g}")
     again, lower, upper = _lowest(data, "confirmed_rate", "confirmed_low", "confirmed_high")
-    for role, name, color in zip(("winner", "runner-up"), two, (GREEN, ORANGE), strict=True):
+    looks = (("winner", GREEN, "D"), ("runner-up", ORANGE, "s"))
+    for name, (role, color, marker) in zip(two, looks, strict=True):
         if name not in names:
             continue
         k = names.index(name)
         x = at[k] + 1.0
         text = f"{role}: {name}, fresh runs {again[k]:.3f} ({lower[k]:.3f} to {upper[k]:.3f})"
         ax.vlines(x, lower[k], upper[k], color=color, linewidth=2.5)
-        ax.plot(x, again[k], "D", color=color, markersize=7.0, label=text, zorder=3)
+        ax.plot(x, again[k], marker, color=color, markersize=7.0, label=text, zorder=3)
+    # Those of one cost stand side by side in a strip that has the cost's name.
+    for left, right in _strips(at, costs)[::2]:
+        ax.axvspan(left, right, color=BLACK, alpha=0.05, linewidth=0.0, zorder=0)
     several = data["terrain"].size > 1
     levels = np.unique(costs)[:: -(-np.unique(costs).size // _LABELS)]
     ax.set_xticks([at[costs == level].mean() for level in levels], [f"{v:g}" for v in levels])
@@ -110,6 +116,14 @@ def _places(costs: NDArray[np.float64], chosen: Sequence[bool]) -> NDArray[np.fl
         at[k], last = x, costs[k]
         x += 2.0 if chosen[k] else 1.0
     return at
+
+
+def _strips(at: NDArray[np.float64], costs: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """List the left and the right end of each cost's strip, from the places of its candidates."""
+    ends = [(at[costs == cost].min(), at[costs == cost].max()) for cost in np.unique(costs)]
+    between = [0.5 * (one[1] + other[0]) for one, other in itertools.pairwise(ends)]
+    edges = [ends[0][0] - _GAP, *between, ends[-1][1] + _GAP]
+    return list(itertools.pairwise(edges))
 
 
 def plot_decides(data: xarray.Dataset, ax: Axes | None, show: str = "indices") -> Axes:
@@ -180,7 +194,7 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
         crossing = 0.5 * (row["bracket_low"].item() + row["bracket_high"].item())
         if np.isfinite(crossing):
             x = (crossing - low) / span
-            ax.plot([x, x], [k - 0.22, k + 0.22], zorder=3, **styles["half"])
+            ax.plot([x, x], [k - 0.22, k + 0.1], zorder=3, **styles["half"])
             bounds = [factor * row[f"bracket_{end}"].item() for end in ("low", "high")]
             again = "" if row["monotone"].item() else ", and again"
             text = f"{_between(*bounds)} {unit}".rstrip() + again
@@ -254,7 +268,8 @@ def _entitle(data: xarray.Dataset, ax: Axes, *paragraphs: str) -> None:
 def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw rates over the last dimension of numbers, one line for each of the others.
 
-    Bars are intervals; thick ones are the bands of the rates over the unknowns.
+    Bars are intervals; thick ones are the bands of the rates over the unknowns. Those of several
+    lines stand side by side about the value that was tried, which has a tick.
     """
     rates = data["rate"]
     banded = "band_low" in data
@@ -264,23 +279,27 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     factor, label = readable(shown[along])
     x = factor * shown[along].to_numpy().astype(float)
     lines = list(_lines(shown, along))
-    # Side by side, so that no interval hides another.
-    apart = _APART * float(np.ptp(x)) / max(len(lines), 5) if x.size > 1 else 0.0
+    aside = _ASIDE[banded]
     for index, (name, place) in enumerate(lines):
-        color, marker = _COLORS[index % len(_COLORS)], _MARKERS[index % len(_MARKERS)]
         own = shown.sel(place).to_numpy()
-        at = x + apart * (index - 0.5 * (len(lines) - 1))
         low, high = ("band_low", "band_high") if banded else ("low", "high")
         lower, upper = (data[name].sel(place).to_numpy() for name in (low, high))
         known = np.isfinite(own)  # not every value is tried with every model
-        at, own, lower, upper = at[known], own[known], lower[known], upper[known]
-        ax.plot(at, own, color=color, marker=marker, markersize=5.0, label=name, zorder=3)
-        ax.vlines(at, lower, upper, color=color, alpha=0.5, linewidth=4.0 if banded else 1.5)
+        look = look_of(index)
+        # Where lines meet, the later ones show those below: dashes over lines, small over large.
+        size = max(_LARGEST - index, _LEAST)
+        ax.plot(x[known], own[known], **look, markersize=size, label=name, zorder=3)
+        # Points stand where they were tried; their intervals, beside each other, hide none.
+        style: dict[str, Any] = {"color": look["color"], "linewidth": 4.0 if banded else 1.5}
+        beside = moved(ax, aside * (index - 0.5 * (len(lines) - 1)))
+        ax.vlines(x[known], lower[known], upper[known], alpha=0.5, transform=beside, **style)
+    ax.set_xticks(np.unique(x), minor=True)
+    ax.tick_params(axis="x", which="minor", length=5.0)
     ax.set(xlabel=label, ylabel=str(rates.attrs.get("long_name", "rate")), ylim=(-0.03, 1.03))
     ax.grid(alpha=0.3)
     ax.set_title(populations(data.attrs, banded=banded), loc="left", fontsize="small")
-    if len(ax.get_lines()) > 1:
-        ax.legend(fontsize="small", loc="best")
+    if len(lines) > 1:
+        legend_below(ax, handlelength=3.5)
     return ax
 
 
