@@ -220,6 +220,16 @@ def test_a_film_that_fails_leaves_the_old_one_and_nothing_else(
         short.animate(tmp_path / "nowhere" / "run.gif")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="links take a privilege")
+def test_a_film_goes_where_a_link_leads(short: c2d.Run, tmp_path: Path) -> None:
+    link = tmp_path / "run.gif"
+    link.symlink_to("a film")  # whose name does not say which format it has
+    assert short.animate(link, fps=4.0, width=300) == link
+    assert sorted(tmp_path.iterdir()) == [tmp_path / "a film", link]
+    assert link.is_symlink()
+    assert len(frames_of(tmp_path / "a film")) == 3
+
+
 def test_a_folder_in_place_of_the_file_is_an_error_before_anything_is_drawn(
     short: c2d.Run, tmp_path: Path
 ) -> None:

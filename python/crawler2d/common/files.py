@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-__all__ = ["write_text", "written_whole"]
+__all__ = ["part_of", "write_text", "written_whole"]
 
 
 @contextlib.contextmanager
-def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
-    """Open a file that takes the place of another one when it is complete.
+def part_of(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Name a file that takes the place of another one when it is complete.
 
     Parameters
     ----------
@@ -23,8 +23,9 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
     Yields
     ------
-    file
-        Open for bytes, beside that place.
+    Path
+        Beside that place, with the same suffix, for programs that choose a format by it. Nothing
+        is there yet.
 
     Raises
     ------
@@ -35,10 +36,9 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     if place.exists() and not place.is_file():
         number = errno.EISDIR if place.is_dir() else errno.EINVAL
         raise OSError(number, os.strerror(number), os.fspath(path))
-    part = place.with_name(f".{place.name}.{os.getpid()}.part")
+    part = place.with_name(f".{place.stem}.{os.getpid()}.part{Path(path).suffix}")
     try:
-        with part.open("wb") as file:
-            yield file
+        yield part
         part.replace(place)
     except OSError as error:
         if error.errno is None or error.filename not in (None, str(part)):
@@ -49,8 +49,18 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         part.unlink(missing_ok=True)
 
 
+@contextlib.contextmanager
+def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+    """Open a file for bytes that takes the place of another one when it is complete.
+
+    See `part_of` for the parameter and the errors.
+    """
+    with part_of(path) as part, part.open("wb") as file:
+        yield file
+
+
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
-    """Write a text as UTF-8, whole or not at all; errors are those of `written_whole`."""
+    """Write a text as UTF-8, whole or not at all; errors are those of `part_of`."""
     with written_whole(path) as file:
         file.write(text.encode())
     return Path(path)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -13,6 +12,7 @@ import numpy as np
 
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
+from crawler2d.common.files import part_of
 from crawler2d.drawings.canvas import arrange, blank_axes, draw_legend, set_title
 from crawler2d.drawings.palette import RED
 from crawler2d.drawings.views import Outlines, draw_goal, scene_canvas
@@ -75,11 +75,8 @@ def animate(
         raise ScenarioError("speed", speed, f"must give at most {_MOST_FRAMES} frames, not {count}")
     times = np.minimum(start + np.arange(count) * speed / fps, end)
     about = "; ".join(run.provenance for run in runs)
-    if path.is_dir():
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    partial = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
-    partial.touch()  # here it fails if nothing can be written
-    try:
+    with part_of(path) as part:
+        part.touch()  # here it fails if nothing can be written
         film = Film(
             runs, times, labels=labels, pace=speed, follow=follow, beside=beside, width=width
         )
@@ -93,10 +90,7 @@ def animate(
                     shown += 1
                     report(1)
 
-            write(partial, film.figure, show, count, fps, about=about)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+            write(part, film.figure, show, count, fps, about=about)
     return path
 
 
@@ -108,7 +102,7 @@ def _in_range(value: float, name: str, bounds: tuple[float, float]) -> float:
 
 
 def _write_gif(
-    partial: Path, figure: Any, show: Callable[[int], None], count: int, fps: float, *, about: str
+    part: Path, figure: Any, show: Callable[[int], None], count: int, fps: float, *, about: str
 ) -> None:
     """Write a GIF with one palette for all frames, so that what stands still costs nothing."""
     images = extra("PIL.Image", "animation")
@@ -127,7 +121,7 @@ def _write_gif(
     durations[-1] += round(1e3 * _HOLD)
     first = next(frames)
     timing: Any = {"duration": durations.tolist(), "loop": 0}
-    first.save(partial, save_all=True, append_images=frames, comment=about, **timing)
+    first.save(part, save_all=True, append_images=frames, comment=about, **timing)
 
 
 def palette_of(images: Any, pixels: NDArray[np.uint8]) -> Any:
@@ -144,7 +138,7 @@ def palette_of(images: Any, pixels: NDArray[np.uint8]) -> Any:
 
 
 def _write_mp4(
-    partial: Path,
+    part: Path,
     figure: Figure,
     show: Callable[[int], None],
     count: int,
@@ -162,7 +156,7 @@ def _write_mp4(
     held = [count - 1] * round(fps * _HOLD)
     with matplotlib.rc_context(options):
         writer = writers.FFMpegWriter(fps=fps, codec="h264", metadata={"comment": about})
-        with writer.saving(figure, partial, dpi=figure.dpi):
+        with writer.saving(figure, part, dpi=figure.dpi):
             for number in [*range(count), *held]:
                 show(number)
                 writer.grab_frame()
