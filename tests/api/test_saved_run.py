@@ -132,6 +132,15 @@ def test_a_run_says_what_simulated_it(stopped: c2d.Run, tmp_path: Path) -> None:
     assert stopped.build == reloaded(stopped, tmp_path).build == c2d.build_info()
 
 
+def test_runs_of_this_build_share_what_says_so(stopped: c2d.Run, tmp_path: Path) -> None:
+    other = c2d.simulate(WHEELS, c2d.terrains.flat(), duration=0.0)
+    copies = (other, pickle.loads(pickle.dumps(stopped)), reloaded(stopped, tmp_path))
+    assert all(run.build is stopped.build for run in copies)
+    shared: Any = stopped.build
+    with pytest.raises(TypeError):
+        shared["version"] = "0"
+
+
 def test_a_run_of_another_build_is_not_repeated_by_this_one(saved: Path) -> None:
     change(saved, lambda about: about["build"].update(build_id="an earlier one"))
     again = c2d.load(saved)

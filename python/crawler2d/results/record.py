@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["NO_RESULT", "Record", "Row", "diagnosis_json", "read_diagnosis"]
 
 
-_BUILD = _core.build_info()
+_BUILD: Mapping[str, Any] = MappingProxyType(_core.build_info())
+"""What all runs of this process share."""
 
 
 class _History:
@@ -84,7 +85,8 @@ class Record:
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
         self.wall_time: float = result.get("wall_time", 0.0)
-        self.build = MappingProxyType(dict(result.get("build", _BUILD)))
+        build = result.get("build", _BUILD)  # a loaded run may have that of another core
+        self.build = _BUILD if build == _BUILD else MappingProxyType(dict(build))
         self._trace = {name: freeze_array(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
 
