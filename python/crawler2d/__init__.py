@@ -10,6 +10,16 @@ Units are SI, angles radians, x forward, y up.
 'cleared'
 """
 
+import sys
+
+from crawler2d.common import ctrl_c
+
+# All else takes a moment, in which it may be regretted that the command was called.
+if ctrl_c.is_command(sys.argv, sys.orig_argv):
+    ctrl_c.end_in_one_line()
+
+# isort: split
+
 from importlib import import_module
 from typing import TYPE_CHECKING
 

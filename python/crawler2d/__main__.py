@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import NamedTuple, NoReturn
 
 from crawler2d._core import build_info
+from crawler2d.common import ctrl_c
 from crawler2d.common.keywords import suggestion
 from crawler2d.errors import Crawler2dError, ScenarioWarning
 
@@ -91,6 +92,7 @@ def run_command(
     options.parser = parser
     called = f"{prog} {options.command}"
     try:
+        ctrl_c.raise_again()
         with _doubts_in_one_line(called):
             status = commands[options.command].run(options)
         print(end="", flush=True)  # noqa: T201 - nothing may fail later, unseen

@@ -162,3 +162,22 @@ def test_what_the_program_says_of_itself_goes_to_the_standard_output(option: str
     if option == "--version":
         (line,) = done.stdout.splitlines()
         assert line.startswith(f"crawler2d {info['version']}, core {info['build_id']} (release,")
+
+
+def test_ctrl_c_ends_the_import_of_the_command_in_one_line(tmp_path: Path) -> None:
+    """A numpy that takes long stands for a slow disc."""
+    (tmp_path / "numpy.py").write_text("print(flush=True); import time; time.sleep(60.0)")
+    with started(tmp_path, "demo") as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "\n"
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=30.0)
+    assert (process.returncode, out, err) == (130, "", "crawler2d: interrupted\n")
+
+
+def test_ctrl_c_is_an_exception_for_programs_that_import_the_package() -> None:
+    program = "import signal, crawler2d; print(signal.getsignal(signal.SIGINT).__name__)"
+    done = subprocess.run(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True
+    )
+    assert done.stdout == "default_int_handler\n"
