@@ -1,6 +1,7 @@
 """Draws docs/readme.png, the example of README.md in side view; `make picture` runs it."""
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
@@ -30,8 +31,10 @@ def draw() -> Figure:
 
     for axes in (on_wheels, on_belt):
         axes.get_legend().remove()
-    labels = on_wheels.get_legend_handles_labels()
-    figure.legend(*labels, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+    handles, labels = on_wheels.get_legend_handles_labels()
+    shown = [label.partition(", up to")[0] for label in labels]  # each picture has its own scale
+    options: Any = {"ncols": 3, "fontsize": "small", "frameon": False}
+    figure.legend(handles, shown, loc="outside lower center", **options)
     return figure
 
 

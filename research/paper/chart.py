@@ -20,7 +20,7 @@ from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d.common.extras import extra
-from crawler2d.drawings.palette import BLACK, GREEN, RED, VIOLET
+from crawler2d.drawings.palette import BLACK, GREEN, ORANGE, PALE, RED, SKY, VIOLET
 from crawler2d.presets.unknowns import RUN_UP
 from research import paper
 from research.models import study_robot
@@ -65,8 +65,8 @@ _DIAGONAL = "diagonal barrier"
 _REAL_TORQUES = (6.0, 12.0)
 """[N m] Of a plausible drive: the preset's torque, and twice as much."""
 
-_COLORS = {"agrees": GREEN, "open": "#A5DCC9", "below": "#9CC3E6", "above": "#F4C07A"}
-_EXCLUDED = "#E4E4E4"
+TILES = {"agrees": GREEN, "open": "#F5EE9E", "below": SKY, "above": ORANGE}
+EXCLUDED = PALE
 
 _ABOVE = 0.25
 """Of a tile: so that words leave the room to the points of drives."""
@@ -462,15 +462,15 @@ def _explain(figure: Figure, verdicts: Sequence[Verdict]) -> None:
     words = ("cleared / runs: agrees with the paper", "open", "below the paper", "above it")
     handles = [
         patches.Patch(color=color, label=text)
-        for color, text in zip(_COLORS.values(), words, strict=True)
+        for color, text in zip(TILES.values(), words, strict=True)
     ]
     handles += [
         lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
         lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),
         patches.Patch(fill=False, edgecolor=VIOLET, linewidth=2.0, label="plausible real drive"),
         patches.Patch(color=GREEN, label="bottom row: left by all nine cells (p at least 0.05)"),
-        patches.Patch(color=_COLORS["open"], label="left without the diagonal barrier"),
-        patches.Patch(color=_EXCLUDED, label="excluded"),
+        patches.Patch(color=TILES["open"], label="left without the diagonal barrier"),
+        patches.Patch(color=EXCLUDED, label="excluded"),
     ]
     figure.legend(
         handles=handles,
@@ -489,7 +489,7 @@ def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> 
         if row.count:
             rate = row.cleared / row.count
             side = "below" if rate < hits / PAPER_RUNS else "above"
-            color = _COLORS.get(cell_verdict(row, hits), _COLORS[side])
+            color = TILES.get(cell_verdict(row, hits), TILES[side])
             _tile(ax, grid.tile(row.torque, row.inertia), color, f"{row.cleared}/{row.count}")
 
 
@@ -508,7 +508,7 @@ def _tile(ax: Axes, place: tuple[float, float], color: str, text: str, above: fl
 def _draw_verdicts(ax: Axes, verdicts: Sequence[Verdict], grid: _Grid) -> None:
     grid.prepare(ax, named=True)
     for each in verdicts:
-        straight = _COLORS["open"] if each.straight >= LEVEL else _EXCLUDED
+        straight = TILES["open"] if each.straight >= LEVEL else EXCLUDED
         color = GREEN if each.is_left else straight
         chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
         text = f"{each.differing} differ\np {chance}"

@@ -16,6 +16,7 @@ from crawler2d.drawings import palette
 from crawler2d.pictures.rates import LOOKS
 from crawler2d.results.outcome import OUTCOMES
 from crawler2d.results.record import NO_RESULT
+from research.paper.chart import EXCLUDED, TILES
 
 # Linear RGB as it is seen without L cones (protanopia) or M cones (deuteranopia), which one man in
 # fifty has: G. M. Machado et al., IEEE Trans. Vis. Comput. Graph. 15 (2009), table 1, severity 1.
@@ -75,6 +76,7 @@ def test_lines_have_colours_that_stay_apart(sight: str) -> None:
 @of_each_sight
 def test_surfaces_have_colours_that_stay_apart(sight: str) -> None:
     assert closest(sorted({color for color, _ in LOOKS.values()}), sight) > LEAST
+    assert closest([*TILES.values(), EXCLUDED], sight) > LEAST
 
 
 @of_each_sight
