@@ -4,6 +4,7 @@ import itertools
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,12 +12,13 @@ from matplotlib import colors
 from matplotlib import pyplot as plt
 from numpy.typing import NDArray
 
-import crawler2d
+import crawler2d as c2d
 from crawler2d.drawings import palette
 from crawler2d.pictures.rates import LOOKS
 from crawler2d.results.outcome import OUTCOMES
 from crawler2d.results.record import NO_RESULT
 from research.paper.chart import EXCLUDED, TILES
+from tests.shared import ROBOT
 
 # Linear RGB as it is seen without L cones (protanopia) or M cones (deuteranopia), which one man in
 # fifty has: G. M. Machado et al., IEEE Trans. Vis. Comput. Graph. 15 (2009), table 1, severity 1.
@@ -82,7 +84,7 @@ def test_surfaces_have_colours_that_stay_apart(sight: str) -> None:
 @of_each_sight
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_pages_have_colours_that_stay_apart(sight: str, scheme: str) -> None:
-    page = Path(crawler2d.__file__).parent / "pictures" / "page" / "page.css"
+    page = Path(c2d.__file__).parent / "pictures" / "page" / "page.css"
     part = page.read_text(encoding="utf-8").split("@media (prefers-color-scheme: dark)")
     own = dict(re.findall(r"--([\w-]+): (#\w+);", part[scheme == "dark"]))
     marks = [own[name] for name in ("force", "speed", "intrusion", "stop", "goal")]
@@ -109,3 +111,22 @@ def test_the_style_of_lines_is_the_palette() -> None:
     assert [(look["color"], look["linestyle"]) for look in cycle] == [
         (look["color"], look["linestyle"]) for look in looks
     ]
+
+
+def test_the_style_changes_nothing_that_the_package_draws() -> None:
+    wheels = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
+    run = c2d.simulate(wheels, c2d.terrains.step(0.075), duration=1.0)
+
+    def drawn() -> list[tuple[Any, ...]]:
+        axes = [run.plot(), *run.plot_history(), wheels.plot(), run.scenario.plot()]
+        looks = [
+            (line.get_color(), line.get_marker(), line.get_linestyle())
+            for ax in axes
+            for line in ax.get_lines()
+        ]
+        # A mark has no line, and takes any.
+        return [look if look[1] == "None" else look[:2] for look in looks]
+
+    usual = drawn()
+    with plt.style.context("crawler2d.lines"):
+        assert drawn() == usual

@@ -45,7 +45,7 @@ _NARROW = 75
 
 _COLOR = "#555555"
 _TEXT: Any = {"color": _COLOR, "fontsize": "x-small", "zorder": 3, "textcoords": "offset points"}
-_THIN: Any = {"color": _COLOR, "linewidth": 0.4, "zorder": 1.8}
+_THIN: Any = {"color": _COLOR, "linestyle": "-", "linewidth": 0.4, "zorder": 1.8}
 _ARROW = {"color": _COLOR, "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 7}
 # [point] From a line to its label.
 _OFFSET = 3.0

@@ -62,7 +62,8 @@ class Outlines:
             if fill:
                 (area,) = ax.fill([], [], color=color, alpha=fill * alpha, linewidth=0.0, zorder=2)
                 self._fills.append((body, area))
-            (line,) = ax.plot([], [], color=color, alpha=alpha, linewidth=width, zorder=2)
+            line_look: Any = {"color": color, "linestyle": "-", "linewidth": width}
+            (line,) = ax.plot([], [], alpha=alpha, zorder=2, **line_look)
             self._lines.append((body, line))
         if self._shoes:
             # A chain has dozens of pieces; one artist for all of them is fast.

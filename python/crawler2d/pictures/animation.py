@@ -213,7 +213,7 @@ class Film:
                 runs, scenes, views, axes, sizes, labels, strict=True
             )
         ]
-        axes[0].plot([], [], color=RED, linewidth=2.5, label=forces)
+        axes[0].plot([], [], "-", color=RED, linewidth=2.5, label=forces)
         legend = draw_legend(axes[0] if beside else axes[-1], axes)
         titles = [picture.title for picture in self._pictures]
         arrange(self.figure, axes, titles, legend, beside=beside)

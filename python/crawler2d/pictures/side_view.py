@@ -38,7 +38,7 @@ _GHOSTS = (SKY, ORANGE, GREEN, PURPLE)
 _MOST_POSES = 7
 """Of the robot in one side view."""
 
-_PATH: Any = {"linewidth": 1.2, "zorder": 3}
+_PATH: Any = {"linestyle": "-", "linewidth": 1.2, "zorder": 3}
 
 
 def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bool) -> Axes:
@@ -151,14 +151,14 @@ def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, 
     if not isinstance(axes, (tuple, list, np.ndarray)) or len(axes) != 3:
         raise ScenarioError("axes", axes, "must be three Axes")
     angle, speed, force = (check_axes(ax, f"axes[{row}]") for row, ax in enumerate(axes))
-    angle.plot(time, np.degrees(run.chassis_angle), color=BLUE)
+    angle.plot(time, np.degrees(run.chassis_angle), "-", color=BLUE)
     angle.set_ylabel("chassis\nangle [deg]")
-    speed.plot(time, run.track_speed, color=BLUE, linewidth=2.5, label="track")
-    speed.plot(time, run.velocity[:, 0], color=ORANGE, label="chassis, along x")
+    speed.plot(time, run.track_speed, "-", color=BLUE, linewidth=2.5, label="track")
+    speed.plot(time, run.velocity[:, 0], "-", color=ORANGE, label="chassis, along x")
     look: Any = {"color": BLACK, "linestyle": "--", "linewidth": 1.0}
     speed.plot(time, run.commanded_speed, **look, label="commanded")
     speed.set_ylabel("speed [m/s]")
-    force.plot(time, run.drive_force, color=RED)
+    force.plot(time, run.drive_force, "-", color=RED)
     force.set(ylabel="drive\nforce [N]", xlabel="time [s]")
     stopped = run.events["kind"] == "stop"
     stops = np.column_stack([run.events["start"], run.events["end"]])[stopped]

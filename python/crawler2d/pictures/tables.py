@@ -184,17 +184,17 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
         factor, unit = _readable(row)
         low, high = row["range_low"].item(), row["range_high"].item()
         span = high - low or 1.0
-        ax.plot([0.0, 1.0], [k, k], zorder=1, solid_capstyle="butt", **styles["range"])
+        ax.plot([0.0, 1.0], [k, k], "-", zorder=1, solid_capstyle="butt", **styles["range"])
         for begin, end in _parts(row):
             ends = (np.array([begin, end]) - low) / span
-            ax.plot(ends, [k, k], zorder=2, solid_capstyle="butt", **styles["outcome"])
+            ax.plot(ends, [k, k], "-", zorder=2, solid_capstyle="butt", **styles["outcome"])
         own = (row["own"].item() - low) / span
         ax.plot(own, k, "D", zorder=4, **styles["own"])
         ax.annotate(f"{factor * row['own'].item():.3g}", (own, k), **_label(above=False))
         crossing = 0.5 * (row["bracket_low"].item() + row["bracket_high"].item())
         if np.isfinite(crossing):
             x = (crossing - low) / span
-            ax.plot([x, x], [k - 0.22, k + 0.1], zorder=3, **styles["half"])
+            ax.plot([x, x], [k - 0.22, k + 0.1], "-", zorder=3, **styles["half"])
             bounds = [factor * row[f"bracket_{end}"].item() for end in ("low", "high")]
             again = "" if row["monotone"].item() else ", and again"
             text = f"{_between(*bounds)} {unit}".rstrip() + again
