@@ -154,7 +154,7 @@ notices: | tools ## write anew whose libraries the compiled core contains; after
 # Nothing is on the PATH there: neither cargo nor a compiler.
 test-wheel: wheel ## the wheel in a fresh environment without a compiler
 	@rm -rf $(VENV)/fresh && $(PYTHON) -m venv $(VENV)/fresh
-	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check --only-binary :all: "$$(ls dist/*.whl)[models,analysis,sensitivity]"
+	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check --only-binary :all: "$$(ls dist/*.whl)[models,plot,analysis,sensitivity]" ipykernel nbclient
 	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin python $(CURDIR)/tests/fresh_wheel.py
 
 tools:

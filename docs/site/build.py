@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from check import faults_in
+from notebooks import offer
 from sphinx.cmd.build import build_main
 
 HERE = Path(__file__).resolve().parent
@@ -52,6 +53,7 @@ def main(arguments: list[str]) -> int:
     trees = ["-d", str(PAGES / ".trees")]
     if status := build_main([*options, *arguments, *trees, str(PAGES), str(SITE)]):
         return status
+    offer(ROOT / "studies", SITE / "studies")
     shutil.copyfile(HERE / "start.html", SITE / "index.html")
     faults = faults_in(SITE)
     pages = len(list(SITE.rglob("*.html")))
