@@ -69,7 +69,7 @@ fn mean_pull(track: &Track, torque: f64, starts: u32) -> (f64, f64) {
 fn on_rails_a_belt_with_grousers_pulls_like_the_chain() {
     let starts = few_or_many(6, 48);
     for torque in [2.0, 4.0, 6.0, 20.0] {
-        if torque > 6.0 && !is_soak() {
+        if ![2.0, 6.0].contains(&torque) && !is_soak() {
             continue;
         }
         let (belt, of_belt) = mean_pull(&grouser_belt(), torque, starts);
