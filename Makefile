@@ -156,6 +156,8 @@ test-wheel: wheel ## the wheel in a fresh environment without a compiler
 	@rm -rf $(VENV)/fresh && $(PYTHON) -m venv $(VENV)/fresh
 	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check --only-binary :all: "$$(ls dist/*.whl)[models,plot,analysis,sensitivity]" ipykernel nbclient
 	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin python $(CURDIR)/tests/fresh_wheel.py
+	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check uv
+	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin UV_CACHE_DIR=cache uvx --quiet --from "$$(ls $(CURDIR)/dist/*.whl)" crawler2d demo
 
 tools:
 	@if [ -z "$(PYTHON)" ]; then \
