@@ -1,5 +1,6 @@
 """What the tests are given: how long to test, a scenario, a run."""
 
+import os
 import signal
 from collections.abc import Callable
 
@@ -12,6 +13,9 @@ from tests.shared import ROBOT, SOAK
 
 # A process that a shell starts in the background ignores Ctrl-C, and so would those that it starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Of the many processes that import the package the first writes its byte code, for all others.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 hypothesis.settings.register_profile("test", max_examples=50, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("soak", max_examples=10_000, deadline=None)

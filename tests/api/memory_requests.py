@@ -106,7 +106,6 @@ REQUESTS: list[Callable[[], None]] = [
     fine_histories,
     forty_large_grounds,
     forty_grounds,
-    a_million_points,
     many_threads,
     many_grousers,
     a_long_name,
@@ -116,6 +115,7 @@ REQUESTS: list[Callable[[], None]] = [
     a_chain,
     an_ordinary_run,
     an_ordinary_sweep,
+    a_million_points,
 ]
 
 

@@ -1,6 +1,7 @@
 """An audit says of a seizure whether it depends on rotors and on restitution."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -8,9 +9,7 @@ import crawler2d as c2d
 from crawler2d.audits.sampling import Assumption, assumptions_of
 from crawler2d.audits.words import conclusion
 from crawler2d.variation.distributions import Ranges
-
-ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
-STEP = {"step of 75 mm": c2d.terrains.step(0.075)}
+from tests.audits.seizing import QUIET, SEIZING, STEP
 
 
 def test_a_rotor_that_is_stated_is_assumed_no_other() -> None:
@@ -36,17 +35,19 @@ def test_a_seizure_holds_if_the_lower_bound_of_its_rate_is_above_5_percent(
 
 
 def test_each_seizure_is_driven_again_under_each_assumption_and_reported() -> None:
-    found = c2d.audit(ROBOT, STEP, quick=True, repair=False, progress=False)
+    # At full speed alone, where runs are short; of the samples the first 18 are taken.
+    how: Any = {"vary": c2d.variability.of_start(), "samples": 20, "repeats": 1}
+    found = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)
     assert found.seizes
     (blows,) = found.assumed
     assert (blows.obstacle, blows.assumption, blows.made) == ("step of 75 mm", "restitution", 18)
     assert blows.seized <= 18
     assert any("With rebound (restitution 0 to 1)" in each for each in conclusion(found))
-    again = c2d.audit(ROBOT, STEP, quick=True, repair=False, progress=False)
+    again = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)
     assert again.assumed == found.assumed
 
 
 def test_nothing_is_assumed_where_everything_is_known() -> None:
-    found = c2d.audit(ROBOT, STEP, unknown={}, repeats=4, repair=False, progress=False)
+    found = c2d.audit(SEIZING, STEP, unknown={}, repeats=4, repair=False, **QUIET)
     assert found.seizes
     assert found.assumed == ()

@@ -34,6 +34,7 @@ def test_files_that_others_include_and_files_of_macros_are_no_models(forest: Pat
     assert names == ["cart/cart.urdf", "other/urdf/<b>.urdf", "other/urdf/whole.xacro"]
 
 
+@pytest.mark.usefixtures("one_obstacle")
 def test_the_page_has_every_model_with_its_licence_and_why_it_was_not_read(
     forest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -87,7 +87,7 @@ def test_a_part_of_the_runs_is_the_same_as_in_an_audit_of_that_many(found: c2d.A
 
 def test_repeats_of_a_robot_are_all_made() -> None:
     unknown = {"robot.mass": c2d.scaled(0.99, 1.01)}
-    found = c2d.audit(SEIZING, STEP, unknown=unknown, samples=13, repeats=2, repair=False, **QUIET)
+    found = c2d.audit(SEIZING, STEP, unknown=unknown, samples=4, repeats=2, repair=False, **QUIET)
     assert (found.table["outcome"] != "").all()
 
 
@@ -124,7 +124,8 @@ def test_what_is_known_before_the_runs_is_told_before_them() -> None:
 
 
 def test_a_quick_audit_has_fewer_samples_and_tries_round_wheels_alone() -> None:
-    found = c2d.audit(SEIZING, STEP, quick=True, **QUIET)
+    start = c2d.variability.of_start()
+    found = c2d.audit(SEIZING, STEP, vary=start, quick=True, repeats=1, **QUIET)
     assert found.table.sizes["sample"] == 36
     assert {each.kind for each in found.repairs} == {"wheels", "belt"}
     assert {each.trial for each in found.verdicts[0].freed} <= {
@@ -235,7 +236,7 @@ def test_a_robot_that_does_not_seize_is_not_repaired() -> None:
 
 
 def test_repairs_can_be_left_out() -> None:
-    found = c2d.audit(SEIZING, STEP, unknown={}, repeats=10, repair=False, **QUIET)
+    found = c2d.audit(SEIZING, STEP, unknown={}, repeats=2, repair=False, **QUIET)
     assert found.seizes
     assert found.repaired is None
 

@@ -176,11 +176,26 @@ def yaml(name: str) -> Any:
     return pytest.importorskip("yaml").safe_load((ROOT / name).read_text("utf-8"))
 
 
-def python_of_this_test(folder: Path) -> dict[str, str]:
-    """An environment in which `python` is the interpreter that runs this test, with its package."""
+# Its arguments are those of `python -m crawler2d`.
+ON_ONE_STEP = """
+import sys
+import crawler2d as c2d
+from crawler2d.__main__ import main
+from crawler2d.audits import audit
+audit.standard_obstacles = lambda *_: {"step of 75 mm": c2d.terrains.step(0.075)}
+sys.exit(main(sys.argv[3:]))
+"""
+
+
+def python_of_this_test(folder: Path, *program: str) -> dict[str, str]:
+    """An environment in which `python` is the interpreter that runs this test, with its package.
+
+    It runs a program in place of the one that it is asked for, if there is one.
+    """
     (folder / "bin").mkdir()
     shim = folder / "bin" / "python"
-    shim.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} "$@"\n', encoding="utf-8")
+    words = shlex.join([sys.executable, *program])
+    shim.write_text(f'#!/bin/sh\nexec {words} "$@"\n', encoding="utf-8")
     shim.chmod(0o755)
     package = Path(c2d.__file__).parents[1]
     return {
@@ -204,12 +219,22 @@ def step(action: Any, name: str, inputs: dict[str, str], env: dict[str, str]) ->
     return subprocess.run(words, env={**env, **filled}, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.parametrize(
+    "program",
+    [
+        pytest.param(("-c", ON_ONE_STEP), id="one obstacle"),
+        pytest.param((), id="standard obstacles", marks=pytest.mark.soak),
+    ],
+)
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
-def test_the_action_audits_the_models_of_a_repository(repository: Path, tmp_path: Path) -> None:
+def test_the_action_audits_the_models_of_a_repository(
+    repository: Path, tmp_path: Path, program: tuple[str, ...]
+) -> None:
     action = yaml("action.yml")
     files = {name: tmp_path / name for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
-    env = {**python_of_this_test(tmp_path), **{key: str(path) for key, path in files.items()}}
-    few = {"args": "--samples 3 --no-repairs --threads 2", "files": "models/*.urdf"}
+    python = python_of_this_test(tmp_path, *program)
+    env = {**python, **{key: str(path) for key, path in files.items()}}
+    few = {"args": "--samples 1 --repeats 1 --no-repairs --threads 2", "files": "models/*.urdf"}
     done = step(action, "Audit", few, env)
     assert done.returncode == 1, done.stderr
     summary = files["GITHUB_STEP_SUMMARY"].read_text("utf-8")

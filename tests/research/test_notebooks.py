@@ -2,15 +2,30 @@
 
 import ast
 import functools
+import inspect
 import re
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
 
+import crawler2d as c2d
 from tests.research.notebooks import NOTEBOOKS, executed, hash_of_sources, kept_hash, read, shown
 
 of_each = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+
+SHORT = ("phase_rule", "why_it_stopped")
+"""Notebooks that take seconds; `make soak` runs the others, too."""
+
+of_each_run = pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, id=path.stem, marks=() if path.stem in SHORT else pytest.mark.soak)
+        for path in NOTEBOOKS
+    ],
+)
 
 
 @functools.cache
@@ -53,7 +68,41 @@ def test_a_finding_is_asserted_in_the_next_cell(path: Path) -> None:
         assert asserts(cells[k + 1].source) >= findings(cells[k].source), cells[k].source
 
 
+def code_of(path: Path) -> list[str]:
+    return [cell.source for cell in read(path).cells if cell.cell_type == "code"]
+
+
+def named(node: ast.expr) -> Any:
+    """What an expression names in the package; None if it is no such name."""
+    if isinstance(node, ast.Name):
+        return c2d if node.id == "c2d" else None
+    if isinstance(node, ast.Attribute) and (owner := named(node.value)) is not None:
+        return getattr(owner, node.attr)
+    return None
+
+
 @of_each
+def test_what_a_notebook_asks_of_the_package_is_there(path: Path) -> None:
+    """Names and keywords, also where no short run comes."""
+    asked = 0
+    for node in ast.walk(ast.parse("\n".join(code_of(path)))):
+        if isinstance(node, ast.Attribute):
+            named(node)
+        if isinstance(node, ast.Call) and (called := named(node.func)) is not None:
+            positional = [None for each in node.args if not isinstance(each, ast.Starred)]
+            keywords = {each.arg: None for each in node.keywords if each.arg is not None}
+            inspect.signature(called).bind_partial(*positional, **keywords)
+            asked += 1
+    assert asked > 3
+
+
+@of_each
+def test_what_a_notebook_starts_from_can_be_made(path: Path) -> None:
+    """Its first cell: robots, models, grounds."""
+    exec(code_of(path)[0], {})
+
+
+@of_each_run
 def test_the_notebook_runs_and_warns_of_nothing(path: Path) -> None:
     kinds = [kind for cell in shown(quick_run(path)) for kind, _ in cell]
     assert "image/png" in kinds
@@ -66,7 +115,7 @@ def test_the_outputs_are_those_of_the_sources(path: Path) -> None:
     assert kept_hash(committed) == hash_of_sources(committed), "run make notebooks"
 
 
-@of_each
+@of_each_run
 def test_every_cell_that_shows_something_has_it_committed(path: Path) -> None:
     made, committed = (
         [[kind for kind, _ in cell] for cell in shown(notebook)]

@@ -5,6 +5,7 @@ import html
 import itertools
 import math
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -281,21 +282,35 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
         assert (deepest.end == run.metrics["time"]) == run.outcome.is_stop
 
 
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param(("belt", "line of 3", "line of 4, touching", "line of 3 gears"), id="some"),
+        pytest.param(tuple(MODELS), id="all", marks=pytest.mark.soak),
+    ],
+)
 def test_the_quick_study_writes_its_tables_and_its_pictures(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    names: tuple[str, ...],
 ) -> None:
-    monkeypatch.setattr(seizure, "QUICK", TINY)
+    models = {name: MODELS[name] for name in names}
+    # An edge on which wheels that touch seize.
+    design = replace(TINY, heights={**TINY.heights, "knife edge": (0.04,)})
+    monkeypatch.setattr(seizure, "QUICK", design)
+    monkeypatch.setattr(seizure, "Sweeps", partial(Sweeps, models=models))
     out = tmp_path / "out"
     assert main(["seizure", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "torque 6.0 N m per sprocket" in printed
     text = (out / "study.txt").read_text(encoding="utf-8")
     assert set(text.splitlines()) <= set(printed.splitlines())
-    for name in MODELS:
+    for name in models:
         assert name in text
     with (out / "rates.csv").open(newline="") as file:
         rates = list(csv.DictReader(file))
-    assert len(rates) == len(MODELS) * (3 + len(study_robots()))
+    assert len(rates) == len(models) * (3 + len(study_robots()))
     with (out / "runs_step.csv").open(newline="") as file:
         runs = list(csv.DictReader(file))
     assert {run["outcome"] for run in runs} <= {str(outcome) for outcome in c2d.Outcome}

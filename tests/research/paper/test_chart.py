@@ -1,6 +1,9 @@
 """The chart of drives: what its command writes and keeps."""
 
+import contextlib
 import csv
+import io
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,6 +13,7 @@ import crawler2d as c2d
 from research.__main__ import main
 from research.paper import chart
 from research.paper.chart import TABLES, DriveCell, Drives, real_inertias
+from research.paper.command import STORE
 from research.paper.design import PRESET
 from research.paper.table_2 import COLUMNS
 
@@ -25,29 +29,39 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_chart_tables_and_page_come_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    page = tmp_path / "page.md"
+@pytest.fixture(scope="module")
+def charted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """What the command wrote, and what it printed."""
+    folder = tmp_path_factory.mktemp("chart")
+    page = folder / "page.md"
     page.write_text("Ours:\n\n<!-- drives -->\n<!-- end of drives -->\n")
-    assert main(["chart", "--out", str(tmp_path), *TINY, "--into", str(page)]) == 0
-    printed = capsys.readouterr().out
-    found = rows(tmp_path / "paper_drives.csv")
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        assert main(["chart", "--out", str(folder), *TINY, "--into", str(page)]) == 0
+    return folder, printed.getvalue()
+
+
+def test_chart_tables_and_page_come_out(charted: tuple[Path, str]) -> None:
+    folder, printed = charted
+    found = rows(folder / "paper_drives.csv")
     assert len(found) == 2 * 4 * 3  # drives, layouts, fields
     counts = {row["model"]: row["count"] for row in found}
     assert counts == dict(zip(COLUMNS, "3321", strict=True))
     assert {row["cleared"] for row in found} == {"0"}
-    joint = rows(tmp_path / "paper_drives_joint.csv")
+    joint = rows(folder / "paper_drives_joint.csv")
     assert {row["reading"] for row in joint} == {"large gears", "small gears"}
     assert all(float(row["probability"]) < 0.05 for row in joint)
-    assert (tmp_path / "paper_drives.png").stat().st_size > 10_000
-    text = page.read_text()
+    assert (folder / "paper_drives.png").stat().st_size > 10_000
+    text = (folder / "page.md").read_text()
     assert "54 runs, of 2 drives at frictions of 0.5; runs a cell: " in text
     assert "| 0.5 | large gears | 0 of 2 |" in text
     assert all(line in printed for line in text.splitlines() if line.startswith("| 0.5"))
 
 
 def test_drives_that_are_left_are_tried_more_often(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    charted: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    shutil.copy(charted[0] / STORE, tmp_path)  # the runs that both need
+
     def first_reading(rows: Sequence[DriveCell]) -> set[str]:
         return {model for _, model in TABLES["large gears"]} if rows[0].torque == 0.1 else set()
 

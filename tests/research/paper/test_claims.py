@@ -1,7 +1,6 @@
 """Eq. (1) and the claims of the paper."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,16 +16,31 @@ from research.paper.claims import (
     unevenness,
 )
 from research.paper.design import QUICK, Work, layouts
-from research.paper.figures import equation_text, gear_angles, off_formula, phases, shaking
+from research.paper.figures import (
+    Shaking,
+    equation_text,
+    gear_angles,
+    off_formula,
+    phases,
+    shaking,
+)
 
 
-def work(folder: Path) -> Work:
+@pytest.fixture(scope="module")
+def work(tmp_path_factory: pytest.TempPathFactory) -> Work:
+    """Few runs, in a store: what one test has simulated another has not to."""
     design = replace(QUICK, claim_repeats=2, driving_repeats=1)
-    return Work(store=folder / "paper.sqlite", design=design, threads=1, progress=False)
+    store = tmp_path_factory.mktemp("claims") / "paper.sqlite"
+    return Work(store=store, design=design, threads=1, progress=False)
 
 
-def test_gears_start_at_the_angles_of_equation_1(tmp_path: Path) -> None:
-    found = phases(work(tmp_path))
+@pytest.fixture(scope="module")
+def shaken(work: Work) -> list[Shaking]:
+    return shaking(work)
+
+
+def test_gears_start_at_the_angles_of_equation_1(work: Work) -> None:
+    found = phases(work)
     assert {row.model: row.count for row in found}["line of 3"] == 6  # and three on the flipper
     assert max(row.off for row in found) < 1e-12  # rounding
 
@@ -41,8 +55,9 @@ def test_another_phase_is_off_equation_1() -> None:
     assert off_formula(number, angle, theta) == pytest.approx(theta / 6.0)
 
 
-def test_a_third_of_theta_takes_most_of_the_swing_but_not_for_three_gears(tmp_path: Path) -> None:
-    shaken = shaking(work(tmp_path))
+def test_a_third_of_theta_takes_most_of_the_swing_but_not_for_three_gears(
+    work: Work, shaken: list[Shaking]
+) -> None:
     swings = {(row.count, round(row.fraction, 2)): row.swing for row in shaken}
     # In step all wheels stand on two grousers at once, then on one: a chord between the corners of
     # two tips, 6 mm thick, of seven. Looked at every 10 ms.
@@ -51,9 +66,9 @@ def test_a_third_of_theta_takes_most_of_the_swing_but_not_for_three_gears(tmp_pa
         assert swings[count, 0.0] == pytest.approx(0.064 * (1.0 - np.cos(half)), rel=0.01)
     assert swings[5, 0.33] < 0.1 * swings[5, 0.0]
     assert swings[3, 0.5] < swings[3, 0.33] < 0.5 * swings[3, 0.0]
-    rough, third = shaking_of_gears(work(tmp_path), shaken)
+    rough, third = shaking_of_gears(work, shaken)
     assert (rough.verdict, third.verdict) == ("holds", "holds in part")
-    assert "eq. (1) within" in equation_text(phases(work(tmp_path)), shaken)
+    assert "eq. (1) within" in equation_text(phases(work), shaken)
 
 
 @pytest.mark.parametrize("count", [5, 9])
@@ -72,8 +87,8 @@ def test_slots_are_as_deep_as_the_belly_is_high() -> None:
     assert geometry().verdict == "holds in part"
 
 
-def test_five_gears_stay_on_an_edge_of_2_mm_that_three_gears_clear(tmp_path: Path) -> None:
-    claim = gears_end_seizure(work(tmp_path))
+def test_five_gears_stay_on_an_edge_of_2_mm_that_three_gears_clear(work: Work) -> None:
+    claim = gears_end_seizure(work)
     held = {check.what: check.holds for check in claim.checks}
     assert not held["line of 5 gears clear an edge 2 mm thick"]
     assert held["line of 5 gears clear an edge 10 mm thick"]
@@ -82,10 +97,10 @@ def test_five_gears_stay_on_an_edge_of_2_mm_that_three_gears_clear(tmp_path: Pat
     assert "| 1 | gears end seizure on sharp edges |" in claims_text([claim])
 
 
-def test_every_claim_has_its_verdict(tmp_path: Path) -> None:
+def test_every_claim_has_its_verdict(work: Work, shaken: list[Shaking]) -> None:
     tiny = replace(QUICK, claim_repeats=1, field_repeats=1, driving_repeats=1, computing_repeats=1)
-    little = replace(work(tmp_path), design=tiny)
-    found = claims(little, shaking(little))
+    little = replace(work, design=tiny)
+    found = claims(little, shaken)
     verdicts = {claim.text: claim.verdict for claim in found}
     assert len(verdicts) == len(found) >= 15
     unasked = [text for text, verdict in verdicts.items() if verdict == "cannot be asked here"]
@@ -95,7 +110,7 @@ def test_every_claim_has_its_verdict(tmp_path: Path) -> None:
     assert verdicts["the protrusions of gears complicate odometry"] == "holds"
 
 
-def test_a_force_is_unlike_a_belt_at_a_step(tmp_path: Path) -> None:
-    held = {check.what: check.holds for check in force_is_flat(work(tmp_path)).checks}
+def test_a_force_is_unlike_a_belt_at_a_step(work: Work) -> None:
+    held = {check.what: check.holds for check in force_is_flat(work).checks}
     assert held["flat: as the belt"]
     assert held["step of 60 mm: unlike the belt"]

@@ -50,18 +50,23 @@ def judge(rng: np.random.Generator, table: Table, count: int) -> dict[tuple[floa
     }
 
 
-def test_the_region_holds_the_true_drive_and_leaves_out_those_far_from_it() -> None:
+# Fewer come with a chance of 0.6 and 1.6 % at 95 % each, and the seed is fixed.
+@pytest.mark.parametrize(
+    ("tables", "least"), [(8, 6), pytest.param(20, 17, marks=pytest.mark.soak)]
+)
+def test_the_region_holds_the_true_drive_and_leaves_out_those_far_from_it(
+    tables: int, least: int
+) -> None:
     rng = np.random.default_rng(7)
     held, sizes = 0, []
-    for _ in range(20):
+    for _ in range(tables):
         table = {cell: int(rng.binomial(PAPER_RUNS, p)) for cell, p in rates(*TRUE).items()}
         verdicts = judge(rng, table, 40)
         held += verdicts[TRUE].is_left
         sizes.append(sum(each.is_left for each in verdicts.values()))
         assert not verdicts[1.0, 0.01].is_left
         assert not verdicts[1000.0, 1.0].is_left
-    # Of 20, fewer than 17 come with a chance of 1.6 % at 95 % each, and the seed is fixed.
-    assert held >= 17
+    assert held >= least
     # The rates depend on one sum of the two logarithms: drives that share it cannot be told apart.
     assert np.mean(sizes) < 0.4 * len(TORQUES) * len(INERTIAS)
 
