@@ -1,8 +1,12 @@
 """What the tests are given: how long to test, a scenario, a run."""
 
+from __future__ import annotations
+
 import os
 import signal
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import hypothesis
 import pytest
@@ -10,6 +14,9 @@ import pytest
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from tests.shared import ROBOT, SOAK
+
+if TYPE_CHECKING:
+    from tests.fuzz.standing_child import StandingChildren
 
 # A process that a shell starts in the background ignores Ctrl-C, and so would those that it starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -51,3 +58,26 @@ def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
 def _no_thread_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep a limit of the developer's own out of the tests."""
     monkeypatch.delenv("CRAWLER2D_THREADS", raising=False)
+
+
+@pytest.fixture(scope="session")
+def children() -> Iterator[StandingChildren]:
+    """Children of the reader that stand ready."""
+    from tests.fuzz.standing_child import StandingChildren  # noqa: PLC0415 - not on Windows
+
+    children = StandingChildren()
+    yield children
+    children.stop()
+
+
+@pytest.fixture
+def children_of_its_own() -> None:
+    """The reader starts a process for each file, as ever: for tests of these processes."""
+
+
+@pytest.fixture(autouse=True)
+def _standing_children(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pay for what the reader's processes import once, not a second a file."""
+    if sys.platform != "win32" and "children_of_its_own" not in request.fixturenames:
+        children: StandingChildren = request.getfixturevalue("children")
+        monkeypatch.setattr("crawler2d.reading.parsing.subprocess.run", children.run)

@@ -37,7 +37,7 @@ def seen(seized: int, made: int, samples: int) -> tuple[Verdict, bool]:
     return verdict, is_certain(table, verdict)
 
 
-@pytest.mark.parametrize("samples", [36, 80])
+@pytest.mark.parametrize("samples", [36, pytest.param(80, marks=pytest.mark.soak)])
 def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> None:
     """Exactly, over all that can come: the share of looks that end with an interval about it.
 
@@ -72,10 +72,11 @@ def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> 
         assert seizes == pytest.approx(sum(c for share, c in fixed if share.low > 0.05))
 
 
-def test_a_verdict_on_a_part_that_seizes_is_that_on_all_runs() -> None:
+@pytest.mark.parametrize("draws", [40, pytest.param(150, marks=pytest.mark.soak)])
+def test_a_verdict_on_a_part_that_seizes_is_that_on_all_runs(draws: int) -> None:
     rng = np.random.default_rng(0)
     left = 0
-    for _ in range(150):
+    for _ in range(draws):
         chances = rng.dirichlet([1.0, 1.0, 1.0])
         own = rng.choice(["seized", "cleared", "hung_up"], size=36, p=chances).tolist()
         belt = rng.choice(["cleared", "slipping"], size=36, p=[0.8, 0.2]).tolist()
@@ -87,7 +88,7 @@ def test_a_verdict_on_a_part_that_seizes_is_that_on_all_runs() -> None:
                 assert whole.word == "seizes"
                 left += 1
                 break
-    assert left > 50
+    assert left > draws / 3
 
 
 @pytest.mark.parametrize(

@@ -132,11 +132,9 @@ def test_every_link_has_a_target_and_every_name_is_there_once(file_page: Page) -
     assert {(link or "")[1:] for link in links} <= set(names)
 
 
-@pytest.mark.parametrize("name", [HOSTILE, "</TITLE><script>alert(1)</script>", "rouge-gorge é"])
-def test_names_are_only_ever_text(
-    of_file: c2d.Audit, file_page: Page, tmp_path: Path, name: str
-) -> None:
+def test_names_are_only_ever_text(of_file: c2d.Audit, file_page: Page, tmp_path: Path) -> None:
     """Those of robot and links in a file, of the file, and of obstacles."""
+    name = f"{HOSTILE}</TITLE><script>alert(1)</script>rouge-gorge é"
     path = tmp_path / "cart <b>&.urdf"
     quoted = html.escape(name.replace("\u2028", " "))
     path.write_text(seizing_file(quoted, quoted), encoding="utf-8")

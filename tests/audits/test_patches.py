@@ -26,7 +26,7 @@ def audited(request: Any, tmp_path_factory: Any) -> c2d.Audit:
     """Four touching wheels as a file, on a step of 75 mm, everything known but the start."""
     path = tmp_path_factory.mktemp("model") / f"robot.{request.param}"
     getattr(STRONG, f"to_{request.param}")(path, friction=0.9)
-    return c2d.audit(path, STEP, unknown={}, repeats=20, engine="gz", **QUIET)
+    return c2d.audit(path, STEP, unknown={}, repeats=20, quick=True, engine="gz", **QUIET)
 
 
 def test_the_changed_file_gets_over_where_the_file_seized(
@@ -37,7 +37,7 @@ def test_the_changed_file_gets_over_where_the_file_seized(
     path = tmp_path / audited.reading.path.name
     diff = audited.patch(path)
     assert diff.startswith(f"--- {path.name}\n+++ ")
-    again = c2d.audit(path, STEP, unknown={}, repeats=20, seed=1, engine="gz", **QUIET)
+    again = c2d.audit(path, STEP, unknown={}, repeats=20, seed=1, quick=True, engine="gz", **QUIET)
     assert again.verdicts[0].cleared.rate >= 0.95
     assert not again.seizes
     assert len(again.robot.wheels()) == 2 * audited.repairs[0].wheels
@@ -173,7 +173,7 @@ def test_a_changed_file_warns_of_nothing_that_is_in_the_lint(tmp_path: Path) -> 
     slow = replace(STRONG, moment_of_inertia=6.0)
     with pytest.warns(ScenarioWarning, match="moment_of_inertia"):
         slow.to_urdf(tmp_path / "slow.urdf", friction=0.9)
-    how: Any = {"unknown": {}, "repeats": 9, "engine": "gz", **QUIET}
+    how: Any = {"unknown": {}, "repeats": 9, "quick": True, "engine": "gz", **QUIET}
     found = c2d.audit(tmp_path / "slow.urdf", STEP, **how)
     assert any("moment_of_inertia" in each.what for each in found.lint)
     assert best_change(found) is not None

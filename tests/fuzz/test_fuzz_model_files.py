@@ -134,7 +134,10 @@ def check(account: Account) -> None:
     assert account.counts["refused"] > 0
 
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and limits of Unix")
+pytestmark = [
+    pytest.mark.skipif(sys.platform == "win32", reason="has pipes and limits of Unix"),
+    pytest.mark.usefixtures("children_of_its_own"),
+]
 
 
 @pytest.fixture(autouse=True)

@@ -19,6 +19,8 @@ from crawler2d.reading.expressions import NAMES, NotAllowed, copy_data, evaluate
 from tests.fuzz.standing_child import StandingChild
 from tests.reading.carts import FILES, ROBOTS, WHEELS, XACRO, quietly, read, urdf
 
+pytestmark = pytest.mark.usefixtures("children_of_its_own")  # one that stands ready
+
 HERE = Path(__file__).parent
 
 # Escapes from evaluated Python that were published, and their relatives; one a line.

@@ -17,10 +17,7 @@ import crawler2d as c2d
 from tests.reading.carts import FILES, WHEELS, XACRO, collision, left_out, read, refused, urdf
 from tests.reading.odd_files import ODD
 
-pytestmark = [
-    pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix"),
-    pytest.mark.usefixtures("standing_children"),
-]
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix")
 
 CORNERS = [(x, y, z) for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.0, 0.05)]
 OBJ = "\n".join(f"v {x} {y} {z}" for x, y, z in CORNERS)

@@ -21,8 +21,6 @@ from tests.reading.carts import (
     wheel,
 )
 
-pytestmark = pytest.mark.usefixtures("standing_children")
-
 SDF = quietly(FILES / "cart.sdf")
 
 

@@ -96,6 +96,7 @@ def test_part_of_a_mesh_is_left_out(tmp_path: Path) -> None:
     left_out(tmp_path, text.replace(box, part), "only a part of it, lid", "cart.sdf")
 
 
+@pytest.mark.usefixtures("children_of_its_own")
 def test_a_mesh_that_is_there_needs_the_extra(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

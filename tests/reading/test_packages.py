@@ -11,8 +11,6 @@ import pytest
 from crawler2d.reading.files import VARIABLES
 from tests.reading.carts import WHEELS, XACRO, collision, left_out, read, refused, urdf
 
-pytestmark = pytest.mark.usefixtures("standing_children")
-
 OBJ = "\n".join(f"v {x} {y} {z}" for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.0, 0.05))
 NAMED = ("package://parts/", "model://parts/", "$(find parts)/", "file://$(find-pkg-share parts)/")
 PACKAGE = "<?xml version='1.0'?><!-- <name>no</name> -->\n<package><name> parts </name></package>"

@@ -20,8 +20,6 @@ from tests.reading.carts import WHEELS, XACRO, collision, read, refused, urdf
 from tests.robots.tree_keys import Key, keys
 
 pytest.importorskip("xacrodoc")
-pytestmark = pytest.mark.usefixtures("standing_children")
-
 OLD = '<robot name="cart" xmlns:xacro="http://ros.org/wiki/xacro">'
 NO_PACKAGE = r"is left out: the file must be in a package that is found in .*: packages="
 NO_MACRO = (

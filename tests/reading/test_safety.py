@@ -10,6 +10,8 @@ import pytest
 import crawler2d as c2d
 from tests.reading.carts import FILES, WHEELS, XACRO, read, urdf
 
+pytestmark = pytest.mark.usefixtures("children_of_its_own")
+
 BOMB = """<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa">
 <!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>
 <robot name="&b;"/>"""
