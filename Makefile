@@ -35,8 +35,9 @@ test: ## all tests (Rust, Python, documentation) and all checks
 CARGO_TEST := cargo test --release --package crawler2d-core --package crawler2d-python
 test-rust: | tools
 	$(CARGO_TEST)
+# In the order of `testpaths`: sorted by their number of tests, files of few long ones would come last, on one core.
 test-python: $(VENV)/.built
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 test-debug: | tools
 	$(CARGO) test --package crawler2d-core --test facts every_build
 

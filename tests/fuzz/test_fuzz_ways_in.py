@@ -92,12 +92,12 @@ pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 
 
 def test_a_changed_text_is_a_scenario_or_is_refused(capfd: pytest.CaptureFixture[str]) -> None:
-    check("texts", from_text, 5_000)
+    check("texts", from_text, 1_500)
     assert "panicked" not in capfd.readouterr().err
 
 
 def test_odd_objects_are_a_scenario_or_are_refused(capfd: pytest.CaptureFixture[str]) -> None:
-    check("objects", from_objects, 5_000)
+    check("objects", from_objects, 1_500)
     assert "panicked" not in capfd.readouterr().err
 
 

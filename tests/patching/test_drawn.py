@@ -51,8 +51,8 @@ def check(number: int, name: str, folder: Path) -> bool:
     return True
 
 
+@pytest.mark.parametrize("many", [10, pytest.param(40, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("name", SUFFIX)
-def test_any_wheels_that_a_file_gets_are_read_again(name: str, tmp_path: Path) -> None:
-    many = 40 if name != "mjcf" else 8  # each of these starts a process
+def test_any_wheels_that_a_file_gets_are_read_again(name: str, many: int, tmp_path: Path) -> None:
     made = sum(check(number, name, tmp_path) for number in range(many))
     assert made > many // 2

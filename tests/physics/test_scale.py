@@ -4,6 +4,7 @@ import copy
 import json
 import math
 import warnings
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,17 @@ CASES: dict[tuple[str, Any], Scenario] = {
     ),
     ("flippers", 0.2): CLIMB,
 }
-ids = pytest.mark.parametrize("case", CASES, ids=[f"{a}, {b}" for a, b in CASES])
+# Chains take longer than all others together: by default they have one step.
+LONG = [case for case in CASES if case[0].startswith("chain") and case[1] > 0.05]
+ids = pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(
+            case, id=", ".join(map(str, case)), marks=pytest.mark.soak if case in LONG else ()
+        )
+        for case in CASES
+    ],
+)
 # A doubt says that nobody builds such robots.
 any_mass = pytest.mark.filterwarnings("ignore:robot.mass:crawler2d.ScenarioWarning")
 
@@ -79,6 +90,12 @@ def scaled(scenario: Scenario, length: float, mass: float, time: float) -> Scena
     return Scenario.from_json(json.dumps(of(to_dict(scenario), "")))
 
 
+@cache
+def original(case: tuple[str, Any]) -> c2d.Run:
+    """The run of a case as it is, which several tests compare with."""
+    return c2d.simulate(CASES[case])
+
+
 @pytest.mark.parametrize("size", [10.0, 1.0 / 16.0])
 @ids
 def test_a_copy_of_another_size_runs_and_ends_as_the_original(
@@ -88,7 +105,7 @@ def test_a_copy_of_another_size_runs_and_ends_as_the_original(
     time = math.sqrt(size)
     with warnings.catch_warnings():
         warnings.simplefilter("error", c2d.ScenarioWarning)
-        run = c2d.simulate(CASES[case])
+        run = original(case)
         other = c2d.simulate(scaled(CASES[case], size, size**3, time))
     assert other.outcome == run.outcome
     metrics = {name: value for name, value in other.metrics.items() if name != "time_to_clear"}
@@ -108,7 +125,7 @@ def test_robots_of_any_mass_move_alike_to_the_last_bit(
     case: tuple[str, Any], factor: float
 ) -> None:
     """Limits of mass are those of float64: nothing is lost near them."""
-    run = c2d.simulate(CASES[case])
+    run = original(case)
     heavy = scaled(CASES[case], 1.0, factor, 1.0)
     other = c2d.simulate(heavy)
     assert other.outcome == run.outcome

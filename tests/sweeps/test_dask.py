@@ -49,7 +49,7 @@ def test_rows_of_a_cluster_are_those_of_one_thread(cluster: Any, tmp_path: Path)
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 @pytest.mark.parametrize(
-    ("repeats", "kills"), [(40, 1), pytest.param(2500, 5, marks=pytest.mark.soak)]
+    ("repeats", "kills"), [(15, 1), pytest.param(2500, 5, marks=pytest.mark.soak)]
 )
 def test_a_killed_worker_loses_nothing(
     cluster: Any, tmp_path: Path, repeats: int, kills: int

@@ -189,7 +189,7 @@ def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:
 SWEEP = """
 import sys
 import crawler2d as c2d
-base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03), duration=4.0)
+base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03), duration=2.0)
 over = {"terrain.height": [0.01 * k for k in range(1, 11)]}
 repeats = int(sys.argv[2])
 c2d.sweep(base, over, repeats=repeats, store=sys.argv[1], progress=False, threads=2)
@@ -198,7 +198,7 @@ c2d.sweep(base, over, repeats=repeats, store=sys.argv[1], progress=False, thread
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 @pytest.mark.parametrize(
-    ("repeats", "kills"), [(150, 3), pytest.param(2000, 30, marks=pytest.mark.soak)]
+    ("repeats", "kills"), [(60, 3), pytest.param(2000, 30, marks=pytest.mark.soak)]
 )
 def test_a_killed_sweep_goes_on_where_it_was(tmp_path: Path, repeats: int, kills: int) -> None:
     path, whole = tmp_path / "a.sqlite", tmp_path / "b.sqlite"

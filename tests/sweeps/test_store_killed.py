@@ -29,7 +29,7 @@ def rows(tmp_path_factory: pytest.TempPathFactory) -> list[Row]:
 
 
 # The kernel stops it some 280 times.
-@pytest.mark.parametrize("every", [23, pytest.param(1, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("every", [11, pytest.param(1, marks=pytest.mark.soak)])
 def test_a_store_killed_while_created_is_opened_again(tmp_path: Path, every: int) -> None:
     found = []
     for stop in itertools.count(0, every):
@@ -81,7 +81,7 @@ def holds(path: Path, rows: list[Row]) -> int:
     return len(found)
 
 
-@pytest.mark.parametrize("kills", [6, pytest.param(300, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("kills", [12, pytest.param(300, marks=pytest.mark.soak)])
 def test_a_killed_process_loses_no_finished_row(
     tmp_path: Path, rows: list[Row], kills: int
 ) -> None:

@@ -173,7 +173,7 @@ def draw(rng: Generator) -> tuple[str, Scenario]:
 
 def stops(seed: int, count: int, trials: Any) -> Iterator[tuple[str, c2d.Run]]:
     """Yield this many runs that ended in a stop, with their groups; trials are made of each."""
-    rng, found, at_a_time = np.random.default_rng(seed), 0, 60
+    rng, found, at_a_time = np.random.default_rng(seed), 0, min(count, 60)
     while found < count:
         drawn = [draw(rng) for _ in range(at_a_time)]
         runs = c2d.simulate_many(

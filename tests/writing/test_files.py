@@ -196,7 +196,7 @@ def attempt(number: int) -> int:
 
 @pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 def test_any_legal_robot_is_written_or_refused_by_a_rule() -> None:
-    assert sum(attempt(number) for number in range(60)) > 10
+    assert sum(attempt(number) for number in range(20)) > 3
 
 
 @pytest.mark.soak

@@ -147,7 +147,7 @@ def check(numbers: range, name: str, folder: Path, *, is_tapered: bool = False) 
 
 @pytest.mark.parametrize("name", ["sdf", "urdf"])
 def test_gear_wheels_are_read_as_they_were_written(name: str, tmp_path: Path) -> None:
-    check(range(30), name, tmp_path)
+    check(range(10), name, tmp_path)
 
 
 @pytest.mark.parametrize("is_tapered", [False, True])
