@@ -193,14 +193,14 @@ def test_20000_mutated_meshes_are_read_or_left_out(tmp_path: Path, form: str) ->
 
 def test_a_mutated_mjcf_file_is_read_or_refused(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    check(go_through(tmp_path, cases("CHILDREN", 6), MJCF))
+    check(go_through(tmp_path, cases("CHILDREN", 12), MJCF))
 
 
 @TRUST
 def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path, trusted: bool) -> None:
     pytest.importorskip("xacrodoc")
     how = {"trusted": trusted, **LENIENT}
-    check(go_through(tmp_path, cases("CHILDREN", 6), XACRO, parts=NAMED_BY_XACRO, **how))
+    check(go_through(tmp_path, cases("CHILDREN", 12), XACRO, parts=NAMED_BY_XACRO, **how))
 
 
 @pytest.mark.soak
