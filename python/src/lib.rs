@@ -196,12 +196,12 @@ mod _core {
         }
     }
 
-    /// Simulates up to a time, then continues as another scenario.
+    /// Simulates up to a time, or so many starts of trials later, then continues as another scenario.
     #[pyfunction]
     fn branch<'py>(
         py: Python<'py>,
         text: PyBackedStr,
-        at: f64,
+        at: (f64, usize),
         variant: PyBackedStr,
         push: (f64, f64),
         sample_interval: f64,
@@ -232,21 +232,24 @@ mod _core {
         PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed.
+    /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed; also returns how
+    /// many starts later the run began that is told of.
     #[pyfunction]
-    fn what_if(
-        py: Python<'_>,
+    fn what_if<'py>(
+        py: Python<'py>,
         text: PyBackedStr,
         at: f64,
         variant: PyBackedStr,
         push: (f64, f64),
-    ) -> PyResult<Option<Bound<'_, PyDict>>> {
+    ) -> PyResult<Option<(Bound<'py, PyDict>, usize)>> {
         let found = run_interruptible(py, move |cancel| {
             let scenario = ValidScenario::from_json(&text)?;
             let variant = ValidScenario::from_json_like(&variant, Some(&scenario))?;
             crawler2d_core::what_if(&scenario, at, (&variant, push), cancel)
         })?;
-        found.map(|trial| convert::trial(py, &trial)).transpose()
+        found
+            .map(|(trial, later)| Ok((convert::trial(py, &trial)?, later)))
+            .transpose()
     }
 
     /// The scenario of a trial, and its run.

@@ -85,7 +85,8 @@ class Trial(TrialResult, Generic[R]):
     position, chassis_angle, flipper_angles
         See `TrialResult`.
     run : Run
-        From the instant of the stop on; simulated again when it is first asked for.
+        From the instant of the stop on, or, where the robot rattles and is tried from several, from
+        the first that ended as most of them; simulated again when it is first asked for.
     """
 
     simulate: Callable[[], R] = field(repr=False)
@@ -98,7 +99,7 @@ class Trial(TrialResult, Generic[R]):
 
     @cached_property
     def run(self) -> R:
-        """The run from the instant of the stop on."""
+        """The run that the result is of."""
         return self.simulate()
 
 
@@ -150,12 +151,13 @@ def run_of_trial(run: Record, time: float, name: str) -> tuple[Scenario, dict[st
 
 def try_variant(
     run: Record, time: float, variant: Scenario, push: tuple[float, float]
-) -> TrialResult:
-    """Try to continue from a stop as another scenario."""
-    result = _core.what_if(run.scenario.to_json(), time, variant.to_json(), push)
-    if result is None:
+) -> tuple[TrialResult, int]:
+    """Try to continue from a stop as another scenario; return the start of its run, too."""
+    found = _core.what_if(run.scenario.to_json(), time, variant.to_json(), push)
+    if found is None:
         raise ScenarioError("run", run, "must have stopped")
-    return TrialResult.from_core(result)
+    result, start = found
+    return TrialResult.from_core(result), start
 
 
 def refuse_without_result(run: Record) -> None:
@@ -231,10 +233,12 @@ def simulate_branch(
     push: tuple[float, float] | None,
     record: RecordMode,
     sample_interval: float,
+    start: int = 0,
 ) -> dict[str, Any]:
-    """Repeat the run up to a time, and continue as another scenario."""
+    """Repeat the run up to a time, or to a start after a stop, and continue as another scenario."""
     kept = check_recording(sample_interval, record)
-    return _core.branch(run.scenario.to_json(), time, variant.to_json(), read_push(push), *kept)
+    text, place = variant.to_json(), (time, start)
+    return _core.branch(run.scenario.to_json(), place, text, read_push(push), *kept)
 
 
 def read_push(push: tuple[float, float] | None) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from textwrap import indent
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from crawler2d import _core
 from crawler2d.common.keywords import takes_keywords
@@ -184,7 +184,7 @@ class Run(ShownRun):
             drive=drive,
             duration=duration,
         )
-        return self._branch_as(variant, time, push, record, sample_interval)
+        return self._branch_as(variant, time, push, record=record, sample_interval=sample_interval)
 
     def trials(self) -> tuple[Trial[Run], ...]:
         """Try everything that might free the robot from the stop that the run ended in.
@@ -282,21 +282,22 @@ class Run(ShownRun):
             drive=drive,
             duration=None,
         )
-        result = try_variant(self, time, variant, read_push(push))
+        result, start = try_variant(self, time, variant, read_push(push))
         variant = variant.replace({"duration": result.duration})
-        return Trial.of(result, partial(self._branch_as, variant, time, push))
+        return Trial.of(result, partial(self._branch_as, variant, time, push, start=start))
 
     def _branch_as(
         self,
         variant: Scenario,
         time: float,
         push: tuple[float, float] | None,
+        *,
         record: RecordMode = "full",
         sample_interval: float = 0.01,
+        start: int = 0,
     ) -> Run:
-        result = simulate_branch(
-            self, time, variant, push=push, record=record, sample_interval=sample_interval
-        )
+        how: Any = {"push": push, "record": record, "sample_interval": sample_interval}
+        result = simulate_branch(self, time, variant, start=start, **how)
         return Run(variant, result, trunk=(self.scenario, time))
 
     def _run_of_trial(self, time: float, trial: TrialResult) -> Run:

@@ -35,20 +35,24 @@ pub(crate) fn simulate_within(
 }
 
 /// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration, with a push that
-/// rises to a force [N] in a time [s].
+/// rises to a force [N] in a time [s]. Of a stop it begins so many starts later as [`what_if`](crate::what_if) says, a
+/// fifth of a stop window each.
 ///
 /// # Errors
 /// As [`simulate`], [`Error::Scenario`] if the push is out of range, and [`Error::Interrupted`] once `cancel` is asked.
 pub fn branch(
     scenario: &ValidScenario,
-    at: f64,
+    (at, later): (f64, usize),
     (variant, push): (&ValidScenario, (f64, f64)),
     record: Record,
     cancel: &Cancel,
 ) -> Result<Run, Error> {
     let clock = Clock::start();
     let budget = batch_budget(std::slice::from_ref(variant), record, 1)?;
-    let trunk = Simulation::replayed(scenario, at, cancel)?;
+    let mut trunk = Simulation::replayed(scenario, at, cancel)?;
+    for _ in 0..later {
+        trunk = trials::next_start(&trunk, cancel)?;
+    }
     let mut simulation = trunk.branch(variant);
     simulation.raise_push(push.0, push.1)?;
     let end = simulation.time() + variant.scenario().duration;
@@ -69,7 +73,7 @@ pub fn run_of_trial(
 ) -> Result<Option<(Scenario, Run)>, Error> {
     let clock = Clock::start();
     let stop = Simulation::replayed(scenario, at, cancel)?;
-    let Some(mut started) = trials::start(&stop, change)? else {
+    let Some(mut started) = trials::shown_start(&stop, change, cancel)? else {
         return Ok(None);
     };
     let budget = batch_budget(std::slice::from_ref(scenario), record, 1)?;

@@ -113,7 +113,8 @@ pub fn make_trials(
 }
 
 /// Simulates `scenario` up to the time `at` [s], where it has stopped, and tries to continue as `variant` with a push
-/// that rises to a force [N] in a time [s]; `None` if it has not stopped.
+/// that rises to a force [N] in a time [s]; `None` if it has not stopped. Also returns how many starts after the stop the
+/// run began that the trial tells of: see [`branch`](crate::branch).
 ///
 /// # Errors
 /// As [`branch`](crate::branch).
@@ -122,7 +123,7 @@ pub fn what_if(
     at: f64,
     (variant, push): (&ValidScenario, (f64, f64)),
     cancel: &Cancel,
-) -> Result<Option<Trial>, Error> {
+) -> Result<Option<(Trial, usize)>, Error> {
     let stop = Simulation::replayed(scenario, at, cancel)?;
     let Some(found) = stop.examine() else {
         return Ok(None);
@@ -134,6 +135,31 @@ pub fn what_if(
     };
     let mut series = TrialSeries::new(&stop, &found, cancel);
     series.attempt("changed", (STARTS, pose_duration(&stop)), &start)
+}
+
+/// The next instant from which a stop is tried: a fifth of a stop window later.
+pub(super) fn next_start(last: &Simulation, cancel: &Cancel) -> Result<Simulation, Error> {
+    let mut next = last.copy();
+    next.advance(last.stop_window() / f64::from(STARTS))?;
+    cancel.check()?;
+    Ok(next)
+}
+
+/// The start of the run that a trial tells of: of a robot that rattles it may be a later one than the stop. `None` if the
+/// change makes no sense for the robot.
+pub(super) fn shown_start(
+    stop: &Simulation,
+    change: Change,
+    cancel: &Cancel,
+) -> Result<Option<Simulation>, Error> {
+    let Some(found) = stop.examine().filter(|found| !found.stationary) else {
+        return start(stop, change);
+    };
+    let mut series = TrialSeries::new(stop, &found, cancel);
+    match series.attempt_change(change)? {
+        Some((_, shown)) => start(series.start(shown)?, change),
+        None => Ok(None),
+    }
 }
 
 /// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
@@ -204,36 +230,43 @@ impl<'a> TrialSeries<'a> {
         if let Some(made) = self.trials.iter().find(|trial| trial.name == name) {
             return Ok(made.freed);
         }
+        // A robot that cannot be built, or whose state becomes non-finite, tells nothing of the stop.
+        let made = match self.attempt_change(change) {
+            Err(Error::Scenario(_) | Error::Simulation(_)) => None,
+            made => made?,
+        };
+        let freed = made.as_ref().is_some_and(|(trial, _)| trial.freed);
+        self.trials.extend(made.map(|(trial, _)| trial));
+        Ok(freed)
+    }
+
+    /// Tries a change; returns which start the trial tells of, too.
+    fn attempt_change(&mut self, change: Change) -> Result<Option<(Trial, usize)>, Error> {
         // A run that goes on passes through all the other starts, and a run has one beginning.
         let is_single = change == Change::Nothing || change.is_from_the_start();
         let most = if is_single { 1 } else { STARTS };
         let duration = duration(&self.starts[0], change);
-        // A robot that cannot be built, or whose state becomes non-finite, tells nothing of the stop.
-        let made = match self.attempt(name, (most, duration), &|stop| start(stop, change)) {
-            Err(Error::Scenario(_) | Error::Simulation(_)) => None,
-            made => made?,
-        };
-        let freed = made.as_ref().is_some_and(|trial| trial.freed);
-        self.trials.extend(made);
-        Ok(freed)
+        self.attempt(change.name(), (most, duration), &|stop| start(stop, change))
     }
 
-    /// Tries a change for a time [s] from as many starts as it takes to decide, `most` of them if the robot rattles.
+    /// Tries a change for a time [s] from as many starts as it takes to decide, `most` of them if the robot rattles;
+    /// returns the first that ended as most of them, and its place.
     fn attempt(
         &mut self,
         name: &'static str,
         (most, duration): (u32, f64),
         start: &dyn Fn(&Simulation) -> Result<Option<Simulation>, Error>,
-    ) -> Result<Option<Trial>, Error> {
+    ) -> Result<Option<(Trial, usize)>, Error> {
         let most = if self.rattles { most } else { 1 };
         let enough = ENOUGH.min(most);
-        let mut runs: [Vec<Trial>; 2] = Default::default();
+        let mut runs: [Vec<(Trial, usize)>; 2] = Default::default();
         for i in 0..most {
-            let Some(started) = start(self.start(i as usize)?)? else {
+            let place = i as usize;
+            let Some(started) = start(self.start(place)?)? else {
                 return Ok(None);
             };
             let run = self.follow(started, name, duration)?;
-            runs[usize::from(run.freed)].push(run);
+            runs[usize::from(run.freed)].push((run, place));
             let [stays, frees] = [0, 1].map(|k| runs[k].len() as u32);
             if frees == enough || stays > most - enough {
                 break;
@@ -242,21 +275,21 @@ impl<'a> TrialSeries<'a> {
         let [stays, freeing] = [0, 1].map(|k| runs[k].len() as u32);
         let freed = freeing >= enough;
         let first = runs[usize::from(freed)].drain(..).next();
-        Ok(first.map(|run| Trial {
-            freed,
-            starts: stays + freeing,
-            freeing,
-            ..run
+        Ok(first.map(|(run, place)| {
+            let trial = Trial {
+                freed,
+                starts: stays + freeing,
+                freeing,
+                ..run
+            };
+            (trial, place)
         }))
     }
 
-    /// The instants from which a stop is tried: a fifth of a stop window apart, from the stop on.
+    /// The instants from which a stop is tried, from the stop on.
     fn start(&mut self, i: usize) -> Result<&Simulation, Error> {
         while self.starts.len() <= i {
-            let last = &self.starts[self.starts.len() - 1];
-            let mut next = last.copy();
-            next.advance(last.stop_window() / f64::from(STARTS))?;
-            self.cancel.check()?;
+            let next = next_start(&self.starts[self.starts.len() - 1], self.cancel)?;
             self.starts.push(next);
         }
         Ok(&self.starts[i])
