@@ -227,7 +227,7 @@ def test_a_film_goes_where_a_link_leads(short: c2d.Run, tmp_path: Path) -> None:
     assert short.animate(link, fps=4.0, width=300) == link
     assert sorted(tmp_path.iterdir()) == [tmp_path / "a film", link]
     assert link.is_symlink()
-    assert len(frames_of(tmp_path / "a film")) == 3
+    assert len(frames_of(tmp_path / "a film")) == 2
 
 
 def test_a_folder_in_place_of_the_file_is_an_error_before_anything_is_drawn(
