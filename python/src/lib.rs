@@ -235,13 +235,13 @@ mod _core {
     /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed; also returns how
     /// many starts later the run began that is told of.
     #[pyfunction]
-    fn what_if<'py>(
-        py: Python<'py>,
+    fn what_if(
+        py: Python<'_>,
         text: PyBackedStr,
         at: f64,
         variant: PyBackedStr,
         push: (f64, f64),
-    ) -> PyResult<Option<(Bound<'py, PyDict>, usize)>> {
+    ) -> PyResult<Option<(Bound<'_, PyDict>, usize)>> {
         let found = run_interruptible(py, move |cancel| {
             let scenario = ValidScenario::from_json(&text)?;
             let variant = ValidScenario::from_json_like(&variant, Some(&scenario))?;
