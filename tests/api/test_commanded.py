@@ -13,6 +13,7 @@ import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.simulation import State
 
+# With arms so short that they stay off the ground at the angles of these tests.
 TWO_ENDS = (
     c2d.robots.engineer()
     .without_flippers()

@@ -91,7 +91,7 @@ class Drive(Parameters, path="drive"):
         without flippers, so that a sweep may remove the flippers and keep the gait. A function is
         for a `Simulation` alone, which calls it every 10 ms of simulated time with its `State`. It
         returns the angle [rad] of all flippers, or a pair of those at the front and at the rear;
-        None leaves them where they are to be.
+        None leaves their command unchanged.
 
     Examples
     --------
