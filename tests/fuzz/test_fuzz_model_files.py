@@ -116,9 +116,10 @@ def go_through(
         account.took(seconds, case)
         if seconds > LONGEST:
             account.fault("too slow", f"{case}: {seconds:.1f} s")
-    # The system keeps the most that any child ever had: one of another test is none of these.
+    # The system keeps the most that any child ever had, and counts what a child is forked from: the
+    # whole of this process. What is no more than either says nothing of these children.
     child = megabytes(resource.RUSAGE_CHILDREN)
-    of_children = child if child > largest_child else 0.0
+    of_children = child if child > max(largest_child, megabytes()) else 0.0
     of_forks = standing.megabytes if standing else 0.0
     account.megabytes = max(megabytes() - before, of_children, of_forks)
     if account.megabytes > MOST:
