@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from crawler2d import studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
+    from crawler2d.runs.jams import Jam, jams
     from crawler2d.runs.saved import load
     from crawler2d.sweeps.rates import rate
     from crawler2d.sweeps.sequential import Until, sequential
@@ -98,6 +99,7 @@ __all__ = [
     "Hold",
     "HybridWheels",
     "InternalError",
+    "Jam",
     "Lane",
     "LimitError",
     "LineOfWheels",
@@ -126,6 +128,7 @@ __all__ = [
     "check_store",
     "compare",
     "explore",
+    "jams",
     "join_stores",
     "load",
     "newcombe",
@@ -159,6 +162,8 @@ _LAZY = {
     "Reading": "crawler2d.reading.reading",
     "read_robot": "crawler2d.reading.reading",
     "studies": "crawler2d.studies",
+    "Jam": "crawler2d.runs.jams",
+    "jams": "crawler2d.runs.jams",
     "Until": "crawler2d.sweeps.sequential",
     "check_store": "crawler2d.sweeps.store",
     "compare": "crawler2d.sweeps.sweep",

@@ -1,9 +1,9 @@
 //! Converts the core's data to dictionaries of `NumPy` columns; values that are not known are None.
 
 use crawler2d_core::{
-    Balance, BodyKind, Change, ContactTable, Diagnosis, Edge, Event, Intrusion, LoadedIntrusion,
-    Mechanism, Model, Outcome, Record, Run, Side, StopContact, TipOver, Trace, Trial, Vector,
-    Wanted, WheelBody,
+    Balance, BodyKind, Change, ContactTable, Diagnosis, Edge, Event, FoundJam, Intrusion,
+    JamContact, JamRange, LoadedIntrusion, Mechanism, Model, Outcome, Record, Run, Side,
+    StopContact, TipOver, Trace, Trial, Vector, Wanted, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
@@ -328,6 +328,63 @@ pub(crate) fn balance<'py>(py: Python<'py>, found: &Balance) -> PyResult<Bound<'
     let pulls = found.pulls.iter();
     let pulls = pulls.map(|pull| (pull.body, (pull.point.x, pull.point.y), pull.force));
     result.set_item("pulls", PyTuple::new(py, pulls.collect::<Vec<_>>())?)?;
+    Ok(result)
+}
+
+/// Poses of jams, the ground inside the track there, and whether they are stable; their contacts, with the index of the jam
+/// that each belongs to.
+#[allow(clippy::cast_possible_wrap)] // indices are small
+pub(crate) fn jams<'py>(py: Python<'py>, found: &[FoundJam]) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    let inside = |f: &FoundJam| f.intrusion.as_ref().map(|i| (i.depth, i.bodies));
+    result.set_item("x", column(py, found, |f| f.jam.position.x))?;
+    result.set_item("y", column(py, found, |f| f.jam.position.y))?;
+    result.set_item("angle", column(py, found, |f| f.jam.angle))?;
+    result.set_item("stable", column(py, found, |f| f.stable))?;
+    let depth = column(py, found, |f| inside(f).map_or(0.0, |(depth, _)| depth));
+    result.set_item("depth", depth)?;
+    let bodies = found.iter().map(|f| inside(f).map(|(_, bodies)| bodies));
+    result.set_item("between", bodies.collect::<Vec<_>>())?;
+    let of = |(k, f): (usize, &FoundJam)| {
+        let rows = f.jam.contacts.iter().map(move |contact| (k, *contact));
+        rows.collect::<Vec<_>>()
+    };
+    let rows: Vec<(usize, JamContact)> = found.iter().enumerate().flat_map(of).collect();
+    let number = |value: fn(&JamContact) -> f64| column(py, &rows, |(_, c)| value(c));
+    let contacts = PyDict::new(py);
+    contacts.set_item("jam", column(py, &rows, |(k, _)| *k as i64))?;
+    contacts.set_item("body", column(py, &rows, |(_, c)| c.part as i64))?;
+    contacts.set_item("body_kind", column(py, &rows, |(_, c)| c.kind as i64))?;
+    contacts.set_item("edge", column(py, &rows, |(_, c)| c.edge.unwrap_or(-1)))?;
+    contacts.set_item("x", number(|c| c.point.x))?;
+    contacts.set_item("y", number(|c| c.point.y))?;
+    contacts.set_item("normal_x", number(|c| c.normal.x))?;
+    contacts.set_item("normal_y", number(|c| c.normal.y))?;
+    contacts.set_item("normal_load", number(|c| c.load))?;
+    contacts.set_item("friction", number(|c| c.friction))?;
+    result.set_item("contacts", contacts)?;
+    Ok(result)
+}
+
+/// Poses on three contacts, the frictions at which they carry, and the ground inside the track there.
+pub(crate) fn jam_ranges<'py>(
+    py: Python<'py>,
+    found: &[(JamRange, Option<Intrusion>)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("x", column(py, found, |(jam, _)| jam.position.x))?;
+    result.set_item("y", column(py, found, |(jam, _)| jam.position.y))?;
+    result.set_item("angle", column(py, found, |(jam, _)| jam.angle))?;
+    result.set_item("low", column(py, found, |(jam, _)| jam.friction[0]))?;
+    result.set_item("high", column(py, found, |(jam, _)| jam.friction[1]))?;
+    let depth = column(py, found, |(_, inside)| {
+        inside.as_ref().map_or(0.0, |i| i.depth)
+    });
+    result.set_item("depth", depth)?;
+    let bodies = found
+        .iter()
+        .map(|(_, inside)| inside.as_ref().map(|i| i.bodies));
+    result.set_item("between", bodies.collect::<Vec<_>>())?;
     Ok(result)
 }
 

@@ -306,6 +306,35 @@ mod _core {
         found.map(|found| convert::balance(py, &found)).transpose()
     }
 
+    /// All poses in which the robot can stand still while its drives run: columns of the poses and of their contacts.
+    #[pyfunction]
+    fn jams(py: Python<'_>, text: PyBackedStr) -> PyResult<Bound<'_, PyDict>> {
+        let found = run_interruptible(py, move |cancel| {
+            crawler2d_core::find_jams(&ValidScenario::from_json(&text)?, cancel)
+        })?;
+        convert::jams(py, &found)
+    }
+
+    /// The jams on three contacts of several scenarios, at every friction up to one: for each the columns of poses, of the
+    /// least friction and the greatest, and of the ground inside the track.
+    #[pyfunction]
+    fn jam_ranges(
+        py: Python<'_>,
+        texts: Vec<PyBackedStr>,
+        most: f64,
+    ) -> PyResult<Vec<Bound<'_, PyDict>>> {
+        let found = run_interruptible(py, move |cancel| {
+            let of = |text: &PyBackedStr| {
+                crawler2d_core::jam_ranges(&ValidScenario::from_json(text)?, most, cancel)
+            };
+            texts.iter().map(of).collect::<Result<Vec<_>, _>>()
+        })?;
+        found
+            .iter()
+            .map(|ranges| convert::jam_ranges(py, ranges))
+            .collect()
+    }
+
     /// Version and build of the compiled core.
     #[pyfunction]
     fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {

@@ -22,6 +22,7 @@ mod dynamics;
 mod engine;
 mod error;
 mod geometry;
+mod jams;
 mod limits;
 mod names;
 mod observe;
@@ -41,6 +42,7 @@ pub use dynamics::ChainReading;
 pub use engine::OWN_SETTINGS;
 pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
+pub use jams::{Jam, JamContact, JamRange};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
 pub use robot::{
@@ -48,9 +50,10 @@ pub use robot::{
     Shape, Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    ByHand, ContactTable, EscapeForce, Finished, Log, Metric, Metrics, Poses, Progress, Record,
-    Run, Simulation, TipOver, Trace, ValidScenario, balance, branch, diagnose, escape_force,
-    make_trials, outcome_of, poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
+    ByHand, ContactTable, EscapeForce, Finished, FoundJam, Log, Metric, Metrics, Poses, Progress,
+    Record, Run, Simulation, TipOver, Trace, ValidScenario, balance, branch, diagnose,
+    escape_force, find_jams, jam_ranges, make_trials, outcome_of, poses, run_of_trial, simulate,
+    simulate_many, tip_over, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

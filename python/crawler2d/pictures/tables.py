@@ -11,6 +11,7 @@ import numpy as np
 from crawler2d.drawings.canvas import axes_or_new, moved, set_title
 from crawler2d.drawings.palette import BLACK, BLUE, GRAY, GREEN, ORANGE, look_of
 from crawler2d.errors import ScenarioError
+from crawler2d.pictures.jams import plot_jam_chart
 from crawler2d.pictures.rates import (
     legend_below,
     one_model,
@@ -325,6 +326,7 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "max_gap": plot_rates,
     "critical": plot_rates,
     "seizure_map": plot_map,
+    "jam_chart": plot_jam_chart,
     "search": plot_search,
     "what_decides": plot_decides,
     "success": plot_outcomes,

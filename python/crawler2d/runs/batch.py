@@ -16,7 +16,7 @@ from crawler2d.runs.branch import RecordMode, Trials, check_recording, trial_nam
 from crawler2d.runs.progress import Progress, reporter, thread_count
 from crawler2d.runs.run import Run
 
-__all__ = ["BatchInterrupted", "simulate", "simulate_many"]
+__all__ = ["BatchInterrupted", "complete", "simulate", "simulate_many"]
 
 
 class BatchInterrupted(KeyboardInterrupt):
@@ -97,13 +97,13 @@ def simulate(
     >>> run.outcome
     <Outcome.CLEARED: 'cleared'>
     """
-    complete = _complete(scenario, terrain)
+    whole = complete(scenario, terrain)
     taken = ("record", "sample_interval", "trials", *field_hints(Scenario))
     names = {name: value for name, value in fields.items() if name.isidentifier()}
-    refuse_unknown("simulate", names, taken, known_paths(complete))
-    complete = complete.replace(fields)
+    refuse_unknown("simulate", names, taken, known_paths(whole))
+    whole = whole.replace(fields)
     kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
-    return Run(complete, _core.simulate(complete.to_json(), *kept))
+    return Run(whole, _core.simulate(whole.to_json(), *kept))
 
 
 @takes_keywords
@@ -207,7 +207,8 @@ def _simulate_valid(
     return runs
 
 
-def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
+def complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
+    """Make a scenario of what one may give in its place."""
     if isinstance(scenario, Scenario):
         return scenario if terrain is None else scenario.replace({"terrain": terrain})
     if not isinstance(scenario, Robot):

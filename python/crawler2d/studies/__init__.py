@@ -13,7 +13,8 @@ their results. Measures (`max_speed`, `acceleration`, `braking_distance`, `ride`
 no interval, but a median over the repeats, and the lowest and the highest of them. The attribute
 `settings` counts the cells that were tried.
 
-`real_time_factor` measures the machine, and takes only `repeats` and `progress`.
+`real_time_factor` measures the machine, and takes only `repeats` and `progress`. `jam_chart`
+simulates nothing, and takes none of them.
 
 >>> import crawler2d as c2d
 >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
@@ -25,6 +26,7 @@ no interval, but a median over the repeats, and the lowest and the highest of th
 from crawler2d.studies.boundary import critical
 from crawler2d.studies.decides import what_decides
 from crawler2d.studies.driving import acceleration, braking_distance, max_speed
+from crawler2d.studies.jams import jam_chart
 from crawler2d.studies.maps import seizure_map
 from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope, success
 from crawler2d.studies.riding import odometry, real_time_factor, ride
@@ -34,6 +36,7 @@ __all__ = [
     "acceleration",
     "braking_distance",
     "critical",
+    "jam_chart",
     "max_gap",
     "max_obstacle",
     "max_slope",

@@ -3,6 +3,7 @@
 mod batch;
 mod clock;
 mod escape_force;
+mod jams;
 mod metrics;
 mod poses;
 mod record;
@@ -18,6 +19,7 @@ mod valid_scenario;
 
 pub use batch::{Finished, Progress, simulate_many};
 pub use escape_force::{EscapeForce, escape_force};
+pub use jams::{FoundJam, find_jams, jam_ranges};
 pub use metrics::{Metric, Metrics};
 pub use poses::{Poses, poses};
 pub use record::{ContactTable, Record, Trace};

@@ -7,6 +7,7 @@ mod clear;
 mod commands;
 mod observation;
 mod snapshot;
+mod standing;
 mod step;
 #[cfg(test)]
 mod tests;

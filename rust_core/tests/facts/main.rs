@@ -26,6 +26,7 @@ mod flippers;
 mod gears;
 mod ghosts;
 mod grouser_belt;
+mod jams;
 mod judged;
 mod lanes;
 mod locking;

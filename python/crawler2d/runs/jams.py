@@ -1,0 +1,243 @@
+"""All poses in which a robot can stand still while its drives run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from crawler2d import _core
+from crawler2d.common.bodies import BodyKind, Disc, end_discs
+from crawler2d.common.keywords import refuse_unknown, takes_keywords
+from crawler2d.parameters.fields import field_hints, known_paths
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.track import BeltTrack, ClosedTrack
+from crawler2d.runs.batch import complete
+
+if TYPE_CHECKING:
+    from crawler2d.parameters.robot import Robot
+    from crawler2d.parameters.terrain import Terrain
+
+__all__ = ["Jam", "JamContact", "jams"]
+
+_STILL = 1e-6
+"""[-] Share of the weight below which a contact carries nothing."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JamContact:
+    """A contact that carries a jammed robot.
+
+    Attributes
+    ----------
+    body : int
+        Number of the body, as in the contacts of a run.
+    body_kind : BodyKind
+        What it is.
+    edge : int or None
+        Number of the edge of the ground that it is on, None on a face.
+    x, y : float
+        [m] The point of the ground.
+    normal_x, normal_y : float
+        [-] Unit vector from the ground to the robot.
+    normal_force : float
+        [N] How much it carries.
+    friction_force : float
+        [N] Along the normal turned by -90 degrees, so that a level ground pushes forwards above 0.
+    """
+
+    body: int
+    body_kind: BodyKind
+    edge: int | None
+    x: float
+    y: float
+    normal_x: float
+    normal_y: float
+    normal_force: float
+    friction_force: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Jam:
+    """A pose in which a robot can stand still while its drives run; ``str(jam)`` says it.
+
+    Attributes
+    ----------
+    position : tuple of 2 floats
+        [m] Origin of the chassis frame.
+    chassis_angle : float
+        [rad] Nose up > 0.
+    contacts : tuple of JamContact
+        What carries it, from the rear of the ground. Where the loads are not determined, as on
+        three wheels in a row, they are the mean of all that carry it on three contacts.
+    between : tuple of 2 ints or None
+        Numbers of the bodies on either side of the ground that reaches deepest into the track, the
+        smaller first; None if none does.
+    depth : float
+        [m] How deep, inside the belt round the circumscribed circles; 0 if nothing does.
+    stable : bool
+        Whether the robot stays there, within 1 mm and 0.01 rad, in a simulation of 2 s in which it
+        is pushed forwards and then back by 1 % of its weight.
+    belt_holds : bool
+        Whether a belt round the same bodies is held at the same place: it has a stable jam there in
+        which the ends of the track are nearer to where they are here than the smallest radius of
+        the wheels in contact.
+    """
+
+    position: tuple[float, float]
+    chassis_angle: float
+    contacts: tuple[JamContact, ...]
+    between: tuple[int, int] | None
+    depth: float
+    stable: bool
+    belt_holds: bool
+
+    def __str__(self) -> str:
+        """Say it in one line."""
+        held = ", ".join(map(_in_words, self.contacts))
+        where = f"x = {self.position[0]:z.3f} m, {math.degrees(self.chassis_angle):z.1f} degrees"
+        if self.between is not None and self.between[0] != self.between[1]:
+            rear, front = self.between
+            depth = f"{1e3 * self.depth:.0f} mm of ground"
+            where = f"{where}, with {depth} between wheels {rear} and {front}"
+        stable = "stable" if self.stable else "not stable"
+        belt = "; a belt is held there, too" if self.belt_holds else ""
+        return f"jam at {where}: {held}; {stable}{belt}"
+
+
+def _in_words(contact: JamContact) -> str:
+    place = "a face" if contact.edge is None else f"edge {contact.edge}"
+    kind = contact.body_kind.name.lower().replace("_", " ")
+    return f"{kind} {contact.body} on {place} with {contact.normal_force:.0f} N"
+
+
+@takes_keywords
+def jams(
+    scenario: Scenario | Robot,
+    terrain: Terrain | None = None,
+    *,
+    friction: float | None = None,
+    **fields: Any,
+) -> tuple[Jam, ...]:
+    """Find all poses in which a robot can stand still while its drives run.
+
+    Driven surfaces slide at every contact in a direction that is known, so each contact has one
+    unknown, its normal force. Three contacts fix the pose, and three balances fix three forces; two
+    contacts, or one, leave as many freedoms of the pose as they lack forces. So all such poses are
+    isolated, and each is a zero of a polynomial, of which none is passed over: see
+    docs/studies/jams.md. Only the friction counts, not the speed.
+
+    Motors have any torque, flippers stay as at the start. What stands still on the robot, its
+    belly, may have any friction within its cone; its jams are intervals of poses, of which the ends
+    are returned.
+
+    Parameters
+    ----------
+    scenario : Scenario or Robot
+        Robot and ground; a robot needs a terrain. Its track model has round wheels or a smooth
+        belt.
+    terrain : Terrain, optional
+        The ground, the same under both tracks; replaces the scenario's.
+    friction : float, optional
+        [-] Of the ground, above 0; None takes the terrain's.
+    **fields : object
+        Other fields of the scenario. A `drive.speed` below 0 drives backwards.
+
+    Returns
+    -------
+    tuple of Jam
+        From the rear; those tilted by more than `criteria.tip_over_angle` are left out.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario breaks a rule, or has another track model, no friction, no speed, or another
+        ground under each track.
+    SimulationDiverged
+        If the simulation that tells whether one is stable became non-finite.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None)
+    >>> wheels = robot.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
+    >>> found = c2d.jams(wheels, c2d.terrains.step(0.075))
+    >>> [jam.between for jam in found if jam.stable and not jam.belt_holds]
+    [(1, 2)]
+    """
+    whole = complete(scenario, terrain)
+    taken = ("friction", *field_hints(Scenario))
+    names = {name: value for name, value in fields.items() if name.isidentifier()}
+    refuse_unknown("jams", names, taken, known_paths(whole))
+    whole = whole.replace(fields)
+    if friction is not None:
+        whole = whole.replace({"terrain.friction": friction})
+    found = _core.jams(whole.to_json())
+    held = _held(whole) if len(found["x"]) else []
+    return tuple(_read(whole, found, k, held) for k in range(len(found["x"])))
+
+
+def _held(scenario: Scenario) -> list[tuple[float, float, float]]:
+    """Poses in which a belt round the same bodies is held: position [m] and angle [rad]."""
+    track = scenario.robot.track
+    if not isinstance(track, (BeltTrack, ClosedTrack)):
+        closed = scenario.robot.with_track(ClosedTrack(track, surface="smooth"))
+        scenario = scenario.replace({"robot": closed})
+    found = _core.jams(scenario.to_json())
+    poses = zip(found["x"], found["y"], found["angle"], found["stable"], strict=True)
+    return [(x, y, angle) for x, y, angle, stable in poses if stable]
+
+
+def _read(
+    scenario: Scenario, found: dict[str, Any], number: int, held: list[tuple[float, float, float]]
+) -> Jam:
+    rows = found["contacts"]
+    weight = scenario.robot.mass * scenario.gravity
+    of_jam = [i for i, jam in enumerate(rows["jam"]) if jam == number]
+    carries = [i for i in of_jam if rows["normal_load"][i] > _STILL]
+    contacts = tuple(
+        JamContact(
+            body=int(rows["body"][i]),
+            body_kind=BodyKind(int(rows["body_kind"][i])),
+            edge=None if rows["edge"][i] < 0 else int(rows["edge"][i]),
+            x=float(rows["x"][i]),
+            y=float(rows["y"][i]),
+            normal_x=float(rows["normal_x"][i]),
+            normal_y=float(rows["normal_y"][i]),
+            normal_force=float(weight * rows["normal_load"][i]),
+            friction_force=float(weight * rows["friction"][i]),
+        )
+        for i in sorted(carries, key=lambda i: (rows["x"][i], rows["body"][i]))
+    )
+    x, y, angle = (float(found[name][number]) for name in ("x", "y", "angle"))
+    return Jam(
+        position=(x, y),
+        chassis_angle=angle,
+        contacts=contacts,
+        between=found["between"][number] and tuple(sorted(found["between"][number])),
+        depth=float(found["depth"][number]),
+        stable=bool(found["stable"][number]),
+        belt_holds=any(_is_near(scenario, contacts, (x, y, angle), other) for other in held),
+    )
+
+
+def _is_near(
+    scenario: Scenario,
+    contacts: tuple[JamContact, ...],
+    pose: tuple[float, ...],
+    other: tuple[float, ...],
+) -> bool:
+    """Tell whether the ends of the track are at the same place in two poses."""
+    ends = end_discs(scenario.robot.outline.discs)
+    wheels = scenario.robot.wheels()
+    touch = {contact.body for contact in contacts}
+    radii = [r for r, k in zip(wheels["radius"], wheels["body"], strict=True) if k in touch]
+    reach = min((*radii, *(radius for *_, radius in ends)))
+    return all(math.dist(_at(pose, disc), _at(other, disc)) < reach for disc in ends)
+
+
+def _at(pose: tuple[float, ...], disc: Disc) -> tuple[float, float]:
+    """Place the centre of a disc [m]."""
+    (x, y, angle), (along, up, _) = pose, disc
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return x + cosine * along - sine * up, y + sine * along + cosine * up

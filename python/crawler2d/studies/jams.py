@@ -1,0 +1,208 @@
+"""Where in height and friction a model can jam at all: computed, not sampled."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.common.arrays import real_number
+from crawler2d.common.keywords import takes_keywords
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.fields import read_number_path
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.track import BeltTrack, ClosedTrack
+from crawler2d.studies.tables import Models, read_models
+from crawler2d.sweeps.axes import field_attributes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.sweeps.figure_dataset import FigureDataset
+
+__all__ = ["jam_chart"]
+
+_MOST = 1.5
+"""[-] Usual end of the frictions."""
+
+_HEIGHTS = 200
+"""Usual number of heights."""
+
+_INSIDE = 1e-6
+"""[m] Ground that reaches less deep into the track is not inside it."""
+
+_TEXTS = {
+    "low": ("friction from which on it can jam", "1"),
+    "high": ("friction up to which it can jam", "1"),
+    "rear": ("body behind the ground inside the track, -1 if there is none", "1"),
+    "front": ("body ahead of the ground inside the track, -1 if there is none", "1"),
+    "depth": ("depth of the ground inside the track", "m"),
+    "position": ("x of the chassis", "m"),
+    "angle": ("angle of the chassis", "rad"),
+    "belt_low": ("friction from which on a belt can jam", "1"),
+    "belt_high": ("friction up to which a belt can jam", "1"),
+}
+
+
+@takes_keywords
+def jam_chart(
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    x: str = "terrain.height",
+    values: Sequence[float] | None = None,
+    most_friction: float = _MOST,
+) -> FigureDataset:
+    """Chart at which heights and frictions each model can jam at all, and between which wheels.
+
+    A pose on three contacts depends on the geometry alone, and the frictions at which forces carry
+    the robot there are known exactly: they are intervals whose ends are zeros of polynomials. So
+    the borders of a region are curves, of which a point is computed for each height.
+
+    Poses on one contact or two, in which a robot leans or balances, are left out here, as are
+    motors' limits: see `crawler2d.jams`. That a robot can jam does not say that it comes there.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Robot and ground; what friction the ground has is of no matter.
+    models : mapping of str to track or fields, optional
+        As for `compare`; None takes the scenario's own robot. Tracks of round wheels, or belts.
+    x : str
+        Path of the number along the first axis.
+    values : sequence of float, optional
+        Its values; None takes 200 of a height, up to twice the front radius.
+    most_friction : float
+        [-] Largest friction, above 0.
+
+    Returns
+    -------
+    FigureDataset
+        Dimensions `model`, the values of `x`, and `jam`, of which a model has some at each value,
+        and NaN elsewhere:
+
+        - `low`, `high`: the frictions between which it can jam so;
+        - `rear`, `front`: bodies on either side of the ground inside the track, -1 without any;
+        - `depth` [m]: how deep that is; `position` [m] and `angle` [rad] of the chassis;
+        - `belt_low`, `belt_high`, along `belt_jam`: the same for a belt round the model's bodies.
+
+    Raises
+    ------
+    ScenarioError
+        If `x` is no number of the scenario, an argument breaks a rule, or a model has another
+        track.
+
+    Examples
+    --------
+    Four wheels that touch can be caught by a step of 100 mm up to a friction of 1.28, a belt cannot
+    stand there above 0.75:
+
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
+    >>> base = c2d.Scenario(robot, c2d.terrains.step(0.1))
+    >>> chart = c2d.studies.jam_chart(base, values=[0.1])
+    >>> between = (chart["rear"] == 1) & (chart["front"] == 2)
+    >>> round(chart["high"].where(between).max().item(), 2)
+    1.28
+    >>> round(chart["belt_high"].max().item(), 2)
+    0.75
+    """
+    read_number_path(scenario, x, "x")
+    most = real_number(most_friction, "most_friction")
+    if not 0.0 < most <= 100.0:
+        raise ScenarioError("most_friction", most, "must be > 0 and <= 100")
+    along = _values(scenario, x, values)
+    labels = read_models(scenario, models)
+    own, belts = [], []
+    for fields in labels.values():
+        model = scenario.replace(fields)
+        cells = [model.replace({x: value}) for value in along]
+        own.append(_ranges(cells, most))
+        belts.append(_ranges([_closed(cell) for cell in cells], most))
+    return _dataset(list(labels), x, along, own, belts)
+
+
+def _values(scenario: Scenario, x: str, values: Sequence[float] | None) -> list[float]:
+    if values is None:
+        if not x.endswith("height"):
+            raise ScenarioError("values", values, f"must be given for {x}")
+        most = 2.0 * scenario.robot.outline.front_radius
+        return [most * (k + 1) / _HEIGHTS for k in range(_HEIGHTS)]
+    given = [real_number(value, f"values[{k}]") for k, value in enumerate(values)]
+    if not given or sorted(set(given)) != given:
+        raise ScenarioError("values", tuple(given), "must be one number or more, rising")
+    return given
+
+
+def _closed(scenario: Scenario) -> Scenario:
+    track = scenario.robot.track
+    if isinstance(track, (BeltTrack, ClosedTrack)):
+        return scenario
+    closed = ClosedTrack(track, surface="smooth")
+    return scenario.replace({"robot": scenario.robot.with_track(closed)})
+
+
+def _ranges(cells: Sequence[Scenario], most: float) -> list[dict[str, Any]]:
+    """Compute the jams of each scenario, whatever its friction."""
+    return _core.jam_ranges([cell.to_json() for cell in cells], most)
+
+
+def _dataset(
+    labels: Sequence[Any],
+    x: str,
+    along: Sequence[float],
+    own: Sequence[Sequence[dict[str, Any]]],
+    belts: Sequence[Sequence[dict[str, Any]]],
+) -> FigureDataset:
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
+
+    name = x.rpartition(".")[2].replace("[", "_").replace("]", "")
+    columns = {
+        "low": _padded(own, lambda cell: cell["low"]),
+        "high": _padded(own, lambda cell: cell["high"]),
+        "rear": _padded(own, lambda cell: _bodies(cell)[0]),
+        "front": _padded(own, lambda cell: _bodies(cell)[1]),
+        "depth": _padded(own, lambda cell: cell["depth"]),
+        "position": _padded(own, lambda cell: cell["x"]),
+        "angle": _padded(own, lambda cell: cell["angle"]),
+    }
+    of_belts = {
+        "belt_low": _padded(belts, lambda cell: cell["low"]),
+        "belt_high": _padded(belts, lambda cell: cell["high"]),
+    }
+    variables: dict[str, Any] = {
+        key: (("model", name, "jam"), array, _attributes(key)) for key, array in columns.items()
+    }
+    variables |= {
+        key: (("model", name, "belt_jam"), array, _attributes(key))
+        for key, array in of_belts.items()
+    }
+    coordinates = {
+        "model": ("model", [str(label) for label in labels]),
+        name: (name, list(along), field_attributes([x])),
+    }
+    return FigureDataset(variables, coordinates, {"figure": "jam_chart", "x": name})
+
+
+def _attributes(name: str) -> dict[str, str]:
+    long_name, units = _TEXTS[name]
+    return {"long_name": long_name, "units": units}
+
+
+def _bodies(cell: dict[str, Any]) -> tuple[list[int], list[int]]:
+    """List the bodies on either side of the ground inside the track."""
+    inside = zip(cell["between"], cell["depth"], strict=True)
+    pairs = [sorted(two) if two and depth > _INSIDE else [-1, -1] for two, depth in inside]
+    return [rear for rear, _ in pairs], [front for _, front in pairs]
+
+
+def _padded(models: Sequence[Sequence[dict[str, Any]]], column: Any) -> NDArray[np.float64]:
+    """Stack a column of every cell, shape (models, values, most jams of any), NaN beyond."""
+    rows = [[np.asarray(column(cell), float) for cell in cells] for cells in models]
+    most = max(len(row) for cells in rows for row in cells)
+    padded = [
+        [np.concatenate([row, np.full(most - len(row), np.nan)]) for row in cells] for cells in rows
+    ]
+    return np.array(padded)

@@ -1,0 +1,127 @@
+//! Forces of the ground that carry a robot at rest with its drives running.
+
+use super::contact::{Posture, Touch, Turn};
+use super::corners::{Setting, solve};
+use super::layout::Grip;
+use crate::geometry::{Vector, cross, right_of};
+
+/// A force that a contact can exert, for a normal force of 1 N.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push {
+    /// Index of its contact.
+    pub contact: usize,
+    /// Friction over normal force.
+    pub slope: f64,
+}
+
+/// What carries the robot: the normal force and the friction of each contact, in weights.
+pub(super) type Loads = Vec<[f64; 2]>;
+
+/// Share of the weight below which a pull is rounding.
+const LEAST: f64 = 1e-9;
+
+impl Setting {
+    /// The forces that a contact can exert: one if it slides or rolls, the two edges of its cone if it stands still.
+    pub(super) fn pushes(&self, contact: usize) -> impl Iterator<Item = Push> + use<> {
+        let surface = &self.layout.surfaces[self.contacts[contact].surface];
+        let place = &self.places[self.contacts[contact].place];
+        let friction = place.friction.min(surface.friction_limit);
+        let slopes = match surface.grip {
+            Grip::Driven(sign) => [Some(sign * friction), None],
+            Grip::Free => [Some(0.0), None],
+            Grip::Still => [Some(friction), Some(-friction)],
+        };
+        let push = move |slope| Push { contact, slope };
+        slopes.into_iter().flatten().map(push)
+    }
+
+    /// Force and moment about the centre of mass of a push, over the robot's reach.
+    pub(super) fn wrench(&self, push: Push, position: Vector, turn: Turn) -> [f64; 3] {
+        let touch = self.contacts[push.contact].touch_turned(position, turn);
+        let center = position + turn.apply(self.layout.center_of_mass);
+        let force = force(&touch, push.slope);
+        let moment = cross(touch.point - center, force) / self.layout.reach;
+        [force.x, force.y, moment]
+    }
+
+    /// Loads of contacts that balance the weight in a pose; `None` if none do.
+    ///
+    /// Where more than one choice does, the mean of those that use three pushes at most: by Carathéodory's theorem, these
+    /// span all of them.
+    pub(super) fn loads(&self, contacts: &[usize], posture: &Posture) -> Option<Loads> {
+        let turn = Turn::by(posture.angle);
+        let pushes: Vec<Push> = contacts.iter().flat_map(|i| self.pushes(*i)).collect();
+        let wrenches: Vec<[f64; 3]> = pushes
+            .iter()
+            .map(|push| self.wrench(*push, posture.position, turn))
+            .collect();
+        let mut sum = vec![0.0; pushes.len()];
+        let mut choices = 0.0;
+        for_each_choice(&wrenches, &mut |chosen| {
+            choices += 1.0;
+            for (i, share) in chosen {
+                sum[*i] += share;
+            }
+        });
+        if choices == 0.0 {
+            return None;
+        }
+        let mut loads = vec![[0.0; 2]; contacts.len()];
+        for (push, share) in pushes.iter().zip(&sum) {
+            let place = contacts.iter().position(|i| *i == push.contact)?;
+            loads[place][0] += share / choices;
+            loads[place][1] += share / choices * push.slope;
+        }
+        Some(loads)
+    }
+}
+
+/// The force of a contact for a normal force of 1 N.
+pub(super) fn force(touch: &Touch, slope: f64) -> Vector {
+    touch.normal + right_of(touch.normal) * slope
+}
+
+/// Calls for every choice of three, two or one wrenches with shares of at least 0 that carry a weight of 1.
+pub(super) fn for_each_choice(wrenches: &[[f64; 3]], take: &mut impl FnMut(&[(usize, f64)])) {
+    let n = wrenches.len();
+    let weight = [0.0, 1.0, 0.0];
+    for i in 0..n {
+        for j in i + 1..n {
+            for k in j + 1..n {
+                let [a, b, c] = [i, j, k].map(|i| wrenches[i]);
+                let rows = [0, 1, 2].map(|axis| [a[axis], b[axis], c[axis]]);
+                if let Some(shares) = solve(&rows, &weight)
+                    && shares
+                        .iter()
+                        .all(|share| *share >= -LEAST && *share < 1.0 / LEAST)
+                {
+                    take(&[(i, shares[0]), (j, shares[1]), (k, shares[2])]);
+                }
+            }
+        }
+    }
+    // Fewer than three that carry it are no choice of three where the third has no share of its own.
+    if n < 3 {
+        for_each_pair(wrenches, take);
+    }
+}
+
+/// The same for two, or one, which carry it only in particular poses: up to rounding.
+fn for_each_pair(wrenches: &[[f64; 3]], take: &mut impl FnMut(&[(usize, f64)])) {
+    /// Share of the weight that may be left.
+    const LEFT: f64 = 1e-7;
+    for (i, a) in wrenches.iter().enumerate() {
+        if a[0].abs() <= LEFT * a[1] && a[2].abs() <= LEFT * a[1] {
+            take(&[(i, 1.0 / a[1])]);
+        }
+        for (j, b) in wrenches.iter().enumerate().skip(i + 1) {
+            let determinant = a[0] * b[1] - a[1] * b[0];
+            let shares = [-b[0] / determinant, a[0] / determinant];
+            let left = shares[0] * a[2] + shares[1] * b[2];
+            let most = 1.0 / LEFT;
+            if shares.iter().all(|s| *s > LEFT && *s < most) && left.abs() <= LEFT {
+                take(&[(i, shares[0]), (j, shares[1])]);
+            }
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! All poses in which one or two contacts carry a robot: it leans at a wall, or balances on a corner.
+//!
+//! Two contacts leave one freedom of the pose, and two forces for three balances: where the lines of both forces and that
+//! of the weight meet in a point is one more equation. Where a circle is met, the product of both branches has no square
+//! root: it is a polynomial in cosine and sine of the angle, of degree 10 at most, over the square of a distance.
+
+use super::contact::{Contact, Kind, Locus, Posture, Turn, meeting, radical};
+use super::corners::{Partner, Setting, apart, are_parallel, is_same, line, on_circle, solve};
+use super::forces::Push;
+use super::zeros::{Difference, zeros};
+use crate::error::Error;
+use crate::geometry::{Vector, left_of};
+use crate::limits::Cancel;
+
+/// Imbalance, in weights, of a pose that is found.
+const FOUND: f64 = 1e-11;
+
+impl Setting {
+    /// Every pose in which one contact or two carry the robot.
+    pub(super) fn leaning(&self, cancel: &Cancel) -> Result<Vec<Posture>, Error> {
+        let mut found = Vec::new();
+        for i in 0..self.contacts.len() {
+            for push in self.pushes(i) {
+                self.on_one(push, &mut found);
+            }
+        }
+        for i in 0..self.contacts.len() {
+            cancel.check()?;
+            for partner in &self.partners[i] {
+                self.on_two(i, partner, &mut found);
+            }
+        }
+        Ok(found)
+    }
+
+    fn keep(&self, contacts: &[usize], posture: Posture, found: &mut Vec<Posture>) {
+        let is_real = |i: &usize| self.is_real(&self.contacts[*i], &posture);
+        if posture.position.is_finite()
+            && self.bins.hold(posture.angle)
+            && contacts.iter().all(is_real)
+            && !found.iter().any(|known| is_same(known, &posture))
+        {
+            found.push(posture);
+        }
+    }
+
+    /// Adds the poses in which one force is vertical, and the centre of mass above it.
+    fn on_one(&self, push: Push, found: &mut Vec<Posture>) {
+        let contact = &self.contacts[push.contact];
+        let center_of_mass = self.layout.center_of_mass;
+        let up = Vector::new(-push.slope, 1.0).normalize();
+        match contact.kind {
+            // On a level face it is vertical only without friction, and then anywhere on it.
+            Kind::OnFace(..) => {}
+            Kind::OnCorner(disc, center, radius) => {
+                let arm = center_of_mass - disc.center;
+                let size = arm.length() + disc.radius;
+                let beside = |angle: f64| [Turn::by(angle).apply(arm).x + disc.radius * up.x, size];
+                for angle in zeros(self.bins.ranges(u128::MAX), beside) {
+                    let axle = center + up * (radius + disc.radius);
+                    let position = axle - Turn::by(angle).apply(disc.center);
+                    self.keep(&[push.contact], Posture { position, angle }, found);
+                }
+            }
+            Kind::Across(outward, distance, center, radius) => {
+                let angle = libm::atan2(-up.y, -up.x) - libm::atan2(outward.y, outward.x);
+                let angle = angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round();
+                let arm = Turn::by(angle).apply(center_of_mass);
+                let point = center + up * radius;
+                let x = point.x - arm.x;
+                let y = center.y + (distance + radius - up.x * (x - center.x)) / up.y;
+                let position = Vector::new(x, y);
+                self.keep(&[push.contact], Posture { position, angle }, found);
+            }
+        }
+    }
+
+    /// Adds the poses in which two contacts touch and two of their forces carry the weight.
+    fn on_two(&self, one: usize, partner: &Partner, found: &mut Vec<Posture>) {
+        let pair = [one, partner.contact];
+        let pushes: Vec<Push> = pair.iter().flat_map(|i| self.pushes(*i)).collect();
+        let origin = self.contacts[pair[0]].anchor();
+        for (k, one) in pushes.iter().enumerate() {
+            for other in &pushes[k + 1..] {
+                let both = Both {
+                    setting: self,
+                    pair: pair.map(|i| self.contacts[i].seen_from(origin)),
+                    origin,
+                    pushes: [*one, *other],
+                };
+                for near in both.candidates(partner.angles) {
+                    if let Some(local) = both.polished(near) {
+                        let position = local.position + origin;
+                        self.keep(&pair, Posture { position, ..local }, found);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Two contacts, seen from a point of the ground, and two forces of theirs.
+struct Both<'a> {
+    setting: &'a Setting,
+    pair: [Contact; 2],
+    origin: Vector,
+    pushes: [Push; 2],
+}
+
+impl Both<'_> {
+    /// What is zero if the two forces and the weight have a point in common, or are parallel: a polynomial of the position of
+    /// degree 2 at most.
+    fn imbalance(&self, position: Vector, turn: Turn) -> f64 {
+        let [value, _] = self.difference(position, turn);
+        value
+    }
+
+    fn difference(&self, position: Vector, turn: Turn) -> Difference {
+        let wrench = |push: Push| self.setting.wrench(push, position + self.origin, turn);
+        let [a, b] = self.pushes.map(wrench);
+        let (one, other) = (a[0] * b[2], b[0] * a[2]);
+        [one - other, one.abs() + other.abs()]
+    }
+
+    /// Poses near all in which that is zero.
+    fn candidates(&self, bins: u128) -> Vec<Posture> {
+        let ranges = self.setting.bins.ranges(bins);
+        let [one, other] = &self.pair;
+        if are_parallel(one, other) {
+            let between = |angle: f64| {
+                let [one, other] = self.loci(Turn::by(angle)).map(line);
+                apart(one, other)
+            };
+            let angles = zeros(ranges, between).into_iter();
+            return angles.filter_map(|angle| self.along_line(angle)).collect();
+        }
+        let angles = zeros(ranges, |angle| self.equation(Turn::by(angle)));
+        let on = |angle: f64| {
+            let positions = self.positions(Turn::by(angle));
+            positions
+                .into_iter()
+                .map(move |position| Posture { position, angle })
+        };
+        angles.into_iter().flat_map(on).collect()
+    }
+
+    fn loci(&self, turn: Turn) -> [Locus; 2] {
+        self.pair.map(|contact| contact.locus(turn))
+    }
+
+    /// The imbalance: times its denominator where two lines meet, and of both places where a circle is met, their product.
+    fn equation(&self, turn: Turn) -> Difference {
+        let (line, circle) = match self.loci(turn) {
+            [Locus::Line(n, k), Locus::Line(m, l)] => {
+                let (point, scale) = meeting((n, k), (m, l));
+                let at = |p: Vector| self.imbalance(p, turn);
+                let [constant, size] = self.difference(Vector::ZERO, turn);
+                let slope = Vector::new(at(Vector::X), at(Vector::Y)) - Vector::ONE * constant;
+                let size = size * scale.abs() + point.length();
+                return [constant * scale + slope.dot(point), size];
+            }
+            [Locus::Line(n, k), Locus::Circle(o, r)] | [Locus::Circle(o, r), Locus::Line(n, k)] => {
+                ((n, k), (o, r))
+            }
+            [Locus::Circle(o, r), Locus::Circle(q, s)] => (radical((o, r), (q, s)), (o, r)),
+        };
+        let ((normal, offset), (center, radius)) = (line, circle);
+        let square = normal.length_squared();
+        let off = offset - normal.dot(center);
+        // On the circle it is center + foot +- root along, where the root may be that of a number below 0. A polynomial of
+        // degree 2 in the root has an even part and an odd one, known from three places.
+        let foot = center + normal * (off / square);
+        let along = left_of(normal) * (radius / square.sqrt());
+        let root = 1.0 - off * off / (radius * radius * square);
+        let [behind, here, ahead] =
+            [-1.0, 0.0, 1.0].map(|s| self.difference(foot + along * s, turn));
+        let size = behind[1].max(here[1]).max(ahead[1]);
+        let [behind, here, ahead] = [behind[0], here[0], ahead[0]];
+        let (slope, bend) = (0.5 * (ahead - behind), 0.5 * (ahead + behind) - here);
+        let even = here + bend * root;
+        [even * even - slope * slope * root, size * size]
+    }
+
+    /// Where the origin is at an angle: up to two places.
+    fn positions(&self, turn: Turn) -> Vec<Vector> {
+        match self.loci(turn) {
+            [Locus::Line(n, k), Locus::Line(m, l)] => {
+                let (point, scale) = meeting((n, k), (m, l));
+                vec![point / scale]
+            }
+            [Locus::Line(n, k), Locus::Circle(o, r)] | [Locus::Circle(o, r), Locus::Line(n, k)] => {
+                on_circle((n, k), (o, r)).to_vec()
+            }
+            [Locus::Circle(o, r), Locus::Circle(q, s)] if (o - q).length() > 1e-9 * r => {
+                on_circle(radical((o, r), (q, s)), (o, r)).to_vec()
+            }
+            // Two circles that are one: both forces are parallel, and so vertical.
+            [Locus::Circle(o, r), _] => {
+                let up = |push: Push| Vector::new(-push.slope, 1.0).normalize();
+                self.pushes.map(|push| o + up(push) * r).to_vec()
+            }
+        }
+    }
+
+    /// The pose on two lines that are one at an angle.
+    fn along_line(&self, angle: f64) -> Option<Posture> {
+        let turn = Turn::by(angle);
+        let [Locus::Line(normal, offset), _] = self.loci(turn) else {
+            return None;
+        };
+        let at = |s: f64| normal * offset + left_of(normal) * s;
+        let (here, ahead) = (self.imbalance(at(0.0), turn), self.imbalance(at(1.0), turn));
+        let position = at(here / (here - ahead));
+        let is_found = position.is_finite() && position.length() < 1e3 * self.setting.layout.reach;
+        is_found.then_some(Posture { position, angle })
+    }
+
+    /// The pose near another in which both contacts touch and both forces carry the weight.
+    fn polished(&self, near: Posture) -> Option<Posture> {
+        let reach = self.setting.layout.reach;
+        let step = 1e-6;
+        let errors = |posture: &Posture| {
+            let gaps = self.pair.map(|contact| contact.touch(posture).gap / reach);
+            let imbalance = self.imbalance(posture.position, Turn::by(posture.angle));
+            [gaps[0], gaps[1], imbalance]
+        };
+        let moved = |posture: &Posture, by: [f64; 3]| Posture {
+            position: posture.position + Vector::new(by[0], by[1]) * reach,
+            angle: posture.angle + by[2],
+        };
+        let mut posture = near;
+        for _ in 0..12 {
+            let now = errors(&posture);
+            if now.iter().all(|error| error.abs() < FOUND) {
+                return Some(posture);
+            }
+            if now.iter().any(|error| error.is_nan() || error.abs() > 1e-2) {
+                return None;
+            }
+            let mut rows = [[0.0; 3]; 3];
+            for axis in 0..3 {
+                let mut by = [0.0; 3];
+                by[axis] = step;
+                let ahead = errors(&moved(&posture, by));
+                by[axis] = -step;
+                let behind = errors(&moved(&posture, by));
+                for (row, (a, b)) in rows.iter_mut().zip(ahead.iter().zip(behind)) {
+                    row[axis] = (a - b) / (2.0 * step);
+                }
+            }
+            posture = moved(&posture, solve(&rows, &now)?.map(|change| -change));
+        }
+        None
+    }
+}

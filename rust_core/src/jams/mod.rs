@@ -1,0 +1,177 @@
+//! All poses in which a robot can stand still while its drives run: where a model of its track can jam, computed, not sampled.
+//!
+//! Surfaces that are driven slide at every contact, in a direction that is known, so each contact has one unknown, its
+//! normal force. Three contacts fix the pose and their forces, two or one leave as many freedoms as they lack forces: all
+//! equilibria are isolated, and each is a zero of a polynomial. docs/studies/jams.md, "Theory".
+
+mod clear;
+mod contact;
+mod corners;
+mod forces;
+mod layout;
+mod leaning;
+mod places;
+mod ranges;
+mod zeros;
+
+use self::contact::{Posture, Turn};
+use self::corners::{Setting, is_same};
+use self::forces::Loads;
+use self::layout::Layout;
+use self::places::Place;
+use crate::error::Error;
+use crate::geometry::Vector;
+use crate::limits::Cancel;
+use crate::robot::{BodyKind, Model};
+use crate::scenario::{Scenario, ScenarioError};
+use crate::terrain::Ground;
+
+/// A pose in which a robot can stand still while its drives run.
+#[derive(Clone, Debug)]
+pub struct Jam {
+    /// [m] Where its chassis frame is.
+    pub position: Vector,
+    /// [rad] Its angle.
+    pub angle: f64,
+    /// What carries it.
+    pub contacts: Vec<JamContact>,
+}
+
+/// A contact that carries a jammed robot.
+#[derive(Clone, Copy, Debug)]
+pub struct JamContact {
+    /// Index of the part.
+    pub part: usize,
+    /// What it represents.
+    pub kind: BodyKind,
+    /// Number of the ground's edge on the lane under it, if it is a corner.
+    pub edge: Option<i32>,
+    /// [m] The point of the ground.
+    pub point: Vector,
+    /// Unit vector from the ground to the robot.
+    pub normal: Vector,
+    /// Normal force over the weight.
+    pub load: f64,
+    /// Friction over the weight, along the normal turned by -90 degrees.
+    pub friction: f64,
+}
+
+/// All jams of the robot of a scenario, built on its ground, from the rear; torque is ample, and flippers stay as they are at
+/// the start.
+///
+/// # Errors
+/// [`Error::Scenario`] for a robot whose shape turns with its drives, one that is not driven, a ground that differs between
+/// the tracks; [`Error::Interrupted`] once `cancel` is asked.
+pub(crate) fn jams(
+    scenario: &Scenario,
+    (model, ground): (&Model, &Ground),
+    cancel: &Cancel,
+) -> Result<Vec<Jam>, Error> {
+    check(scenario, ground)?;
+    let setting = setting(scenario, model, ground)?;
+    let corners = setting.corners(cancel)?.into_iter();
+    let leaning = setting.leaning(cancel)?;
+    let mut found: Vec<(Posture, Jam)> = Vec::new();
+    for posture in corners.chain(leaning) {
+        if found.iter().any(|(known, _)| is_same(known, &posture)) {
+            continue;
+        }
+        let Some(contacts) = setting.touching(&posture) else {
+            continue;
+        };
+        if let Some(loads) = setting.loads(&contacts, &posture) {
+            found.push((posture, setting.jam(&posture, &contacts, &loads)));
+        }
+    }
+    let mut jams: Vec<Jam> = found.into_iter().map(|(_, jam)| jam).collect();
+    jams.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
+    Ok(jams)
+}
+
+/// A pose that three contacts fix, and at which frictions they carry the robot there.
+#[derive(Clone, Copy, Debug)]
+pub struct JamRange {
+    /// [m] Where its chassis frame is.
+    pub position: Vector,
+    /// [rad] Its angle.
+    pub angle: f64,
+    /// The least friction and the greatest.
+    pub friction: [f64; 2],
+}
+
+/// The jams on three contacts at every friction up to `most`, that of the ground aside; as [`jams`].
+///
+/// # Errors
+/// As [`jams`].
+pub(crate) fn jam_ranges(
+    scenario: &Scenario,
+    (model, ground): (&Model, &Ground),
+    most: f64,
+    cancel: &Cancel,
+) -> Result<Vec<JamRange>, Error> {
+    check(scenario, ground)?;
+    let setting = setting(scenario, model, ground)?.with_unit_friction();
+    let mut found = Vec::new();
+    for posture in setting.corners(cancel)? {
+        let contacts = setting.touching(&posture).unwrap_or_default();
+        let ranges = setting.carried_at(&contacts, &posture, most);
+        found.extend(ranges.into_iter().map(|friction| JamRange {
+            position: posture.position,
+            angle: posture.angle,
+            friction,
+        }));
+    }
+    Ok(found)
+}
+
+fn setting(scenario: &Scenario, model: &Model, ground: &Ground) -> Result<Setting, ScenarioError> {
+    let layout = Layout::new(model, scenario.drive.speed > 0.0)?;
+    let most = scenario.criteria.tip_over_angle;
+    Ok(Setting::new(layout, Place::of(ground), [-most, most]))
+}
+
+/// Refuses what has no isolated jams.
+fn check(scenario: &Scenario, ground: &Ground) -> Result<(), ScenarioError> {
+    if ground.tracks > 1 {
+        let rule = "must be the same under both tracks";
+        return Err(ScenarioError::new("terrain", "two lanes", rule));
+    }
+    if scenario.drive.speed == 0.0 {
+        let rule = "must not be 0: jams are of a robot that drives";
+        return Err(ScenarioError::new("drive.speed", 0.0, rule));
+    }
+    let friction = ground.lanes.iter().map(|lane| lane.friction.most());
+    if friction.map(|f| f.coefficient).fold(0.0, f64::max) <= 0.0 {
+        let rule = "must be > 0: without it a robot can stand anywhere on level ground";
+        return Err(ScenarioError::new("terrain.friction", 0.0, rule));
+    }
+    Ok(())
+}
+
+impl Setting {
+    fn jam(&self, posture: &Posture, contacts: &[usize], loads: &Loads) -> Jam {
+        let turn = Turn::by(posture.angle);
+        let of = |(i, [load, friction]): (&usize, &[f64; 2])| {
+            let contact = &self.contacts[*i];
+            let touch = contact.touch_turned(posture.position, turn);
+            let (surface, place) = (
+                &self.layout.surfaces[contact.surface],
+                &self.places[contact.place],
+            );
+            JamContact {
+                part: surface.part,
+                kind: surface.kind,
+                edge: place.edge,
+                point: touch.point,
+                normal: touch.normal,
+                load: *load,
+                friction: *friction,
+            }
+        };
+        Jam {
+            position: posture.position,
+            angle: posture.angle,
+            contacts: contacts.iter().zip(loads).map(of).collect(),
+        }
+    }
+}

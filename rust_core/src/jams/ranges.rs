@@ -1,0 +1,98 @@
+//! At which frictions a robot can stand in a pose that three contacts fix: the pose does not depend on it, the forces do.
+
+use super::contact::{Posture, Turn};
+use super::corners::Setting;
+use super::forces::{Push, for_each_choice};
+use super::zeros::{Difference, zeros};
+
+/// A range that zeros are sought on in one piece.
+const ONE_PIECE: f64 = 0.08;
+
+impl Setting {
+    /// The same on a ground whose friction is 1 everywhere, and limited by no part.
+    pub(super) fn with_unit_friction(mut self) -> Self {
+        for place in &mut self.places {
+            place.friction = 1.0;
+        }
+        for surface in &mut self.layout.surfaces {
+            surface.friction_limit = f64::INFINITY;
+        }
+        self
+    }
+
+    /// The frictions up to one at which these contacts can carry the robot, as intervals; on ground of unit friction.
+    pub(super) fn carried_at(
+        &self,
+        contacts: &[usize],
+        posture: &Posture,
+        most: f64,
+    ) -> Vec<[f64; 2]> {
+        let turn = Turn::by(posture.angle);
+        let pushes: Vec<Push> = contacts.iter().flat_map(|i| self.pushes(*i)).collect();
+        // Wrenches are linear in the friction.
+        let wrench = |push: Push| self.wrench(push, posture.position, turn);
+        let line = |push: &Push| {
+            let smooth = Push {
+                slope: 0.0,
+                ..*push
+            };
+            (wrench(smooth), wrench(*push))
+        };
+        let lines: Vec<([f64; 3], [f64; 3])> = pushes.iter().map(line).collect();
+        let wrenches = |friction: f64| -> Vec<[f64; 3]> {
+            let of = |line: &([f64; 3], [f64; 3])| along(*line, friction);
+            lines.iter().map(of).collect()
+        };
+        let mut ends = vec![0.0, most];
+        let mut add_zeros = |f: &dyn Fn(f64) -> Difference| {
+            // Determinants are cubic in the friction: one piece of any width holds all of them.
+            let range = std::iter::once([0.0, ONE_PIECE]);
+            let found = zeros(range, |share| f(most * share / ONE_PIECE));
+            ends.extend(found.iter().map(|share| most * share / ONE_PIECE));
+        };
+        // What pushes can carry is bounded by planes through two of them, or all of it turns over where three lie in one.
+        for (i, a) in lines.iter().enumerate() {
+            for (j, b) in lines.iter().enumerate().skip(i + 1) {
+                add_zeros(&|mu| determinant([0.0, 1.0, 0.0], along(*a, mu), along(*b, mu)));
+                for c in &lines[j + 1..] {
+                    add_zeros(&|mu| determinant(along(*a, mu), along(*b, mu), along(*c, mu)));
+                }
+            }
+        }
+        ends.sort_by(f64::total_cmp);
+        let is_carried = |friction: f64| {
+            let mut found = false;
+            for_each_choice(&wrenches(friction), &mut |_| found = true);
+            found
+        };
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        for pair in ends.windows(2) {
+            let [low, high] = [pair[0], pair[1]];
+            if high <= low || !is_carried(0.5 * (low + high)) {
+                continue;
+            }
+            match ranges.last_mut() {
+                Some(last) if last[1] >= low => last[1] = high,
+                _ => ranges.push([low, high]),
+            }
+        }
+        ranges
+    }
+}
+
+/// The wrench of a push at a friction, from those at 0 and at 1.
+fn along((smooth, rough): ([f64; 3], [f64; 3]), friction: f64) -> [f64; 3] {
+    std::array::from_fn(|axis| smooth[axis] + friction * (rough[axis] - smooth[axis]))
+}
+
+fn determinant(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> Difference {
+    let terms = [
+        a[0] * b[1] * c[2],
+        a[1] * b[2] * c[0],
+        a[2] * b[0] * c[1],
+        -a[2] * b[1] * c[0],
+        -a[0] * b[2] * c[1],
+        -a[1] * b[0] * c[2],
+    ];
+    [terms.iter().sum(), terms.iter().map(|t| t.abs()).sum()]
+}

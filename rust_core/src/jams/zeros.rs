@@ -1,0 +1,263 @@
+//! All zeros of a smooth function on ranges of an angle.
+//!
+//! On pieces some degrees wide the functions of this module, polynomials in cosine and sine of the angle of degree 10 at most,
+//! are polynomials of degree 11 to rounding. A series of Chebyshev's polynomials bounds value, slope and curvature of
+//! such a piece, so that none of its zeros is passed over: a piece is left out only if these exclude one.
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+/// Terms of a series.
+const TERMS: usize = 12;
+/// [rad] Widest piece: the terms left out are 1e-16 of a polynomial of degree 10.
+const WIDEST: f64 = 0.09;
+/// [rad] Narrowest piece, for functions that are no polynomials.
+const NARROWEST: f64 = 1e-6;
+/// Share of a series that its last two terms may have, and below which a value is rounding.
+const RESOLVED: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
+/// Share of a piece below which zeros come out as one, and to which they are known.
+const NEAREST: f64 = 1e-6;
+const ACCURACY: f64 = 1e-14;
+
+/// Where a piece is sampled, from -1 to 1, and the share of each sample in each term.
+struct Table {
+    nodes: [f64; TERMS],
+    shares: [[f64; TERMS]; TERMS],
+}
+
+static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    let angle = |i: usize| PI * (i as f64 + 0.5) / TERMS as f64;
+    let share = |k: usize, i: usize| {
+        let whole = if k == 0 { 1.0 } else { 2.0 };
+        whole / TERMS as f64 * libm::cos(k as f64 * angle(i))
+    };
+    Table {
+        nodes: std::array::from_fn(|i| libm::cos(angle(i))),
+        shares: std::array::from_fn(|k| std::array::from_fn(|i| share(k, i))),
+    }
+});
+
+/// A value that is a difference, and the size of what it is the difference of.
+pub(super) type Difference = [f64; 2];
+
+/// All zeros of a function in ranges of angles; two that coincide come out once or twice. Where it is nothing but rounding
+/// errors it says nothing of any angle.
+pub(super) fn zeros(
+    ranges: impl Iterator<Item = [f64; 2]>,
+    f: impl Fn(f64) -> Difference,
+) -> Vec<f64> {
+    let mut found = Vec::new();
+    for [low, high] in ranges {
+        let count = ((high - low) / WIDEST).ceil().max(1.0);
+        let end = |i: f64| low + (high - low) * i / count;
+        for i in 0..count as usize {
+            let piece = [end(i as f64), end(i as f64 + 1.0)];
+            zeros_of_piece(piece, &f, &mut found);
+        }
+    }
+    found
+}
+
+fn zeros_of_piece(piece: [f64; 2], f: &impl Fn(f64) -> Difference, found: &mut Vec<f64>) {
+    let [low, high] = piece;
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let (series, size) = Series::of(|t| f(middle + half * t));
+    let others: f64 = series.terms[1..].iter().map(|term| term.abs()).sum();
+    let sum = series.terms[0].abs() + others;
+    let slack = ROUNDING * sum;
+    if sum <= ROUNDING * size || series.terms[0].abs() > others + slack + size * f64::EPSILON {
+        return;
+    }
+    let last: f64 = series.terms[TERMS - 2..].iter().map(|t| t.abs()).sum();
+    if half > NARROWEST && last > RESOLVED * sum + 10.0 * size * f64::EPSILON {
+        zeros_of_piece([low, middle], f, found);
+        zeros_of_piece([middle, high], f, found);
+        return;
+    }
+    let angle = |t: f64| middle + half * t;
+    found.extend(series.zeros(slack).into_iter().map(angle));
+}
+
+/// A sum of Chebyshev's polynomials on [-1, 1].
+struct Series {
+    terms: [f64; TERMS],
+}
+
+impl Series {
+    /// The series with these values, and the largest size of any.
+    fn of(f: impl Fn(f64) -> Difference) -> (Self, f64) {
+        let table = &*TABLE;
+        let values = table.nodes.map(f);
+        let term = |shares: &[f64; TERMS]| {
+            let parts = shares
+                .iter()
+                .zip(values)
+                .map(|(share, [value, _])| share * value);
+            parts.sum()
+        };
+        let terms = std::array::from_fn(|k| term(&table.shares[k]));
+        let size = values
+            .iter()
+            .fold(0.0, |most: f64, [_, size]| most.max(*size));
+        (Self { terms }, size)
+    }
+
+    /// Value and slope.
+    fn at(&self, t: f64) -> (f64, f64) {
+        // T0 and T1, and their slopes.
+        let (mut before, mut now) = ((1.0, 0.0), (t, 1.0));
+        let mut sum = (self.terms[0] + self.terms[1] * t, self.terms[1]);
+        for term in &self.terms[2..] {
+            let next = (
+                2.0 * t * now.0 - before.0,
+                2.0 * now.0 + 2.0 * t * now.1 - before.1,
+            );
+            (before, now) = (now, next);
+            sum.0 += term * now.0;
+            sum.1 += term * now.1;
+        }
+        sum
+    }
+
+    /// A curvature that it never exceeds: that of the k-th polynomial is largest at the ends, k^2 (k^2 - 1) / 3.
+    fn curvature(&self) -> f64 {
+        let of = |(k, term): (usize, &f64)| {
+            let square = (k * k) as f64;
+            term.abs() * square * (square - 1.0) / 3.0
+        };
+        self.terms.iter().enumerate().skip(2).map(of).sum()
+    }
+
+    fn zeros(&self, slack: f64) -> Vec<f64> {
+        let curvature = self.curvature();
+        let mut found = Vec::new();
+        let mut pieces = vec![[-1.0, 1.0]];
+        while let Some([low, high]) = pieces.pop() {
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+            let (value, slope) = self.at(middle);
+            let bend = curvature * half;
+            if value.abs() > slope.abs() * half + 0.5 * bend * half + slack {
+                continue;
+            }
+            if slope.abs() > bend {
+                found.extend(self.only_zero(low, high, slack));
+            } else if half < NEAREST {
+                found.push(middle);
+            } else {
+                pieces.extend([[low, middle], [middle, high]]);
+            }
+        }
+        found
+    }
+
+    /// The zero of a piece in which it is monotone; an end within rounding of zero counts.
+    fn only_zero(&self, mut low: f64, mut high: f64, slack: f64) -> Option<f64> {
+        let (at_low, at_high) = (self.at(low).0, self.at(high).0);
+        if at_low * at_high > 0.0 {
+            let (least, end) = if at_low.abs() < at_high.abs() {
+                (at_low, low)
+            } else {
+                (at_high, high)
+            };
+            return (least.abs() <= slack).then_some(end);
+        }
+        let rises = at_low < at_high;
+        let mut t = 0.5 * (low + high);
+        // Newton's steps, and halving where they leave the piece.
+        for _ in 0..60 {
+            let (value, slope) = self.at(t);
+            if (value > 0.0) == rises {
+                high = t;
+            } else {
+                low = t;
+            }
+            let next = t - value / slope;
+            let next = if next > low && next < high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - t).abs() <= ACCURACY {
+                return Some(next);
+            }
+            t = next;
+        }
+        Some(t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    fn sorted(f: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut found = zeros(std::iter::once([-0.5 * TAU, 0.5 * TAU]), |x| [f(x), 1.0]);
+        found.sort_by(f64::total_cmp);
+        found
+    }
+
+    /// A polynomial in cosine and sine of half as high a degree, with these zeros.
+    fn product(roots: &[f64]) -> impl Fn(f64) -> f64 + '_ {
+        |x| roots.iter().map(|r| libm::sin(0.5 * (x - r))).product()
+    }
+
+    #[test]
+    fn all_zeros_of_a_product_come_back() {
+        let mut state = 1_u64;
+        let mut draw = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut tried = 0;
+        for case in 0..4_000 {
+            let degree = 1 + case % 10;
+            let roots: Vec<f64> = (0..2 * degree).map(|_| TAU * (draw() - 0.5)).collect();
+            let found = sorted(product(&roots));
+            let alone = |r: &f64| roots.iter().filter(|o| (*o - r).abs() < 1e-3).count() == 1;
+            for root in roots.iter().filter(|root| alone(root)) {
+                let nearest = found.iter().map(|f| (f - root).abs()).fold(1.0, f64::min);
+                assert!(
+                    nearest < 1e-9,
+                    "case {case}: {root} of {roots:?} in {found:?}"
+                );
+                tried += 1;
+            }
+        }
+        assert!(tried > 40_000, "{tried}");
+    }
+
+    #[test]
+    fn a_double_zero_is_not_missed() {
+        let found = sorted(product(&[0.3, 0.3, -1.0, 2.0]));
+        assert!(found.iter().any(|f| (f - 0.3).abs() < 1e-6), "{found:?}");
+    }
+
+    #[test]
+    fn no_zero_is_made_up() {
+        assert!(sorted(|x| 1.1 + libm::cos(x)).is_empty());
+        let found = sorted(|x| 0.5 + libm::cos(x));
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().all(|f| (f.abs() - TAU / 3.0).abs() < 1e-14));
+    }
+
+    #[test]
+    fn rounding_errors_have_no_zeros() {
+        let found = zeros(std::iter::once([-1.0, 1.0]), |x| {
+            [libm::sin(1e9 * x) * 1e-16, 1.0]
+        });
+        assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn a_function_that_turns_sharply_is_resolved() {
+        let found = sorted(|x| x / x.hypot(1e-4) - 0.5);
+        let zero = 1e-4 / 3.0_f64.sqrt();
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0] - zero).abs() < 1e-9, "{found:?}");
+    }
+}

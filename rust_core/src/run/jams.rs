@@ -1,0 +1,86 @@
+//! The jams of a scenario, and whether a robot stays in one.
+
+use super::{Simulation, ValidScenario};
+use crate::contact::Intrusion;
+use crate::error::Error;
+use crate::jams::{self, Jam, JamRange};
+use crate::limits::Cancel;
+use crate::units::{Metres, Seconds};
+
+/// [s] For how long it is left alone, then pushed forwards, pushed back, and left alone again.
+const SPELL: Seconds = Seconds(0.5);
+/// The push, as a share of the weight.
+const PUSH: f64 = 0.01;
+/// [m] How far it may be from where it was, if it stays.
+const FAR: Metres = Metres(1e-3);
+/// [rad] And how far it may have turned.
+const TURNED: f64 = 0.01;
+
+/// A jam, and what a simulation that begins there shows.
+#[derive(Clone, Debug)]
+pub struct FoundJam {
+    /// The pose and its forces.
+    pub jam: Jam,
+    /// The ground deepest inside the track.
+    pub intrusion: Option<Intrusion>,
+    /// Whether the robot stays there: for two seconds in which it is pushed forwards and back by 1 % of its weight.
+    pub stable: bool,
+}
+
+/// All poses in which the robot of a scenario can stand still while its drives run at the speed that is commanded first.
+///
+/// # Errors
+/// [`Error::Scenario`] for a robot or a ground whose jams are not known, [`Error::Interrupted`] once `cancel` is asked, and
+/// what a simulation may end with.
+pub fn find_jams(scenario: &ValidScenario, cancel: &Cancel) -> Result<Vec<FoundJam>, Error> {
+    let built = (scenario.model(), &**scenario.ground());
+    let found = jams::jams(scenario.scenario(), built, cancel)?;
+    let tried = found.into_iter().map(|jam| {
+        let robot = Simulation::driven_at(scenario, jam.position, jam.angle);
+        Ok(FoundJam {
+            intrusion: deepest(&robot),
+            stable: stays(robot, &jam, cancel)?,
+            jam,
+        })
+    });
+    tried.collect()
+}
+
+/// The jams on three contacts at every friction up to `most`, with the ground deepest inside the track.
+///
+/// # Errors
+/// As [`find_jams`].
+pub fn jam_ranges(
+    scenario: &ValidScenario,
+    most: f64,
+    cancel: &Cancel,
+) -> Result<Vec<(JamRange, Option<Intrusion>)>, Error> {
+    let built = (scenario.model(), &**scenario.ground());
+    let found = jams::jam_ranges(scenario.scenario(), built, most, cancel)?;
+    let seen = found.into_iter().map(|range| {
+        let robot = Simulation::driven_at(scenario, range.position, range.angle);
+        (range, deepest(&robot))
+    });
+    Ok(seen.collect())
+}
+
+fn deepest(robot: &Simulation) -> Option<Intrusion> {
+    let inside = robot.intrusions().into_iter();
+    inside.max_by(|a, b| a.depth.total_cmp(&b.depth))
+}
+
+fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Error> {
+    let push = PUSH * robot.weight();
+    for force in [0.0, push, -push, 0.0] {
+        robot.set_push(force)?;
+        robot.advance(SPELL.value())?;
+        cancel.check()?;
+        let now = robot.reading();
+        let is_off = (now.position - jam.position).length() > FAR.value()
+            || (now.chassis_angle - jam.angle).abs() > TURNED;
+        if is_off {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}

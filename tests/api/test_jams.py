@@ -1,0 +1,99 @@
+"""All jams of a layout, and the chart of where it can jam."""
+
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d import studies
+
+ENGINEER = c2d.robots.engineer(flippers=None)
+WHEELS = ENGINEER.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
+STEP = c2d.terrains.step(0.075)
+
+
+def caught(found: tuple[c2d.Jam, ...]) -> list[c2d.Jam]:
+    return [jam for jam in found if jam.stable and not jam.belt_holds]
+
+
+def test_the_stop_of_a_run_is_a_jam_with_the_loads_of_its_diagnosis() -> None:
+    run = c2d.simulate(WHEELS.without_rotors(), STEP)
+    assert run.diagnosis is not None
+    (jam,) = caught(c2d.jams(WHEELS.without_rotors(), STEP))
+    assert jam.position == pytest.approx(run.position[-1], abs=1e-5)
+    assert jam.chassis_angle == pytest.approx(run.chassis_angle[-1], abs=1e-5)
+    assert jam.between == (1, 2)
+    loads = {contact.body: contact.normal_force for contact in jam.contacts}
+    assert (round(loads[1]), round(loads[2])) == (112, 40)  # as its sentence has them
+    assert "112 N" in str(run.diagnosis)
+    assert "40 N" in str(run.diagnosis)
+    assert jam.depth == pytest.approx(0.021, abs=5e-4)
+    assert "21 mm of ground between wheels 1 and 2" in str(jam)
+
+
+def test_friction_is_taken_from_the_call() -> None:
+    high = c2d.terrains.step(0.1)
+    assert caught(c2d.jams(WHEELS, high, friction=1.1))
+    assert not caught(c2d.jams(WHEELS, high, friction=1.3))
+    with pytest.raises(c2d.ScenarioError, match=r"terrain.friction must be > 0"):
+        c2d.jams(WHEELS, STEP, friction=0.0)
+
+
+def test_a_belt_is_held_where_it_slips_before_a_wall() -> None:
+    low = c2d.jams(WHEELS, c2d.terrains.step(0.1), friction=0.4)
+    assert any(jam.belt_holds for jam in low)
+    belt = c2d.jams(ENGINEER, c2d.terrains.step(0.1), friction=0.4)
+    assert any(jam.stable and jam.between is None for jam in belt)
+
+
+@pytest.mark.parametrize(
+    "track",
+    [
+        c2d.LineOfWheels(3, wheel=c2d.GearWheel()),
+        c2d.GrouserBeltTrack(),
+        c2d.SegmentalTrack(),
+        c2d.ForceTrack(),
+    ],
+)
+def test_other_tracks_are_refused_by_name(track: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"robot\.track must"):
+        c2d.jams(ENGINEER.with_track(track), STEP)
+
+
+def test_wrong_arguments_are_named() -> None:
+    with pytest.raises(c2d.ScenarioError, match="terrain must be given"):
+        c2d.jams(WHEELS)
+    with pytest.raises(TypeError, match="frction"):
+        c2d.jams(WHEELS, STEP, frction=0.5)
+    base = c2d.Scenario(WHEELS, STEP)
+    with pytest.raises(c2d.ScenarioError, match="values must be one number or more"):
+        studies.jam_chart(base, values=[0.1, 0.1])
+    with pytest.raises(c2d.ScenarioError, match="values must be given"):
+        studies.jam_chart(base, x="terrain.edge_radius")
+    with pytest.raises(c2d.ScenarioError, match="most_friction must"):
+        studies.jam_chart(base, values=[0.1], most_friction=0.0)
+
+
+def test_the_chart_has_each_jam_at_its_frictions_and_draws_itself() -> None:
+    base = c2d.Scenario(WHEELS, STEP)
+    models: dict[str, Any] = {"wheels": {}, "belt": c2d.BeltTrack()}
+    chart = studies.jam_chart(base, models=models, values=[0.05, 0.075, 0.1])
+    assert chart["low"].dims == ("model", "height", "jam")
+    for height in (0.05, 0.075, 0.1):
+        found = caught(c2d.jams(WHEELS, c2d.terrains.step(height), friction=0.7))
+        (jam,) = (jam for jam in found if jam.between == (1, 2))
+        own = chart.sel(model="wheels", height=height)
+        same = abs(own["position"] - jam.position[0]) < 1e-7
+        assert same.sum() == 1
+        at = same.to_numpy().tolist().index(True)
+        assert own["low"][at] <= 0.7 <= own["high"][at]
+        assert (int(own["rear"][at]), int(own["front"][at])) == (1, 2)
+    belt = chart.sel(model="belt")
+    assert belt["rear"].max() == -1
+    ax = chart.sel(model="wheels").plot()
+    legend = ax.get_legend()
+    assert legend is not None
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert "between wheels 1 and 2" in labels
+    with pytest.raises(c2d.ScenarioError, match="model"):
+        chart.plot()
