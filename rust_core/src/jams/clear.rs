@@ -7,8 +7,8 @@ use crate::geometry::{Disc, Vector, left_of};
 
 /// Whether no part reaches into the ground by more than a tolerance [m].
 ///
-/// Faces and the arcs of corners together are all of the surface. Whoever is off all of it is out of the ground, if he is
-/// not far inside: of each part one point is over the ground.
+/// Faces and the arcs of corners together are all of the surface. A part that is off all of it is outside the ground, unless
+/// it lies wholly inside; so one of its points must be over the ground.
 pub(super) fn is_clear(
     layout: &Layout,
     places: &[Place],

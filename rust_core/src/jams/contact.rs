@@ -4,6 +4,9 @@ use super::layout::{Layout, Outline};
 use super::places::{Facing, Place};
 use crate::geometry::{Disc, Vector, cross, left_of};
 
+/// Sine of the angle below which two lines are parallel.
+pub(super) const PARALLEL: f64 = 1e-9;
+
 /// Where the robot's chassis frame is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Posture {
@@ -209,6 +212,41 @@ impl Contact {
                 let along = (to - from).normalize_or(Vector::X);
                 let here = (touch.point - from).dot(along);
                 here >= -tolerance && here <= (to - from).length() + tolerance
+            }
+        }
+    }
+
+    /// Whether both keep the origin on lines that are parallel at every angle.
+    pub(super) fn is_parallel_to(&self, other: &Self) -> bool {
+        match (self.kind, other.kind) {
+            (Kind::OnFace(_, n, _), Kind::OnFace(_, m, _))
+            | (Kind::Across(n, ..), Kind::Across(m, ..)) => cross(n, m).abs() < PARALLEL,
+            _ => false,
+        }
+    }
+
+    /// Whether both are never at the same time, or are one then, within a tolerance [m]: a disc on a face and on the corner at
+    /// its end, a run and the disc at its end on one corner, faces in one plane, a corner between discs that touch.
+    pub(super) fn is_one_with(&self, other: &Self, tolerance: f64) -> bool {
+        if self.surface != other.surface && self.place != other.place {
+            return false;
+        }
+        // How line and circle lie to each other does not depend on the angle.
+        let turn = Turn::by(0.3);
+        match [self, other].map(|contact| contact.locus(turn)) {
+            [Locus::Line(normal, offset), Locus::Circle(center, radius)]
+            | [Locus::Circle(center, radius), Locus::Line(normal, offset)] => {
+                ((normal.dot(center) - offset).abs() - radius).abs() < tolerance
+            }
+            // Two discs can be on one face.
+            [Locus::Line(..), Locus::Line(..)] => {
+                self.surface == other.surface && self.is_parallel_to(other)
+            }
+            // Wheels that touch have a corner between them only at that point, where it would have to be a needle; discs of
+            // which one lies within the other and touches it have one normal there.
+            [Locus::Circle(one, r), Locus::Circle(other, s)] => {
+                let distance = (one - other).length();
+                (distance - r - s).abs() < tolerance || distance < (r - s).abs() + tolerance
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Forces of the ground that carry a robot at rest with its drives running.
 
 use super::contact::{Posture, Touch, Turn};
-use super::corners::{Setting, solve};
+use super::fixed::solve;
 use super::layout::Grip;
+use super::setting::Setting;
 use crate::geometry::{Vector, cross, right_of};
 
 /// A force that a contact can exert, for a normal force of 1 N.

@@ -105,16 +105,17 @@ impl Layout {
 
 /// Refuses what has no outline of its own at rest, or is moved by no surface.
 fn check(model: &Model) -> Result<(), ScenarioError> {
-    let turns = |part: &&Part| match &part.shape {
-        Shape::Gear { .. } | Shape::Grouser(_) => true,
-        Shape::Hull { grouser_height, .. } => *grouser_height > 0.0,
-        Shape::Disc { .. } | Shape::Polygon { .. } => part.mount.shoe().is_some(),
+    let turning = |part: &Part| match &part.shape {
+        Shape::Gear { .. } => Some("gear wheels"),
+        Shape::Hull { grouser_height, .. } if *grouser_height > 0.0 => Some("a belt with grousers"),
+        Shape::Grouser(_) => Some("a belt with grousers"),
+        _ => part.mount.shoe().map(|_| "a chain of shoes"),
     };
     let refused = |value: &str, rule: &str| Err(ScenarioError::new("robot.track", value, rule));
-    if let Some(part) = model.parts.iter().find(turns) {
+    if let Some(name) = model.parts.iter().find_map(turning) {
         let rule = "must have round wheels or a smooth belt: where gear wheels, grousers and shoes can jam depends on how \
                     far they have turned, too";
-        return refused(part.kind.name(), rule);
+        return refused(name, rule);
     }
     if model.push_drive().is_some() {
         let rule =

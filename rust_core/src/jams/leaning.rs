@@ -2,12 +2,15 @@
 //!
 //! Two contacts leave one freedom of the pose, and two forces for three balances: where the lines of both forces and that
 //! of the weight meet in a point is one more equation. Where a circle is met, the product of both branches has no square
-//! root: it is a polynomial in cosine and sine of the angle, of degree 10 at most, over the square of a distance.
+//! root: it is a polynomial in cosine and sine of the angle, of degree 10 at most, over a power of a distance.
+
+use std::f64::consts::TAU;
 
 use super::contact::{Contact, Kind, Locus, Posture, Turn, meeting, radical};
-use super::corners::{Partner, Setting, apart, are_parallel, is_same, line, on_circle, solve};
+use super::fixed::{apart, line, on_circle, solve};
 use super::forces::Push;
-use super::zeros::{Difference, zeros};
+use super::setting::{Partner, Setting, is_same};
+use super::zeros::{Difference, graded, zeros};
 use crate::error::Error;
 use crate::geometry::{Vector, left_of};
 use crate::limits::Cancel;
@@ -64,7 +67,7 @@ impl Setting {
             }
             Kind::Across(outward, distance, center, radius) => {
                 let angle = libm::atan2(-up.y, -up.x) - libm::atan2(outward.y, outward.x);
-                let angle = angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round();
+                let angle = within_half_a_turn(angle);
                 let arm = Turn::by(angle).apply(center_of_mass);
                 let point = center + up * radius;
                 let x = point.x - arm.x;
@@ -99,6 +102,11 @@ impl Setting {
     }
 }
 
+/// The same angle [rad] from -pi to pi.
+fn within_half_a_turn(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
+}
+
 /// Two contacts, seen from a point of the ground, and two forces of theirs.
 struct Both<'a> {
     setting: &'a Setting,
@@ -126,7 +134,7 @@ impl Both<'_> {
     fn candidates(&self, bins: u128) -> Vec<Posture> {
         let ranges = self.setting.bins.ranges(bins);
         let [one, other] = &self.pair;
-        if are_parallel(one, other) {
+        if one.is_parallel_to(other) {
             let between = |angle: f64| {
                 let [one, other] = self.loci(Turn::by(angle)).map(line);
                 apart(one, other)
@@ -134,7 +142,14 @@ impl Both<'_> {
             let angles = zeros(ranges, between).into_iter();
             return angles.filter_map(|angle| self.along_line(angle)).collect();
         }
-        let angles = zeros(ranges, |angle| self.equation(Turn::by(angle)));
+        let equation = |angle: f64| self.equation(Turn::by(angle));
+        let angles = match self.closest() {
+            Some((at, least)) => {
+                let pieces = ranges.flat_map(|range| graded(range, at, least));
+                zeros(pieces, equation)
+            }
+            None => zeros(ranges, equation),
+        };
         let on = |angle: f64| {
             let positions = self.positions(Turn::by(angle));
             positions
@@ -142,6 +157,23 @@ impl Both<'_> {
                 .map(move |position| Posture { position, angle })
         };
         angles.into_iter().flat_map(on).collect()
+    }
+
+    /// Of two discs on two corners: the angle at which both circles are closest to being one, and within which of it [rad] the
+    /// places where they meet turn sharply.
+    fn closest(&self) -> Option<(f64, f64)> {
+        let [Kind::OnCorner(one, p, _), Kind::OnCorner(other, q, _)] =
+            self.pair.map(|contact| contact.kind)
+        else {
+            return None;
+        };
+        let (discs, corners) = (other.center - one.center, q - p);
+        if discs == Vector::ZERO || corners == Vector::ZERO {
+            return None;
+        }
+        let angle = libm::atan2(corners.y, corners.x) - libm::atan2(discs.y, discs.x);
+        let least = (corners.length() - discs.length()).abs() / discs.length();
+        Some((within_half_a_turn(angle), least.max(1e-7)))
     }
 
     fn loci(&self, turn: Turn) -> [Locus; 2] {

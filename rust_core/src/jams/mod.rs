@@ -6,19 +6,20 @@
 
 mod clear;
 mod contact;
-mod corners;
+mod fixed;
 mod forces;
 mod layout;
 mod leaning;
 mod places;
 mod ranges;
+mod setting;
 mod zeros;
 
 use self::contact::{Posture, Turn};
-use self::corners::{Setting, is_same};
 use self::forces::Loads;
 use self::layout::Layout;
 use self::places::Place;
+use self::setting::{Setting, is_same};
 use crate::error::Error;
 use crate::geometry::Vector;
 use crate::limits::Cancel;
@@ -64,15 +65,14 @@ pub struct JamContact {
 /// the tracks; [`Error::Interrupted`] once `cancel` is asked.
 pub(crate) fn jams(
     scenario: &Scenario,
-    (model, ground): (&Model, &Ground),
+    built: (&Model, &Ground),
     cancel: &Cancel,
 ) -> Result<Vec<Jam>, Error> {
-    check(scenario, ground)?;
-    let setting = setting(scenario, model, ground)?;
-    let corners = setting.corners(cancel)?.into_iter();
+    let setting = setting(scenario, built, cancel)?;
+    let fixed = setting.fixed(cancel)?.into_iter();
     let leaning = setting.leaning(cancel)?;
     let mut found: Vec<(Posture, Jam)> = Vec::new();
-    for posture in corners.chain(leaning) {
+    for posture in fixed.chain(leaning) {
         if found.iter().any(|(known, _)| is_same(known, &posture)) {
             continue;
         }
@@ -105,14 +105,13 @@ pub struct JamRange {
 /// As [`jams`].
 pub(crate) fn jam_ranges(
     scenario: &Scenario,
-    (model, ground): (&Model, &Ground),
+    built: (&Model, &Ground),
     most: f64,
     cancel: &Cancel,
 ) -> Result<Vec<JamRange>, Error> {
-    check(scenario, ground)?;
-    let setting = setting(scenario, model, ground)?.with_unit_friction();
+    let setting = setting(scenario, built, cancel)?.with_unit_friction();
     let mut found = Vec::new();
-    for posture in setting.corners(cancel)? {
+    for posture in setting.fixed(cancel)? {
         let contacts = setting.touching(&posture).unwrap_or_default();
         let ranges = setting.carried_at(&contacts, &posture, most);
         found.extend(ranges.into_iter().map(|friction| JamRange {
@@ -124,10 +123,15 @@ pub(crate) fn jam_ranges(
     Ok(found)
 }
 
-fn setting(scenario: &Scenario, model: &Model, ground: &Ground) -> Result<Setting, ScenarioError> {
+fn setting(
+    scenario: &Scenario,
+    (model, ground): (&Model, &Ground),
+    cancel: &Cancel,
+) -> Result<Setting, Error> {
+    check(scenario, ground)?;
     let layout = Layout::new(model, scenario.drive.speed > 0.0)?;
     let most = scenario.criteria.tip_over_angle;
-    Ok(Setting::new(layout, Place::of(ground), [-most, most]))
+    Setting::new(layout, Place::of(ground), [-most, most], cancel)
 }
 
 /// Refuses what has no isolated jams.

@@ -1,8 +1,8 @@
 //! At which frictions a robot can stand in a pose that three contacts fix: the pose does not depend on it, the forces do.
 
 use super::contact::{Posture, Turn};
-use super::corners::Setting;
 use super::forces::{Push, for_each_choice};
+use super::setting::Setting;
 use super::zeros::{Difference, zeros};
 
 /// A range that zeros are sought on in one piece.

@@ -269,4 +269,13 @@ fn what_has_no_jams_of_this_kind_is_refused_by_name() {
         middle: None,
     };
     assert_eq!(path(&lanes), "terrain");
+    let mut rough = strong(line(4), 0.05, 0.9);
+    let point = |i: u32| [1e-3 * f64::from(i) - 3.0, 1e-4 * f64::from(i % 2)];
+    rough.terrain = Terrain::Points {
+        points: (0..10_000).map(point).collect(),
+        goal: 5.0,
+        surface: Surface::sharp(0.9),
+        segment_friction: None,
+    };
+    assert_eq!(path(&rough), "terrain");
 }
