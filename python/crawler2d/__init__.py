@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     from crawler2d import studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
-    from crawler2d.runs.jams import Jam, jams
+    from crawler2d.runs.jams import jams
     from crawler2d.runs.saved import load
     from crawler2d.sweeps.rates import rate
     from crawler2d.sweeps.sequential import Until, sequential
@@ -99,7 +99,6 @@ __all__ = [
     "Hold",
     "HybridWheels",
     "InternalError",
-    "Jam",
     "Lane",
     "LimitError",
     "LineOfWheels",
@@ -162,7 +161,6 @@ _LAZY = {
     "Reading": "crawler2d.reading.reading",
     "read_robot": "crawler2d.reading.reading",
     "studies": "crawler2d.studies",
-    "Jam": "crawler2d.runs.jams",
     "jams": "crawler2d.runs.jams",
     "Until": "crawler2d.sweeps.sequential",
     "check_store": "crawler2d.sweeps.store",

@@ -6,13 +6,14 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import studies
+from crawler2d.runs.jams import Jam
 
 ENGINEER = c2d.robots.engineer(flippers=None)
 WHEELS = ENGINEER.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
 STEP = c2d.terrains.step(0.075)
 
 
-def caught(found: tuple[c2d.Jam, ...]) -> list[c2d.Jam]:
+def caught(found: tuple[Jam, ...]) -> list[Jam]:
     return [jam for jam in found if jam.stable and not jam.belt_holds]
 
 
