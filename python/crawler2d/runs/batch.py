@@ -97,11 +97,8 @@ def simulate(
     >>> run.outcome
     <Outcome.CLEARED: 'cleared'>
     """
-    whole = complete(scenario, terrain)
-    taken = ("record", "sample_interval", "trials", *field_hints(Scenario))
-    names = {name: value for name, value in fields.items() if name.isidentifier()}
-    refuse_unknown("simulate", names, taken, known_paths(whole))
-    whole = whole.replace(fields)
+    own = ("record", "sample_interval", "trials")
+    whole = complete("simulate", own, scenario, terrain, fields)
     kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
     return Run(whole, _core.simulate(whole.to_json(), *kept))
 
@@ -207,15 +204,25 @@ def _simulate_valid(
     return runs
 
 
-def complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
-    """Make a scenario of what one may give in its place."""
+def complete(
+    call: str,
+    own: Sequence[str],
+    scenario: Scenario | Robot,
+    terrain: Terrain | None,
+    fields: dict[str, Any],
+) -> Scenario:
+    """Make a scenario of the arguments of a call, which has keywords of its own besides fields."""
     if isinstance(scenario, Scenario):
-        return scenario if terrain is None else scenario.replace({"terrain": terrain})
-    if not isinstance(scenario, Robot):
+        whole = scenario if terrain is None else scenario.replace({"terrain": terrain})
+    elif not isinstance(scenario, Robot):
         raise ScenarioError("scenario", scenario, "must be a Scenario or a Robot")
-    if terrain is None:
+    elif terrain is None:
         raise ScenarioError("terrain", terrain, "must be given with a robot")
-    return Scenario(scenario, terrain)
+    else:
+        whole = Scenario(scenario, terrain)
+    names = {name: value for name, value in fields.items() if name.isidentifier()}
+    refuse_unknown(call, names, (*own, *field_hints(Scenario)), known_paths(whole))
+    return whole.replace(fields)
 
 
 def _validate(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:

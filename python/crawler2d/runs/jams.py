@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d.common.bodies import BodyKind, Disc, end_discs
-from crawler2d.common.keywords import refuse_unknown, takes_keywords
-from crawler2d.parameters.fields import field_hints, known_paths
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.track import BeltTrack, ClosedTrack
 from crawler2d.runs.batch import complete
 
 if TYPE_CHECKING:
     from crawler2d.parameters.robot import Robot
+    from crawler2d.parameters.scenario import Scenario
     from crawler2d.parameters.terrain import Terrain
 
-__all__ = ["Jam", "JamContact", "jams"]
+__all__ = ["Jam", "JamContact", "jams", "on_belt"]
 
 _STILL = 1e-6
 """[-] Share of the weight below which a contact carries nothing."""
@@ -165,31 +164,38 @@ def jams(
     >>> [jam.between for jam in found if jam.stable and not jam.belt_holds]
     [(1, 2)]
     """
-    whole = complete(scenario, terrain)
-    taken = ("friction", *field_hints(Scenario))
-    names = {name: value for name, value in fields.items() if name.isidentifier()}
-    refuse_unknown("jams", names, taken, known_paths(whole))
-    whole = whole.replace(fields)
+    whole = complete("jams", ("friction",), scenario, terrain, fields)
     if friction is not None:
         whole = whole.replace({"terrain.friction": friction})
     found = _core.jams(whole.to_json())
     held = _held(whole) if len(found["x"]) else []
-    return tuple(_read(whole, found, k, held) for k in range(len(found["x"])))
+    wheels = whole.robot.wheels()
+    radii = dict(zip(wheels["body"].tolist(), wheels["radius"].tolist(), strict=True))
+    return tuple(_read(whole, found, k, held, radii) for k in range(len(found["x"])))
+
+
+def on_belt(scenario: Scenario) -> Scenario:
+    """Put a smooth belt round the bodies of a robot's track, unless that is a belt."""
+    track = scenario.robot.track
+    if isinstance(track, (BeltTrack, ClosedTrack)):
+        return scenario
+    closed = ClosedTrack(track, surface="smooth")
+    return scenario.replace({"robot": scenario.robot.with_track(closed)})
 
 
 def _held(scenario: Scenario) -> list[tuple[float, float, float]]:
     """Poses in which a belt round the same bodies is held: position [m] and angle [rad]."""
-    track = scenario.robot.track
-    if not isinstance(track, (BeltTrack, ClosedTrack)):
-        closed = scenario.robot.with_track(ClosedTrack(track, surface="smooth"))
-        scenario = scenario.replace({"robot": closed})
-    found = _core.jams(scenario.to_json())
+    found = _core.jams(on_belt(scenario).to_json())
     poses = zip(found["x"], found["y"], found["angle"], found["stable"], strict=True)
     return [(x, y, angle) for x, y, angle, stable in poses if stable]
 
 
 def _read(
-    scenario: Scenario, found: dict[str, Any], number: int, held: list[tuple[float, float, float]]
+    scenario: Scenario,
+    found: dict[str, Any],
+    number: int,
+    held: list[tuple[float, float, float]],
+    radii: dict[int, float],
 ) -> Jam:
     rows = found["contacts"]
     weight = scenario.robot.mass * scenario.gravity
@@ -209,6 +215,9 @@ def _read(
         )
         for i in sorted(carries, key=lambda i: (rows["x"][i], rows["body"][i]))
     )
+    ends = end_discs(scenario.robot.outline.discs)
+    touched = [radii[contact.body] for contact in contacts if contact.body in radii]
+    reach = min((*touched, *(radius for *_, radius in ends)))
     x, y, angle = (float(found[name][number]) for name in ("x", "y", "angle"))
     return Jam(
         position=(x, y),
@@ -217,22 +226,14 @@ def _read(
         between=found["between"][number] and tuple(sorted(found["between"][number])),
         depth=float(found["depth"][number]),
         stable=bool(found["stable"][number]),
-        belt_holds=any(_is_near(scenario, contacts, (x, y, angle), other) for other in held),
+        belt_holds=any(_is_near(ends, reach, (x, y, angle), other) for other in held),
     )
 
 
 def _is_near(
-    scenario: Scenario,
-    contacts: tuple[JamContact, ...],
-    pose: tuple[float, ...],
-    other: tuple[float, ...],
+    ends: tuple[Disc, Disc], reach: float, pose: tuple[float, ...], other: tuple[float, ...]
 ) -> bool:
-    """Tell whether the ends of the track are at the same place in two poses."""
-    ends = end_discs(scenario.robot.outline.discs)
-    wheels = scenario.robot.wheels()
-    touch = {contact.body for contact in contacts}
-    radii = [r for r, k in zip(wheels["radius"], wheels["body"], strict=True) if k in touch]
-    reach = min((*radii, *(radius for *_, radius in ends)))
+    """Tell whether the ends of the track are at the same place in two poses, within a reach [m]."""
     return all(math.dist(_at(pose, disc), _at(other, disc)) < reach for disc in ends)
 
 

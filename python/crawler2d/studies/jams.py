@@ -13,7 +13,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.track import BeltTrack, ClosedTrack
+from crawler2d.runs.jams import on_belt
 from crawler2d.studies.tables import Models, read_models
 from crawler2d.sweeps.axes import field_attributes
 
@@ -120,7 +120,8 @@ def jam_chart(
         model = scenario.replace(fields)
         cells = [model.replace({x: value}) for value in along]
         own.append(_ranges(cells, most))
-        belts.append(_ranges([_closed(cell) for cell in cells], most))
+        on_belts = [on_belt(cell) for cell in cells]
+        belts.append(own[-1] if on_belts == cells else _ranges(on_belts, most))
     return _dataset(list(labels), x, along, own, belts)
 
 
@@ -134,14 +135,6 @@ def _values(scenario: Scenario, x: str, values: Sequence[float] | None) -> list[
     if not given or sorted(set(given)) != given:
         raise ScenarioError("values", tuple(given), "must be one number or more, rising")
     return given
-
-
-def _closed(scenario: Scenario) -> Scenario:
-    track = scenario.robot.track
-    if isinstance(track, (BeltTrack, ClosedTrack)):
-        return scenario
-    closed = ClosedTrack(track, surface="smooth")
-    return scenario.replace({"robot": scenario.robot.with_track(closed)})
 
 
 def _ranges(cells: Sequence[Scenario], most: float) -> list[dict[str, Any]]:
