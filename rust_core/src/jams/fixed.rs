@@ -162,7 +162,7 @@ fn positions(loci: &[Locus; 3]) -> Vec<Vector> {
     };
     let best = pairs.filter_map(sharp).max_by(|a, b| a.0.total_cmp(&b.0));
     match (best, circle) {
-        (Some((sine, point)), None) if sine > 0.0 => vec![point],
+        (Some((_, point)), None) => vec![point],
         (Some((sine, point)), Some(_)) if sine > 1e-6 => vec![point],
         // Lines that are one: where it meets the circle. Two circles that are one have none.
         (_, Some(circle)) => {
@@ -224,7 +224,7 @@ fn polished(three: &[Contact; 3], near: Posture) -> Option<Posture> {
 
 /// The solution of three equations; `None` if they are singular.
 pub(super) fn solve(rows: &[[f64; 3]; 3], right: &[f64; 3]) -> Option<[f64; 3]> {
-    let [a, b, c] = rows.map(|row| row);
+    let [a, b, c] = *rows;
     let minor = |p: &[f64; 3], q: &[f64; 3]| {
         [
             p[1] * q[2] - p[2] * q[1],

@@ -1,6 +1,6 @@
 //! Forces of the ground that carry a robot at rest with its drives running.
 
-use super::contact::{Posture, Touch, Turn};
+use super::contact::{Posture, Turn};
 use super::fixed::solve;
 use super::layout::Grip;
 use super::setting::Setting;
@@ -40,7 +40,7 @@ impl Setting {
     pub(super) fn wrench(&self, push: Push, position: Vector, turn: Turn) -> [f64; 3] {
         let touch = self.contacts[push.contact].touch_turned(position, turn);
         let center = position + turn.apply(self.layout.center_of_mass);
-        let force = force(&touch, push.slope);
+        let force = touch.normal + right_of(touch.normal) * push.slope;
         let moment = cross(touch.point - center, force) / self.layout.reach;
         [force.x, force.y, moment]
     }
@@ -75,11 +75,6 @@ impl Setting {
         }
         Some(loads)
     }
-}
-
-/// The force of a contact for a normal force of 1 N.
-pub(super) fn force(touch: &Touch, slope: f64) -> Vector {
-    touch.normal + right_of(touch.normal) * slope
 }
 
 /// Calls for every choice of three, two or one wrenches with shares of at least 0 that carry a weight of 1.
