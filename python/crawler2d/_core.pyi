@@ -13,6 +13,7 @@ __all__ = [
     "branch",
     "build_info",
     "canonical",
+    "certify",
     "escape_force",
     "geometry",
     "identity",
@@ -76,6 +77,16 @@ def branch(
 def balance(text: str, at: float) -> dict[str, Any] | None: ...
 def build_info() -> dict[str, str | int]: ...
 def canonical(text: str) -> str: ...
+def certify(
+    texts: list[str],
+    belts: list[str],
+    names: list[str],
+    *,
+    depth: float,
+    smallest: float,
+    cells: int,
+    keeps_cells: bool,
+) -> dict[str, Any]: ...
 def escape_force(text: str, at: float) -> tuple[float, float, bool]: ...
 def geometry(text: str) -> dict[str, Any]: ...
 def identity(text: str) -> str: ...

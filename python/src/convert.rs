@@ -1,9 +1,9 @@
 //! Converts the core's data to dictionaries of `NumPy` columns; values that are not known are None.
 
 use crawler2d_core::{
-    Balance, BodyKind, Change, ContactTable, Diagnosis, Edge, Event, FoundJam, Intrusion,
-    JamContact, JamRange, LoadedIntrusion, Mechanism, Model, Outcome, Record, Run, Side,
-    StopContact, TipOver, Trace, Trial, Vector, Wanted, WheelBody,
+    Balance, BodyKind, Certificate, Change, ContactTable, Diagnosis, Edge, Event, ExcludedCell,
+    FoundJam, Intrusion, JamContact, JamRange, LoadedIntrusion, Mechanism, Model, Outcome, Record,
+    Region, RegionStatus, Run, Side, StopContact, TipOver, Trace, Trial, Vector, Wanted, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
@@ -385,6 +385,52 @@ pub(crate) fn jam_ranges<'py>(
         .iter()
         .map(|(_, inside)| inside.as_ref().map(|i| i.bodies));
     result.set_item("between", bodies.collect::<Vec<_>>())?;
+    Ok(result)
+}
+
+/// What is known of each region: the count of cells that exclude jams, -1 with where it jams, -2 if it is as a belt, -3 if
+/// nothing is known; and these cells.
+#[allow(clippy::cast_possible_wrap)] // counts are small
+pub(crate) fn certificate<'py>(
+    py: Python<'py>,
+    found: &Certificate,
+) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    let regions = &found.regions;
+    let flat = |of: fn(&Region) -> &Vec<f64>| regions.iter().flat_map(of).copied().collect();
+    let (low, high): (Vec<f64>, Vec<f64>) = (flat(|r| &r.low), flat(|r| &r.high));
+    result.set_item("low", column(py, &low, |share| *share))?;
+    result.set_item("high", column(py, &high, |share| *share))?;
+    let count = column(py, regions, |region| match &region.status {
+        RegionStatus::Certified(cells) => *cells as i64,
+        RegionStatus::Jams(..) => -1,
+        RegionStatus::AsBelt => -2,
+        RegionStatus::Undecided => -3,
+    });
+    result.set_item("count", count)?;
+    let witness = |region: &Region| match &region.status {
+        RegionStatus::Jams(shares, jam) => {
+            Some((shares.clone(), (jam.position.x, jam.position.y, jam.angle)))
+        }
+        _ => None,
+    };
+    let witnesses = regions.iter().map(witness);
+    result.set_item("witnesses", witnesses.collect::<Vec<_>>())?;
+    result.set_item("length", found.length)?;
+    let cells = PyDict::new(py);
+    let flat = |of: fn(&ExcludedCell) -> &[f64]| -> Vec<f64> {
+        found.cells.iter().flat_map(of).copied().collect()
+    };
+    for (name, values) in [
+        ("low", flat(|cell| &cell.low)),
+        ("high", flat(|cell| &cell.high)),
+        ("twist", flat(|cell| &cell.twist)),
+    ] {
+        cells.set_item(name, column(py, &values, |value| *value))?;
+    }
+    let exclusion = column(py, &found.cells, |cell| cell.exclusion as i64);
+    cells.set_item("exclusion", exclusion)?;
+    result.set_item("cells", cells)?;
     Ok(result)
 }
 

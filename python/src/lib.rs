@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 mod _core {
     use std::collections::HashMap;
 
-    use crawler2d_core::{Finished, Progress, Record, ValidScenario};
+    use crawler2d_core::{Finished, Progress, Record, SearchEffort, ValidScenario};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -333,6 +333,37 @@ mod _core {
             .iter()
             .map(|ranges| convert::jam_ranges(py, ranges))
             .collect()
+    }
+
+    /// At which shares of the ranges of parameters there are no jams, and what shows it: from the scenarios at the least values
+    /// of all, at the most of each alone, of all, and half way between, on wheels and with a belt round them.
+    #[pyfunction]
+    #[pyo3(signature = (texts, belts, names, *, depth, smallest, cells, keeps_cells))]
+    fn certify(
+        py: Python<'_>,
+        texts: Vec<PyBackedStr>,
+        belts: Vec<PyBackedStr>,
+        names: Vec<String>,
+        depth: f64,
+        smallest: f64,
+        cells: usize,
+        keeps_cells: bool,
+    ) -> PyResult<Bound<'_, PyDict>> {
+        let effort = SearchEffort {
+            depth,
+            smallest,
+            cells,
+            keeps_cells,
+        };
+        let found = run_interruptible(py, move |cancel| {
+            let read = |texts: &[PyBackedStr]| {
+                let all = texts.iter().map(|text| ValidScenario::from_json(text));
+                all.collect::<Result<Vec<_>, _>>()
+            };
+            let (wheels, belts) = (read(&texts)?, read(&belts)?);
+            crawler2d_core::certify(&wheels, &belts, &names, effort, cancel)
+        })?;
+        convert::certificate(py, &found)
     }
 
     /// Version and build of the compiled core.

@@ -42,7 +42,10 @@ pub use dynamics::ChainReading;
 pub use engine::OWN_SETTINGS;
 pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
-pub use jams::{Jam, JamContact, JamRange};
+pub use jams::{
+    Certificate, ExcludedCell, Exclusion, Jam, JamContact, JamRange, Region, RegionStatus,
+    SearchEffort,
+};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
 pub use robot::{
@@ -51,7 +54,7 @@ pub use robot::{
 };
 pub use run::{
     ByHand, ContactTable, EscapeForce, Finished, FoundJam, Log, Metric, Metrics, Poses, Progress,
-    Record, Run, Simulation, TipOver, Trace, ValidScenario, balance, branch, diagnose,
+    Record, Run, Simulation, TipOver, Trace, ValidScenario, balance, branch, certify, diagnose,
     escape_force, find_jams, jam_ranges, make_trials, outcome_of, poses, run_of_trial, simulate,
     simulate_many, tip_over, what_if,
 };

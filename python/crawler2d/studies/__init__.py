@@ -14,7 +14,7 @@ no interval, but a median over the repeats, and the lowest and the highest of th
 `settings` counts the cells that were tried.
 
 `real_time_factor` measures the machine, and takes only `repeats` and `progress`. `jam_chart`
-simulates nothing, and takes none of them.
+and `certify` simulate nothing, and take none of them; `certify` returns a `Certificate`.
 
 >>> import crawler2d as c2d
 >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
@@ -24,6 +24,7 @@ simulates nothing, and takes none of them.
 """
 
 from crawler2d.studies.boundary import critical
+from crawler2d.studies.certify import certify
 from crawler2d.studies.decides import what_decides
 from crawler2d.studies.driving import acceleration, braking_distance, max_speed
 from crawler2d.studies.jams import jam_chart
@@ -35,6 +36,7 @@ from crawler2d.studies.search import search
 __all__ = [
     "acceleration",
     "braking_distance",
+    "certify",
     "critical",
     "jam_chart",
     "max_gap",

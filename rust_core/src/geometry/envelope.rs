@@ -123,7 +123,7 @@ impl Envelope {
     }
 
     /// [m] No point of a segment is deeper than this: the depth of its deeper end below a straight run.
-    pub(super) fn depth_below_runs(&self, ends: [Vector; 2]) -> f64 {
+    pub(crate) fn depth_below_runs(&self, ends: [Vector; 2]) -> f64 {
         let is_run = |s: &&Stretch| matches!(s.curve, Curve::Run(_));
         let runs = self.stretches.iter().filter(is_run);
         let depths = runs.filter_map(|s| Some(s.depth(ends[0])?.max(s.depth(ends[1])?)));

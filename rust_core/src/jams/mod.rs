@@ -4,6 +4,7 @@
 //! normal force. Three contacts fix the pose and their forces, two or one leave as many freedoms as they lack forces: all
 //! equilibria are isolated, and each is a zero of a polynomial. docs/studies/jams.md, "Theory".
 
+pub(crate) mod certify;
 mod clear;
 mod contact;
 mod fixed;
@@ -15,6 +16,7 @@ mod ranges;
 mod setting;
 mod zeros;
 
+pub use self::certify::{Certificate, ExcludedCell, Exclusion, Region, RegionStatus, SearchEffort};
 use self::contact::{Posture, Turn};
 use self::forces::Loads;
 use self::layout::Layout;

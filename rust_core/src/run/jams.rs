@@ -3,8 +3,10 @@
 use super::{Simulation, ValidScenario};
 use crate::contact::Intrusion;
 use crate::error::Error;
-use crate::jams::{self, Jam, JamRange};
+use crate::jams::{self, Certificate, Jam, JamRange, SearchEffort};
 use crate::limits::Cancel;
+use crate::robot::Model;
+use crate::terrain::Ground;
 use crate::units::{Metres, Seconds};
 
 /// [s] For how long it is left alone, then pushed forwards, pushed back, and left alone again.
@@ -83,4 +85,28 @@ fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Erro
         }
     }
     Ok(true)
+}
+
+/// Which values of parameters there are no jams at that a belt does not have, from the scenarios at the least values of all
+/// parameters, then at the most of each alone, of all, and half way between; `belts` with a belt round the same wheels.
+///
+/// # Errors
+/// As [`find_jams`], and for parameters that move anything but corners of the ground, friction and the centre of mass.
+pub fn certify(
+    scenarios: &[ValidScenario],
+    belts: &[ValidScenario],
+    names: &[String],
+    effort: SearchEffort,
+    cancel: &Cancel,
+) -> Result<Certificate, Error> {
+    let (wheels, belts) = (built(scenarios), built(belts));
+    let scenario = scenarios[0].scenario();
+    jams::certify::certify(scenario, [&wheels, &belts], names, effort, cancel)
+}
+
+fn built(scenarios: &[ValidScenario]) -> Vec<(&Model, &Ground)> {
+    scenarios
+        .iter()
+        .map(|scenario| (scenario.model(), &**scenario.ground()))
+        .collect()
 }

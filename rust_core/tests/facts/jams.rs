@@ -20,7 +20,7 @@ fn strong(track: Track, height: f64, friction: f64) -> Scenario {
     scenario
 }
 
-/// Wheels of any size anywhere between the ends of the track, or in a row or all round, on a ground of one of four kinds.
+/// Wheels of any size anywhere between the ends of the track, or in a row or all round, on a ground of one of six kinds.
 fn drawn(draw: &mut Draw) -> Scenario {
     let height = draw.between(0.02, 0.15);
     let count = draw.between(3.0, 9.99) as u32;
@@ -42,11 +42,26 @@ fn drawn(draw: &mut Draw) -> Scenario {
     let mut scenario = strong(track, height, friction);
     scenario.robot.center_of_mass = [draw.between(-0.06, 0.06), draw.between(0.0, 0.08)];
     let width = draw.between(0.03, 0.3);
-    let points = match draw.between(0.0, 4.0) as u32 {
+    let points = match draw.between(0.0, 6.0) as u32 {
         0 => vec![[0.0, 0.0], [0.0, height]],
         1 => vec![[0.0, 0.0], [0.0, height], [width, height], [width, 0.0]],
         2 => vec![[0.0, 0.0], [width, height], [2.0 * width, 0.0]],
-        _ => vec![[0.0, 0.0], [0.0, -0.3], [width, -0.3], [width, 0.0]],
+        3 => vec![[0.0, 0.0], [0.0, -0.3], [width, -0.3], [width, 0.0]],
+        4 => {
+            let corner = |i: u32| {
+                let [run, rise] = [i / 2, i.div_ceil(2)].map(f64::from);
+                [run * (width + 0.1), rise * 0.7 * height]
+            };
+            (0..6).map(corner).collect()
+        }
+        _ => {
+            let mut x = 0.0;
+            let mut corner = || {
+                x += draw.between(0.06, 0.2);
+                [x, draw.between(-0.08, 0.12)]
+            };
+            (0..6).map(|_| corner()).collect()
+        }
     };
     let last = points[points.len() - 1][1];
     let mut whole = vec![[-3.0, 0.0]];

@@ -14,6 +14,7 @@ mod basics;
 mod belt;
 mod blows;
 mod candidates;
+mod certificates;
 mod climbing;
 mod detracking;
 mod discs;

@@ -1,0 +1,285 @@
+"""Certificates: in which ranges of height, friction and centre of mass a robot cannot jam."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.keywords import takes_keywords
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.fields import read_number_path
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.runs.jams import on_belt
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+__all__ = ["Certificate", "certify"]
+
+_MOST_FIELDS = 4
+"""So many fields may vary."""
+
+_STATUSES = {-1: "jams", -2: "as a belt", -3: "undecided"}
+"""What a region is without cells that exclude jams."""
+
+_EXCLUSIONS = "apart", "overlap", "belt", "unbalanced", "tips"
+"""Why there is no jam in a cell, in the order of the core."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Certificate:
+    """In which ranges of fields a robot cannot jam; ``str(certificate)`` says it.
+
+    Attributes
+    ----------
+    fields : tuple of str
+        Paths of the fields that vary, F of them.
+    ranges : ndarray of float, shape (F, 2)
+        Their least and greatest values.
+    depth : float
+        [m] Ground inside the track by less is left to the belt.
+    low, high : ndarray of float, shape (N, F)
+        The regions, which cover all values once.
+    status : ndarray of str, shape (N,)
+        What is known of each:
+
+        - `certified`: there is no jam in it with ground that deep inside the track;
+        - `as a belt`: there may be, but a belt round the same wheels can jam at each of its values;
+        - `jams`: at `witness` there is one on three contacts;
+        - `undecided`: none of these is shown.
+    witness : ndarray of float, shape (N, F + 3)
+        Values of the fields, and x [m], y [m] and angle [rad] of the chassis there; NaN elsewhere.
+    count : ndarray of int, shape (N,)
+        Number of cells that show that a region is certified, else 0.
+    cells : dict of ndarray or None
+        These cells, M in the order of the certified regions, if they were asked for. `low` and
+        `high`, shape (M, 3 + F): x [m], y [m] and angle [rad] of the chassis, and the fields.
+        `exclusion`, shape (M,): `apart`, nothing can touch; `overlap`, a part overlaps with the
+        ground; `belt`, no ground is that deep inside the track; `unbalanced`, no forces carry the
+        weight; `tips`, those of one wheel or two do, but small deviations grow. `motion`, shape
+        (M, 3): for `unbalanced`, a velocity of the centre of mass [m/s] and of turning [rad/s] for
+        which the weight has power and no contact resists; NaN elsewhere.
+    """
+
+    fields: tuple[str, ...]
+    ranges: NDArray[np.float64]
+    depth: float
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    status: NDArray[np.str_]
+    witness: NDArray[np.float64]
+    count: NDArray[np.int64]
+    cells: dict[str, NDArray[Any]] | None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the robot can jam nowhere, or only where a belt can as well."""
+        return bool(np.isin(self.status, ["certified", "as a belt"]).all())
+
+    def share(self, status: str) -> float:
+        """Tell which share of all values has a status.
+
+        Raises
+        ------
+        ScenarioError
+            If there is no such status.
+        """
+        known = "certified", *_STATUSES.values()
+        if status not in known:
+            raise ScenarioError("status", status, f"must be one of {', '.join(known)}")
+        sizes = ((self.high - self.low) / np.diff(self.ranges, axis=1).T).prod(axis=1)
+        return float(sizes[self.status == status].sum())
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the regions over one field or two; takes and returns one matplotlib Axes.
+
+        Raises
+        ------
+        ScenarioError
+            If more than two fields vary.
+        """
+        from crawler2d.pictures.certificates import plot_certificate  # noqa: PLC0415
+
+        return plot_certificate(self, ax)
+
+    def __str__(self) -> str:
+        """Say what is certified, and what that means."""
+        pairs = zip(self.fields, self.ranges, strict=True)
+        where = " and ".join(f"{name} from {low:g} to {high:g}" for name, (low, high) in pairs)
+        inside = f"more than {1e3 * self.depth:g} mm of ground inside the track"
+        limits = (
+            "Motors have any torque; poses in which it would tip over from one wheel or two by "
+            "itself are no rest, and rocking without rest is not excluded."
+        )
+        if (self.status == "certified").all():
+            none = f"no equilibrium with running drives and {inside} exists for {where}"
+            return f"certified: {none}; so it cannot come to rest there. {limits}"
+        parts = [f"{100.0 * self.share('certified'):.0f} % certified: no equilibrium with {inside}"]
+        texts = {
+            "as a belt": "where a belt can jam, too",
+            "jams": "where it can jam",
+            "undecided": "undecided",
+        }
+        for status, text in texts.items():
+            if (self.status == status).any():
+                parts.append(f"{100.0 * self.share(status):.0f} % {text}")
+        jams = self.witness[self.status == "jams"]
+        if len(jams):
+            pairs = zip(self.fields, jams[0], strict=False)
+            at = ", ".join(f"{name} = {value:.4g}" for name, value in pairs)
+            parts[-1 if parts[-1].endswith("jam") else -2] += f", as at {at}"
+        return f"{where}: {'; '.join(parts)}. {limits}"
+
+
+@takes_keywords
+def certify(
+    scenario: Scenario,
+    over: Mapping[str, tuple[float, float]],
+    *,
+    depth: float = 1e-3,
+    smallest: float = 1.0 / 32.0,
+    most_cells: int = 100_000,
+    keep_cells: bool = False,
+) -> Certificate:
+    """Certify in which ranges of height, friction and centre of mass a robot cannot jam.
+
+    All poses, at all values of the fields, are split into cells until something excludes each: a
+    wheel overlaps with the ground, nothing touches, no ground is inside the track, the weight works
+    with a virtual motion that no force resists, or the pose tips over by itself. Everything is
+    bounded by interval arithmetic with a margin of 1e-9 that is far above rounding, so nothing
+    between cells is left out; see docs/studies/jams.md. Where the robot can jam, the ranges are
+    split into regions, and a belt round the same wheels is tried in each.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A robot on round wheels, with a belly or without, flippers held, before an obstacle that is
+        the same under both tracks.
+    over : mapping of str to pair of float
+        Least and greatest values of up to 4 fields, which may move corners of the ground, its
+        friction and the centre of mass, in proportion: `terrain.height` of a step or a barrier,
+        `terrain.friction`, `robot.center_of_mass[0]` and the like.
+    depth : float
+        [m] Ground inside the track by less is left to the belt; above 0.
+    smallest : float
+        [-] Regions are split down to this share of each range, from 1/1024 to 1.
+    most_cells : int
+        A region of more cells than this is split or undecided; at least 1, at most 10 million.
+    keep_cells : bool
+        Whether to return the cells.
+
+    Returns
+    -------
+    Certificate
+        Regions, and what is known of each.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument breaks a rule, a field changes anything else, or the robot has no wheels, no
+        friction or no speed.
+
+    Examples
+    --------
+    Seven wheels cannot jam on steps up to 40 mm at usual frictions:
+
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(7))
+    >>> base = c2d.Scenario(robot, c2d.terrains.step(0.1))
+    >>> over = {"terrain.height": (0.02, 0.04), "terrain.friction": (0.6, 1.0)}
+    >>> found = c2d.studies.certify(base, over)
+    >>> found.holds
+    True
+    """
+    names, ranges = _read(scenario, over)
+    limit = real_number(depth, "depth")
+    if not 0.0 < limit <= 1.0:
+        raise ScenarioError("depth", limit, "must be > 0 m and <= 1 m")
+    share = real_number(smallest, "smallest")
+    if not 1.0 / 1024.0 <= share <= 1.0:
+        raise ScenarioError("smallest", share, "must be >= 1/1024 and <= 1")
+    most = whole_number(most_cells, "most_cells", 1, 10_000_000)
+    members = _members(scenario, names, ranges)
+    texts = [[member.to_json() for member in each] for each in (members, map(on_belt, members))]
+    found = _core.certify(
+        *texts, names, depth=limit, smallest=share, cells=most, keeps_cells=bool(keep_cells)
+    )
+    return _certificate(names, ranges, limit, found, keeps_cells=bool(keep_cells))
+
+
+def _read(
+    scenario: Scenario, over: Mapping[str, tuple[float, float]]
+) -> tuple[list[str], NDArray[np.float64]]:
+    if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_FIELDS:
+        rule = f"must be a mapping of 1 to {_MOST_FIELDS} fields to pairs of numbers"
+        raise ScenarioError("over", over, rule)
+    ranges = []
+    for name, pair in over.items():
+        read_number_path(scenario, name, "over")
+        path = f"over[{name!r}]"
+        if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+            raise ScenarioError(path, pair, "must be its least and its greatest value")
+        low, high = (real_number(value, path) for value in pair)
+        if not low < high:
+            raise ScenarioError(path, pair, "must be its least value, then a greater one")
+        ranges.append((low, high))
+    return list(over), np.array(ranges)
+
+
+def _members(
+    scenario: Scenario, names: list[str], ranges: NDArray[np.float64]
+) -> list[Scenario]:
+    """Set the fields to their least values, each alone to its greatest, all, and half way."""
+    low, high = ranges.T
+    corners = [np.where(np.arange(len(names)) == k, high, low) for k in range(len(names))]
+    rows = [low, *corners, high, 0.5 * (low + high)]
+    return [scenario.replace(dict(zip(names, row.tolist(), strict=True))) for row in rows]
+
+
+def _certificate(
+    names: list[str],
+    ranges: NDArray[np.float64],
+    depth: float,
+    found: dict[str, Any],
+    *,
+    keeps_cells: bool,
+) -> Certificate:
+    low, high = ranges.T
+    count = found["count"]
+
+    def scaled(shares: NDArray[np.float64]) -> NDArray[np.float64]:
+        return low + (high - low) * shares
+
+    shape = len(count), len(names)
+    witness = np.full((len(count), len(names) + 3), np.nan)
+    for row, seen in zip(witness, found["witnesses"], strict=True):
+        if seen is not None:
+            shares, pose = seen
+            row[:] = *scaled(np.array(shares[: len(names)])), *pose
+    cells = None
+    if keeps_cells:
+        columns = found["cells"]
+        ends = [columns[end].reshape(len(columns["exclusion"]), -1) for end in ("low", "high")]
+        of_fields = slice(3, 3 + len(names))
+        lows, highs = (np.hstack([end[:, :3], scaled(end[:, of_fields])]) for end in ends)
+        exclusion = np.array(_EXCLUSIONS)[columns["exclusion"]]
+        motion = columns["twist"].reshape(-1, 3) / (1.0, 1.0, found["length"])
+        motion[exclusion != "unbalanced"] = np.nan
+        cells = {"low": lows, "high": highs, "exclusion": exclusion, "motion": motion}
+    return Certificate(
+        fields=tuple(names),
+        ranges=ranges,
+        depth=depth,
+        low=scaled(found["low"].reshape(shape)),
+        high=scaled(found["high"].reshape(shape)),
+        status=np.array([_STATUSES.get(int(k), "certified") for k in count]),
+        witness=witness,
+        count=np.maximum(count, 0),
+        cells=cells,
+    )

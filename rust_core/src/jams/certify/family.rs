@@ -1,0 +1,295 @@
+//! A robot over grounds that change with parameters: its outline stays, corners of the ground, friction and the centre of mass
+//! move in proportion.
+
+use super::cell::{Affine, Cell, MOST_PARAMETERS, Shares};
+use crate::geometry::{Disc, Envelope, Pose, Vector};
+use crate::jams::layout::{Grip, Layout, Outline, Surface};
+use crate::jams::places::{Facing, Place};
+use crate::robot::Model;
+use crate::scenario::ScenarioError;
+use crate::terrain::Ground;
+
+/// [m] and shares: how far a value may be off proportion, which is rounding.
+const PROPORTIONAL: f64 = 1e-12;
+
+/// Robot and ground over all values of the parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Family {
+    /// The robot at the least values.
+    pub layout: Layout,
+    /// Circles that may not overlap with the ground.
+    pub discs: Vec<Disc>,
+    /// What may not hold a corner of the ground: parts that are hulls of several discs.
+    pub hulls: Vec<Envelope>,
+    pub tracks: Vec<Track>,
+    pub places: Vec<Spot>,
+    pub center_of_mass: Affine<Vector>,
+    /// [m] Radius of the smallest wheel.
+    pub radius: f64,
+    /// [m] No point of the robot is farther from the origin of its frame.
+    pub reach: f64,
+    /// [m^2] Moment of inertia over mass.
+    pub inertia: f64,
+    /// [rad] Greatest angle of the chassis.
+    pub most_angle: f64,
+    /// How many parameters there are.
+    pub parameters: usize,
+}
+
+/// The wheels of a track and a taut belt round them, in the chassis frame.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    pub discs: Vec<Disc>,
+    pub belt: Envelope,
+}
+
+/// A face or a corner of the ground over all values of the parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Spot {
+    /// At the least values.
+    pub place: Place,
+    pub shape: Facing,
+    /// [m] Both ends of a face, twice the centre of a corner.
+    pub ends: [Affine<Vector>; 2],
+    pub friction: Affine<f64>,
+}
+
+/// One member of it: at the least values, or with one parameter or all at the most.
+struct Member {
+    layout: Layout,
+    places: Vec<Place>,
+}
+
+impl Family {
+    /// From the robot and the ground at the least values of all parameters, then at the most of each alone, of all, and half
+    /// way between.
+    ///
+    /// # Errors
+    /// A robot that [`Layout::new`] refuses, parameters that change anything else or not in proportion.
+    pub(super) fn new(
+        built: &[(&Model, &Ground)],
+        names: &[String],
+        forwards: bool,
+        most_angle: f64,
+    ) -> Result<Self, ScenarioError> {
+        let member = |(model, ground): &(&Model, &Ground)| {
+            Ok(Member {
+                layout: Layout::new(model, forwards)?,
+                places: Place::of(ground),
+            })
+        };
+        let members: Vec<Member> = built.iter().map(member).collect::<Result<_, _>>()?;
+        let count = names.len();
+        let first = &members[0];
+        for (k, other) in members.iter().enumerate().skip(1) {
+            if !is_alike(first, other) {
+                let name = names.get(k - 1).or(names.first());
+                let name = name.cloned().unwrap_or_default();
+                let rule = "must move the centre of mass, corners of the ground or friction, and nothing else";
+                return Err(ScenarioError::new("over", name, rule));
+            }
+        }
+        let vector = |of: &dyn Fn(&Member) -> Vector| Affine {
+            base: of(first),
+            slopes: std::array::from_fn(|k| match k < count {
+                true => of(&members[k + 1]) - of(first),
+                false => Vector::ZERO,
+            }),
+        };
+        let number = |of: &dyn Fn(&Member) -> f64| Affine {
+            base: of(first),
+            slopes: std::array::from_fn(|k| match k < count {
+                true => of(&members[k + 1]) - of(first),
+                false => 0.0,
+            }),
+        };
+        let places = (0..first.places.len()).map(|i| Spot {
+            place: first.places[i],
+            shape: first.places[i].shape,
+            ends: [0, 1].map(|end| vector(&|member| points(&member.places[i].shape)[end])),
+            friction: number(&|member| member.places[i].friction),
+        });
+        let family = Self {
+            most_angle,
+            parameters: count,
+            layout: first.layout.clone(),
+            discs: discs(&first.layout),
+            hulls: hulls(&first.layout),
+            tracks: tracks(built[0].0),
+            places: places.collect(),
+            center_of_mass: vector(&|member| member.layout.center_of_mass),
+            radius: smallest(&first.layout),
+            reach: first.layout.reach + first.layout.center_of_mass.length(),
+            inertia: inertia(built[0].0, first.layout.center_of_mass),
+        };
+        for (member, share) in members[count + 1..].iter().zip([1.0, 0.5]) {
+            if !family.holds(member, share) {
+                let rule = "must move the centre of mass, corners of the ground and friction in proportion";
+                return Err(ScenarioError::new("over", names.join(", "), rule));
+            }
+        }
+        Ok(family)
+    }
+
+    /// All poses over the ground at all values of the parameters.
+    pub(super) fn root(&self) -> Cell {
+        let mut all = Cell::ZERO;
+        all.high[3..3 + self.parameters].fill(1.0);
+        let over = |end: &Affine<Vector>| {
+            let over = end.over(&all);
+            [over.middle - over.half, over.middle + over.half]
+        };
+        let ends = self.places.iter().flat_map(|spot| &spot.ends);
+        let bounds: Vec<Vector> = ends.flat_map(over).collect();
+        let low = bounds.iter().copied().fold(bounds[0], Vector::min);
+        let high = bounds.iter().copied().fold(bounds[0], Vector::max);
+        let (reach, turn) = (self.reach, self.most_angle);
+        // Where the ground ends there is nothing that it could be.
+        all.low[..3].copy_from_slice(&[low.x + reach, low.y - reach, -turn]);
+        all.high[..3].copy_from_slice(&[high.x - reach, high.y + reach, turn]);
+        all
+    }
+
+    /// Robot and ground at shares of the parameters' ranges.
+    pub(super) fn at(&self, shares: &Shares) -> (Layout, Vec<Place>) {
+        let of = |spot: &Spot| {
+            let [from, to] = spot.ends.map(|end| end.at(shares));
+            let shape = match spot.shape {
+                Facing::Face { normal, .. } => Facing::Face {
+                    ends: [from, to],
+                    normal,
+                },
+                Facing::Corner { radius, cone, .. } => Facing::Corner {
+                    center: from,
+                    radius,
+                    cone,
+                },
+            };
+            Place {
+                shape,
+                friction: spot.friction.at(shares),
+                ..spot.place
+            }
+        };
+        let layout = Layout {
+            center_of_mass: self.center_of_mass.at(shares),
+            ..self.layout.clone()
+        };
+        (layout, self.places.iter().map(of).collect())
+    }
+
+    /// Whether a member with all parameters at a share of their ranges is as proportion has it.
+    fn holds(&self, member: &Member, share: f64) -> bool {
+        let (layout, places) = self.at(&[share; MOST_PARAMETERS]);
+        let off = (layout.center_of_mass - member.layout.center_of_mass).length();
+        let of_place = |(place, other): (&Place, &Place)| {
+            let [from, to] = points(&place.shape);
+            let [other_from, other_to] = points(&other.shape);
+            let moved = (from - other_from).length().max((to - other_to).length());
+            moved.max((place.friction - other.friction).abs())
+        };
+        let places = places.iter().zip(&member.places).map(of_place);
+        places.fold(off, f64::max) < PROPORTIONAL
+    }
+}
+
+/// Refuses what moves along straight runs: a belt has no pockets.
+pub(super) fn check_wheels(layout: &Layout) -> Result<(), ScenarioError> {
+    let is_belt = |surface: &Surface| {
+        matches!(surface.shape, Outline::Flat { .. }) && surface.grip != Grip::Still
+    };
+    if layout.surfaces.iter().any(is_belt) {
+        let rule = "must have wheels: it is a belt that they are certified to be as good as";
+        return Err(ScenarioError::new("robot.track", "belt", rule));
+    }
+    Ok(())
+}
+
+fn points(shape: &Facing) -> [Vector; 2] {
+    match shape {
+        Facing::Face { ends, .. } => *ends,
+        Facing::Corner { center, .. } => [*center; 2],
+    }
+}
+
+/// Whether two members have one outline and faces of the same directions.
+fn is_alike(one: &Member, other: &Member) -> bool {
+    let near = |a: Vector, b: Vector| (a - b).length() < PROPORTIONAL;
+    let same_disc =
+        |a: &Disc, b: &Disc| near(a.center, b.center) && (a.radius - b.radius).abs() < PROPORTIONAL;
+    let same_surface = |(a, b): (&Surface, &Surface)| {
+        a.grip == b.grip
+            && a.friction_limit.to_bits() == b.friction_limit.to_bits()
+            && match (&a.shape, &b.shape) {
+                (Outline::Round(a), Outline::Round(b)) => same_disc(a, b),
+                (Outline::Flat { ends: a, .. }, Outline::Flat { ends: b, .. }) => {
+                    near(a[0], b[0]) && near(a[1], b[1])
+                }
+                _ => false,
+            }
+    };
+    let same_place = |(a, b): (&Place, &Place)| match (&a.shape, &b.shape) {
+        (Facing::Face { normal: a, .. }, Facing::Face { normal: b, .. }) => near(*a, *b),
+        (
+            Facing::Corner { radius, cone, .. },
+            Facing::Corner {
+                radius: other_radius,
+                cone: other_cone,
+                ..
+            },
+        ) => {
+            (radius - other_radius).abs() < PROPORTIONAL
+                && near(cone[0], other_cone[0])
+                && near(cone[1], other_cone[1])
+        }
+        _ => false,
+    };
+    let (surfaces, others) = (&one.layout.surfaces, &other.layout.surfaces);
+    surfaces.len() == others.len()
+        && one.places.len() == other.places.len()
+        && surfaces.iter().zip(others).all(same_surface)
+        && one.places.iter().zip(&other.places).all(same_place)
+}
+
+fn discs(layout: &Layout) -> Vec<Disc> {
+    layout
+        .solids
+        .iter()
+        .flat_map(|solid| solid.discs.clone())
+        .collect()
+}
+
+fn smallest(layout: &Layout) -> f64 {
+    let discs = layout.solids.iter().flat_map(|solid| &solid.discs);
+    let radii = discs.map(|disc| disc.radius).filter(|radius| *radius > 0.0);
+    radii.fold(f64::INFINITY, f64::min)
+}
+
+fn hulls(layout: &Layout) -> Vec<Envelope> {
+    let solids = layout.solids.iter().filter(|solid| solid.discs.len() > 1);
+    solids.map(|solid| Envelope::new(&solid.discs)).collect()
+}
+
+fn tracks(model: &Model) -> Vec<Track> {
+    let running = model.running_at_start(0.0);
+    let of = |mount| {
+        let place = running.mounted(mount, Pose::IDENTITY);
+        let placed = model.discs_of_track(0, mount).map(move |(tip, _)| Disc {
+            center: place.transform_point(tip.center),
+            ..tip
+        });
+        let discs: Vec<Disc> = placed.collect();
+        let belt = Envelope::new(&discs);
+        Track { discs, belt }
+    };
+    model.mounts_of_tracks().map(of).collect()
+}
+
+/// [m^2] Moment of inertia over mass, with flippers and drives fixed to the chassis.
+fn inertia(model: &Model, center: Vector) -> f64 {
+    let about = |point: Vector| (point - center).length_squared();
+    let arms = model.flippers.iter();
+    let of_arms = arms.map(|arm| arm.moment_of_inertia + arm.mass * about(arm.pivot + arm.arm));
+    let of_chassis = model.locked_inertia() + model.mass * about(model.center_of_mass);
+    (of_chassis + of_arms.sum::<f64>()) / model.total_mass()
+}

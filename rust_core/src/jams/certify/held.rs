@@ -1,0 +1,187 @@
+//! That a robot can jam at every value of the parameters: a pose on three contacts that moves with them.
+//!
+//! Krawczyk's operator (1969) shows that three gaps have a common zero in a box of poses, whatever the parameters; then loads
+//! are bounded over that box.
+
+use super::cell::{Cell, Turns};
+use super::family::Family;
+use super::interval::{Interval, MARGIN, Rectangle};
+use super::tipping::Wrench;
+use super::touch::{Possible, Touch};
+use crate::error::Error;
+use crate::geometry::{Vector, right_of};
+use crate::jams::contact::Posture;
+use crate::jams::fixed::solve;
+use crate::jams::layout::Outline;
+use crate::jams::places::Facing;
+use crate::jams::setting::Setting;
+use crate::limits::Cancel;
+
+/// So often a box of poses is made larger before it is given up.
+const TRIES: usize = 8;
+
+type Row = [Interval; 3];
+
+impl Family {
+    /// Whether it has one jam on three contacts at every value of the parameters of a range.
+    pub(super) fn is_held(&self, range: &Cell, cancel: &Cancel) -> Result<bool, Error> {
+        let (layout, places) = self.at(&range.shares());
+        let most = self.most_angle;
+        let setting = Setting::new(layout, places, [-most, most], cancel)?;
+        for posture in setting.fixed(cancel)? {
+            let contacts = setting.touching(&posture).unwrap_or_default();
+            if contacts.len() == 3 && setting.loads(&contacts, &posture).is_some() {
+                let of = |i: usize| (setting.contacts[i].surface, setting.contacts[i].place);
+                let three = [of(contacts[0]), of(contacts[1]), of(contacts[2])];
+                if let Some(cell) = self.enclosed(range, &posture, &three)
+                    && self.carries(&cell, &three)
+                {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// A box of poses that holds one in which three surfaces touch, at every value of the parameters.
+    fn enclosed(&self, range: &Cell, near: &Posture, three: &[(usize, usize); 3]) -> Option<Cell> {
+        let middle = [near.position.x, near.position.y, near.angle];
+        let boxed = |half: [f64; 3]| {
+            let mut cell = *range;
+            for k in 0..3 {
+                (cell.low[k], cell.high[k]) = (middle[k] - half[k], middle[k] + half[k]);
+            }
+            cell
+        };
+        let at_middle = boxed([0.0; 3]);
+        let gaps = three.map(|contact| self.gap(&at_middle, contact).0);
+        let rows = three.map(|contact| self.gap(&at_middle, contact).1);
+        let points = rows.map(|row| row.map(Interval::middle));
+        // Columns of the inverse.
+        let unit = |k: usize| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+        let columns = [
+            solve(&points, &unit(0))?,
+            solve(&points, &unit(1))?,
+            solve(&points, &unit(2))?,
+        ];
+        let inverse = |i: usize, k: usize| Interval::at(columns[k][i]);
+        let mut half = [1e-9; 3];
+        for _ in 0..TRIES {
+            let cell = boxed(half);
+            let rows = three.map(|contact| self.gap(&cell, contact).1);
+            let image: [Interval; 3] = std::array::from_fn(|i| {
+                let mut sum = Interval::at(0.0);
+                for k in 0..3 {
+                    sum = sum - inverse(i, k) * gaps[k];
+                }
+                for j in 0..3 {
+                    let mut rest = Interval::at(if i == j { 1.0 } else { 0.0 });
+                    for k in 0..3 {
+                        rest = rest - inverse(i, k) * rows[k][j];
+                    }
+                    sum = sum + rest * Interval::around(0.0, half[j]);
+                }
+                sum
+            });
+            let most = image.map(|value| value.low.abs().max(value.high.abs()) + MARGIN);
+            if (0..3).all(|k| most[k] < half[k]) {
+                return Some(boxed(most));
+            }
+            half = most.map(|value| 1.5 * value);
+        }
+        None
+    }
+
+    /// The gap \[m\] over a cell, near 0, and how it changes with the pose.
+    fn gap(&self, cell: &Cell, (surface, place): (usize, usize)) -> (Interval, Row) {
+        let turns = Turns::of(cell);
+        let (position, spot) = (cell.position(), &self.places[place]);
+        let ground = spot.ends[0].over(cell);
+        let row = |normal: Rectangle, arm: Rectangle| {
+            let (x, y) = (normal.x(), normal.y());
+            [x, y, arm.x() * y - arm.y() * x]
+        };
+        match (self.layout.surfaces[surface].shape, spot.shape) {
+            (Outline::Round(disc), Facing::Face { normal, .. }) => {
+                let arm = turns.apply(disc.center);
+                let gap = (position + arm - ground).along(normal) - Interval::at(disc.radius);
+                (gap, row(Rectangle::at(normal), arm))
+            }
+            (Outline::Round(disc), Facing::Corner { radius, .. }) => {
+                // Half the difference of squares over the radius, which is the gap where that is 0.
+                let (arm, circle) = (turns.apply(disc.center), radius + disc.radius);
+                let spoke = position + arm - ground;
+                let (x, y) = (spoke.x(), spoke.y());
+                let over = Interval::at(0.5 / circle);
+                let gap = over * (x * x + y * y - Interval::at(circle * circle));
+                (gap, row(spoke.times(1.0 / circle), arm))
+            }
+            (Outline::Flat { ends, outward }, shape) => {
+                let radius = match shape {
+                    Facing::Corner { radius, .. } => radius,
+                    Facing::Face { .. } => 0.0,
+                };
+                let normal = turns.apply(-outward);
+                let arm = ground - position;
+                let (x, y) = (normal.x(), normal.y());
+                let along = -(arm.x() * x + arm.y() * y);
+                let gap = along - Interval::at(outward.dot(ends[0]) + radius);
+                (gap, row(normal, arm))
+            }
+        }
+    }
+
+    /// Whether three contacts carry the weight wherever they touch in a cell, and nothing else can touch there.
+    fn carries(&self, cell: &Cell, three: &[(usize, usize); 3]) -> bool {
+        let Possible::Touches(touches) = self.possible(cell) else {
+            return false;
+        };
+        let is_of_three = |touch: &Touch| three.contains(&(touch.surface, touch.place));
+        if touches.len() != 3
+            || !touches
+                .iter()
+                .all(|t| is_of_three(t) && self.is_real(cell, t))
+        {
+            return false;
+        }
+        let [a, b, c] = [0, 1, 2].map(|i| Wrench::of(&touches[i]).parts);
+        let weight = [0.0, 1.0, 0.0].map(Interval::at);
+        let all = determinant(a, b, c);
+        let loads = [
+            determinant(weight, b, c),
+            determinant(a, weight, c),
+            determinant(a, b, weight),
+        ];
+        let same = |load: &Interval| (*load * all).is_above(0.0);
+        loads.iter().all(same)
+    }
+
+    /// Whether the piece of the ground is there, wherever it is touched in a cell.
+    fn is_real(&self, cell: &Cell, touch: &Touch) -> bool {
+        let spot = &self.places[touch.place];
+        let turns = Turns::of(cell);
+        match (self.layout.surfaces[touch.surface].shape, spot.shape) {
+            (Outline::Round(disc), Facing::Face { normal, .. }) => {
+                let axle = cell.position() + turns.apply(disc.center);
+                let along = right_of(normal);
+                let [from, to] = spot.ends.map(|end| end.over(cell));
+                (axle - from).along(along).is_above(0.0) && (to - axle).along(along).is_above(0.0)
+            }
+            (Outline::Flat { ends, .. }, Facing::Corner { .. }) => {
+                let (corner, off) = turns.seen(spot.ends[0].over(cell) - cell.position());
+                let along = (ends[1] - ends[0]).normalize_or(Vector::X);
+                let here = Interval::around((corner - ends[0]).dot(along), off);
+                here.is_above(0.0)
+                    && here.is_below((ends[1] - ends[0]).length())
+                    && touch.normals.are_within_cone(spot.shape)
+            }
+            _ => touch.normals.are_within_cone(spot.shape),
+        }
+    }
+}
+
+fn determinant(a: Row, b: Row, c: Row) -> Interval {
+    a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+}

@@ -1,0 +1,122 @@
+//! How deep the ground is inside a track: where it is not, a belt stands as well as the wheels that it runs round.
+
+use super::cell::{Cell, Turns};
+use super::family::{Family, Spot, Track};
+use super::interval::{Interval, Rectangle};
+use crate::geometry::search::maximise;
+use crate::geometry::{Disc, Vector, right_of};
+use crate::jams::contact::{Posture, Turn};
+use crate::jams::places::{Facing, Place};
+
+impl Family {
+    /// Whether no ground is deeper inside a track than that, anywhere in a cell.
+    pub(super) fn is_as_on_belt(&self, cell: &Cell, depth: f64) -> bool {
+        let turns = Turns::of(cell);
+        let reach = self.reach + cell.position().half.length();
+        self.places.iter().all(|spot| {
+            self.tracks
+                .iter()
+                .all(|track| spot.is_outside(track, cell, &turns, reach, depth))
+        })
+    }
+
+    /// \[m\] How deep the ground is inside a track in a pose.
+    pub(super) fn depth(&self, places: &[Place], posture: &Posture) -> f64 {
+        let back = Turn::by(-posture.angle);
+        let of_place = |place: &Place| {
+            let (ends, radius) = match place.shape {
+                Facing::Face { ends, .. } => (ends, 0.0),
+                Facing::Corner { center, radius, .. } => ([center; 2], radius),
+            };
+            // As the robot sees it, and no farther away than it reaches.
+            let [from, to] = ends.map(|end| back.apply(end - posture.position));
+            let along = (to - from).normalize_or(Vector::ZERO);
+            let length = (to - from).length();
+            let near = -from.dot(along);
+            let reached = [near - self.reach, near + self.reach].map(|s| s.clamp(0.0, length));
+            let of = |track: &Track| {
+                let depth = |s: f64| track.belt.depth(from + along * s);
+                depth(maximise(reached[0], reached[1], depth)) + radius
+            };
+            self.tracks.iter().map(of).fold(0.0, f64::max)
+        };
+        places.iter().map(of_place).fold(0.0, f64::max)
+    }
+}
+
+impl Spot {
+    /// Whether it is nowhere deeper inside a track than that in a pose without overlap: off all wheels along its normal, or
+    /// beyond a straight run or a disc.
+    fn is_outside(
+        &self,
+        track: &Track,
+        cell: &Cell,
+        turns: &Turns,
+        reach: f64,
+        depth: f64,
+    ) -> bool {
+        let [from, to] = self.ends.map(|end| end.over(cell) - cell.position());
+        match self.shape {
+            Facing::Corner { radius, .. } => {
+                let (corner, off) = turns.seen(from);
+                track.belt.depth(corner) + radius + off < depth
+            }
+            Facing::Face { normal, .. } => {
+                let height = from.along(normal);
+                // A disc over the face is off it, or overlaps with the ground.
+                let is_off = |disc: &Disc| {
+                    let axle = turns.apply(disc.center);
+                    let gap = axle.along(normal) - height - Interval::at(disc.radius);
+                    let is_over = normal.y > 0.0
+                        && (axle - from).x().is_above(0.0)
+                        && (to - axle).x().is_above(0.0);
+                    is_over || gap.is_above(-depth)
+                };
+                if track.discs.iter().all(is_off) {
+                    return true;
+                }
+                let along = right_of(normal);
+                let first = from.along(along).low.max(-reach);
+                let last = to.along(along).high.min(reach);
+                if first >= last {
+                    return true;
+                }
+                let ends = [first, last].map(|s| {
+                    turns.seen(Rectangle {
+                        middle: along * s + normal * height.middle(),
+                        half: normal.abs() * height.half(),
+                    })
+                });
+                let off = ends[0].1.max(ends[1].1);
+                let ends = ends.map(|(end, _)| end);
+                track.belt.depth_below_runs(ends) + off < depth
+                    || track.depth_beyond_a_disc(ends) + off < depth
+            }
+        }
+    }
+}
+
+impl Track {
+    /// \[m\] No point of a segment is deeper than this: the depth of its deeper end along the line from the centre of the disc
+    /// that is nearest to it.
+    fn depth_beyond_a_disc(&self, [from, to]: [Vector; 2]) -> f64 {
+        let along = to - from;
+        let nearest = |disc: &Disc| {
+            let share = (disc.center - from).dot(along) / along.length_squared();
+            from + along * share.clamp(0.0, 1.0) - disc.center
+        };
+        let gap = |disc: &&Disc| nearest(disc).length() - disc.radius;
+        let disc = self.discs.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let outward = disc.and_then(|disc| nearest(disc).try_normalize());
+        let Some(outward) = outward else {
+            return f64::INFINITY;
+        };
+        let reach = |disc: &Disc| outward.dot(disc.center) + disc.radius;
+        let farthest = self
+            .discs
+            .iter()
+            .map(reach)
+            .fold(f64::NEG_INFINITY, f64::max);
+        farthest - outward.dot(from).min(outward.dot(to))
+    }
+}

@@ -1,0 +1,128 @@
+//! Splits the range of parameters where a robot can jam at some of them and not at others.
+
+use super::cell::{Cell, Shares};
+use super::family::Family;
+use super::search::Found;
+use super::{Certificate, Region, RegionStatus, SearchEffort};
+use crate::error::Error;
+use crate::jams::Jam;
+use crate::jams::setting::Setting;
+use crate::limits::Cancel;
+
+/// A robot on wheels, and with a belt round them.
+pub(super) struct Pair {
+    pub wheels: Family,
+    pub belt: Family,
+    pub effort: SearchEffort,
+}
+
+impl Pair {
+    /// What is known of all values of so many parameters.
+    pub(super) fn certificate(&self, cancel: &Cancel) -> Result<Certificate, Error> {
+        let mut certificate = Certificate {
+            length: self.wheels.reach,
+            ..Certificate::default()
+        };
+        let numbers = 3..3 + self.wheels.parameters;
+        let mut open = vec![self.wheels.root()];
+        while let Some(cell) = open.pop() {
+            let status = self.status(&cell, &mut certificate, cancel)?;
+            let widest = numbers
+                .clone()
+                .max_by(|a, b| cell.half(*a).total_cmp(&cell.half(*b)));
+            match widest {
+                Some(number) if self.is_worth_a_split(&status, &cell, number, cancel)? => {
+                    let [lower, upper] = cell.split(number);
+                    open.extend([upper, lower]);
+                }
+                _ => certificate.regions.push(Region {
+                    low: cell.low[numbers.clone()].to_vec(),
+                    high: cell.high[numbers.clone()].to_vec(),
+                    status,
+                }),
+            }
+        }
+        Ok(certificate)
+    }
+
+    fn status(
+        &self,
+        cell: &Cell,
+        certificate: &mut Certificate,
+        cancel: &Cancel,
+    ) -> Result<RegionStatus, Error> {
+        let effort = self.effort;
+        let mut shares = cell.shares();
+        let mut jam = self.jam(&shares, cancel)?;
+        if jam.is_none() {
+            match self
+                .wheels
+                .search(*cell, effort.cells, effort.depth, cancel)?
+            {
+                Found::Excluded(cells) => {
+                    let count = cells.len();
+                    if effort.keeps_cells {
+                        certificate.cells.extend(cells);
+                    }
+                    return Ok(RegionStatus::Certified(count));
+                }
+                Found::Left(left) => shares = left,
+            }
+            jam = self.jam(&shares, cancel)?;
+        }
+        if self.belt.is_held(cell, cancel)? {
+            return Ok(RegionStatus::AsBelt);
+        }
+        let found = jam.map(|jam| RegionStatus::Jams(shares.to_vec(), jam));
+        Ok(found.unwrap_or(RegionStatus::Undecided))
+    }
+
+    /// Whether parts of a range may be known better than the whole: not where it can jam in the middle and at every corner,
+    /// and the belt cannot in the middle.
+    fn is_worth_a_split(
+        &self,
+        status: &RegionStatus,
+        cell: &Cell,
+        widest: usize,
+        cancel: &Cancel,
+    ) -> Result<bool, Error> {
+        /// For widths that are halves of halves of 1.
+        const ROUNDING: f64 = 1.0 + 1e-9;
+        let is_done = matches!(status, RegionStatus::Certified(_) | RegionStatus::AsBelt);
+        if is_done || 2.0 * cell.half(widest) <= self.effort.smallest * ROUNDING {
+            return Ok(false);
+        }
+        if !matches!(status, RegionStatus::Jams(..))
+            || self.belt.is_held(&cell.at_middle(), cancel)?
+        {
+            return Ok(true);
+        }
+        for corner in 0..1_u32 << self.wheels.parameters {
+            let shares = std::array::from_fn(|k| {
+                let ends = [cell.low[3 + k], cell.high[3 + k]];
+                ends[(corner >> k & 1) as usize]
+            });
+            if self.jam(&shares, cancel)?.is_none() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// A jam on three contacts with ground that deep inside the track, at shares of the parameters' ranges.
+    fn jam(&self, shares: &Shares, cancel: &Cancel) -> Result<Option<Jam>, Error> {
+        let (layout, places) = self.wheels.at(shares);
+        let most = self.wheels.most_angle;
+        let setting = Setting::new(layout, places, [-most, most], cancel)?;
+        for posture in setting.fixed(cancel)? {
+            if self.wheels.depth(&setting.places, &posture) < self.effort.depth {
+                continue;
+            }
+            let contacts = setting.touching(&posture).unwrap_or_default();
+            if let Some(loads) = setting.loads(&contacts, &posture) {
+                return Ok(Some(setting.jam(&posture, &contacts, &loads)));
+            }
+        }
+        Ok(None)
+    }
+}
