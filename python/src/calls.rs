@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-use crawler2d_core::{Cancel, Doubt, Error, LimitError, check_rounding};
+use crawler2d_core::{Cancel, Doubt, Error, LimitError, ValidScenario, check_rounding};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyDict;
@@ -58,6 +58,14 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
 /// An error without any other details than a message.
 pub(crate) fn failure(class: &str, message: &str) -> PyErr {
     Python::attach(|py| raise(py, class, (message,), None))
+}
+
+/// Scenarios from their JSON.
+pub(crate) fn read(texts: &[PyBackedStr]) -> Result<Vec<ValidScenario>, Error> {
+    texts
+        .iter()
+        .map(|text| ValidScenario::from_json(text))
+        .collect()
 }
 
 /// A wrong argument that is not a field of the scenario.

@@ -324,10 +324,7 @@ mod _core {
         most: f64,
     ) -> PyResult<Vec<Bound<'_, PyDict>>> {
         let found = run_interruptible(py, move |cancel| {
-            let of = |text: &PyBackedStr| {
-                crawler2d_core::jam_ranges(&ValidScenario::from_json(text)?, most, cancel)
-            };
-            texts.iter().map(of).collect::<Result<Vec<_>, _>>()
+            crawler2d_core::jam_ranges(&calls::read(&texts)?, most, cancel)
         })?;
         found
             .iter()
@@ -356,11 +353,7 @@ mod _core {
             keeps_cells,
         };
         let found = run_interruptible(py, move |cancel| {
-            let read = |texts: &[PyBackedStr]| {
-                let all = texts.iter().map(|text| ValidScenario::from_json(text));
-                all.collect::<Result<Vec<_>, _>>()
-            };
-            let (wheels, belts) = (read(&texts)?, read(&belts)?);
+            let (wheels, belts) = (calls::read(&texts)?, calls::read(&belts)?);
             crawler2d_core::certify(&wheels, &belts, &names, effort, cancel)
         })?;
         convert::certificate(py, &found)

@@ -1,5 +1,7 @@
 //! The jams of a scenario, and whether a robot stays in one.
 
+use std::panic::resume_unwind;
+
 use super::{Simulation, ValidScenario};
 use crate::contact::Intrusion;
 use crate::error::Error;
@@ -49,14 +51,42 @@ pub fn find_jams(scenario: &ValidScenario, cancel: &Cancel) -> Result<Vec<FoundJ
 }
 
 /// The jams on three contacts at every friction up to `most`, with the ground deepest inside the track.
+pub type JamRanges = Vec<(JamRange, Option<Intrusion>)>;
+
+/// Those of several scenarios, on all cores.
 ///
 /// # Errors
 /// As [`find_jams`].
 pub fn jam_ranges(
-    scenario: &ValidScenario,
+    scenarios: &[ValidScenario],
     most: f64,
     cancel: &Cancel,
-) -> Result<Vec<(JamRange, Option<Intrusion>)>, Error> {
+) -> Result<Vec<JamRanges>, Error> {
+    let all = |part: &[ValidScenario]| -> Result<Vec<JamRanges>, Error> {
+        part.iter()
+            .map(|scenario| ranges_of(scenario, most, cancel))
+            .collect()
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut parts = scenarios.chunks(scenarios.len().div_ceil(threads).max(1));
+    let first = parts.next().unwrap_or_default();
+    std::thread::scope(|scope| {
+        let start = |part| std::thread::Builder::new().spawn_scoped(scope, move || all(part));
+        // A system that gives no thread has this one do it.
+        let others: Vec<_> = parts.map(|part| (part, start(part))).collect();
+        let mut found = all(first)?;
+        for (part, thread) in others {
+            let of_part = match thread {
+                Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+                Err(_) => all(part),
+            };
+            found.extend(of_part?);
+        }
+        Ok(found)
+    })
+}
+
+fn ranges_of(scenario: &ValidScenario, most: f64, cancel: &Cancel) -> Result<JamRanges, Error> {
     let built = (scenario.model(), &**scenario.ground());
     let found = jams::jam_ranges(scenario.scenario(), built, most, cancel)?;
     let seen = found.into_iter().map(|range| {
@@ -64,27 +94,6 @@ pub fn jam_ranges(
         (range, deepest(&robot))
     });
     Ok(seen.collect())
-}
-
-fn deepest(robot: &Simulation) -> Option<Intrusion> {
-    let inside = robot.intrusions().into_iter();
-    inside.max_by(|a, b| a.depth.total_cmp(&b.depth))
-}
-
-fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Error> {
-    let push = PUSH * robot.weight();
-    for force in [0.0, push, -push, 0.0] {
-        robot.set_push(force)?;
-        robot.advance(SPELL.value())?;
-        cancel.check()?;
-        let now = robot.reading();
-        let is_off = (now.position - jam.position).length() > FAR.value()
-            || (now.chassis_angle - jam.angle).abs() > TURNED;
-        if is_off {
-            return Ok(false);
-        }
-    }
-    Ok(true)
 }
 
 /// Which values of parameters there are no jams at that a belt does not have, from the scenarios at the least values of all
@@ -109,4 +118,25 @@ fn built(scenarios: &[ValidScenario]) -> Vec<(&Model, &Ground)> {
         .iter()
         .map(|scenario| (scenario.model(), &**scenario.ground()))
         .collect()
+}
+
+fn deepest(robot: &Simulation) -> Option<Intrusion> {
+    let inside = robot.intrusions().into_iter();
+    inside.max_by(|a, b| a.depth.total_cmp(&b.depth))
+}
+
+fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Error> {
+    let push = PUSH * robot.weight();
+    for force in [0.0, push, -push, 0.0] {
+        robot.set_push(force)?;
+        robot.advance(SPELL.value())?;
+        cancel.check()?;
+        let now = robot.reading();
+        let is_off = (now.position - jam.position).length() > FAR.value()
+            || (now.chassis_angle - jam.angle).abs() > TURNED;
+        if is_off {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }

@@ -19,7 +19,7 @@ mod valid_scenario;
 
 pub use batch::{Finished, Progress, simulate_many};
 pub use escape_force::{EscapeForce, escape_force};
-pub use jams::{FoundJam, certify, find_jams, jam_ranges};
+pub use jams::{FoundJam, JamRanges, certify, find_jams, jam_ranges};
 pub use metrics::{Metric, Metrics};
 pub use poses::{Poses, poses};
 pub use record::{ContactTable, Record, Trace};

@@ -238,8 +238,8 @@ fn a_pose_is_a_jam_between_its_least_and_its_greatest_friction() {
     let mut ends = 0;
     for (count, height) in [(4, 0.075), (5, 0.11), (6, 0.108)] {
         let scenario = |friction| strong(line(count), height, friction);
-        let ranges = jam_ranges(&checked(&scenario(1.0)), 1.5, &Cancel::default());
-        for (range, _) in ranges.expect("its jams are known") {
+        let ranges = jam_ranges(&[checked(&scenario(1.0))], 1.5, &Cancel::default());
+        for (range, _) in ranges.expect("its jams are known").remove(0) {
             let is_jam = |friction: f64| {
                 let is_it = |found: &FoundJam| {
                     (found.jam.position - range.position).length() < 1e-7
