@@ -14,7 +14,7 @@ from benches.adapters.space import Engine, drive, load, scene_of
 from benches.models.cases import CASES, Case
 from benches.models.files import FILES, model_of
 from benches.shared.results import Results, processes, read
-from crawler2d import Robot, Scenario, audit, simulate_many
+from crawler2d import Robot, Scenario, audit, jams, simulate_many
 from crawler2d.parameters.terrain import Flat
 from crawler2d.variation.variability import of_start
 from research.tables import markdown_table
@@ -213,6 +213,38 @@ def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
     return found
 
 
+_NEAR = 1e-3
+"""[m] A stop this near to a jam along the ground is there: Bullet keeps bodies apart by 0.3 mm."""
+
+
+def stops(results: dict[str, dict[str, Any]]) -> list[list[str]]:
+    """Return a row for each engine: how many stops of the public files are at jams by `c2d.jams`.
+
+    Flippers and wheels are as at the start, so these are computed from geometry and friction alone.
+    """
+    predictions = read(PREDICTIONS)
+    places: dict[str, list[float]] = {}
+    for name, case in CASES.items():
+        robot = robot_of(predictions[name][FILES["public"]])
+        for label in case.cells:
+            found = jams(case.scenarios(label, robot)[0])
+            places[f"{name} | public | {label}"] = [jam.position[0] for jam in found]
+    rows = []
+    for engine, runs in results.items():
+        row = [engine]
+        for name in CASES:
+            there = of = 0
+            for key, own in runs.items():
+                if key.startswith(f"{name} | public | "):
+                    stopped = [each["x"] for each in own if each["end"] != "cleared"]
+                    of += len(stopped)
+                    is_near = [any(abs(x - jam) < _NEAR for jam in places[key]) for x in stopped]
+                    there += sum(is_near)
+            row.append(f"{there} of {of}")
+        rows.append(row)
+    return rows
+
+
 def parts(paths: Sequence[Path]) -> dict[str, str]:
     """Return the tables in Markdown, by name; results are named after their files."""
     results = {path.name.partition(".")[0]: read(path) for path in paths}
@@ -222,4 +254,5 @@ def parts(paths: Sequence[Path]) -> dict[str, str]:
     return {
         "outcomes": markdown_table(header, rows(results)),
         "files": markdown_table(["engine", *ends, *firm], counts(results)),
+        "stops": markdown_table(["stops at jams", *CASES], stops(results)),
     }

@@ -82,10 +82,7 @@ def certify(
     belts: list[str],
     names: list[str],
     *,
-    depth: float,
-    smallest: float,
-    cells: int,
-    keeps_cells: bool,
+    effort: tuple[float, float, int, bool],
 ) -> dict[str, Any]: ...
 def escape_force(text: str, at: float) -> tuple[float, float, bool]: ...
 def geometry(text: str) -> dict[str, Any]: ...

@@ -334,18 +334,18 @@ mod _core {
 
     /// At which shares of the ranges of parameters there are no jams, and what shows it: from the scenarios at the least values
     /// of all, at the most of each alone, of all, and half way between, on wheels and with a belt round them.
+    ///
+    /// The effort is depth, smallest region, cells of each, and whether to return them.
     #[pyfunction]
-    #[pyo3(signature = (texts, belts, names, *, depth, smallest, cells, keeps_cells))]
+    #[pyo3(signature = (texts, belts, names, *, effort))]
     fn certify(
         py: Python<'_>,
         texts: Vec<PyBackedStr>,
         belts: Vec<PyBackedStr>,
         names: Vec<String>,
-        depth: f64,
-        smallest: f64,
-        cells: usize,
-        keeps_cells: bool,
+        effort: (f64, f64, usize, bool),
     ) -> PyResult<Bound<'_, PyDict>> {
+        let (depth, smallest, cells, keeps_cells) = effort;
         let effort = SearchEffort {
             depth,
             smallest,

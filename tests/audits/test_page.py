@@ -19,6 +19,7 @@ import crawler2d as c2d
 from crawler2d.audits import words
 from crawler2d.audits.candidates import pockets
 from crawler2d.audits.page import audit_page, simulate_replays
+from crawler2d.audits.page.chart import chart_section
 from crawler2d.audits.page.drawings import draw_pockets, draw_robot
 from crawler2d.audits.repairs import Repair
 from crawler2d.pictures.page.recording import recording
@@ -260,8 +261,25 @@ def test_repairs_are_those_of_the_audit(found: c2d.Audit, page: Page) -> None:
     assert [row[0] for row in rows] == [each.what for each in found.repairs]
     assert [row[1] for row in rows] == [words.confirmation(each) for each in found.repairs]
     assert [row[5] for row in rows] == [str(each.wheels or "belt") for each in found.repairs]
-    pictures = [each["aria-label"] for each, _ in page.all("svg", role="img")]
+    labels = [str(each["aria-label"]) for each, _ in page.all("svg", role="img")]
+    pictures = [label for label in labels if not label.startswith("where ")]
     assert pictures[:3] == [f"the robot: {each.what}" for each in found.repairs]
+
+
+def test_where_it_can_jam_is_drawn_for_the_model_and_its_best_repair(
+    found: c2d.Audit, page: Page
+) -> None:
+    labels = [str(each["aria-label"]) for each, _ in page.all("svg", role="img")]
+    charts = [label for label in labels if label.startswith("where ")]
+    assert len(charts) == 2
+    assert charts[0] == "where the model can jam on a step, by height and friction"
+    assert "between wheels 1 and 2" in chart_section(found.robot)
+
+
+def test_a_chart_that_cannot_be_computed_says_why() -> None:
+    gears = c2d.robots.engineer(track=c2d.LineOfWheels(5, wheel=c2d.GearWheel()))
+    text = chart_section(gears)
+    assert text.startswith("<p>Not computed: robot.track must have round wheels or a smooth belt")
 
 
 def test_a_diff_is_shown_with_its_repair(found: c2d.Audit, page: Page) -> None:

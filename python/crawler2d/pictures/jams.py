@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import itertools
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-__all__ = ["plot_jam_chart"]
+__all__ = ["JamRegion", "jam_regions", "plot_jam_chart"]
 
 _FILL = 0.55
 """[-] Opacity of a region."""
@@ -24,43 +25,77 @@ _STRIPES = "////", "....", "xxxx"
 """Hatches, for those who tell colours badly."""
 
 Interval = tuple[float, float]
+Corner = tuple[float, float]
+
+
+class JamRegion(NamedTuple):
+    """Where a model can jam in one way.
+
+    Parameters
+    ----------
+    text : str
+        What is known of it, for a legend.
+    place : int or None
+        Number of the pair of wheels that the ground is between, from the rear; None if the ground
+        is inside no track.
+    is_belt : bool
+        Whether it is of the belt.
+    pieces : list of list of tuple
+        Corners of its pieces: value along the first axis, friction.
+    """
+
+    text: str
+    place: int | None
+    is_belt: bool
+    pieces: list[list[Corner]]
+
+
+def jam_regions(data: xarray.Dataset) -> list[JamRegion]:
+    """Cut the chart of one model into regions: one for each pair of wheels, then the belt's."""
+    at = data[data.attrs["x"]].to_numpy()
+    low, high = (data[end].to_numpy() for end in ("low", "high"))
+    bodies = np.stack([data["rear"].to_numpy(), data["front"].to_numpy()], axis=-1)
+    known = np.isfinite(low)
+    found = []
+    places = itertools.count()
+    for pair in sorted({(int(rear), int(front)) for rear, front in bodies[known]}):
+        own = known & (bodies == pair).all(axis=-1)
+        inside = pair[0] >= 0
+        text = f"between wheels {pair[0]} and {pair[1]}" if inside else "nothing inside the track"
+        pieces = _pieces(at, _intervals(low, high, own))
+        found.append(JamRegion(text, next(places) if inside else None, False, pieces))
+    belt_low, belt_high = (data[f"belt_{end}"].to_numpy() for end in ("low", "high"))
+    held = np.isfinite(belt_low)
+    if held.any():
+        pieces = _pieces(at, _intervals(belt_low, belt_high, held))
+        found.append(JamRegion("a belt can jam, too", None, True, pieces))
+    return found
 
 
 def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Fill where one model can jam, and draw round where a belt can."""
+    """Fill where one model can jam, and hatch where a belt can."""
     data = one_model(data)
     ax = axes_or_new(ax, (8.0, 6.0))
     name = data.attrs["x"]
     factor, label = readable(data[name])
     at = factor * data[name].to_numpy()
-    low, high = (data[end].to_numpy() for end in ("low", "high"))
-    bodies = np.stack([data["rear"].to_numpy(), data["front"].to_numpy()], axis=-1)
-    known = np.isfinite(low)
-    pairs = sorted({(int(rear), int(front)) for rear, front in bodies[known]})
     handles = []
-    for place, pair in enumerate(pairs):
-        own = known & (bodies == pair).all(axis=-1)
-        inside = pair[0] >= 0
-        style: dict[str, Any] = {
-            "facecolor": LINES[place % len(LINES)] if inside else GRAY,
-            "hatch": _STRIPES[place % len(_STRIPES)] if inside else None,
-            "edgecolor": BLACK,
-            "alpha": _FILL,
-            "linewidth": 0.0,
-        }
-        text = f"between wheels {pair[0]} and {pair[1]}" if inside else "nothing inside the track"
-        _fill(ax, at, _intervals(low, high, own), style)
+    top = 0.1
+    collection = extra("matplotlib.collections", "plot").PolyCollection
+    for text, place, is_belt, pieces in jam_regions(data):
+        style: dict[str, Any] = {"edgecolor": BLACK, "linewidth": 0.0}
+        if is_belt:
+            style |= {"facecolor": "none", "hatch": "\\\\"}
+        elif place is None:
+            style |= {"facecolor": GRAY, "alpha": _FILL}
+        else:
+            hatch = _STRIPES[place % len(_STRIPES)]
+            style |= {"facecolor": LINES[place % len(LINES)], "hatch": hatch, "alpha": _FILL}
+        scaled = [[(factor * x, friction) for x, friction in piece] for piece in pieces]
+        ax.add_collection(collection(scaled, **style))
         handles.append(extra("matplotlib.patches", "plot").Patch(label=text, **style))
-    belt_low, belt_high = (data[f"belt_{end}"].to_numpy() for end in ("low", "high"))
-    held = np.isfinite(belt_low)
-    if held.any():
-        line: dict[str, Any] = {"facecolor": "none", "edgecolor": BLACK, "hatch": "\\\\"}
-        line |= {"linewidth": 0.0, "alpha": 1.0}
-        _fill(ax, at, _intervals(belt_low, belt_high, held), line)
-        text = "a belt can jam, too"
-        handles.append(extra("matplotlib.patches", "plot").Patch(label=text, **line))
-    top = np.nanmax(np.concatenate([high[known], belt_high[held], [0.1]]))
-    ax.set(xlabel=label, ylabel="friction", xlim=(at[0], at[-1]), ylim=(0.0, float(top)))
+        top = max(top, *(friction for piece in pieces for _, friction in piece))
+    ax.set(xlabel=label, ylabel="friction", xlim=(at[0], at[-1]), ylim=(0.0, top))
     title = f"{data['model'].item()}\n" if "model" in data.coords else ""
     text = f"{title}where it can stand still with its drives running, on three contacts"
     ax.set_title(text, loc="left", fontsize="small", parse_math=False)
@@ -85,19 +120,16 @@ def _intervals(
     return rows
 
 
-def _fill(
-    ax: Axes, at: NDArray[np.float64], rows: list[list[Interval]], style: dict[str, Any]
-) -> None:
-    """Fill between intervals of neighbouring values that overlap; those of one value are a line."""
-    quads = []
+def _pieces(at: NDArray[np.float64], rows: list[list[Interval]]) -> list[list[Corner]]:
+    """List what is between overlapping intervals of neighbouring values, and those of one."""
+    pieces: list[list[Corner]] = []
     for here, there, own, others in zip(at, at[1:], rows, rows[1:], strict=False):
         for low, high in own:
             for low_there, high_there in others:
                 if low <= high_there and low_there <= high:
-                    quads.append(
+                    pieces.append(
                         [(here, low), (here, high), (there, high_there), (there, low_there)]
                     )
     for x, row in zip(at, rows, strict=True):
-        quads += [[(x, low), (x, high)] for low, high in row]
-    collection = extra("matplotlib.collections", "plot").PolyCollection
-    ax.add_collection(collection(quads, **style))
+        pieces += [[(x, low), (x, high)] for low, high in row]
+    return pieces

@@ -24,7 +24,7 @@ and `certify` simulate nothing, and take none of them; `certify` returns a `Cert
 """
 
 from crawler2d.studies.boundary import critical
-from crawler2d.studies.certify import certify
+from crawler2d.studies.certificates import certify
 from crawler2d.studies.decides import what_decides
 from crawler2d.studies.driving import acceleration, braking_distance, max_speed
 from crawler2d.studies.jams import jam_chart

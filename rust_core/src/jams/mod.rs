@@ -9,6 +9,7 @@ mod clear;
 mod contact;
 mod fixed;
 mod forces;
+mod jam;
 mod layout;
 mod leaning;
 mod places;
@@ -17,47 +18,17 @@ mod setting;
 mod zeros;
 
 pub use self::certify::{Certificate, ExcludedCell, Exclusion, Region, RegionStatus, SearchEffort};
-use self::contact::{Posture, Turn};
-use self::forces::Loads;
+use self::contact::Posture;
+pub use self::jam::{Jam, JamContact};
 use self::layout::Layout;
 use self::places::Place;
 use self::setting::{Setting, is_same};
 use crate::error::Error;
 use crate::geometry::Vector;
 use crate::limits::Cancel;
-use crate::robot::{BodyKind, Model};
+use crate::robot::Model;
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::Ground;
-
-/// A pose in which a robot can stand still while its drives run.
-#[derive(Clone, Debug)]
-pub struct Jam {
-    /// [m] Where its chassis frame is.
-    pub position: Vector,
-    /// [rad] Its angle.
-    pub angle: f64,
-    /// What carries it.
-    pub contacts: Vec<JamContact>,
-}
-
-/// A contact that carries a jammed robot.
-#[derive(Clone, Copy, Debug)]
-pub struct JamContact {
-    /// Index of the part.
-    pub part: usize,
-    /// What it represents.
-    pub kind: BodyKind,
-    /// Number of the ground's edge on the lane under it, if it is a corner.
-    pub edge: Option<i32>,
-    /// [m] The point of the ground.
-    pub point: Vector,
-    /// Unit vector from the ground to the robot.
-    pub normal: Vector,
-    /// Normal force over the weight.
-    pub load: f64,
-    /// Friction over the weight, along the normal turned by -90 degrees.
-    pub friction: f64,
-}
 
 /// All jams of the robot of a scenario, built on its ground, from the rear; torque is ample, and flippers stay as they are at
 /// the start.
@@ -152,32 +123,4 @@ fn check(scenario: &Scenario, ground: &Ground) -> Result<(), ScenarioError> {
         return Err(ScenarioError::new("terrain.friction", 0.0, rule));
     }
     Ok(())
-}
-
-impl Setting {
-    fn jam(&self, posture: &Posture, contacts: &[usize], loads: &Loads) -> Jam {
-        let turn = Turn::by(posture.angle);
-        let of = |(i, [load, friction]): (&usize, &[f64; 2])| {
-            let contact = &self.contacts[*i];
-            let touch = contact.touch_turned(posture.position, turn);
-            let (surface, place) = (
-                &self.layout.surfaces[contact.surface],
-                &self.places[contact.place],
-            );
-            JamContact {
-                part: surface.part,
-                kind: surface.kind,
-                edge: place.edge,
-                point: touch.point,
-                normal: touch.normal,
-                load: *load,
-                friction: *friction,
-            }
-        };
-        Jam {
-            position: posture.position,
-            angle: posture.angle,
-            contacts: contacts.iter().zip(loads).map(of).collect(),
-        }
-    }
 }

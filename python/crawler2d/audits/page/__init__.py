@@ -11,6 +11,7 @@ import numpy as np
 
 from crawler2d.audits import words
 from crawler2d.audits.page import sections
+from crawler2d.audits.page.chart import chart_section
 from crawler2d.audits.runs import TRIED
 from crawler2d.audits.verdicts import BELT, OWN, ObstacleRuns
 from crawler2d.drawings.svg import escape
@@ -185,6 +186,8 @@ def audit_page(
 ) -> str:
     """Write the page of an audit, with `diffs` by `Repair.what`; see `Audit.to_html`."""
     runs = simulate_replays(audit, threads=threads)
+    repair = sections.best_repair(audit)
+    repaired = [] if repair is None else [(sections.change(audit, repair), repair.robot)]
     return fill_page(
         "audit.html",
         pair_style() + read_part("audit.css", _HERE),
@@ -200,6 +203,7 @@ def audit_page(
         verdicts=sections.verdict_section(
             audit, {each.verdict.obstacle: number for number, each in enumerate(runs)}
         ),
+        chart=chart_section(audit.robot, repaired),
         population=escape(words.population(audit)),
         belt=escape(audit.belt.reason),
         lint=sections.lint_section(audit),

@@ -1,6 +1,6 @@
 //! Cells: ranges of pose and parameters.
 
-use std::ops::{Add, Mul};
+use std::ops::{Add, Mul, Sub};
 
 use super::interval::{Interval, Rectangle};
 use crate::geometry::Vector;
@@ -73,7 +73,17 @@ pub(super) struct Affine<T> {
 /// A share of each parameter's range.
 pub(super) type Shares = [f64; MOST_PARAMETERS];
 
-impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Affine<T> {
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Affine<T> {
+    /// Through its value where all parameters are least, then those where each alone is greatest.
+    pub(super) fn through(values: impl Iterator<Item = T>) -> Self {
+        let values: Vec<T> = values.collect();
+        let base = values[0];
+        Self {
+            base,
+            slopes: std::array::from_fn(|k| *values.get(k + 1).unwrap_or(&base) - base),
+        }
+    }
+
     pub(super) fn at(&self, shares: &Shares) -> T {
         let parts = self.slopes.iter().zip(shares);
         parts.fold(self.base, |sum, (slope, share)| sum + *slope * *share)

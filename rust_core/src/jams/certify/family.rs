@@ -2,6 +2,7 @@
 //! move in proportion.
 
 use super::cell::{Affine, Cell, MOST_PARAMETERS, Shares};
+use super::interval::Interval;
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::jams::layout::{Grip, Layout, Outline, Surface};
 use crate::jams::places::{Facing, Place};
@@ -29,7 +30,7 @@ pub(super) struct Family {
     /// [m] No point of the robot is farther from the origin of its frame.
     pub reach: f64,
     /// [m^2] Moment of inertia over mass.
-    pub inertia: f64,
+    pub inertia: Interval,
     /// [rad] Greatest angle of the chassis.
     pub most_angle: f64,
     /// How many parameters there are.
@@ -81,33 +82,31 @@ impl Family {
         let members: Vec<Member> = built.iter().map(member).collect::<Result<_, _>>()?;
         let count = names.len();
         let first = &members[0];
+        let rule =
+            "must move the centre of mass, corners of the ground or friction, and nothing else";
         for (k, other) in members.iter().enumerate().skip(1) {
-            if !is_alike(first, other) {
+            let idle = k <= count && is_at(first, other);
+            if idle || !is_alike(first, other) {
                 let name = names.get(k - 1).or(names.first());
-                let name = name.cloned().unwrap_or_default();
-                let rule = "must move the centre of mass, corners of the ground or friction, and nothing else";
-                return Err(ScenarioError::new("over", name, rule));
+                return Err(ScenarioError::new(
+                    "over",
+                    name.cloned().unwrap_or_default(),
+                    rule,
+                ));
             }
         }
-        let vector = |of: &dyn Fn(&Member) -> Vector| Affine {
-            base: of(first),
-            slopes: std::array::from_fn(|k| match k < count {
-                true => of(&members[k + 1]) - of(first),
-                false => Vector::ZERO,
-            }),
-        };
-        let number = |of: &dyn Fn(&Member) -> f64| Affine {
-            base: of(first),
-            slopes: std::array::from_fn(|k| match k < count {
-                true => of(&members[k + 1]) - of(first),
-                false => 0.0,
-            }),
+        let own = &members[..=count];
+        let end = |i: usize, end: usize| {
+            Affine::through(
+                own.iter()
+                    .map(|member| points(&member.places[i].shape)[end]),
+            )
         };
         let places = (0..first.places.len()).map(|i| Spot {
             place: first.places[i],
             shape: first.places[i].shape,
-            ends: [0, 1].map(|end| vector(&|member| points(&member.places[i].shape)[end])),
-            friction: number(&|member| member.places[i].friction),
+            ends: [end(i, 0), end(i, 1)],
+            friction: Affine::through(own.iter().map(|member| member.places[i].friction)),
         });
         let family = Self {
             most_angle,
@@ -117,10 +116,10 @@ impl Family {
             hulls: hulls(&first.layout),
             tracks: tracks(built[0].0),
             places: places.collect(),
-            center_of_mass: vector(&|member| member.layout.center_of_mass),
+            center_of_mass: Affine::through(own.iter().map(|member| member.layout.center_of_mass)),
             radius: smallest(&first.layout),
             reach: first.layout.reach + first.layout.center_of_mass.length(),
-            inertia: inertia(built[0].0, first.layout.center_of_mass),
+            inertia: inertias(built, &members),
         };
         for (member, share) in members[count + 1..].iter().zip([1.0, 0.5]) {
             if !family.holds(member, share) {
@@ -181,15 +180,7 @@ impl Family {
     /// Whether a member with all parameters at a share of their ranges is as proportion has it.
     fn holds(&self, member: &Member, share: f64) -> bool {
         let (layout, places) = self.at(&[share; MOST_PARAMETERS]);
-        let off = (layout.center_of_mass - member.layout.center_of_mass).length();
-        let of_place = |(place, other): (&Place, &Place)| {
-            let [from, to] = points(&place.shape);
-            let [other_from, other_to] = points(&other.shape);
-            let moved = (from - other_from).length().max((to - other_to).length());
-            moved.max((place.friction - other.friction).abs())
-        };
-        let places = places.iter().zip(&member.places).map(of_place);
-        places.fold(off, f64::max) < PROPORTIONAL
+        is_at(&Member { layout, places }, member)
     }
 }
 
@@ -210,6 +201,19 @@ fn points(shape: &Facing) -> [Vector; 2] {
         Facing::Face { ends, .. } => *ends,
         Facing::Corner { center, .. } => [*center; 2],
     }
+}
+
+/// Whether two members have their ground, its friction and their centre of mass in the same places.
+fn is_at(one: &Member, other: &Member) -> bool {
+    let off = (one.layout.center_of_mass - other.layout.center_of_mass).length();
+    let of_place = |(place, other): (&Place, &Place)| {
+        let [from, to] = points(&place.shape);
+        let [other_from, other_to] = points(&other.shape);
+        let moved = (from - other_from).length().max((to - other_to).length());
+        moved.max((place.friction - other.friction).abs())
+    };
+    let places = one.places.iter().zip(&other.places).map(of_place);
+    places.fold(off, f64::max) < PROPORTIONAL
 }
 
 /// Whether two members have one outline and faces of the same directions.
@@ -283,6 +287,16 @@ fn tracks(model: &Model) -> Vec<Track> {
         Track { discs, belt }
     };
     model.mounts_of_tracks().map(of).collect()
+}
+
+/// [m^2] Moments of inertia over mass of all members.
+fn inertias(built: &[(&Model, &Ground)], members: &[Member]) -> Interval {
+    let pairs = built.iter().zip(members);
+    let all = pairs.map(|((model, _), member)| inertia(model, member.layout.center_of_mass));
+    let empty = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+    all.fold(empty, |range, value| {
+        Interval::new(range.low.min(value), range.high.max(value))
+    })
 }
 
 /// [m^2] Moment of inertia over mass, with flippers and drives fixed to the chassis.

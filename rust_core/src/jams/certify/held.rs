@@ -70,18 +70,15 @@ impl Family {
             let cell = boxed(half);
             let rows = three.map(|contact| self.gap(&cell, contact).1);
             let image: [Interval; 3] = std::array::from_fn(|i| {
-                let mut sum = Interval::at(0.0);
-                for k in 0..3 {
-                    sum = sum - inverse(i, k) * gaps[k];
-                }
-                for j in 0..3 {
-                    let mut rest = Interval::at(if i == j { 1.0 } else { 0.0 });
-                    for k in 0..3 {
-                        rest = rest - inverse(i, k) * rows[k][j];
-                    }
-                    sum = sum + rest * Interval::around(0.0, half[j]);
-                }
-                sum
+                let of_gap = |k: usize| inverse(i, k) * gaps[k];
+                let of_half = |j: usize| {
+                    let sum = inverse(i, 0) * rows[0][j]
+                        + inverse(i, 1) * rows[1][j]
+                        + inverse(i, 2) * rows[2][j];
+                    let unit = Interval::at(if i == j { 1.0 } else { 0.0 });
+                    (unit - sum) * Interval::around(0.0, half[j])
+                };
+                of_half(0) + of_half(1) + of_half(2) - of_gap(0) - of_gap(1) - of_gap(2)
             });
             let most = image.map(|value| value.low.abs().max(value.high.abs()) + MARGIN);
             if (0..3).all(|k| most[k] < half[k]) {

@@ -2,10 +2,10 @@
 
 use super::cell::{Cell, Shares};
 use super::family::Family;
+use super::found::{Certificate, Region, RegionStatus, SearchEffort};
 use super::search::Found;
-use super::{Certificate, Region, RegionStatus, SearchEffort};
 use crate::error::Error;
-use crate::jams::Jam;
+use crate::jams::jam::Jam;
 use crate::jams::setting::Setting;
 use crate::limits::Cancel;
 

@@ -3,8 +3,8 @@
 use super::balance::{Twist, candidate, excludes};
 use super::cell::{Cell, NUMBERS, Shares};
 use super::family::Family;
+use super::found::{ExcludedCell, Exclusion};
 use super::touch::{Possible, Touch};
-use super::{ExcludedCell, Exclusion};
 use crate::error::Error;
 use crate::limits::Cancel;
 

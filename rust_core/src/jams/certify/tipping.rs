@@ -6,9 +6,11 @@
 //! product falls along the motion. On one corner alone they always grow.
 
 use super::balance::{candidate, excludes};
+use super::cell::Affine;
 use super::family::Family;
-use super::interval::{Interval, Rectangle};
+use super::interval::{Interval, MARGIN, Rectangle};
 use super::touch::Touch;
+use crate::geometry::Vector;
 use crate::jams::places::Facing;
 
 /// Share by which the moment of inertia may be off, either way: how far drives turn along is not known better.
@@ -31,17 +33,8 @@ impl Family {
         !pairs().any(with_third)
             && touches
                 .iter()
-                .all(|touch| touch.slides && self.tips_on_one(touch))
+                .all(|touch| touch.slides && tips_on_one(touch))
             && pairs().all(|(one, other)| !apart(one, other) || self.tips_on_two(one, other))
-    }
-
-    /// One contact on a corner is no balance, or one that is lost; on a face, it must be none.
-    fn tips_on_one(&self, touch: &Touch) -> bool {
-        if touch.normals.circle.is_some() {
-            return true;
-        }
-        let [x, _, moment] = Wrench::of(touch).parts;
-        x.is_signed() || moment.is_signed()
     }
 
     fn tips_on_two(&self, one: &Touch, other: &Touch) -> bool {
@@ -55,7 +48,10 @@ impl Family {
             return true;
         }
         let u = across(a.gradient, b.gradient);
-        let inertia = Interval::around(self.inertia, INERTIA * self.inertia);
+        let inertia = Interval::new(
+            self.inertia.low * (1.0 - INERTIA),
+            self.inertia.high * (1.0 + INERTIA),
+        );
         let mass = nu[0] * u[0] + inertia * nu[2] * u[2];
         let (da, db) = (a.change(one, u), b.change(other, u));
         let [(xa, ma), (xb, mb)] = [&a, &b].map(|w| (w.parts[0], w.parts[2]));
@@ -71,10 +67,8 @@ impl Family {
                 (Facing::Face { normal, .. }, Facing::Corner { radius, .. }) => {
                     let mut end = corner.ends[0];
                     end.base += normal * radius;
-                    let is_at = |of_face: &super::cell::Affine<crate::geometry::Vector>| {
-                        let near = |a: crate::geometry::Vector, b: crate::geometry::Vector| {
-                            (a - b).length() < 1e-12
-                        };
+                    let is_at = |of_face: &Affine<Vector>| {
+                        let near = |a: Vector, b: Vector| (a - b).length() < MARGIN;
                         near(of_face.base, end.base)
                             && of_face
                                 .slopes
@@ -92,6 +86,15 @@ impl Family {
             || one.surface == other.surface
                 && (joined(one.place, other.place) || joined(other.place, one.place))
     }
+}
+
+/// One contact on a corner is no balance, or one that is lost; on a face, it must be none.
+fn tips_on_one(touch: &Touch) -> bool {
+    if touch.normals.circle.is_some() {
+        return true;
+    }
+    let [x, _, moment] = Wrench::of(touch).parts;
+    x.is_signed() || moment.is_signed()
 }
 
 /// A contact's wrench per unit of normal force and what it pushes along, about the centre of mass, over a cell.

@@ -14,7 +14,9 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.pictures.certificates import plot_regions
 from crawler2d.runs.jams import on_belt
+from crawler2d.sweeps.axes import field_attributes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,9 +106,15 @@ class Certificate:
         ScenarioError
             If more than two fields vary.
         """
-        from crawler2d.pictures.certificates import plot_certificate  # noqa: PLC0415
-
-        return plot_certificate(self, ax)
+        if len(self.fields) > 2:
+            raise ScenarioError("plot", self.fields, "must vary one field or two")
+        statuses = map(str, self.status)
+        regions = list(zip(statuses, self.low, self.high, strict=True))
+        ax = plot_regions(regions, self.ranges, list(map(_label, self.fields)), ax)
+        inside = f"{1e3 * self.depth:g} mm of ground or more inside the track"
+        text = f"where it can stand still with its drives running, with {inside}"
+        ax.set_title(text, loc="left", fontsize="small", parse_math=False)
+        return ax
 
     def __str__(self) -> str:
         """Say what is certified, and what that means."""
@@ -135,6 +143,12 @@ class Certificate:
             at = ", ".join(f"{name} = {value:.4g}" for name, value in pairs)
             parts[-1 if parts[-1].endswith("jam") else -2] += f", as at {at}"
         return f"{where}: {'; '.join(parts)}. {limits}"
+
+
+def _label(path: str) -> str:
+    attributes = field_attributes([path])
+    unit = attributes.get("units", "1")
+    return attributes["long_name"] + (f" [{unit}]" if unit not in ("", "1") else "")
 
 
 @takes_keywords
@@ -206,9 +220,11 @@ def certify(
         raise ScenarioError("smallest", share, "must be >= 1/1024 and <= 1")
     most = whole_number(most_cells, "most_cells", 1, 10_000_000)
     members = _members(scenario, names, ranges)
-    texts = [[member.to_json() for member in each] for each in (members, map(on_belt, members))]
     found = _core.certify(
-        *texts, names, depth=limit, smallest=share, cells=most, keeps_cells=bool(keep_cells)
+        [member.to_json() for member in members],
+        [on_belt(member).to_json() for member in members],
+        names,
+        effort=(limit, share, most, bool(keep_cells)),
     )
     return _certificate(names, ranges, limit, found, keeps_cells=bool(keep_cells))
 
@@ -232,9 +248,7 @@ def _read(
     return list(over), np.array(ranges)
 
 
-def _members(
-    scenario: Scenario, names: list[str], ranges: NDArray[np.float64]
-) -> list[Scenario]:
+def _members(scenario: Scenario, names: list[str], ranges: NDArray[np.float64]) -> list[Scenario]:
     """Set the fields to their least values, each alone to its greatest, all, and half way."""
     low, high = ranges.T
     corners = [np.where(np.arange(len(names)) == k, high, low) for k in range(len(names))]
@@ -254,7 +268,7 @@ def _certificate(
     count = found["count"]
 
     def scaled(shares: NDArray[np.float64]) -> NDArray[np.float64]:
-        return low + (high - low) * shares
+        return np.asarray(low + (high - low) * shares)
 
     shape = len(count), len(names)
     witness = np.full((len(count), len(names) + 3), np.nan)

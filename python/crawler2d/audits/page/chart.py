@@ -1,0 +1,88 @@
+"""The chart of an audit: at which heights of a step and frictions the model can jam at all."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crawler2d.drawings.svg import Sheet, escape
+from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Step
+from crawler2d.pictures.jams import JamRegion, jam_regions
+from crawler2d.studies.jams import jam_chart
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from crawler2d.parameters.robot import Robot
+
+__all__ = ["chart_section"]
+
+_HEIGHTS = 60
+_WIDTH, _HEIGHT = 460.0, 240.0  # [px] of the axes
+_LEFT, _BELOW, _AROUND = 46.0, 42.0, 10.0  # [px] round them
+_MOST = 1.5  # friction
+_SHADES = 4  # of pairs of wheels
+
+_ABOUT = (
+    "A step, by height and friction: where there is a pose in which the model stands still with its"
+    " drives running, on three contacts. It is computed, not sampled. Outside the coloured areas"
+    " nothing can hold it so; inside, it depends on whether it comes there. Motors have any torque,"
+    " flippers are as at the start."
+)
+
+
+def chart_section(robot: Robot, others: Sequence[tuple[str, Robot]] = ()) -> str:
+    """Draw the chart of a robot, and those of other ones with their names."""
+    try:
+        figures = [_figure("the model", robot), *(_figure(name, each) for name, each in others)]
+    except ScenarioError as error:
+        return f"<p>Not computed: {escape(str(error))}.</p>"
+    return f'<p class="about">{_ABOUT}</p><div class="charts">{"".join(figures)}</div>'
+
+
+def _figure(name: str, robot: Robot) -> str:
+    most = 2.0 * robot.outline.front_radius
+    heights = [most * (k + 1) / _HEIGHTS for k in range(_HEIGHTS)]
+    with ignore_doubts():  # they are in the lint
+        data = jam_chart(Scenario(robot, Step(height=most)), values=heights, most_friction=_MOST)
+    regions = jam_regions(data.isel(model=0))
+    box = -_LEFT, _WIDTH + _AROUND, -_BELOW, _HEIGHT + _AROUND
+    sheet = Sheet(box, box[1] - box[0], box[3] - box[2])
+    scale = np.array([_WIDTH / most, _HEIGHT / _MOST])
+    for region in regions:
+        for piece in region.pieces:
+            if len(piece) > 2:
+                sheet.line(scale * piece, f'class="{_class(region)}"')
+    for place, text, look in _ticks(most):
+        sheet.label(place, text, f'class="tick" {look}')
+    corners = [(0.0, 0.0), (_WIDTH, 0.0), (_WIDTH, _HEIGHT), (0.0, _HEIGHT)]
+    sheet.line(corners, 'class="axes"')
+    keys = "".join(
+        f'<li><span class="swatch {_class(each)}"></span> {escape(each.text)}</li>'
+        for each in regions
+    )
+    keys = keys or "<li>It can jam nowhere.</li>"
+    svg = sheet.svg(f"where {name} can jam on a step, by height and friction")
+    return f"<figure>{svg}<figcaption>{escape(name)}<ul>{keys}</ul></figcaption></figure>"
+
+
+def _class(region: JamRegion) -> str:
+    if region.is_belt:
+        return "of-belt"
+    return "of-none" if region.place is None else f"of-pair-{region.place % _SHADES}"
+
+
+def _ticks(most: float) -> Iterator[tuple[tuple[float, float], str, str]]:
+    """Place the numbers along both axes, and their names."""
+    step = 0.02 if most < 0.2 else 0.1
+    middle = 'text-anchor="middle"'
+    for k in range(1, int(most / step + 1e-9) + 1):
+        yield (_WIDTH * k * step / most, -15.0), f"{1e3 * k * step:.0f}", middle
+    yield (0.5 * _WIDTH, -34.0), "height of the step [mm]", middle
+    for friction in (0.5, 1.0, 1.5):
+        yield (-6.0, _HEIGHT * friction / _MOST - 4.0), f"{friction:g}", 'text-anchor="end"'
+    yield (-6.0, -4.0), "0", 'text-anchor="end"'
+    yield (6.0, _HEIGHT - 14.0), "friction", 'text-anchor="start"'
