@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
+from crawler2d.audits.jams import free_of_jams
 from crawler2d.audits.runs import Belt, RunCounter, Runs
 from crawler2d.audits.sampling import look_counts
 from crawler2d.audits.verdicts import (
@@ -188,11 +189,12 @@ def _best_of(
 ) -> Candidate:
     """Choose among candidates by halving, in runs in which the robot seized and the belt cleared.
 
-    All drive three of them, from as many obstacles as there are; the better half drives three
-    more, half of these six more, and the last two up to 24. A stop costs more to simulate than all
-    else, and most candidates that stop do so at once. Of those that clear 95 % the least changed
-    is chosen, else the one that clears most. The winner was also lucky: only fresh runs can
-    confirm it.
+    If there are some that can jam in none of the first of them, by computation, only these are
+    driven. All drive three of them, from as many obstacles as there are; the better half drives
+    three more, half of these six more, and the last two up to 24. A stop costs more to simulate
+    than all else, and most candidates that stop do so at once. Of those that clear 95 % the least
+    changed is chosen, else the one that clears most. The winner was also lucky: only fresh runs
+    can confirm it.
 
     Parameters
     ----------
@@ -211,11 +213,13 @@ def _best_of(
     """
     rounds = _QUICK if is_quick else _ROUNDS
     bases = _seized(table, obstacles)[: rounds[-1]]
-    left, fails, done = list(range(len(space))), np.zeros(len(space), dtype=int), 0
+    fields = [_fields(candidate) for candidate in space]
+    left = free_of_jams(fields, bases[: rounds[0]]) or list(range(len(space)))
+    fails, done = np.zeros(len(space), dtype=int), 0
     for end in rounds:
         some = bases[done:end]
         runs = simulate_many(
-            [base.replace(_fields(space[place])) for place in left for base in some],
+            [base.replace(fields[place]) for place in left for base in some],
             record="summary",
             trials=None,
             threads=threads,
