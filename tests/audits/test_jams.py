@@ -21,7 +21,7 @@ def test_the_friction_of_the_run_counts() -> None:
 
 
 def test_grounds_and_wheels_without_computed_jams_tell_nothing() -> None:
-    lanes = c2d.Scenario(ROBOT, c2d.terrains.diagonal_barrier(0.05, yaw=0.2))
+    lanes = c2d.Scenario(ROBOT, c2d.terrains.diagonal_barrier(0.2))
     assert free_of_jams(WHEELS, [lanes]) == []
     assert free_of_jams(WHEELS, [lanes, STEP]) == [1]
     gears = [{"robot.track": c2d.LineOfWheels(5, wheel=c2d.GearWheel())}]

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crawler2d.audits.runs import scenario_of
 from crawler2d.drawings.svg import Sheet, escape
 from crawler2d.errors import ScenarioError, ignore_doubts
-from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Step
 from crawler2d.pictures.jams import JamRegion, jam_regions
 from crawler2d.studies.jams import jam_chart
@@ -30,7 +30,7 @@ _ABOUT = (
     "A step, by height and friction: where there is a pose in which the model stands still with its"
     " drives running, on three contacts. It is computed, not sampled. Outside the coloured areas"
     " nothing can hold it so; inside, it depends on whether it comes there. Motors have any torque,"
-    " flippers are as at the start."
+    " flippers are raised as before the obstacles."
 )
 
 
@@ -47,7 +47,8 @@ def _figure(name: str, robot: Robot) -> str:
     most = 2.0 * robot.outline.front_radius
     heights = [most * (k + 1) / _HEIGHTS for k in range(_HEIGHTS)]
     with ignore_doubts():  # they are in the lint
-        data = jam_chart(Scenario(robot, Step(height=most)), values=heights, most_friction=_MOST)
+        scenario = scenario_of(robot, Step(height=most), None, None)
+        data = jam_chart(scenario, values=heights, most_friction=_MOST)
     regions = jam_regions(data.isel(model=0))
     box = -_LEFT, _WIDTH + _AROUND, -_BELOW, _HEIGHT + _AROUND
     sheet = Sheet(box, box[1] - box[0], box[3] - box[2])
