@@ -24,7 +24,7 @@ _HEIGHTS = 60
 _WIDTH, _HEIGHT = 460.0, 240.0  # [px] of the axes
 _LEFT, _BELOW, _AROUND = 46.0, 42.0, 10.0  # [px] round them
 _MOST = 1.5  # friction
-_SHADES = 4  # of pairs of wheels
+_SHADES = 6  # of pairs of wheels
 
 _ABOUT = (
     "A step, by height and friction: where there is a pose in which the model stands still with its"
