@@ -49,7 +49,6 @@ pub(super) struct Track {
 pub(super) struct Spot {
     /// At the least values.
     pub place: Place,
-    pub shape: Facing,
     /// [m] Both ends of a face, twice the centre of a corner.
     pub ends: [Affine<Vector>; 2],
     pub friction: Affine<f64>,
@@ -104,7 +103,6 @@ impl Family {
         };
         let places = (0..first.places.len()).map(|i| Spot {
             place: first.places[i],
-            shape: first.places[i].shape,
             ends: [end(i, 0), end(i, 1)],
             friction: Affine::through(own.iter().map(|member| member.places[i].friction)),
         });
@@ -153,7 +151,7 @@ impl Family {
     pub(super) fn at(&self, shares: &Shares) -> (Layout, Vec<Place>) {
         let of = |spot: &Spot| {
             let [from, to] = spot.ends.map(|end| end.at(shares));
-            let shape = match spot.shape {
+            let shape = match spot.place.shape {
                 Facing::Face { normal, .. } => Facing::Face {
                     ends: [from, to],
                     normal,
@@ -272,6 +270,24 @@ fn smallest(layout: &Layout) -> f64 {
 fn hulls(layout: &Layout) -> Vec<Envelope> {
     let solids = layout.solids.iter().filter(|solid| solid.discs.len() > 1);
     solids.map(|solid| Envelope::new(&solid.discs)).collect()
+}
+
+impl Spot {
+    /// Whether it is a face, and at one of its ends this corner, at all values of the parameters.
+    pub(super) fn ends_at(&self, corner: &Self) -> bool {
+        let (Facing::Face { normal, .. }, Facing::Corner { radius, .. }) =
+            (self.place.shape, corner.place.shape)
+        else {
+            return false;
+        };
+        let near = |a: Vector, b: Vector| (a - b).length() < PROPORTIONAL;
+        let center = corner.ends[0];
+        let is_there = |end: &Affine<Vector>| {
+            let mut slopes = end.slopes.iter().zip(center.slopes);
+            near(end.base, center.base + normal * radius) && slopes.all(|(a, b)| near(*a, b))
+        };
+        self.ends.iter().any(is_there)
+    }
 }
 
 fn tracks(model: &Model) -> Vec<Track> {

@@ -98,7 +98,7 @@ impl Family {
             let (x, y) = (normal.x(), normal.y());
             [x, y, arm.x() * y - arm.y() * x]
         };
-        match (self.layout.surfaces[surface].shape, spot.shape) {
+        match (self.layout.surfaces[surface].shape, spot.place.shape) {
             (Outline::Round(disc), Facing::Face { normal, .. }) => {
                 let arm = turns.apply(disc.center);
                 let gap = (position + arm - ground).along(normal) - Interval::at(disc.radius);
@@ -157,7 +157,7 @@ impl Family {
     fn is_real(&self, cell: &Cell, touch: &Touch) -> bool {
         let spot = &self.places[touch.place];
         let turns = Turns::of(cell);
-        match (self.layout.surfaces[touch.surface].shape, spot.shape) {
+        match (self.layout.surfaces[touch.surface].shape, spot.place.shape) {
             (Outline::Round(disc), Facing::Face { normal, .. }) => {
                 let axle = cell.position() + turns.apply(disc.center);
                 let along = right_of(normal);
@@ -170,9 +170,9 @@ impl Family {
                 let here = Interval::around((corner - ends[0]).dot(along), off);
                 here.is_above(0.0)
                     && here.is_below((ends[1] - ends[0]).length())
-                    && touch.normals.are_within_cone(spot.shape)
+                    && touch.normals.are_within_cone(spot.place.shape)
             }
-            _ => touch.normals.are_within_cone(spot.shape),
+            _ => touch.normals.are_within_cone(spot.place.shape),
         }
     }
 }

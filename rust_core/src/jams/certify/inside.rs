@@ -56,7 +56,7 @@ impl Spot {
         depth: f64,
     ) -> bool {
         let [from, to] = self.ends.map(|end| end.over(cell) - cell.position());
-        match self.shape {
+        match self.place.shape {
             Facing::Corner { radius, .. } => {
                 let (corner, off) = turns.seen(from);
                 track.belt.depth(corner) + radius + off < depth

@@ -6,12 +6,9 @@
 //! product falls along the motion. On one corner alone they always grow.
 
 use super::balance::{candidate, excludes};
-use super::cell::Affine;
 use super::family::Family;
-use super::interval::{Interval, MARGIN, Rectangle};
+use super::interval::{Interval, Rectangle};
 use super::touch::Touch;
-use crate::geometry::Vector;
-use crate::jams::places::Facing;
 
 /// Share by which the moment of inertia may be off, either way: how far drives turn along is not known better.
 const INERTIA: f64 = 0.25;
@@ -61,30 +58,9 @@ impl Family {
 
     /// Whether two contacts are one, or of one disc on a face and the corner at its end, where both are one.
     fn are_one(&self, one: &Touch, other: &Touch) -> bool {
-        let joined = |face: usize, corner: usize| {
-            let (face, corner) = (&self.places[face], &self.places[corner]);
-            match (face.shape, corner.shape) {
-                (Facing::Face { normal, .. }, Facing::Corner { radius, .. }) => {
-                    let mut end = corner.ends[0];
-                    end.base += normal * radius;
-                    let is_at = |of_face: &Affine<Vector>| {
-                        let near = |a: Vector, b: Vector| (a - b).length() < MARGIN;
-                        near(of_face.base, end.base)
-                            && of_face
-                                .slopes
-                                .iter()
-                                .zip(&end.slopes)
-                                .all(|(a, b)| near(*a, *b))
-                    };
-                    face.ends.iter().any(is_at)
-                }
-                _ => false,
-            }
-        };
-        let is_same = one.surface == other.surface && one.place == other.place;
-        is_same
-            || one.surface == other.surface
-                && (joined(one.place, other.place) || joined(other.place, one.place))
+        let [here, there] = [one, other].map(|touch| &self.places[touch.place]);
+        let is_one = one.place == other.place || here.ends_at(there) || there.ends_at(here);
+        one.surface == other.surface && is_one
     }
 }
 

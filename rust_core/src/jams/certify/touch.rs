@@ -100,7 +100,7 @@ impl Family {
         let is_inside = |disc: &Disc| self.is_inside(&grounds, axle(disc), disc.radius);
         let holds_corner = |(spot, ends): (&Spot, &[Rectangle; 2])| {
             let (corner, off) = turns.seen(ends[0] - position);
-            let is_corner = matches!(spot.shape, Facing::Corner { .. });
+            let is_corner = matches!(spot.place.shape, Facing::Corner { .. });
             let holds = |hull: &Envelope| hull.depth(corner) - off > MARGIN;
             is_corner && self.hulls.iter().any(holds)
         };
@@ -167,9 +167,9 @@ impl Family {
 
     /// Whether a disc overlaps with the ground wherever its axle is.
     fn is_inside(&self, grounds: &[[Rectangle; 2]], axle: Rectangle, radius: f64) -> bool {
-        self.places.iter().zip(grounds).any(|(place, ends)| {
+        self.places.iter().zip(grounds).any(|(spot, ends)| {
             let from = axle - ends[0];
-            match place.shape {
+            match spot.place.shape {
                 Facing::Face { normal, .. } => {
                     let is_under = normal.y > 0.0 && {
                         let after = (axle.x() - ends[0].x()).low > MARGIN;
@@ -192,7 +192,7 @@ impl Spot {
     /// The normals at which a disc can touch it.
     fn seen(&self, ends: &[Rectangle; 2], axle: Rectangle, disc: Disc) -> Option<Normals> {
         let from = axle - ends[0];
-        match self.shape {
+        match self.place.shape {
             Facing::Face { normal, .. } => {
                 let along = right_of(normal);
                 let beyond = [from.along(along), (ends[1] - axle).along(along)];
@@ -251,7 +251,7 @@ impl Spot {
         turns: &Turns,
         (run, outward): ([Vector; 2], Vector),
     ) -> Option<(Normals, f64)> {
-        let Facing::Corner { radius, .. } = self.shape else {
+        let Facing::Corner { radius, .. } = self.place.shape else {
             return None;
         };
         let (corner, off) = turns.seen(ends[0] - position);
