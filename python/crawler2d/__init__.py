@@ -28,7 +28,6 @@ from crawler2d.common.bodies import BodyKind, Lane
 from crawler2d.common.keywords import limits_hint
 from crawler2d.errors import (
     Crawler2dError,
-    InternalError,
     LimitError,
     RunUnfinished,
     ScenarioError,
@@ -63,6 +62,7 @@ from crawler2d.runs.explore import explore
 from crawler2d.runs.film import animate
 from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
+from crawler2d.runs.simulations import Simulations
 from crawler2d.variation import variability
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 
@@ -98,7 +98,6 @@ __all__ = [
     "GrouserBeltTrack",
     "Hold",
     "HybridWheels",
-    "InternalError",
     "Lane",
     "LimitError",
     "LineOfWheels",
@@ -116,6 +115,7 @@ __all__ = [
     "SeizureCriteria",
     "Simulation",
     "SimulationDiverged",
+    "Simulations",
     "Solver",
     "Start",
     "StoreError",

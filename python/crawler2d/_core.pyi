@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Passed",
     "Simulation",
+    "Worlds",
     "balance",
     "branch",
     "build_info",
@@ -43,6 +44,21 @@ class Passed:
     @property
     def text(self) -> str: ...
     def varied(self, fields: list[tuple[str, bool]], rows: NDArray[np.float64]) -> list[Any]: ...
+
+@final
+class Worlds:
+    def __new__(cls, texts: list[str]) -> Worlds: ...
+    def advance(self, duration: float, threads: int) -> None: ...
+    def command(
+        self,
+        speeds: NDArray[np.float64],
+        front: NDArray[np.float64],
+        rear: NDArray[np.float64],
+    ) -> None: ...
+    def heights(self, offsets: list[float]) -> NDArray[np.float64]: ...
+    def reset(self, which: list[int], texts: list[str] | None) -> None: ...
+    def snapshot(self, index: int) -> bytes: ...
+    def states(self) -> dict[str, Any]: ...
 
 @final
 class Simulation:

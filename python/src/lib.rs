@@ -4,6 +4,7 @@ mod calls;
 mod classes;
 mod convert;
 mod pictures;
+mod worlds;
 
 use pyo3::prelude::*;
 
@@ -27,6 +28,9 @@ mod _core {
 
     #[pymodule_export]
     use crate::classes::PreparedScenario;
+
+    #[pymodule_export]
+    use crate::worlds::Worlds;
 
     /// Validates a scenario and returns its canonical JSON.
     #[pyfunction]

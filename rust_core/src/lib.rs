@@ -54,9 +54,9 @@ pub use robot::{
 };
 pub use run::{
     ByHand, ContactTable, EscapeForce, Finished, FoundJam, JamRanges, Log, Metric, Metrics, Poses,
-    Progress, Record, Run, Simulation, TipOver, Trace, ValidScenario, balance, branch, certify,
-    diagnose, escape_force, find_jams, jam_ranges, make_trials, outcome_of, poses, run_of_trial,
-    simulate, simulate_many, tip_over, what_if,
+    Progress, Record, Run, Simulation, TipOver, Trace, ValidScenario, WorldState, Worlds, balance,
+    branch, certify, diagnose, escape_force, find_jams, jam_ranges, make_trials, outcome_of, poses,
+    run_of_trial, simulate, simulate_many, tip_over, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

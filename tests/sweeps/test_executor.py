@@ -77,7 +77,7 @@ def test_workers_lost_for_good_leave_what_was_finished_in_the_store(
     monkeypatch.setattr(collect, "_CHUNK", 4)
     store = tmp_path / "a.sqlite"
     with pytest.raises(
-        c2d.InternalError, match=r"executor failed \(BrokenExecutor: .*another executor"
+        c2d.errors.InternalError, match=r"executor failed \(BrokenExecutor: .*another executor"
     ):
         swept(Unreliable(losses=10**6, after=3), store=store)
     assert len(list(stored_rows(store))) == 12
@@ -95,7 +95,7 @@ def test_a_killed_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     spawn = multiprocessing.get_context("spawn")
     with (
         ProcessPoolExecutor(1, mp_context=spawn) as executor,
-        pytest.raises(c2d.InternalError, match="executor failed"),
+        pytest.raises(c2d.errors.InternalError, match="executor failed"),
     ):
         swept(executor, store=tmp_path / "a.sqlite")
 
@@ -111,7 +111,7 @@ def test_ctrl_c_keeps_what_came_back() -> None:
 
 
 def test_a_worker_of_another_build_is_refused() -> None:
-    with pytest.raises(c2d.InternalError, match="another build of crawler2d"):
+    with pytest.raises(c2d.errors.InternalError, match="another build of crawler2d"):
         chunk.simulate_chunk([BASE.to_json()], (), "0123")
 
 

@@ -1,7 +1,9 @@
 //! The jams of a scenario, and whether a robot stays in one.
 
 use std::panic::resume_unwind;
+use std::thread::Builder;
 
+use super::record::STACK;
 use super::{Simulation, ValidScenario};
 use crate::contact::Intrusion;
 use crate::error::Error;
@@ -71,7 +73,8 @@ pub fn jam_ranges(
     let mut parts = scenarios.chunks(scenarios.len().div_ceil(threads).max(1));
     let first = parts.next().unwrap_or_default();
     std::thread::scope(|scope| {
-        let start = |part| std::thread::Builder::new().spawn_scoped(scope, move || all(part));
+        let thread = || Builder::new().stack_size(STACK);
+        let start = |part| thread().spawn_scoped(scope, move || all(part));
         // A system that gives no thread has this one do it.
         let others: Vec<_> = parts.map(|part| (part, start(part))).collect();
         let mut found = all(first)?;

@@ -16,6 +16,7 @@ mod step_length;
 mod tests;
 mod trials;
 mod valid_scenario;
+mod worlds;
 
 pub use batch::{Finished, Progress, simulate_many};
 pub use escape_force::{EscapeForce, escape_force};
@@ -29,3 +30,4 @@ pub use simulate::{TipOver, balance, branch, run_of_trial, simulate, tip_over};
 pub use simulation::{ByHand, Simulation};
 pub use trials::{diagnose, make_trials, outcome_of, what_if};
 pub use valid_scenario::ValidScenario;
+pub use worlds::{WorldState, Worlds};

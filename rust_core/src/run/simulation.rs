@@ -26,7 +26,7 @@ use crate::engine::EngineWorld;
 use crate::error::Error;
 use crate::geometry::{Pose, Vector, direction};
 use crate::limits::Cancel;
-use crate::observe::{Event, Monitor, Reading};
+use crate::observe::{Event, Monitor, Outcome, Reading};
 use crate::robot::{BodyKind, Model, Mount, Running, start_position};
 use crate::scenario::{End, Engine, Gait, Scenario};
 use crate::terrain::{Ground, Side};
@@ -222,6 +222,16 @@ impl Simulation {
             self.time < self.commands.push.end() + windows * self.stop_window()
         };
         self.monitor.is_over() && (self.monitor.ended_as().is_some() || !may_leave())
+    }
+
+    /// How it ended, if not in a stop or by time; nothing is tried.
+    pub fn ended_as(&self) -> Option<Outcome> {
+        self.monitor.ended_as()
+    }
+
+    /// Whether the robot is stopped; nothing is tried.
+    pub fn is_stopped(&self) -> bool {
+        self.monitor.stop_since().is_some()
     }
 
     /// What is seen of a stop, before anything is tried; `None` if the robot is not stopped.

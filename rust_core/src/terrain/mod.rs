@@ -267,6 +267,17 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
     Profile::new(path, &points, surface, true)
 }
 
+impl Ground {
+    /// [m] The height under the first track at an x; at a vertical face that of its upper end, beyond the ends of the ground
+    /// that of the end.
+    pub(crate) fn height(&self, x: f64) -> f64 {
+        let profile = &self.lanes[0];
+        let [first, last] = [0, profile.points.len() - 1].map(|i| profile.points[i].x);
+        let [before, behind] = heights_at(profile, x.clamp(first, last));
+        before.max(behind)
+    }
+}
+
 /// [m] Heights of a profile just before and just behind an x.
 fn heights_at(profile: &Profile, x: f64) -> [f64; 2] {
     let points = &profile.points;

@@ -43,3 +43,4 @@ mod sinkage;
 mod slopes;
 mod snapshots;
 mod stops;
+mod worlds;

@@ -79,6 +79,17 @@ impl Simulation {
         given
     }
 
+    /// Checks commands without giving them.
+    ///
+    /// # Errors
+    /// As [`Self::command_all`].
+    pub fn check_commands(&mut self, commands: &ByHand) -> Result<(), Error> {
+        let before = self.commands;
+        let given = self.command_all(commands);
+        self.commands = before;
+        given
+    }
+
     /// [N] The push at the centre of mass, along x.
     pub fn push(&self) -> f64 {
         self.commands.push.at(self.time)

@@ -1,0 +1,146 @@
+//! Many simulations that Python commands and advances together.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crawler2d_core::{ByHand, End, Outcome, WorldState};
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
+use pyo3::types::PyDict;
+
+use crate::calls::{self, run_interruptible};
+
+/// Simulations side by side; any thread may use them, one at a time.
+#[pyclass(frozen, module = "crawler2d._core")]
+pub(crate) struct Worlds(Arc<Mutex<crawler2d_core::Worlds>>);
+
+#[pymethods]
+impl Worlds {
+    #[new]
+    fn new(py: Python<'_>, texts: Vec<PyBackedStr>) -> PyResult<Self> {
+        let worlds = run_interruptible(py, move |_| {
+            Ok(crawler2d_core::Worlds::new(calls::read(&texts)?))
+        })?;
+        Ok(Self(Arc::new(Mutex::new(worlds))))
+    }
+
+    /// Sets some out anew, with other scenarios if some are given.
+    fn reset(
+        &self,
+        py: Python<'_>,
+        which: Vec<usize>,
+        texts: Option<Vec<PyBackedStr>>,
+    ) -> PyResult<()> {
+        let inner = Arc::clone(&self.0);
+        run_interruptible(py, move |_| {
+            let scenarios = texts.map(|texts| calls::read(&texts)).transpose()?;
+            let mut scenarios = scenarios.map(Vec::into_iter);
+            let mut worlds = lock(&inner);
+            for index in which {
+                let next = scenarios.as_mut().and_then(Iterator::next);
+                worlds.reset(index, next);
+            }
+            Ok(())
+        })
+    }
+
+    /// Commands speeds and flipper angles, of which those that are NaN leave things as they are.
+    fn command(
+        &self,
+        py: Python<'_>,
+        speeds: PyReadonlyArray1<'_, f64>,
+        front: PyReadonlyArray1<'_, f64>,
+        rear: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let columns = [speeds.to_vec()?, front.to_vec()?, rear.to_vec()?];
+        py.detach(|| {
+            calls::guarded(|| {
+                let mut worlds = lock(&self.0);
+                let of = |index: usize| {
+                    let given = |k: usize| Some(columns[k][index]).filter(|value| !value.is_nan());
+                    ByHand {
+                        speed: given(0),
+                        flipper_angles: [(End::Front, given(1)), (End::Rear, given(2))],
+                        push: None,
+                    }
+                };
+                let commands: Vec<ByHand> = (0..worlds.count()).map(of).collect();
+                worlds.command(&commands)
+            })
+        })
+    }
+
+    /// Advances all by a duration on some threads.
+    fn advance(&self, py: Python<'_>, duration: f64, threads: usize) -> PyResult<()> {
+        let inner = Arc::clone(&self.0);
+        run_interruptible(py, move |cancel| {
+            lock(&inner).advance(duration, threads, cancel)
+        })
+    }
+
+    /// The state of each as columns.
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let states = py.detach(|| lock(&self.0).states());
+        columns(py, &states)
+    }
+
+    /// Heights of the ground at distances from each robot, one row each.
+    fn heights<'py>(
+        &self,
+        py: Python<'py>,
+        offsets: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (count, flat) = py.detach(|| {
+            let worlds = lock(&self.0);
+            (worlds.count(), worlds.heights(&offsets))
+        });
+        rows(py, (count, offsets.len()), flat)
+    }
+
+    /// A snapshot of one.
+    fn snapshot(&self, py: Python<'_>, index: usize) -> PyResult<Vec<u8>> {
+        py.detach(|| calls::guarded(|| lock(&self.0).snapshot(index)))
+    }
+}
+
+/// A call that panicked has left no world half done; see `Worlds::advance` of the core.
+fn lock(worlds: &Mutex<crawler2d_core::Worlds>) -> MutexGuard<'_, crawler2d_core::Worlds> {
+    worlds.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn rows(
+    py: Python<'_>,
+    shape: (usize, usize),
+    flat: Vec<f64>,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let rows = Array2::from_shape_vec(shape, flat);
+    rows.map(|rows| rows.into_pyarray(py))
+        .map_err(|error| calls::failure("InternalError", &error.to_string()))
+}
+
+fn columns<'py>(py: Python<'py>, states: &[WorldState]) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    let one = |of: fn(&WorldState) -> f64| -> Bound<'py, _> {
+        states.iter().map(of).collect::<Vec<f64>>().into_pyarray(py)
+    };
+    let two = |of: fn(&WorldState) -> [f64; 2]| {
+        rows(py, (states.len(), 2), states.iter().flat_map(of).collect())
+    };
+    result.set_item("time", one(|s| s.reading.time))?;
+    result.set_item("position", two(|s| s.reading.position.into())?)?;
+    result.set_item("velocity", two(|s| s.reading.velocity.into())?)?;
+    result.set_item("chassis_angle", one(|s| s.reading.chassis_angle))?;
+    result.set_item("angular_velocity", one(|s| s.reading.angular_velocity))?;
+    result.set_item("track_speed", one(|s| s.reading.track_speed))?;
+    result.set_item("flipper_angles", two(|s| s.flipper_angles)?)?;
+    result.set_item("flipper_rates", two(|s| s.flipper_rates)?)?;
+    result.set_item("flipper_torques", two(|s| s.flipper_torques)?)?;
+    let stopped: Vec<bool> = states.iter().map(|state| state.is_stopped).collect();
+    result.set_item("stopped", stopped.into_pyarray(py))?;
+    let ended = states.iter().map(|state| state.ended.map(Outcome::name));
+    result.set_item("outcome", ended.collect::<Vec<_>>())?;
+    let errors = states.iter().map(|state| state.error.as_deref());
+    result.set_item("error", errors.collect::<Vec<_>>())?;
+    Ok(result)
+}

@@ -1,0 +1,243 @@
+//! Many simulations side by side, advanced together on all cores.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::{Builder, ScopedJoinHandle};
+
+use super::record::STACK;
+use super::{ByHand, Simulation, ValidScenario};
+use crate::error::{Error, caught};
+use crate::limits::Cancel;
+use crate::observe::{Outcome, Reading};
+use crate::scenario::{End, Flippers};
+
+/// Simulations that are independent of each other. One that fails stands still, and the others go on.
+pub struct Worlds {
+    worlds: Vec<Mutex<World>>,
+}
+
+struct World {
+    scenario: ValidScenario,
+    simulation: Simulation,
+    /// Why it cannot go on.
+    error: Option<Error>,
+}
+
+/// What is seen of a world at an instant.
+#[derive(Clone, Debug)]
+pub struct WorldState {
+    /// Position, speeds and time.
+    pub reading: Reading,
+    /// \[rad\] Angles of the flippers at the front and at the rear, upwards > 0; NaN where there are none.
+    pub flipper_angles: [f64; 2],
+    /// \[rad/s\] Rates of these.
+    pub flipper_rates: [f64; 2],
+    /// \[N m\] Torques of their motors, upwards > 0.
+    pub flipper_torques: [f64; 2],
+    /// How it ended, without trials: not of a stop, nor by time.
+    pub ended: Option<Outcome>,
+    /// Whether it is stopped.
+    pub is_stopped: bool,
+    /// Why it cannot go on.
+    pub error: Option<String>,
+}
+
+impl Worlds {
+    /// One world for each scenario, at its start.
+    pub fn new(scenarios: Vec<ValidScenario>) -> Self {
+        let of = |scenario| Mutex::new(World::new(scenario));
+        Self {
+            worlds: scenarios.into_iter().map(of).collect(),
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.worlds.len()
+    }
+
+    /// Sets a world out anew, with another scenario if one is given.
+    pub fn reset(&mut self, index: usize, scenario: Option<ValidScenario>) {
+        let world = self.worlds[index]
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
+        let scenario = scenario.unwrap_or_else(|| world.scenario.clone());
+        *world = World::new(scenario);
+    }
+
+    /// Gives each world its commands; those that cannot go on take none. If one is invalid, none takes effect.
+    ///
+    /// # Errors
+    /// The first error of [`Simulation::command_all`].
+    pub fn command(&mut self, commands: &[ByHand]) -> Result<(), Error> {
+        let mut each = |give: fn(&mut Simulation, &ByHand) -> Result<(), Error>| {
+            let running = self
+                .worlds
+                .iter_mut()
+                .map(|world| world.get_mut().unwrap_or_else(PoisonError::into_inner));
+            let mut pairs = running
+                .zip(commands)
+                .filter(|(world, _)| world.error.is_none());
+            pairs.try_for_each(|(world, commands)| give(&mut world.simulation, commands))
+        };
+        each(Simulation::check_commands)?;
+        each(Simulation::command_all)
+    }
+
+    /// Advances all of them by a duration \[s\], each on one of some threads.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] once `cancel` is asked; then they stand at different times.
+    pub fn advance(&self, duration: f64, threads: usize, cancel: &Cancel) -> Result<(), Error> {
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(world) = self.worlds.get(next.fetch_add(1, Ordering::Relaxed)) {
+                lock(world).advance(duration, cancel)?;
+            }
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            let thread = || Builder::new().stack_size(STACK);
+            let start = |_| thread().spawn_scoped(scope, work);
+            // A system that gives no thread has this one do it.
+            let others: Vec<_> = (1..threads.min(self.count()))
+                .map_while(|k| start(k).ok())
+                .collect();
+            let own = work();
+            let ended = others.into_iter().map(ScopedJoinHandle::join);
+            ended.fold(own, |all, one| {
+                all.and(one.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            })
+        })
+    }
+
+    /// What is seen of each.
+    pub fn states(&self) -> Vec<WorldState> {
+        self.worlds
+            .iter()
+            .map(|world| lock(world).state())
+            .collect()
+    }
+
+    /// \[m\] Heights of the ground at distances from each robot along x, one row for each world.
+    pub fn heights(&self, offsets: &[f64]) -> Vec<f64> {
+        let of = |world: &Mutex<World>| {
+            let world = lock(world);
+            let x = world.simulation.reading().position.x;
+            let ground = world.simulation.ground();
+            let heights = offsets.iter().map(|offset| ground.height(x + offset));
+            heights.collect::<Vec<f64>>()
+        };
+        self.worlds.iter().flat_map(of).collect()
+    }
+
+    /// A snapshot of a world.
+    ///
+    /// # Errors
+    /// As [`Simulation::snapshot`].
+    pub fn snapshot(&self, index: usize) -> Result<Vec<u8>, Error> {
+        lock(&self.worlds[index]).simulation.snapshot()
+    }
+}
+
+/// Nothing is left half done in a world whose thread has panicked: it has an error then.
+fn lock(world: &Mutex<World>) -> MutexGuard<'_, World> {
+    world.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl World {
+    fn new(scenario: ValidScenario) -> Self {
+        Self {
+            simulation: Simulation::new(&scenario),
+            scenario,
+            error: None,
+        }
+    }
+
+    /// Advances it, unless it cannot go on.
+    fn advance(&mut self, duration: f64, cancel: &Cancel) -> Result<(), Error> {
+        if self.error.is_some() {
+            return Ok(());
+        }
+        let simulation = &mut self.simulation;
+        let end = simulation.time() + duration;
+        let all = || {
+            while simulation.time() < end {
+                cancel.check()?;
+                simulation.step_until(end)?;
+            }
+            Ok(())
+        };
+        match caught(all) {
+            Err(Error::Interrupted) => Err(Error::Interrupted),
+            Err(error) => {
+                self.error = Some(error);
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+
+    fn state(&self) -> WorldState {
+        let simulation = &self.simulation;
+        let flippers = simulation.scenario().robot.flippers.iter();
+        let has_front = flippers.flat_map(Flippers::ends).next() == Some(End::Front);
+        let both = |values: Vec<f64>| match (values.as_slice(), has_front) {
+            ([front, rear], _) => [*front, *rear],
+            ([front], true) => [*front, f64::NAN],
+            ([rear], false) => [f64::NAN, *rear],
+            _ => [f64::NAN; 2],
+        };
+        WorldState {
+            reading: simulation.reading(),
+            flipper_angles: both(simulation.flipper_angles().collect()),
+            flipper_rates: both(simulation.flipper_rates().collect()),
+            flipper_torques: both(simulation.flipper_torques().collect()),
+            ended: simulation.ended_as(),
+            is_stopped: simulation.is_stopped(),
+            error: self.error.as_ref().map(ToString::to_string),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_that_cannot_go_on_stands_still_until_it_is_reset_and_the_others_go_on() {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
+        let mut worlds = Worlds::new(vec![scenario; 2]);
+        let failed = worlds.worlds[1].get_mut().expect("nobody panicked");
+        failed.error = Some(Error::Internal("a fault".to_owned()));
+        let times = |worlds: &Worlds| -> Vec<f64> {
+            worlds
+                .states()
+                .iter()
+                .map(|state| state.reading.time)
+                .collect()
+        };
+        worlds
+            .advance(0.1, 2, &Cancel::default())
+            .expect("it is not interrupted");
+        assert_eq!(
+            times(&worlds)
+                .iter()
+                .map(|t| t.to_bits())
+                .collect::<Vec<_>>(),
+            [0.1, 0.0].map(f64::to_bits)
+        );
+        assert!(
+            worlds.states()[1]
+                .error
+                .as_ref()
+                .is_some_and(|why| why.contains("a fault"))
+        );
+        worlds.reset(1, None);
+        worlds
+            .advance(0.1, 2, &Cancel::default())
+            .expect("it is not interrupted");
+        assert_eq!(times(&worlds)[1].to_bits(), 0.1_f64.to_bits());
+    }
+}

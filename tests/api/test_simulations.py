@@ -1,0 +1,117 @@
+"""Many simulations beside each other."""
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+
+ROBOT = c2d.robots.absolem()
+HEIGHTS = (0.03, 0.08, 0.12, 0.2)
+DRIVE = c2d.Drive(speed=0.2)
+SCENARIOS = [c2d.Scenario(ROBOT, c2d.terrains.step(height), drive=DRIVE) for height in HEIGHTS]
+
+
+def driven(many: c2d.Simulations, seconds: int = 20) -> c2d.Simulations:
+    for k in range(seconds):
+        angle = 0.5 * np.sin(0.3 * k + np.arange(len(many)))
+        many.command(speed=0.1 + 0.01 * k, flipper_angle=angle, rear_flipper_angle=-angle)
+        many.advance(0.05)
+    return many
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_each_is_bit_by_bit_what_it_is_alone(threads: int) -> None:
+    state = driven(c2d.Simulations(SCENARIOS, threads=threads)).state()
+    for place, scenario in enumerate(SCENARIOS):
+        alone = c2d.Simulation(scenario)
+        for k in range(20):
+            angle = 0.5 * np.sin(0.3 * k + place)
+            speed = 0.1 + 0.01 * k
+            alone.command(speed=speed, flipper_angle=angle, rear_flipper_angle=-angle)
+            alone.advance(0.05)
+        own = alone.state()
+        assert (state.position[place] == own.position).all()
+        assert (state.velocity[place] == own.velocity).all()
+        assert state.chassis_angle[place] == own.chassis_angle
+        assert (state.flipper_angles[place] == own.flipper_angles).all()
+        assert state.time[place] == own.time
+
+
+def test_a_reset_one_is_as_new_and_the_others_go_on() -> None:
+    many, other = (driven(c2d.Simulations(SCENARIOS)) for _ in range(2))
+    many.reset([0, 2])
+    assert many.state().time.tolist() == pytest.approx([0.0, 1.0, 0.0, 1.0])
+    driven(many)
+    driven(other)
+    fresh = driven(c2d.Simulations(SCENARIOS)).state().position
+    assert (many.state().position[[0, 2]] == fresh[[0, 2]]).all()
+    assert (many.state().position[[1, 3]] == other.state().position[[1, 3]]).all()
+    many.reset(np.array([False, True, False, False]), [SCENARIOS[3]])
+    assert many.scenarios[1] == SCENARIOS[3]
+    assert many.state().time[1] == 0.0
+
+
+def test_one_goes_on_alone_from_its_snapshot() -> None:
+    many = driven(c2d.Simulations(SCENARIOS))
+    alone = c2d.Simulation.from_snapshot(many.snapshot(1))
+    many.advance(0.5)
+    alone.advance(0.5)
+    assert (alone.state().position == many.state().position[1]).all()
+
+
+def test_outcomes_and_stops_are_seen_without_trials() -> None:
+    robot = c2d.robots.engineer(flippers=None)
+    wheels = robot.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608)).without_rotors()
+    low, high = c2d.terrains.step(0.03), c2d.terrains.step(0.075)
+    many = c2d.Simulations([c2d.Scenario(robot, low), c2d.Scenario(wheels, high)])
+    many.advance(10.0)
+    state = many.state()
+    assert state.outcome == ("cleared", None)
+    assert state.stopped.tolist() == [False, True]
+    assert np.isnan(state.flipper_angles).all()
+
+
+def test_heights_are_those_of_the_ground() -> None:
+    many = c2d.Simulations(SCENARIOS)
+    x = many.state().position[:, 0]
+    found = many.heights([-0.1, 2.0])
+    expected = [step.terrain.height_at([x[0] - 0.1, x[0] + 2.0]) for step in SCENARIOS]
+    assert found == pytest.approx(np.array(expected))
+    assert many.heights([1e9])[:, 0].tolist() == pytest.approx(HEIGHTS)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"speed": [0.1, 0.2]}, r"speed must be one for each of the 4"),
+        ({"speed": "fast"}, r"speed must be numbers"),
+        ({"speed": 100.0}, r"drive\.speed"),
+        ({"flipper_angle": 7.0}, r"flipper_angle must be"),
+    ],
+)
+def test_commands_that_break_a_rule_change_nothing(given: dict[str, object], message: str) -> None:
+    many = c2d.Simulations(SCENARIOS)
+    with pytest.raises(c2d.ScenarioError, match=message):
+        many.command(**given)  # type: ignore[arg-type]
+
+
+def test_of_commands_of_which_one_is_invalid_none_is_given() -> None:
+    many, other = c2d.Simulations(SCENARIOS), c2d.Simulations(SCENARIOS)
+    with pytest.raises(c2d.ScenarioError, match=r"drive\.speed"):
+        many.command(speed=[0.1, 0.1, 0.1, 100.0])
+    for each in (many, other):
+        each.advance(1.0)
+    assert (many.state().position == other.state().position).all()
+
+
+def test_what_cannot_be_simulated_is_refused() -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"scenarios must be one or more"):
+        c2d.Simulations([])
+    own = SCENARIOS[0].replace({"drive": c2d.Drive(speed=0.2, gait=lambda _: 0.0)})
+    with pytest.raises(c2d.ScenarioError, match=r"drive\.gait must not be a function"):
+        c2d.Simulations([own])
+    many = c2d.Simulations(SCENARIOS)
+    with pytest.raises(c2d.ScenarioError, match=r"which must be from 0 to 3"):
+        many.reset([4])
+    with pytest.raises(c2d.ScenarioError, match=r"duration must be"):
+        many.advance(-1.0)
