@@ -131,18 +131,20 @@ class Certificate:
         parts = [f"{100.0 * self.share('certified'):.0f} % certified: no equilibrium with {inside}"]
         texts = {
             "as a belt": "where a belt can jam, too",
-            "jams": "where it can jam",
+            "jams": f"where it can jam, as at {self._first_jam()}",
             "undecided": "undecided",
         }
         for status, text in texts.items():
             if (self.status == status).any():
                 parts.append(f"{100.0 * self.share(status):.0f} % {text}")
-        jams = self.witness[self.status == "jams"]
-        if len(jams):
-            pairs = zip(self.fields, jams[0], strict=False)
-            at = ", ".join(f"{name} = {value:.4g}" for name, value in pairs)
-            parts[-1 if parts[-1].endswith("jam") else -2] += f", as at {at}"
         return f"{where}: {'; '.join(parts)}. {limits}"
+
+    def _first_jam(self) -> str:
+        """Name the values of the fields of the first jam, if there is one."""
+        jams = self.witness[self.status == "jams"]
+        values = jams[0] if len(jams) else ()
+        pairs = zip(self.fields, values, strict=False)
+        return ", ".join(f"{name} = {value:.4g}" for name, value in pairs)
 
 
 def _label(path: str) -> str:
@@ -167,8 +169,9 @@ def certify(
     wheel overlaps with the ground, nothing touches, no ground is inside the track, the weight works
     with a virtual motion that no force resists, or the pose tips over by itself. Everything is
     bounded by interval arithmetic with a margin of 1e-9 that is far above rounding, so nothing
-    between cells is left out; see docs/studies/jams.md. Where the robot can jam, the ranges are
-    split into regions, and a belt round the same wheels is tried in each.
+    between cells is left out; see docs/studies/jams.md. Poses tilted by more than
+    `criteria.tip_over_angle` are, as are those at the ends of the ground. Where the robot can jam,
+    the ranges are split into regions, and a belt round the same wheels is tried in each.
 
     Parameters
     ----------
