@@ -202,3 +202,9 @@ def test_its_cells_are_plain_numbers(whole: Certificate) -> None:
     assert whole.count.sum() == count
     assert whole.cells["low"].shape == (count, 5)
     json.dumps({name: column[:3].tolist() for name, column in whole.cells.items()})
+
+
+def test_more_cells_than_memory_holds_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CRAWLER2D_MEMORY", "1")
+    with pytest.raises(c2d.LimitError, match=r"cells of a region \(most_cells\) needs about"):
+        certify(BASE, OVER, most_cells=10_000_000)

@@ -2,12 +2,12 @@
 
 use super::cell::{Cell, Shares};
 use super::family::Family;
-use super::found::{Certificate, Region, RegionStatus, SearchEffort};
+use super::found::{Certificate, ExcludedCell, Region, RegionStatus, SearchEffort};
 use super::search::Found;
-use crate::error::Error;
+use crate::error::{Error, LimitError};
 use crate::jams::jam::Jam;
 use crate::jams::setting::Setting;
-use crate::limits::Cancel;
+use crate::limits::{Cancel, memory};
 
 /// A robot on wheels, and with a belt round them.
 pub(super) struct Pair {
@@ -16,9 +16,16 @@ pub(super) struct Pair {
     pub effort: SearchEffort,
 }
 
+/// Checks that there is memory for so many cells.
+fn ask(what: &str, cells: usize) -> Result<(), LimitError> {
+    // A vector that grows holds twice as much for a moment.
+    memory::ask(what, 2 * (cells * size_of::<ExcludedCell>()) as u64)
+}
+
 impl Pair {
     /// What is known of all values of so many parameters.
     pub(super) fn certificate(&self, cancel: &Cancel) -> Result<Certificate, Error> {
+        ask("cells of a region (most_cells)", self.effort.cells)?;
         let mut certificate = Certificate {
             length: self.wheels.reach,
             ..Certificate::default()
@@ -62,6 +69,8 @@ impl Pair {
                 Found::Excluded(cells) => {
                     let count = cells.len();
                     if effort.keeps_cells {
+                        let all = certificate.cells.len() + count;
+                        ask("cells of a certificate (keep_cells)", all)?;
                         certificate.cells.extend(cells);
                     }
                     return Ok(RegionStatus::Certified(count));
