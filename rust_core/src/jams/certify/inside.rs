@@ -62,20 +62,22 @@ impl Spot {
                 track.belt.depth(corner) + radius + off < depth
             }
             Facing::Face { normal, .. } => {
-                let height = from.along(normal);
-                // A disc over the face is off it, or overlaps with the ground.
+                let (height, along) = (from.along(normal), right_of(normal));
+                // A disc over the face is off it, or overlaps with the ground: above, because its nearest point on the line
+                // is on the face, and below, because it is under the surface.
                 let is_off = |disc: &Disc| {
                     let axle = turns.apply(disc.center);
                     let gap = axle.along(normal) - height - Interval::at(disc.radius);
-                    let is_over = normal.y > 0.0
-                        && (axle - from).x().is_above(0.0)
-                        && (to - axle).x().is_above(0.0);
+                    let is_between = |direction: Vector| {
+                        (axle - from).along(direction).is_above(0.0)
+                            && (to - axle).along(direction).is_above(0.0)
+                    };
+                    let is_over = normal.y > 0.0 && is_between(along) && is_between(Vector::X);
                     is_over || gap.is_above(-depth)
                 };
                 if track.discs.iter().all(is_off) {
                     return true;
                 }
-                let along = right_of(normal);
                 let first = from.along(along).low.max(-reach);
                 let last = to.along(along).high.min(reach);
                 if first >= last {
