@@ -3,9 +3,12 @@
 
 use super::cell::{Affine, Cell, MOST_PARAMETERS, Shares};
 use super::interval::Interval;
+use crate::error::Error;
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::jams::layout::{Grip, Layout, Outline, Surface};
 use crate::jams::places::{Facing, Place};
+use crate::jams::setting::Setting;
+use crate::limits::Cancel;
 use crate::robot::Model;
 use crate::scenario::ScenarioError;
 use crate::terrain::Ground;
@@ -173,6 +176,16 @@ impl Family {
             ..self.layout.clone()
         };
         (layout, self.places.iter().map(of).collect())
+    }
+
+    /// The same, with what can touch where.
+    ///
+    /// # Errors
+    /// As [`Setting::new`].
+    pub(super) fn setting(&self, shares: &Shares, cancel: &Cancel) -> Result<Setting, Error> {
+        let (layout, places) = self.at(shares);
+        let most = self.most_angle;
+        Setting::new(layout, places, [-most, most], cancel)
     }
 
     /// Whether a member with all parameters at a share of their ranges is as proportion has it.

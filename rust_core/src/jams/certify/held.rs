@@ -3,7 +3,7 @@
 //! Krawczyk's operator (1969) shows that three gaps have a common zero in a box of poses, whatever the parameters; then loads
 //! are bounded over that box.
 
-use super::cell::{Cell, Turns};
+use super::cell::{Cell, Shares, Turns};
 use super::family::Family;
 use super::interval::{Interval, MARGIN, Rectangle};
 use super::tipping::Wrench;
@@ -14,7 +14,6 @@ use crate::jams::contact::Posture;
 use crate::jams::fixed::solve;
 use crate::jams::layout::Outline;
 use crate::jams::places::Facing;
-use crate::jams::setting::Setting;
 use crate::limits::Cancel;
 
 /// So often a box of poses is made larger before it is given up.
@@ -22,25 +21,29 @@ const TRIES: usize = 8;
 
 type Row = [Interval; 3];
 
+/// A jam and its contacts: surfaces and places.
+pub(super) type Stand = (Posture, [(usize, usize); 3]);
+
 impl Family {
-    /// Whether it has one jam on three contacts at every value of the parameters of a range.
-    pub(super) fn is_held(&self, range: &Cell, cancel: &Cancel) -> Result<bool, Error> {
-        let (layout, places) = self.at(&range.shares());
-        let most = self.most_angle;
-        let setting = Setting::new(layout, places, [-most, most], cancel)?;
-        for posture in setting.fixed(cancel)? {
-            let contacts = setting.touching(&posture).unwrap_or_default();
-            if contacts.len() == 3 && setting.loads(&contacts, &posture).is_some() {
-                let of = |i: usize| (setting.contacts[i].surface, setting.contacts[i].place);
-                let three = [of(contacts[0]), of(contacts[1]), of(contacts[2])];
-                if let Some(cell) = self.enclosed(range, &posture, &three)
-                    && self.carries(&cell, &three)
-                {
-                    return Ok(true);
-                }
-            }
-        }
-        Ok(false)
+    /// Jams on three contacts at shares of the parameters' ranges.
+    pub(super) fn stands(&self, shares: &Shares, cancel: &Cancel) -> Result<Vec<Stand>, Error> {
+        let setting = self.setting(shares, cancel)?;
+        let of = |posture: Posture| {
+            let contacts = setting.touching(&posture)?;
+            setting.loads(&contacts, &posture)?;
+            let three: [usize; 3] = contacts.try_into().ok()?;
+            let on = |i: usize| (setting.contacts[i].surface, setting.contacts[i].place);
+            Some((posture, three.map(on)))
+        };
+        Ok(setting.fixed(cancel)?.into_iter().filter_map(of).collect())
+    }
+
+    /// Whether one of the jams in the middle of a range is there at every value of the parameters.
+    pub(super) fn is_held(&self, range: &Cell, stands: &[Stand]) -> bool {
+        stands.iter().any(|(posture, three)| {
+            let cell = self.enclosed(range, posture, three);
+            cell.is_some_and(|cell| self.carries(&cell, three))
+        })
     }
 
     /// A box of poses that holds one in which three surfaces touch, at every value of the parameters.

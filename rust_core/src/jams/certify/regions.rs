@@ -5,8 +5,8 @@ use super::family::Family;
 use super::found::{Certificate, ExcludedCell, Region, RegionStatus, SearchEffort};
 use super::search::Found;
 use crate::error::{Error, LimitError};
+use crate::jams::contact::Posture;
 use crate::jams::jam::Jam;
-use crate::jams::setting::Setting;
 use crate::limits::{Cancel, memory};
 
 /// A robot on wheels, and with a belt round them.
@@ -33,12 +33,14 @@ impl Pair {
         let numbers = 3..3 + self.wheels.parameters;
         let mut open = vec![self.wheels.root()];
         while let Some(cell) = open.pop() {
-            let status = self.status(&cell, &mut certificate, cancel)?;
+            let (status, is_held) = self.status(&cell, &mut certificate, cancel)?;
             let widest = numbers
                 .clone()
                 .max_by(|a, b| cell.half(*a).total_cmp(&cell.half(*b)));
             match widest {
-                Some(number) if self.is_worth_a_split(&status, &cell, number, cancel)? => {
+                Some(number)
+                    if self.is_worth_a_split((&status, is_held), &cell, number, cancel)? =>
+                {
                     let [lower, upper] = cell.split(number);
                     open.extend([upper, lower]);
                 }
@@ -52,12 +54,13 @@ impl Pair {
         Ok(certificate)
     }
 
+    /// What is known of a range, and whether the belt can jam in the middle, if that was asked.
     fn status(
         &self,
         cell: &Cell,
         certificate: &mut Certificate,
         cancel: &Cancel,
-    ) -> Result<RegionStatus, Error> {
+    ) -> Result<(RegionStatus, bool), Error> {
         let effort = self.effort;
         let mut shares = cell.shares();
         let mut jam = self.jam(&shares, cancel)?;
@@ -73,24 +76,26 @@ impl Pair {
                         ask("cells of a certificate (keep_cells)", all)?;
                         certificate.cells.extend(cells);
                     }
-                    return Ok(RegionStatus::Certified(count));
+                    return Ok((RegionStatus::Certified(count), false));
                 }
                 Found::Left(left) => shares = left,
             }
             jam = self.jam(&shares, cancel)?;
         }
-        if self.belt.is_held(cell, cancel)? {
-            return Ok(RegionStatus::AsBelt);
+        let stands = self.belt.stands(&cell.shares(), cancel)?;
+        if self.belt.is_held(cell, &stands) {
+            return Ok((RegionStatus::AsBelt, true));
         }
         let found = jam.map(|jam| RegionStatus::Jams(shares.to_vec(), jam));
-        Ok(found.unwrap_or(RegionStatus::Undecided))
+        let is_held = self.belt.is_held(&cell.at_middle(), &stands);
+        Ok((found.unwrap_or(RegionStatus::Undecided), is_held))
     }
 
     /// Whether parts of a range may be known better than the whole: not where it can jam in the middle and at every corner,
     /// and the belt cannot in the middle.
     fn is_worth_a_split(
         &self,
-        status: &RegionStatus,
+        (status, is_held): (&RegionStatus, bool),
         cell: &Cell,
         widest: usize,
         cancel: &Cancel,
@@ -101,9 +106,7 @@ impl Pair {
         if is_done || 2.0 * cell.half(widest) <= self.effort.smallest * ROUNDING {
             return Ok(false);
         }
-        if !matches!(status, RegionStatus::Jams(..))
-            || self.belt.is_held(&cell.at_middle(), cancel)?
-        {
+        if is_held || !matches!(status, RegionStatus::Jams(..)) {
             return Ok(true);
         }
         for corner in 0..1_u32 << self.wheels.parameters {
@@ -120,18 +123,14 @@ impl Pair {
 
     /// A jam on three contacts with ground that deep inside the track, at shares of the parameters' ranges.
     fn jam(&self, shares: &Shares, cancel: &Cancel) -> Result<Option<Jam>, Error> {
-        let (layout, places) = self.wheels.at(shares);
-        let most = self.wheels.most_angle;
-        let setting = Setting::new(layout, places, [-most, most], cancel)?;
-        for posture in setting.fixed(cancel)? {
-            if self.wheels.depth(&setting.places, &posture) < self.effort.depth {
-                continue;
-            }
-            let contacts = setting.touching(&posture).unwrap_or_default();
-            if let Some(loads) = setting.loads(&contacts, &posture) {
-                return Ok(Some(setting.jam(&posture, &contacts, &loads)));
-            }
-        }
-        Ok(None)
+        let setting = self.wheels.setting(shares, cancel)?;
+        let deep =
+            |posture: &Posture| self.wheels.depth(&setting.places, posture) >= self.effort.depth;
+        let of = |posture: Posture| {
+            let contacts = setting.touching(&posture)?;
+            let loads = setting.loads(&contacts, &posture)?;
+            deep(&posture).then(|| setting.jam(&posture, &contacts, &loads))
+        };
+        Ok(setting.fixed(cancel)?.into_iter().find_map(of))
     }
 }
