@@ -1,8 +1,8 @@
 //! Certificates: where a layout cannot jam, no jam is found, and where it is only as a belt, the belt can.
 
 use crawler2d_core::{
-    Cancel, Certificate, ClosedSurface, ClosedTrack, ExcludedCell, Exclusion, HybridWheels,
-    RegionStatus, Scenario, SearchEffort, Terrain, Track, ValidScenario, Wheel, certify, find_jams,
+    Cancel, Certificate, ClosedSurface, ClosedTrack, ExcludedCell, Exclusion, Region, RegionStatus,
+    Scenario, SearchEffort, Terrain, Track, ValidScenario, certify, find_jams,
 };
 
 use crate::common::*;
@@ -70,21 +70,7 @@ fn certificate(scenario: &Scenario, ranges: Ranges) -> Certificate {
 /// A robot with a belly or without, on wheels in a row, all round or anywhere, and a range of heights and frictions.
 fn drawn(draw: &mut Draw) -> (Scenario, Ranges) {
     let count = draw.between(3.0, 8.99) as u32;
-    let track = match draw.between(0.0, 3.0) as u32 {
-        0 => line(count),
-        1 => circumferential(14 + count, Wheel::Round),
-        _ => {
-            let mut wheel = |_| {
-                let x = draw.between(-0.1825, 0.1825);
-                [x, draw.between(-0.03, 0.03), draw.between(0.02, 0.0675)]
-            };
-            let mut placements: Vec<[f64; 3]> = (0..count).map(&mut wheel).collect();
-            placements.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            let wheel = Wheel::Round;
-            Track::Hybrid(HybridWheels { placements, wheel })
-        }
-    };
-    let mut scenario = engineer_on(track);
+    let mut scenario = engineer_on(drawn_wheels(draw, count));
     scenario.robot.center_of_mass = [draw.between(-0.06, 0.06), draw.between(0.0, 0.08)];
     scenario.robot.drivetrain.max_torque = 500.0;
     if draw.unit() < 0.5 {
@@ -108,6 +94,15 @@ fn drawn(draw: &mut Draw) -> (Scenario, Ranges) {
     )
 }
 
+/// A height and a friction in a region.
+fn within(region: &Region, ranges: Ranges, draw: &mut Draw) -> [f64; 2] {
+    let value = |k: usize, unit: f64| {
+        let share = region.low[k] + unit * (region.high[k] - region.low[k]);
+        ranges[k][0] + share * (ranges[k][1] - ranges[k][0])
+    };
+    [value(0, draw.unit()), value(1, draw.unit())]
+}
+
 /// Three contacts can hold a robot; those on fewer do, rarely, and are tried by simulation.
 #[test]
 fn what_is_certified_has_no_jam_with_ground_inside_the_track() {
@@ -121,11 +116,7 @@ fn what_is_certified_has_no_jam_with_ground_inside_the_track() {
             }
             regions += 1;
             for _ in 0..3 {
-                let value = |k: usize, share: f64| {
-                    let share = region.low[k] + share * (region.high[k] - region.low[k]);
-                    ranges[k][0] + share * (ranges[k][1] - ranges[k][0])
-                };
-                let (height, friction) = (value(0, draw.unit()), value(1, draw.unit()));
+                let [height, friction] = within(&region, ranges, &mut draw);
                 let member = checked(&at(&scenario, height, friction));
                 let found = find_jams(&member, &Cancel::default()).expect("its jams are known");
                 for jam in found {
@@ -158,11 +149,7 @@ fn where_it_is_as_a_belt_a_belt_can_jam() {
         }
         regions += 1;
         for _ in 0..4 {
-            let value = |k: usize, unit: f64| {
-                let share = region.low[k] + unit * (region.high[k] - region.low[k]);
-                ranges[k][0] + share * (ranges[k][1] - ranges[k][0])
-            };
-            let (height, friction) = (value(0, draw.unit()), value(1, draw.unit()));
+            let [height, friction] = within(&region, ranges, &mut draw);
             let member = checked(&at(&with_belt(&scenario), height, friction));
             let found = find_jams(&member, &Cancel::default()).expect("its jams are known");
             assert!(found.iter().any(|jam| jam.jam.contacts.len() == 3));

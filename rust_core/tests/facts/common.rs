@@ -163,6 +163,24 @@ pub(crate) fn line(count: u32) -> Track {
     line_of(count, Wheel::Round)
 }
 
+/// Round wheels in a row, 14 more all round, or as many of any size anywhere between the ends of the track.
+pub(crate) fn drawn_wheels(draw: &mut Draw, count: u32) -> Track {
+    match draw.between(0.0, 3.0) as u32 {
+        0 => line(count),
+        1 => circumferential(14 + count, Wheel::Round),
+        _ => {
+            let mut wheel = |_| {
+                let x = draw.between(-0.1825, 0.1825);
+                [x, draw.between(-0.03, 0.03), draw.between(0.02, 0.0675)]
+            };
+            let mut placements: Vec<[f64; 3]> = (0..count).map(&mut wheel).collect();
+            placements.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let wheel = Wheel::Round;
+            Track::Hybrid(HybridWheels { placements, wheel })
+        }
+    }
+}
+
 pub(crate) fn line_of(count: u32, wheel: Wheel) -> Track {
     Track::Line(LineOfWheels {
         count,

@@ -1,8 +1,7 @@
 //! All jams of a layout: those that are computed are equilibria, and all that are found by simulation are among them.
 
 use crawler2d_core::{
-    Cancel, FoundJam, HybridWheels, Scenario, Simulation, Surface, Terrain, Track, Wheel,
-    find_jams, jam_ranges,
+    Cancel, FoundJam, Scenario, Simulation, Surface, Terrain, Track, find_jams, jam_ranges,
 };
 
 use crate::common::*;
@@ -24,20 +23,7 @@ fn strong(track: Track, height: f64, friction: f64) -> Scenario {
 fn drawn(draw: &mut Draw) -> Scenario {
     let height = draw.between(0.02, 0.15);
     let count = draw.between(3.0, 9.99) as u32;
-    let track = match draw.between(0.0, 3.0) as u32 {
-        0 => line(count),
-        1 => circumferential(14 + count, Wheel::Round),
-        _ => {
-            let mut wheel = |_| {
-                let x = draw.between(-0.1825, 0.1825);
-                [x, draw.between(-0.03, 0.03), draw.between(0.02, 0.0675)]
-            };
-            let mut placements: Vec<[f64; 3]> = (0..count).map(&mut wheel).collect();
-            placements.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            let wheel = Wheel::Round;
-            Track::Hybrid(HybridWheels { placements, wheel })
-        }
-    };
+    let track = drawn_wheels(draw, count);
     let friction = draw.between(0.4, 1.2);
     let mut scenario = strong(track, height, friction);
     scenario.robot.center_of_mass = [draw.between(-0.06, 0.06), draw.between(0.0, 0.08)];
