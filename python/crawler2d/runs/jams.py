@@ -128,7 +128,7 @@ def jams(
 
     Motors have any torque, flippers stay as at the start. What stands still on the robot, its
     belly, may have any friction within its cone; its jams are intervals of poses, of which the ends
-    are returned.
+    are returned where they are found: not all are.
 
     Parameters
     ----------
