@@ -5,7 +5,9 @@ use std::collections::HashSet;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-use crawler2d_core::{Cancel, Doubt, Error, LimitError, ValidScenario, check_rounding};
+use crawler2d_core::{
+    Cancel, Doubt, Error, FlipperCommand, LimitError, ValidScenario, check_rounding,
+};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyDict;
@@ -66,6 +68,12 @@ pub(crate) fn read(texts: &[PyBackedStr]) -> Result<Vec<ValidScenario>, Error> {
         .iter()
         .map(|text| ValidScenario::from_json(text))
         .collect()
+}
+
+/// What flippers are to do by an angle or a rate; by neither, as before.
+pub(crate) fn flipper_command(angle: Option<f64>, rate: Option<f64>) -> Option<FlipperCommand> {
+    let by_angle = angle.map(FlipperCommand::Angle);
+    by_angle.or(rate.map(FlipperCommand::Rate))
 }
 
 /// A wrong argument that is not a field of the scenario.

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{ByHand, ContactTable, End, Error, Log, Outcome, ValidScenario};
+use crawler2d_core::{ByHand, ContactTable, Error, Log, Outcome, ValidScenario};
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
@@ -115,21 +115,24 @@ impl Simulation {
         self.advance_to(py, end)
     }
 
-    /// Commands a new speed or new flipper angles, or pushes the robot.
-    #[pyo3(signature = (speed = None, flipper_angle = None, rear_flipper_angle = None, push = None))]
+    /// Commands a new speed, pushes the robot, or has its flippers, front and rear, turn to angles or at rates.
+    #[pyo3(signature = (speed = None, push = None, angles = (None, None), rates = (None, None)))]
     fn command(
         &self,
         py: Python<'_>,
         speed: Option<f64>,
-        flipper_angle: Option<f64>,
-        rear_flipper_angle: Option<f64>,
         push: Option<f64>,
+        angles: (Option<f64>, Option<f64>),
+        rates: (Option<f64>, Option<f64>),
     ) -> PyResult<()> {
         let mut log = self.turn(py)?;
         self.outcome(py)?;
         let commands = ByHand {
             speed,
-            flipper_angles: [(End::Front, flipper_angle), (End::Rear, rear_flipper_angle)],
+            flippers: [
+                calls::flipper_command(angles.0, rates.0),
+                calls::flipper_command(angles.1, rates.1),
+            ],
             push,
         };
         self.with(py, |simulation| simulation.command_all(&commands))?;

@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crawler2d_core::{ByHand, End, Outcome, WorldState};
+use crawler2d_core::{ByHand, Outcome, ValidScenario, WorldState};
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyDict;
 
 use crate::calls::{self, run_interruptible};
+use crate::classes::PreparedScenario;
 
 /// Simulations side by side; any thread may use them, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
@@ -18,10 +18,9 @@ pub(crate) struct Worlds(Arc<Mutex<crawler2d_core::Worlds>>);
 #[pymethods]
 impl Worlds {
     #[new]
-    fn new(py: Python<'_>, texts: Vec<PyBackedStr>) -> PyResult<Self> {
-        let worlds = run_interruptible(py, move |_| {
-            Ok(crawler2d_core::Worlds::new(calls::read(&texts)?))
-        })?;
+    fn new(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<Self> {
+        let scenarios = checked(&scenarios);
+        let worlds = run_interruptible(py, move |_| Ok(crawler2d_core::Worlds::new(scenarios)))?;
         Ok(Self(Arc::new(Mutex::new(worlds))))
     }
 
@@ -30,38 +29,42 @@ impl Worlds {
         &self,
         py: Python<'_>,
         which: Vec<usize>,
-        texts: Option<Vec<PyBackedStr>>,
+        scenarios: Option<Vec<PyRef<'_, PreparedScenario>>>,
     ) -> PyResult<()> {
-        let inner = Arc::clone(&self.0);
-        run_interruptible(py, move |_| {
-            let scenarios = texts.map(|texts| calls::read(&texts)).transpose()?;
-            let mut scenarios = scenarios.map(Vec::into_iter);
-            let mut worlds = lock(&inner);
-            for index in which {
-                let next = scenarios.as_mut().and_then(Iterator::next);
-                worlds.reset(index, next);
-            }
-            Ok(())
+        let mut scenarios = scenarios.map(|given| checked(&given).into_iter());
+        py.detach(|| {
+            calls::guarded(|| {
+                let mut worlds = lock(&self.0);
+                for index in which {
+                    let next = scenarios.as_mut().and_then(Iterator::next);
+                    worlds.reset(index, next);
+                }
+                Ok(())
+            })
         })
     }
 
-    /// Commands speeds and flipper angles, of which those that are NaN leave things as they are.
+    /// Commands speeds, angles and rates of flippers, shape (n, 2), of which those that are NaN leave things as they are.
     fn command(
         &self,
         py: Python<'_>,
         speeds: PyReadonlyArray1<'_, f64>,
-        front: PyReadonlyArray1<'_, f64>,
-        rear: PyReadonlyArray1<'_, f64>,
+        angles: PyReadonlyArray2<'_, f64>,
+        rates: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
-        let columns = [speeds.to_vec()?, front.to_vec()?, rear.to_vec()?];
+        let (speeds, angles, rates) = (speeds.to_vec()?, angles.to_vec()?, rates.to_vec()?);
         py.detach(|| {
             calls::guarded(|| {
                 let mut worlds = lock(&self.0);
                 let of = |index: usize| {
-                    let given = |k: usize| Some(columns[k][index]).filter(|value| !value.is_nan());
+                    let given = |column: &[f64], k: usize| Some(column[k]).filter(|x| !x.is_nan());
+                    let flippers = [0, 1].map(|end| {
+                        let k = 2 * index + end;
+                        calls::flipper_command(given(&angles, k), given(&rates, k))
+                    });
                     ByHand {
-                        speed: given(0),
-                        flipper_angles: [(End::Front, given(1)), (End::Rear, given(2))],
+                        speed: given(&speeds, index),
+                        flippers,
                         push: None,
                     }
                 };
@@ -71,11 +74,17 @@ impl Worlds {
         })
     }
 
-    /// Advances all by a duration on some threads.
-    fn advance(&self, py: Python<'_>, duration: f64, threads: usize) -> PyResult<()> {
+    /// Advances some by a duration on some threads.
+    fn advance(
+        &self,
+        py: Python<'_>,
+        which: Vec<usize>,
+        duration: f64,
+        threads: usize,
+    ) -> PyResult<()> {
         let inner = Arc::clone(&self.0);
         run_interruptible(py, move |cancel| {
-            lock(&inner).advance(duration, threads, cancel)
+            lock(&inner).advance(&which, duration, threads, cancel)
         })
     }
 
@@ -98,10 +107,21 @@ impl Worlds {
         rows(py, (count, offsets.len()), flat)
     }
 
+    /// The scenario of one.
+    fn scenario(&self, py: Python<'_>, index: usize) -> PreparedScenario {
+        PreparedScenario {
+            checked: py.detach(|| lock(&self.0).scenario(index)),
+        }
+    }
+
     /// A snapshot of one.
     fn snapshot(&self, py: Python<'_>, index: usize) -> PyResult<Vec<u8>> {
         py.detach(|| calls::guarded(|| lock(&self.0).snapshot(index)))
     }
+}
+
+fn checked(scenarios: &[PyRef<'_, PreparedScenario>]) -> Vec<ValidScenario> {
+    scenarios.iter().map(|each| each.checked.clone()).collect()
 }
 
 /// A call that panicked has left no world half done; see `Worlds::advance` of the core.
@@ -136,6 +156,7 @@ fn columns<'py>(py: Python<'py>, states: &[WorldState]) -> PyResult<Bound<'py, P
     result.set_item("flipper_angles", two(|s| s.flipper_angles)?)?;
     result.set_item("flipper_rates", two(|s| s.flipper_rates)?)?;
     result.set_item("flipper_torques", two(|s| s.flipper_torques)?)?;
+    result.set_item("drive_work", one(|s| s.drive_work))?;
     let stopped: Vec<bool> = states.iter().map(|state| state.is_stopped).collect();
     result.set_item("stopped", stopped.into_pyarray(py))?;
     let ended = states.iter().map(|state| state.ended.map(Outcome::name));

@@ -38,7 +38,7 @@ pub use contact::Intrusion;
 pub use diagnosis::{
     Balance, Change, Diagnosis, LoadedIntrusion, Mechanism, Pull, StopContact, Trial, Wanted,
 };
-pub use dynamics::ChainReading;
+pub use dynamics::{ChainReading, FlipperCommand};
 pub use engine::OWN_SETTINGS;
 pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};

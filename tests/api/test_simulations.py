@@ -47,7 +47,7 @@ def test_a_reset_one_is_as_new_and_the_others_go_on() -> None:
     assert (many.state().position[[0, 2]] == fresh[[0, 2]]).all()
     assert (many.state().position[[1, 3]] == other.state().position[[1, 3]]).all()
     many.reset(np.array([False, True, False, False]), [SCENARIOS[3]])
-    assert many.scenarios[1] == SCENARIOS[3]
+    assert many.scenario(1) == SCENARIOS[3]
     assert many.state().time[1] == 0.0
 
 
@@ -111,7 +111,50 @@ def test_what_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(c2d.ScenarioError, match=r"drive\.gait must not be a function"):
         c2d.Simulations([own])
     many = c2d.Simulations(SCENARIOS)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be places from 0 to 3"):
         many.reset([4])
     with pytest.raises(c2d.ScenarioError, match=r"duration must be"):
         many.advance(-1.0)
+
+
+def test_flippers_turn_at_commanded_rates_alone_and_side_by_side() -> None:
+    many = c2d.Simulations(SCENARIOS)
+    many.command(speed=0.0, flipper_rate=[0.1, 0.2, 0.3, 0.4], rear_flipper_rate=-0.1)
+    many.advance(1.0)
+    start = ROBOT.flippers.angle if ROBOT.flippers else 0.0
+    turned = many.state().flipper_angles - start
+    # The motors take some hundredths of a second to get up to their rates.
+    assert turned[:, 0] == pytest.approx([0.1, 0.2, 0.3, 0.4], rel=0.05)
+    assert turned[:, 1] == pytest.approx(-0.1, rel=0.05)
+    alone = c2d.Simulation(SCENARIOS[2])
+    alone.command(speed=0.0, flipper_rate=0.3, rear_flipper_rate=-0.1)
+    alone.advance(1.0)
+    assert (many.state().flipper_angles[2] == alone.state().flipper_angles).all()
+
+
+@pytest.mark.parametrize(
+    ("commands", "path"),
+    [
+        ({"flipper_rate": 0.1, "flipper_angle": 0.1}, "flipper_rate"),
+        ({"rear_flipper_rate": 0.1, "rear_flipper_angle": 0.1}, "rear_flipper_rate"),
+        ({"flipper_rate": 1.0}, "flipper_rate"),
+        ({"rear_flipper_rate": -1.0}, "rear_flipper_rate"),
+    ],
+)
+def test_a_rate_is_no_faster_than_its_motor_and_not_beside_an_angle(
+    commands: dict[str, float], path: str
+) -> None:
+    for each in (c2d.Simulations(SCENARIOS), c2d.Simulation(SCENARIOS[0])):
+        with pytest.raises(c2d.ScenarioError) as failure:
+            each.command(**commands)  # type: ignore[arg-type] # the names are those of both
+        assert failure.value.path == path
+
+
+def test_those_of_a_mask_advance_and_the_others_stand() -> None:
+    many = c2d.Simulations(SCENARIOS)
+    many.advance(0.2, [True, False, True, False])
+    many.advance(0.1, [1])
+    assert many.state().time.tolist() == pytest.approx([0.2, 0.1, 0.2, 0.0])
+    for wrong in ([4], [True], [0.5]):
+        with pytest.raises(c2d.ScenarioError, match="which"):
+            many.advance(0.1, wrong)

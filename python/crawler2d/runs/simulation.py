@@ -188,6 +188,8 @@ class Simulation(TakesKeywords):
         speed: float | None = None,
         flipper_angle: float | None = None,
         rear_flipper_angle: float | None = None,
+        flipper_rate: float | None = None,
+        rear_flipper_rate: float | None = None,
         push: float | None = None,
     ) -> None:
         """Give new commands, which the motors follow within their limits, or push the robot.
@@ -200,6 +202,9 @@ class Simulation(TakesKeywords):
         flipper_angle, rear_flipper_angle : float, optional
             [rad] Of the flippers at the front and at the rear, relative to the chassis, upwards >
             0; from now on, overriding the gait. None leaves them unchanged.
+        flipper_rate, rear_flipper_rate : float, optional
+            [rad/s] The same by the rates at which they turn, in place of an angle; at 0 they stay
+            where they are.
         push : float, optional
             [N] Horizontal external force at the centre of mass, from now on; above 0 pushes towards
             +x. None leaves it unchanged.
@@ -207,18 +212,27 @@ class Simulation(TakesKeywords):
         Raises
         ------
         ScenarioError
-            If a value is not a number, `speed` exceeds the drivetrain's, an angle exceeds a full
-            turn or its end has no flippers, or `push` exceeds 1e15 N. Then no command changes.
+            If a value is not a number, `speed` exceeds the drivetrain's, an angle a full turn or a
+            rate the flippers' own, its end has no flippers, an end is given both, or `push` exceeds
+            1e15 N. Then no command changes.
         """
         given = {
             "drive.speed": speed,
             "flipper_angle": flipper_angle,
             "rear_flipper_angle": rear_flipper_angle,
+            "flipper_rate": flipper_rate,
+            "rear_flipper_rate": rear_flipper_rate,
             "push": push,
         }
-        self._core.command(
-            *(None if value is None else real_number(value, name) for name, value in given.items())
-        )
+        numbers = [
+            None if value is None else real_number(value, name) for name, value in given.items()
+        ]
+        speed, front, rear, front_rate, rear_rate, push = numbers
+        for name, angle, rate in (("", front, front_rate), ("rear_", rear, rear_rate)):
+            if angle is not None and rate is not None:
+                rule = f"must not be given together with {name}flipper_angle"
+                raise ScenarioError(f"{name}flipper_rate", rate, rule)
+        self._core.command(speed, push, (front, rear), (front_rate, rear_rate))
 
     @takes_keywords
     def reset(self, start: Start | None = None) -> None:

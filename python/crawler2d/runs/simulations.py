@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario, check_scenario
@@ -38,6 +38,8 @@ class States:
     flipper_angles, flipper_rates, flipper_torques : ndarray of float, shape (N, 2)
         [rad], [rad/s], [N m] Of the flippers at the front and at the rear, upwards > 0; NaN where
         there are none. Torques are means over the last step.
+    drive_work : ndarray of float, shape (N,)
+        [J] Work of the motors of the tracks so far, without those of the flippers.
     stopped : ndarray of bool, shape (N,)
         Whether the robot is stopped, by `SeizureCriteria`; nothing is tried to find out why.
     outcome : tuple of str or None, length N
@@ -55,6 +57,7 @@ class States:
     flipper_angles: NDArray[np.float64]
     flipper_rates: NDArray[np.float64]
     flipper_torques: NDArray[np.float64]
+    drive_work: NDArray[np.float64]
     stopped: NDArray[np.bool_]
     outcome: tuple[str | None, ...]
     error: tuple[str | None, ...]
@@ -92,14 +95,19 @@ class Simulations(TakesKeywords):
 
     def __init__(self, scenarios: Sequence[Scenario], *, threads: int | None = None) -> None:
         self._threads = thread_count(threads)
-        self.scenarios = [check_scenario(each) for each in scenarios]
-        if not self.scenarios:
+        prepared = _prepared(scenarios)
+        if not prepared:
             raise ScenarioError("scenarios", scenarios, "must be one or more")
-        self._core = _core.Worlds(_texts(self.scenarios))
+        self._core, self._count = _core.Worlds(prepared), len(prepared)
 
     def __len__(self) -> int:
         """Count them."""
-        return len(self.scenarios)
+        return self._count
+
+    @takes_keywords
+    def scenario(self, place: int) -> Scenario:
+        """Return the scenario of one."""
+        return Scenario.from_json(self._core.scenario(self._place(place)).text)
 
     @takes_keywords
     def command(
@@ -108,6 +116,8 @@ class Simulations(TakesKeywords):
         speed: ArrayLike | None = None,
         flipper_angle: ArrayLike | None = None,
         rear_flipper_angle: ArrayLike | None = None,
+        flipper_rate: ArrayLike | None = None,
+        rear_flipper_rate: ArrayLike | None = None,
     ) -> None:
         """Give new commands, which the motors follow within their limits.
 
@@ -118,39 +128,57 @@ class Simulations(TakesKeywords):
         flipper_angle, rear_flipper_angle : float or array_like, shape (N,), optional
             [rad] Of the flippers at the front and at the rear, relative to the chassis, upwards >
             0. NaN and None leave them unchanged.
+        flipper_rate, rear_flipper_rate : float or array_like, shape (N,), optional
+            [rad/s] The same by the rates at which they turn, in place of an angle; at 0 they stay
+            where they are.
 
         Raises
         ------
         ScenarioError
-            If an array has another shape, a speed exceeds the drivetrain's, or an angle a full turn
-            or its end has no flippers. Then no command changes.
+            If an array has another shape, a speed exceeds the drivetrain's, an angle a full turn or
+            a rate the flippers' own, its end has no flippers, or is given both. Then no command
+            changes.
         """
-        self._core.command(
-            self._column(speed, "speed"),
-            self._column(flipper_angle, "flipper_angle"),
-            self._column(rear_flipper_angle, "rear_flipper_angle"),
+        pairs = {"angle": (flipper_angle, rear_flipper_angle)}
+        pairs |= {"rate": (flipper_rate, rear_flipper_rate)}
+        angles, rates = (
+            np.column_stack(
+                [
+                    self._column(given, f"{end}flipper_{kind}")
+                    for end, given in zip(("", "rear_"), pair, strict=True)
+                ]
+            )
+            for kind, pair in pairs.items()
         )
+        both = ~np.isnan(angles) & ~np.isnan(rates)
+        if both.any():
+            name = "flipper_rate" if both[:, 0].any() else "rear_flipper_rate"
+            rule = "must not be given together with an angle"
+            raise ScenarioError(name, rates[both][0], rule)
+        self._core.command(self._column(speed, "speed"), angles, rates)
 
     @takes_keywords
-    def advance(self, duration: float) -> None:
-        """Advance all of them.
+    def advance(self, duration: float, which: ArrayLike | None = None) -> None:
+        """Advance them.
 
         Parameters
         ----------
         duration : float
             [s] By how much; the last step ends there.
+        which : array_like of int or of bool, optional
+            Their places, or a mask of shape (N,). None takes all.
 
         Raises
         ------
         ScenarioError
-            If `duration` is not a number or out of range.
+            If `duration` is not a number, or it or a place is out of range.
         KeyboardInterrupt
             On Ctrl-C; then they stand at different times, and are to be reset.
         """
         duration = real_number(duration, "duration")
         if not 0.0 <= duration <= 1e5:
             raise ScenarioError("duration", duration, "must be >= 0 s and <= 100000 s")
-        self._core.advance(duration, self._threads)
+        self._core.advance(self._places(which), duration, self._threads)
 
     @takes_keywords
     def reset(
@@ -170,20 +198,11 @@ class Simulations(TakesKeywords):
         ScenarioError
             If a place is out of range, or a scenario breaks a rule; then nothing changes.
         """
-        places = np.arange(len(self)) if which is None else np.atleast_1d(np.asarray(which))
-        if places.dtype == bool:
-            places = np.flatnonzero(self._shaped(places, "which"))
-        if places.size and not ((places >= 0) & (places < len(self))).all():
-            raise ScenarioError("which", which, f"must be from 0 to {len(self) - 1}")
-        if scenarios is None:
-            self._core.reset(places.tolist(), None)
-            return
-        others = [check_scenario(each) for each in scenarios]
-        if len(others) != len(places):
+        places = self._places(which)
+        others = None if scenarios is None else _prepared(scenarios)
+        if others is not None and len(others) != len(places):
             raise ScenarioError("scenarios", len(others), f"must be {len(places)} of them")
-        self._core.reset(places.tolist(), _texts(others))
-        for place, scenario in zip(places.tolist(), others, strict=True):
-            self.scenarios[place] = scenario
+        self._core.reset(places, others)
 
     def state(self) -> States:
         """Return their states: copies, which advancing does not change."""
@@ -211,9 +230,23 @@ class Simulations(TakesKeywords):
     @takes_keywords
     def snapshot(self, place: int) -> bytes:
         """Write the complete state of one, for `Simulation.from_snapshot`."""
-        if not 0 <= place < len(self):
-            raise ScenarioError("place", place, f"must be from 0 to {len(self) - 1}")
-        return bytes(self._core.snapshot(place))
+        return bytes(self._core.snapshot(self._place(place)))
+
+    def _place(self, place: int) -> int:
+        return whole_number(place, "place", 0, len(self) - 1)
+
+    def _places(self, which: ArrayLike | None) -> list[int]:
+        if which is None:
+            return list(range(len(self)))
+        places = np.atleast_1d(np.asarray(which))
+        if places.dtype == bool:
+            places = np.flatnonzero(self._shaped(places, "which"))
+        is_whole = places.size == 0 or np.issubdtype(places.dtype, np.integer)
+        if not is_whole or not ((places >= 0) & (places < len(self))).all():
+            rule = f"must be places from 0 to {len(self) - 1}, or a mask"
+            raise ScenarioError("which", which, rule)
+        found: list[int] = places.tolist()
+        return found
 
     def _column(self, values: ArrayLike | None, name: str) -> NDArray[np.float64]:
         if values is None:
@@ -235,9 +268,16 @@ class Simulations(TakesKeywords):
         return np.ascontiguousarray(array)
 
 
-def _texts(scenarios: Sequence[Scenario]) -> list[str]:
-    for scenario in scenarios:
-        if callable(scenario.drive.gait):
+def _prepared(scenarios: Sequence[Scenario | _core.Passed]) -> list[_core.Passed]:
+    """Validate them, if that has not been done; robots and grounds that are equal are built once."""
+    found: list[_core.Passed] = []
+    for each in scenarios:
+        if isinstance(each, _core.Passed):
+            found.append(each)
+            continue
+        gait = check_scenario(each).drive.gait
+        if callable(gait):
             rule = "must not be a function: command angles instead"
-            raise ScenarioError("drive.gait", scenario.drive.gait, rule)
-    return [scenario.to_json() for scenario in scenarios]
+            raise ScenarioError("drive.gait", gait, rule)
+        found.append(_core.Passed(each.to_json(), found[-1] if found else None))
+    return found

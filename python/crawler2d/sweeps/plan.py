@@ -169,21 +169,35 @@ class Planner:
         ScenarioError
             If the cell lacks a path; a scenario that breaks a rule stands in the plan as its error.
         """
-        whole, count = world.checked, end - begin
-        if isinstance(whole, ScenarioError):
-            return Plan(world, begin, [whole] * count, {})
         kind = "" if world.sample is None else f"sample {world.sample} "
         numbers = self.variation.numbers(self.seed, end, kind=kind, first=world.sample or 0)
         with _prefixed(_cell_path(world.labels)):
             some = {path: each[begin:] for path, each in numbers.items()}
-            drawn = self.variation.draw(world.cell, some, world.own)
-            runs = _apply_draws(world.cell, whole, drawn, count)
-            kept = _drop_invalid(world, whole, drawn, runs, self.variation.optional)
-        plan = Plan(world, begin, runs, kept)
+            runs, drawn = self.draw(world, some, end - begin)
+        plan = Plan(world, begin, runs, drawn)
         for index, run in enumerate(runs):
-            if isinstance(run, ScenarioError):
+            if isinstance(run, ScenarioError) and run is not world.checked:
                 runs[index] = _prefix(run, plan.path(index))
         return plan
+
+    def draw(
+        self, world: World, numbers: Mapping[str, NDArray[np.float64]], count: int
+    ) -> tuple[list[Checked], dict[str, NDArray[np.float64]]]:
+        """Vary a world by some numbers from 0 to 1 for each path.
+
+        Returns the scenarios and what was drawn, by path.
+
+        Raises
+        ------
+        ScenarioError
+            If the cell lacks a path; a scenario that breaks a rule stands in the list as its error.
+        """
+        whole = world.checked
+        if isinstance(whole, ScenarioError):
+            return [whole] * count, {}
+        drawn = self.variation.draw(world.cell, numbers, world.own)
+        runs = _apply_draws(world.cell, whole, drawn, count)
+        return runs, _drop_invalid(world, whole, drawn, runs, self.variation.optional)
 
 
 def plan_runs(

@@ -5,6 +5,8 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::OnceLock;
+
 use super::Contact;
 use crate::geometry::cut::{self, Chord, Piece};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
@@ -37,18 +39,23 @@ pub(crate) struct TrackEnvelope {
     margin: f64,
 }
 
-/// A taut belt and the point deepest inside it.
+/// A taut belt and the point deepest inside it, which takes long to find and is seldom asked for.
 #[derive(Clone, Debug)]
 struct Belt {
     hull: Envelope,
-    middle: Vector,
+    middle: OnceLock<Vector>,
 }
 
 impl Belt {
     fn new(discs: &[Disc]) -> Self {
-        let hull = Envelope::new(discs);
-        let middle = hull.deepest();
-        Self { hull, middle }
+        Self {
+            hull: Envelope::new(discs),
+            middle: OnceLock::new(),
+        }
+    }
+
+    fn middle(&self) -> Vector {
+        *self.middle.get_or_init(|| self.hull.deepest())
     }
 }
 
@@ -139,7 +146,9 @@ impl TrackEnvelope {
         let polyline: Vec<Vector> = under.iter().map(place).collect();
         let chords = cut::chords(&self.tips.hull, &polyline);
         if chords.is_empty() {
-            let buried = below_ground(profile, pose, self.tips.middle);
+            // All of the envelope is on one side of the ground, and so is each of its points.
+            let some_point = self.discs.first().map(|disc| disc.center);
+            let buried = some_point.is_some_and(|point| below_ground(profile, pose, point));
             let buried = buried.then(|| self.buried(profile.side, pose));
             return buried.into_iter().collect();
         }
@@ -182,8 +191,8 @@ impl TrackEnvelope {
 
     /// The point of a piece that lies deepest below a belt.
     fn deepest(&self, profile: &Profile, pose: Pose, piece: &Piece, belt: &Belt) -> Vector {
-        if self.contains(profile, pose, piece, belt.middle) {
-            belt.middle
+        if self.contains(profile, pose, piece, belt.middle()) {
+            belt.middle()
         } else {
             piece.deepest_on_chords(&belt.hull)
         }
@@ -224,7 +233,7 @@ impl TrackEnvelope {
         let hull = &self.tips.hull;
         Intrusion {
             area: -0.5 * hull.swept(0.0, hull.length()),
-            ..self.at(side, pose, [self.tips.middle, self.roots.middle])
+            ..self.at(side, pose, [self.tips.middle(), self.roots.middle()])
         }
     }
 

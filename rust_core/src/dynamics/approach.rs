@@ -15,16 +15,20 @@ pub(super) struct Approach {
 }
 
 impl Approach {
+    /// At the same rate [rad/s] all the time.
+    pub(super) fn going_on(rate: f64) -> Self {
+        Self {
+            mean: rate,
+            end: rate,
+            goes_on: true,
+        }
+    }
+
     /// The one that a `way` [rad] calls for in a step of `h` [s], at a rate of at most `limit` [rad/s], below 0 if the
     /// way gets longer for all that it can do, and with at most this deceleration [rad/s^2], which is above 0.
     pub(super) fn new(way: f64, [limit, deceleration]: [f64; 2], h: f64) -> Self {
         if limit <= 0.0 {
-            let falls_behind = limit * 1.0_f64.copysign(way);
-            return Self {
-                mean: falls_behind,
-                end: falls_behind,
-                goes_on: true,
-            };
+            return Self::going_on(limit * 1.0_f64.copysign(way));
         }
         let far = way.abs();
         let stops_within = 0.5 * limit * limit / deceleration;

@@ -2,10 +2,38 @@
 //!
 //! The equations: docs/physics.md, "Arms".
 
+use serde::{Deserialize, Serialize};
+
 use super::approach::Approach;
 use crate::geometry::{Twist, Vector, left_of};
 use crate::robot::Flipper;
 use crate::solver::{Inertia, Row};
+
+/// What the flippers at one end are to do; angles and rates are relative to the chassis, upwards > 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum FlipperCommand {
+    /// \[rad\] To turn to an angle.
+    Angle(f64),
+    /// \[rad\] The same, and to turn against the chassis as fast as it turns, to keep their angle to the ground;
+    /// otherwise they would lag behind.
+    Level(f64),
+    /// \[rad/s\] To turn at a rate.
+    Rate(f64),
+}
+
+impl Default for FlipperCommand {
+    fn default() -> Self {
+        Self::Angle(0.0)
+    }
+}
+
+impl FlipperCommand {
+    /// \[rad\] or \[rad/s\] Its number.
+    pub fn value(self) -> f64 {
+        let (Self::Angle(value) | Self::Level(value) | Self::Rate(value)) = self;
+        value
+    }
+}
 
 /// The arms at one end of the robot.
 pub(super) struct Arm {

@@ -10,7 +10,7 @@ mod tests;
 
 use super::Dynamics;
 use super::approach::Approach;
-use super::arm::Arm;
+use super::arm::{Arm, FlipperCommand};
 use super::state::{State, Turn};
 use super::trend::Trend;
 use crate::geometry::{Twist, Vector};
@@ -19,14 +19,12 @@ use crate::scenario::End;
 use crate::solver::{Inertia, Row, TURN};
 
 impl Dynamics {
-    /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
-    /// against the chassis, to keep their angle to the ground. The chassis is expected to go on turning as in the last
-    /// step.
+    /// Commands the flippers, front and rear, for a step of `h` [s]. The chassis is expected to go on turning as in the
+    /// last step.
     pub(crate) fn command_flippers(
         &mut self,
         state: &State,
-        angles: [f64; 2],
-        keep_level: [bool; 2],
+        commands: [FlipperCommand; 2],
         h: f64,
         trend: Option<Trend>,
     ) {
@@ -34,9 +32,13 @@ impl Dynamics {
         let of_chassis = state.angular_velocity + gained;
         for (k, arm) in self.flippers.iter_mut().enumerate() {
             let end = usize::from(arm.rule.end == End::Rear);
-            let way = arm.rule.sign() * angles[end] - state.over_chassis(k);
-            arm.keeps_level = keep_level[end];
-            if arm.rule.torque_limit > 0.0 {
+            let command = commands[end];
+            let value = arm.rule.sign() * command.value();
+            arm.keeps_level = matches!(command, FlipperCommand::Level(_));
+            if matches!(command, FlipperCommand::Rate(_)) {
+                arm.approach = Approach::going_on(value);
+            } else if arm.rule.torque_limit > 0.0 {
+                let way = value - state.over_chassis(k);
                 let closing = arm.rule.rate_limit - arm.follows(of_chassis) * 1.0_f64.copysign(way);
                 arm.approach = Approach::new(way, [closing, arm.deceleration()], h);
             }

@@ -37,6 +37,7 @@ mod touch;
 mod trend;
 
 use arm::Arm;
+pub use arm::FlipperCommand;
 use build::built;
 use chain::Chain;
 use face::Face;

@@ -401,7 +401,7 @@ impl Simulation {
                 chassis_angle: self.state.angle,
                 touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
             };
-            self.commands.targets = self.commands.driver.targets(drive, flippers.angle, sight);
+            self.commands.flippers = self.commands.driver.flippers(drive, flippers.angle, sight);
         }
     }
 

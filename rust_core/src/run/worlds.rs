@@ -34,6 +34,8 @@ pub struct WorldState {
     pub flipper_rates: [f64; 2],
     /// \[N m\] Torques of their motors, upwards > 0.
     pub flipper_torques: [f64; 2],
+    /// \[J\] Work of the motors of its tracks so far.
+    pub drive_work: f64,
     /// How it ended, without trials: not of a stop, nor by time.
     pub ended: Option<Outcome>,
     /// Whether it is stopped.
@@ -84,15 +86,21 @@ impl Worlds {
         each(Simulation::command_all)
     }
 
-    /// Advances all of them by a duration \[s\], each on one of some threads.
+    /// Advances those at some places by a duration \[s\], each on one of some threads.
     ///
     /// # Errors
     /// [`Error::Interrupted`] once `cancel` is asked; then they stand at different times.
-    pub fn advance(&self, duration: f64, threads: usize, cancel: &Cancel) -> Result<(), Error> {
+    pub fn advance(
+        &self,
+        places: &[usize],
+        duration: f64,
+        threads: usize,
+        cancel: &Cancel,
+    ) -> Result<(), Error> {
         let next = AtomicUsize::new(0);
         let work = || {
-            while let Some(world) = self.worlds.get(next.fetch_add(1, Ordering::Relaxed)) {
-                lock(world).advance(duration, cancel)?;
+            while let Some(place) = places.get(next.fetch_add(1, Ordering::Relaxed)) {
+                lock(&self.worlds[*place]).advance(duration, cancel)?;
             }
             Ok(())
         };
@@ -100,7 +108,7 @@ impl Worlds {
             let thread = || Builder::new().stack_size(STACK);
             let start = |_| thread().spawn_scoped(scope, work);
             // A system that gives no thread has this one do it.
-            let others: Vec<_> = (1..threads.min(self.count()))
+            let others: Vec<_> = (1..threads.min(places.len()))
                 .map_while(|k| start(k).ok())
                 .collect();
             let own = work();
@@ -129,6 +137,11 @@ impl Worlds {
             heights.collect::<Vec<f64>>()
         };
         self.worlds.iter().flat_map(of).collect()
+    }
+
+    /// The scenario of a world.
+    pub fn scenario(&self, index: usize) -> ValidScenario {
+        lock(&self.worlds[index]).scenario.clone()
     }
 
     /// A snapshot of a world.
@@ -193,6 +206,7 @@ impl World {
             flipper_angles: both(simulation.flipper_angles().collect()),
             flipper_rates: both(simulation.flipper_rates().collect()),
             flipper_torques: both(simulation.flipper_torques().collect()),
+            drive_work: simulation.monitor().observed.drive_work,
             ended: simulation.ended_as(),
             is_stopped: simulation.is_stopped(),
             error: self.error.as_ref().map(ToString::to_string),
@@ -219,7 +233,7 @@ mod tests {
                 .collect()
         };
         worlds
-            .advance(0.1, 2, &Cancel::default())
+            .advance(&[0, 1], 0.1, 2, &Cancel::default())
             .expect("it is not interrupted");
         assert_eq!(
             times(&worlds)
@@ -236,7 +250,7 @@ mod tests {
         );
         worlds.reset(1, None);
         worlds
-            .advance(0.1, 2, &Cancel::default())
+            .advance(&[0, 1], 0.1, 2, &Cancel::default())
             .expect("it is not interrupted");
         assert_eq!(times(&worlds)[1].to_bits(), 0.1_f64.to_bits());
     }

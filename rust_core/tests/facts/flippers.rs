@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use crawler2d_core::{
-    Drive, End, Ends, Error, Gait, Hold, Outcome, Record, Scenario, Simulation, Track,
-    ValidScenario, Wheel, simulate,
+    Drive, End, Ends, Error, FlipperCommand, Gait, Hold, Outcome, Record, Scenario, Simulation,
+    Track, ValidScenario, Wheel, simulate,
 };
 
 use crate::common::*;
@@ -231,13 +231,50 @@ fn arms_at_the_rear_climb_what_those_at_the_front_cannot() {
     assert_eq!(outcome(Ends::Both, 0.25), Outcome::Cleared);
 }
 
+/// Both ends upwards, then the front ones on to the ground, which a motor too weak to lift the robot does not pass.
+#[test]
+fn arms_turn_at_a_commanded_rate_as_far_as_their_motors_can() {
+    let mut scenario = with_flippers(Ends::Both, belt());
+    scenario.terrain = slope(0.0, 0.9);
+    scenario.drive.speed = 0.0;
+    flippers(&mut scenario).torque_limit = 5.0;
+    let mut simulation = Simulation::new(&checked(&scenario));
+    let both = [End::Front, End::Rear];
+    let turn = |simulation: &mut Simulation, rates: [f64; 2], duration: f64| {
+        for (end, rate) in both.into_iter().zip(rates) {
+            let command = FlipperCommand::Rate(rate);
+            simulation.command_flippers(end, command).expect("it can");
+        }
+        advance(simulation, duration);
+        simulation.flipper_angles().collect::<Vec<f64>>()
+    };
+    let up = turn(&mut simulation, [0.5, 0.2], 2.0);
+    // Getting up to the rate takes the motor's torque over the inertia of the arms, some hundredths of a second.
+    assert_relative_eq!(up[0], 1.0, epsilon = 0.02);
+    assert_relative_eq!(up[1], 0.4, epsilon = 0.02);
+    let held = turn(&mut simulation, [0.0, 0.0], 2.0);
+    // They stop within as long, and then hold their weight.
+    assert_relative_eq!(held[0], up[0], epsilon = 0.02);
+    assert_relative_eq!(held[1], up[1], epsilon = 0.02);
+    let later = turn(&mut simulation, [0.0, 0.0], 2.0);
+    assert_relative_eq!(held[0], later[0], epsilon = 1e-6);
+    let down = turn(&mut simulation, [-1.0, 0.0], 4.0);
+    assert!((-0.2..0.0).contains(&down[0]), "{down:?}");
+    let torque = simulation.flipper_torques().next().expect("it has two");
+    assert_relative_eq!(torque, -10.0, max_relative = 1e-6);
+    let refused = simulation.command_flippers(End::Front, FlipperCommand::Rate(1.5));
+    let message = refused.expect_err("their limit is 1 rad/s").to_string();
+    assert!(message.contains("flipper_rate"), "{message}");
+}
+
 #[test]
 fn snapshots_go_on_with_the_same_bits() {
     for (name, track) in models() {
         let mut scenario = with_flippers(Ends::Both, track);
         scenario.drive.gait = Some(climb());
         let mut one = after(&scenario, 2.0);
-        one.set_flipper_angle(End::Rear, 0.3).expect("it has them");
+        one.command_flippers(End::Rear, FlipperCommand::Angle(0.3))
+            .expect("it has them");
         let mut other = Simulation::from_snapshot(&one.snapshot().expect("our own dynamics"))
             .expect("a snapshot");
         for _ in 0..1000 {

@@ -1,13 +1,13 @@
 //! Many simulations side by side: each as if it were alone.
 
-use crawler2d_core::{ByHand, Cancel, End, Error, Simulation, Worlds};
+use crawler2d_core::{ByHand, Cancel, Error, Simulation, Worlds};
 
 use crate::common::*;
 
 fn at_speed(speed: f64) -> ByHand {
     ByHand {
         speed: Some(speed),
-        flipper_angles: [(End::Front, None), (End::Rear, None)],
+        flippers: [None; 2],
         push: None,
     }
 }
@@ -20,7 +20,7 @@ fn each_world_is_bit_by_bit_what_it_is_alone() {
         let mut worlds = Worlds::new(scenarios.to_vec());
         worlds.command(&[at_speed(0.3); 3]).expect("it is valid");
         for _ in 0..20 {
-            let advanced = worlds.advance(0.1, threads, &Cancel::default());
+            let advanced = worlds.advance(&[0, 1, 2], 0.1, threads, &Cancel::default());
             advanced.expect("nobody interrupts it");
         }
         for (scenario, state) in scenarios.iter().zip(worlds.states()) {
@@ -42,7 +42,8 @@ fn an_interrupt_ends_all_threads() {
     let cancel = Cancel::default();
     cancel.ask();
     let worlds = Worlds::new(vec![checked(&engineer()); 8]);
-    let ended = worlds.advance(1.0, 3, &cancel);
+    let all: Vec<usize> = (0..8).collect();
+    let ended = worlds.advance(&all, 1.0, 3, &cancel);
     assert!(matches!(ended, Err(Error::Interrupted)));
     assert!(worlds.states().iter().all(|state| state.reading.time < 1.0));
 }

@@ -144,7 +144,7 @@ fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
     let slows = 2.0 / dynamics.flippers[0].deceleration();
     let arrives = 0.8 / 2.0 + 0.5 * slows;
     for step in 0..500 {
-        dynamics.command_flippers(&state, [0.8, 0.0], [false; 2], STEP, None);
+        dynamics.command_flippers(&state, [0.8, 0.0].map(FlipperCommand::Angle), STEP, None);
         dynamics.take(&mut state, &[], 0.0, STEP);
         let left = (arrives - STEP * f64::from(step + 1)).max(0.0);
         let slowing = left.min(slows);
@@ -166,11 +166,11 @@ fn arms_that_are_to_keep_level_get_there_at_their_full_rate() {
     let (mut dynamics, mut state) = built(&scenario(30.0));
     state.angular_velocity = 0.7;
     // Front arms have to go down, against the chassis that turns up, and rear arms up.
-    dynamics.command_flippers(&state, [-0.5, 0.5], [true; 2], STEP, None);
+    dynamics.command_flippers(&state, [-0.5, 0.5].map(FlipperCommand::Level), STEP, None);
     let rates: Vec<f64> = dynamics.flippers.iter().map(|arm| arm.rate).collect();
     assert_eq!(rates, [-2.0, -2.0]);
     // The other way round.
-    dynamics.command_flippers(&state, [0.5, -0.5], [true; 2], STEP, None);
+    dynamics.command_flippers(&state, [0.5, -0.5].map(FlipperCommand::Level), STEP, None);
     let rates: Vec<f64> = dynamics.flippers.iter().map(|arm| arm.rate).collect();
     assert_eq!(rates, [2.0, 2.0]);
 }

@@ -2,16 +2,20 @@
 
 use super::Simulation;
 use super::commands::Push;
+use crate::dynamics::FlipperCommand;
 use crate::error::Error;
 use crate::scenario::{Drive, End, Flippers, ScenarioError};
+
+/// [rad] Largest angle that can be commanded.
+const FULL_TURN: f64 = 6.3;
 
 /// Commands by hand; what is `None` remains.
 #[derive(Clone, Copy, Debug)]
 pub struct ByHand {
     /// [m/s] Speed of the tracks.
     pub speed: Option<f64>,
-    /// [rad] Angles of the flippers.
-    pub flipper_angles: [(End, Option<f64>); 2],
+    /// What the front and rear flippers are to do; they keep no level.
+    pub flippers: [Option<FlipperCommand>; 2],
     /// [N] Push at the centre of mass.
     pub push: Option<f64>,
 }
@@ -33,28 +37,36 @@ impl Simulation {
         Ok(())
     }
 
-    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on, overriding the
-    /// gait; they follow within their limits.
+    /// Commands the flippers at the front or at the rear from now on, overriding the gait; they follow within their
+    /// limits.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if that end has none, or the angle is not finite or exceeds a full turn.
-    pub fn set_flipper_angle(&mut self, end: End, angle: f64) -> Result<(), Error> {
-        let path = match end {
-            End::Front => "flipper_angle",
-            End::Rear => "rear_flipper_angle",
+    /// [`Error::Scenario`] if that end has none, an angle is not finite or exceeds a full turn, or a rate their own.
+    pub fn command_flippers(&mut self, end: End, command: FlipperCommand) -> Result<(), Error> {
+        let (what, unit, most) = match command {
+            FlipperCommand::Angle(_) | FlipperCommand::Level(_) => ("angle", "rad", FULL_TURN),
+            FlipperCommand::Rate(_) => {
+                let flippers = self.scenario.robot.flippers.as_ref();
+                ("rate", "rad/s", flippers.map_or(0.0, |f| f.rate_limit))
+            }
+        };
+        let refuse = |rule: &str| {
+            let path = match end {
+                End::Front => format!("flipper_{what}"),
+                End::Rear => format!("rear_flipper_{what}"),
+            };
+            Err(ScenarioError::new(path, command.value(), rule).into())
         };
         let mut ends = self.scenario.robot.flippers.iter().flat_map(Flippers::ends);
         if !ends.any(|has| has == end) {
-            let rule = "must not be given, because the robot has no flippers there";
-            return Err(ScenarioError::new(path, angle, rule).into());
+            return refuse("must not be given, because the robot has no flippers there");
         }
-        if !(-6.3..=6.3).contains(&angle) {
-            let rule = "must be >= -6.3 rad and <= 6.3 rad";
-            return Err(ScenarioError::new(path, angle, rule).into());
+        if !(-most..=most).contains(&command.value()) {
+            return refuse(&format!("must be >= -{most} {unit} and <= {most} {unit}"));
         }
         self.commands
             .driver
-            .hold(usize::from(end == End::Rear), angle);
+            .take(usize::from(end == End::Rear), command);
         self.commands.follow_scenario = false;
         Ok(())
     }
@@ -62,13 +74,13 @@ impl Simulation {
     /// Gives commands of all kinds at once; if one is invalid, none takes effect.
     ///
     /// # Errors
-    /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
+    /// Those of [`Self::set_speed`], [`Self::command_flippers`] and [`Self::set_push`].
     pub fn command_all(&mut self, commands: &ByHand) -> Result<(), Error> {
         let before = self.commands;
         let mut give = || {
             commands.push.map_or(Ok(()), |push| self.set_push(push))?;
-            for (end, angle) in commands.flipper_angles {
-                angle.map_or(Ok(()), |angle| self.set_flipper_angle(end, angle))?;
+            for (end, given) in [End::Front, End::Rear].into_iter().zip(commands.flippers) {
+                given.map_or(Ok(()), |command| self.command_flippers(end, command))?;
             }
             commands.speed.map_or(Ok(()), |speed| self.set_speed(speed))
         };

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::dynamics::FlipperCommand;
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
 
 /// What the robot is to do.
@@ -10,8 +11,8 @@ pub(super) struct Commands {
     /// [m/s] Speed of the drives.
     pub speed: f64,
     pub driver: Driver,
-    /// Where the driver wants the front and rear flippers.
-    pub targets: [Target; 2],
+    /// What the front and rear flippers are to do.
+    pub flippers: [FlipperCommand; 2],
     /// The push at the centre of mass, along x.
     pub push: Push,
     /// Whether they have been the scenario's from time 0 on: no branch, no command by hand, no push.
@@ -24,7 +25,7 @@ impl Commands {
         Self {
             speed: drive.speed,
             driver: Driver::default(),
-            targets: Default::default(),
+            flippers: Default::default(),
             push: Push::default(),
             follow_scenario: true,
         }
@@ -42,33 +43,14 @@ pub(crate) struct DriverView {
     pub touches: [bool; 2],
 }
 
-/// Where a driver wants the flippers at one end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Target {
-    /// [rad] Angle relative to the chassis, upwards > 0.
-    pub angle: f64,
-    /// Whether they turn against the chassis as fast as it turns, to keep their angle to the ground; otherwise they
-    /// would lag behind.
-    pub keeps_level: bool,
-}
-
-impl Target {
-    fn fixed(angle: f64) -> Self {
-        Self {
-            angle,
-            keeps_level: false,
-        }
-    }
-}
-
 /// What a driver remembers.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Driver {
     /// Number of past entries of the schedule of speeds.
     entries: usize,
     phase: Phase,
-    /// [rad] Angles given by hand that override the gait, front and rear.
-    by_hand: [Option<f64>; 2],
+    /// Commands by hand that override the gait, front and rear.
+    by_hand: [Option<FlipperCommand>; 2],
 }
 
 /// Phases of a climb.
@@ -114,30 +96,35 @@ impl Driver {
     /// Whether commands can have led to this state.
     pub(crate) fn fits(&self, drive: &Drive) -> bool {
         let entries = drive.schedule.as_ref().map_or(0, Vec::len);
-        let known = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+        let known = |given: &Option<FlipperCommand>| given.is_none_or(|c| c.value().is_finite());
         self.entries <= entries && self.by_hand.iter().all(known)
     }
 
     /// Overrides the gait at one end.
-    pub(crate) fn hold(&mut self, end: usize, angle: f64) {
-        self.by_hand[end] = Some(angle);
+    pub(crate) fn take(&mut self, end: usize, command: FlipperCommand) {
+        self.by_hand[end] = Some(command);
     }
 
-    /// Where it wants the front and rear flippers; `start` is their angle at time 0 [rad].
-    pub(crate) fn targets(&mut self, drive: &Drive, start: f64, sight: DriverView) -> [Target; 2] {
+    /// What it has the front and rear flippers do; `start` is their angle at time 0 [rad].
+    pub(crate) fn flippers(
+        &mut self,
+        drive: &Drive,
+        start: f64,
+        sight: DriverView,
+    ) -> [FlipperCommand; 2] {
         let of_gait = match &drive.gait {
-            None => [Target::fixed(start); 2],
+            None => [FlipperCommand::Angle(start); 2],
             Some(Gait::Hold(hold)) => {
                 let angle = hold.angle_at(sight.time);
-                [hold.front, hold.rear].map(|end| Target::fixed(end.unwrap_or(angle)))
+                [hold.front, hold.rear].map(|end| FlipperCommand::Angle(end.unwrap_or(angle)))
             }
             Some(Gait::Climb(climb)) => self.climb(climb, start, sight),
         };
-        std::array::from_fn(|end| self.by_hand[end].map_or(of_gait[end], Target::fixed))
+        std::array::from_fn(|end| self.by_hand[end].unwrap_or(of_gait[end]))
     }
 
-    /// Where the flippers are to be during a climb.
-    fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [Target; 2] {
+    /// What the flippers are to do during a climb.
+    fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [FlipperCommand; 2] {
         let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
         self.phase = match self.phase {
@@ -148,13 +135,9 @@ impl Driver {
             Phase::Lift if !raised && !rear => Phase::Reach,
             same => same,
         };
-        let level = |angle| Target {
-            angle,
-            keeps_level: true,
-        };
-        let swept = level(climb.sweep_angle - sight.chassis_angle);
-        let pushed = level(climb.push_angle + sight.chassis_angle);
-        let (reach, start) = (Target::fixed(climb.reach_angle), Target::fixed(start));
+        let swept = FlipperCommand::Level(climb.sweep_angle - sight.chassis_angle);
+        let pushed = FlipperCommand::Level(climb.push_angle + sight.chassis_angle);
+        let [reach, start] = [climb.reach_angle, start].map(FlipperCommand::Angle);
         match self.phase {
             Phase::Reach => [reach, start],
             Phase::Sweep => [swept, start],

@@ -142,11 +142,8 @@ impl Simulation {
             }
         };
         let set_point = self.set_points(h);
-        let targets = self.commands.targets;
-        let angles = targets.map(|target| target.angle);
-        let keep_level = targets.map(|target| target.keeps_level);
         self.dynamics
-            .command_flippers(&self.state, angles, keep_level, h, self.last.trend());
+            .command_flippers(&self.state, self.commands.flippers, h, self.last.trend());
         attempt.state.copy(&self.state);
         self.dynamics
             .advance(&mut attempt.state, set_point, (h, strikes))?;

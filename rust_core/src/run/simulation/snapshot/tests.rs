@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::contact::Contact;
+use crate::dynamics::FlipperCommand;
 use crate::geometry::Vector;
 use crate::scenario::Scenario;
 use crate::scenario::{
@@ -55,7 +56,7 @@ fn busy() -> Simulation {
     // Backwards, so that it makes a difference at once.
     belt.set_speed(-0.3).expect("within the drivetrain's");
     belt.set_push(20.0).expect("within the limits");
-    let arms = belt.set_flipper_angle(End::Front, 0.2);
+    let arms = belt.command_flippers(End::Front, FlipperCommand::Angle(0.2));
     arms.expect("it has arms there");
     advance(&mut belt);
     belt
@@ -265,7 +266,9 @@ const SPOILS: [(&str, Spoil); 16] = [
     ("endless depth", |m| m.state.center.y = f64::NEG_INFINITY),
     ("command", |m| m.commands.speed = f64::NAN),
     ("set point", |m| m.set_point = f64::NAN),
-    ("driver", |m| m.commands.driver.hold(0, f64::NAN)),
+    ("driver", |m| {
+        m.commands.driver.take(0, FlipperCommand::Rate(f64::NAN))
+    }),
     ("velocity", |m| m.state.velocity.x = f64::NAN),
     ("a flipper less", |m| m.state.flippers.clear()),
     ("impulses of a robot without flippers", |m| {
