@@ -67,7 +67,7 @@ from crawler2d.variation import variability
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 
 if TYPE_CHECKING:
-    from crawler2d import studies
+    from crawler2d import envs, studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
     from crawler2d.runs.jams import jams
@@ -165,6 +165,7 @@ _LAZY = {
     "Until": "crawler2d.sweeps.sequential",
     "check_store": "crawler2d.sweeps.store",
     "compare": "crawler2d.sweeps.sweep",
+    "envs": "crawler2d.envs",  # not public by `*`: it needs gymnasium
     "join_stores": "crawler2d.sweeps.store",
     "load": "crawler2d.runs.saved",
     "newcombe": "crawler2d.sweeps.statistics",

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::calls::{self, run_interruptible};
 use crate::classes::PreparedScenario;
+use crate::convert;
 
 /// Simulations side by side; any thread may use them, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
@@ -107,6 +108,25 @@ impl Worlds {
         rows(py, (count, offsets.len()), flat)
     }
 
+    /// All that one has done since it set out, simulated once more with its history.
+    fn to_run<'py>(
+        &self,
+        py: Python<'py>,
+        index: usize,
+        sample_interval: f64,
+        trials: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let record = convert::record(sample_interval, "full", &trials)?;
+        let (log, scenario) = py.detach(|| {
+            let worlds = lock(&self.0);
+            (worlds.log(index), worlds.scenario(index))
+        });
+        let run = run_interruptible(py, move |cancel| {
+            log.replay(scenario.scenario(), record, cancel)
+        })?;
+        convert::run(py, run)
+    }
+
     /// The scenario of one.
     fn scenario(&self, py: Python<'_>, index: usize) -> PreparedScenario {
         PreparedScenario {
@@ -156,6 +176,7 @@ fn columns<'py>(py: Python<'py>, states: &[WorldState]) -> PyResult<Bound<'py, P
     result.set_item("flipper_angles", two(|s| s.flipper_angles)?)?;
     result.set_item("flipper_rates", two(|s| s.flipper_rates)?)?;
     result.set_item("flipper_torques", two(|s| s.flipper_torques)?)?;
+    result.set_item("to_goal", one(|s| s.to_goal))?;
     result.set_item("drive_work", one(|s| s.drive_work))?;
     let stopped: Vec<bool> = states.iter().map(|state| state.is_stopped).collect();
     result.set_item("stopped", stopped.into_pyarray(py))?;

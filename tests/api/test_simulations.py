@@ -146,7 +146,7 @@ def test_a_rate_is_no_faster_than_its_motor_and_not_beside_an_angle(
 ) -> None:
     for each in (c2d.Simulations(SCENARIOS), c2d.Simulation(SCENARIOS[0])):
         with pytest.raises(c2d.ScenarioError) as failure:
-            each.command(**commands)  # type: ignore[arg-type] # the names are those of both
+            each.command(**commands)
         assert failure.value.path == path
 
 

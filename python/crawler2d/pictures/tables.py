@@ -12,6 +12,7 @@ from crawler2d.drawings.canvas import axes_or_new, moved, set_title
 from crawler2d.drawings.palette import BLACK, BLUE, GRAY, GREEN, ORANGE, look_of
 from crawler2d.errors import ScenarioError
 from crawler2d.pictures.jams import plot_jam_chart
+from crawler2d.pictures.policies import plot_policy
 from crawler2d.pictures.rates import (
     legend_below,
     one_model,
@@ -327,6 +328,7 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "critical": plot_rates,
     "seizure_map": plot_map,
     "jam_chart": plot_jam_chart,
+    "policy": plot_policy,
     "search": plot_search,
     "what_decides": plot_decides,
     "success": plot_outcomes,

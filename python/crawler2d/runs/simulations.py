@@ -13,7 +13,9 @@ from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario, check_scenario
+from crawler2d.runs.branch import Trials, check_recording, trial_names
 from crawler2d.runs.progress import thread_count
+from crawler2d.runs.run import Run
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,7 +39,9 @@ class States:
         [m/s] Mean surface speed of the tracks; above 0 drives towards +x.
     flipper_angles, flipper_rates, flipper_torques : ndarray of float, shape (N, 2)
         [rad], [rad/s], [N m] Of the flippers at the front and at the rear, upwards > 0; NaN where
-        there are none. Torques are means over the last step.
+        there are none. Torques are of both sides together, means over the last step.
+    to_goal : ndarray of float, shape (N,)
+        [m] How far the rear of the robot still has to the goal along x; below 0 beyond it.
     drive_work : ndarray of float, shape (N,)
         [J] Work of the motors of the tracks so far, without those of the flippers.
     stopped : ndarray of bool, shape (N,)
@@ -57,6 +61,7 @@ class States:
     flipper_angles: NDArray[np.float64]
     flipper_rates: NDArray[np.float64]
     flipper_torques: NDArray[np.float64]
+    to_goal: NDArray[np.float64]
     drive_work: NDArray[np.float64]
     stopped: NDArray[np.bool_]
     outcome: tuple[str | None, ...]
@@ -93,7 +98,9 @@ class Simulations(TakesKeywords):
     ('cleared', 'tipped_over')
     """
 
-    def __init__(self, scenarios: Sequence[Scenario], *, threads: int | None = None) -> None:
+    def __init__(
+        self, scenarios: Sequence[Scenario | _core.Passed], *, threads: int | None = None
+    ) -> None:
         self._threads = thread_count(threads)
         prepared = _prepared(scenarios)
         if not prepared:
@@ -182,7 +189,9 @@ class Simulations(TakesKeywords):
 
     @takes_keywords
     def reset(
-        self, which: ArrayLike | None = None, scenarios: Sequence[Scenario] | None = None
+        self,
+        which: ArrayLike | None = None,
+        scenarios: Sequence[Scenario | _core.Passed] | None = None,
     ) -> None:
         """Set some out anew, bit by bit as if they were new.
 
@@ -232,6 +241,32 @@ class Simulations(TakesKeywords):
         """Write the complete state of one, for `Simulation.from_snapshot`."""
         return bytes(self._core.snapshot(self._place(place)))
 
+    @takes_keywords
+    def to_run(self, place: int, *, sample_interval: float = 0.01, trials: Trials = None) -> Run:
+        """Return all that one has done since it set out as a run, see `Simulation.to_run`.
+
+        Parameters
+        ----------
+        place : int
+            Which one.
+        sample_interval : float
+            [s] Time between samples of the history.
+        trials : {"auto", "all"}, sequence of str or None
+            As for `simulate`: what to try if the robot has stopped.
+
+        Raises
+        ------
+        ScenarioError
+            If the place is out of range.
+        SimulationDiverged
+            If the state became non-finite.
+        """
+        kept, _ = check_recording(sample_interval, "full")
+        place = self._place(place)
+        result = self._core.to_run(place, kept, list(trial_names(trials)))
+        scenario = self.scenario(place)
+        return Run(scenario, result, trunk=(scenario, 0.0))
+
     def _place(self, place: int) -> int:
         return whole_number(place, "place", 0, len(self) - 1)
 
@@ -269,7 +304,7 @@ class Simulations(TakesKeywords):
 
 
 def _prepared(scenarios: Sequence[Scenario | _core.Passed]) -> list[_core.Passed]:
-    """Validate them, if that has not been done; robots and grounds that are equal are built once."""
+    """Validate them, if that has not been done; equal robots and grounds are built once."""
     found: list[_core.Passed] = []
     for each in scenarios:
         if isinstance(each, _core.Passed):

@@ -234,6 +234,10 @@ class Tabulation:
                 plan, repeat = self._plans[index // self._repeats], index % self._repeats
                 row.error.add_note(f"in {plan.path(repeat)}")
 
+    def take(self, rows: Sequence[Row]) -> None:
+        """Take rows of runs that were made otherwise, in the order of `checked`."""
+        self._rows = list(rows)
+
     def raise_first(self) -> None:
         """Raise the first error of a run."""
         raise_first(None if row is None else row.error for row in self._rows)

@@ -148,7 +148,7 @@ impl Monitor {
         }
         let level = (now.chassis_angle - self.ground.angle_at(now.position.x)).abs()
             < self.criteria.clear_angle;
-        let beyond = rear - self.goal - self.rear_radius;
+        let beyond = self.beyond(rear);
         let before = std::mem::replace(&mut self.observed.beyond, beyond);
         if beyond > 0.0 && level {
             // It has passed the goal within the step.
@@ -162,6 +162,17 @@ impl Monitor {
             self.observed.goal_since = None;
         }
         None
+    }
+
+    /// [m] How far the robot is beyond the goal, by the x of its rear axle [m].
+    fn beyond(&self, rear: f64) -> f64 {
+        rear - self.goal - self.rear_radius
+    }
+
+    /// [m] How far it still has to the goal; below 0 beyond it.
+    pub(crate) fn to_goal(&self, now: &Reading) -> f64 {
+        let [rear, _] = self.axles;
+        -self.beyond((now.position + turned_by(now.chassis_angle)(rear)).x)
     }
 
     /// Tracks what is inside the track.

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, ScopedJoinHandle};
 
 use super::record::STACK;
-use super::{ByHand, Simulation, ValidScenario};
+use super::{ByHand, Log, Simulation, ValidScenario};
 use crate::error::{Error, caught};
 use crate::limits::Cancel;
 use crate::observe::{Outcome, Reading};
@@ -19,6 +19,7 @@ pub struct Worlds {
 struct World {
     scenario: ValidScenario,
     simulation: Simulation,
+    log: Log,
     /// Why it cannot go on.
     error: Option<Error>,
 }
@@ -34,6 +35,8 @@ pub struct WorldState {
     pub flipper_rates: [f64; 2],
     /// \[N m\] Torques of their motors, upwards > 0.
     pub flipper_torques: [f64; 2],
+    /// \[m\] How far the rear of the robot still has to the goal; below 0 beyond it.
+    pub to_goal: f64,
     /// \[J\] Work of the motors of its tracks so far.
     pub drive_work: f64,
     /// How it ended, without trials: not of a stop, nor by time.
@@ -72,7 +75,7 @@ impl Worlds {
     /// # Errors
     /// The first error of [`Simulation::command_all`].
     pub fn command(&mut self, commands: &[ByHand]) -> Result<(), Error> {
-        let mut each = |give: fn(&mut Simulation, &ByHand) -> Result<(), Error>| {
+        let mut each = |give: fn(&mut World, &ByHand) -> Result<(), Error>| {
             let running = self
                 .worlds
                 .iter_mut()
@@ -80,10 +83,13 @@ impl Worlds {
             let mut pairs = running
                 .zip(commands)
                 .filter(|(world, _)| world.error.is_none());
-            pairs.try_for_each(|(world, commands)| give(&mut world.simulation, commands))
+            pairs.try_for_each(|(world, commands)| give(world, commands))
         };
-        each(Simulation::check_commands)?;
-        each(Simulation::command_all)
+        each(|world, commands| world.simulation.check_commands(commands))?;
+        each(|world, commands| {
+            world.log.note_commands(*commands);
+            world.simulation.command_all(commands)
+        })
     }
 
     /// Advances those at some places by a duration \[s\], each on one of some threads.
@@ -144,6 +150,11 @@ impl Worlds {
         lock(&self.worlds[index]).scenario.clone()
     }
 
+    /// What a world was asked to do since it set out.
+    pub fn log(&self, index: usize) -> Log {
+        lock(&self.worlds[index]).log.clone()
+    }
+
     /// A snapshot of a world.
     ///
     /// # Errors
@@ -163,6 +174,7 @@ impl World {
         Self {
             simulation: Simulation::new(&scenario),
             scenario,
+            log: Log::default(),
             error: None,
         }
     }
@@ -174,6 +186,7 @@ impl World {
         }
         let simulation = &mut self.simulation;
         let end = simulation.time() + duration;
+        self.log.note_steps(end);
         let all = || {
             while simulation.time() < end {
                 cancel.check()?;
@@ -181,7 +194,9 @@ impl World {
             }
             Ok(())
         };
-        match caught(all) {
+        let result = caught(all);
+        self.log.has_reached(self.simulation.time());
+        match result {
             Err(Error::Interrupted) => Err(Error::Interrupted),
             Err(error) => {
                 self.error = Some(error);
@@ -201,8 +216,10 @@ impl World {
             ([rear], false) => [f64::NAN, *rear],
             _ => [f64::NAN; 2],
         };
+        let reading = simulation.reading();
         WorldState {
-            reading: simulation.reading(),
+            to_goal: simulation.monitor().to_goal(&reading),
+            reading,
             flipper_angles: both(simulation.flipper_angles().collect()),
             flipper_rates: both(simulation.flipper_rates().collect()),
             flipper_torques: both(simulation.flipper_torques().collect()),

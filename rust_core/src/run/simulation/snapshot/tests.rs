@@ -267,7 +267,7 @@ const SPOILS: [(&str, Spoil); 16] = [
     ("command", |m| m.commands.speed = f64::NAN),
     ("set point", |m| m.set_point = f64::NAN),
     ("driver", |m| {
-        m.commands.driver.take(0, FlipperCommand::Rate(f64::NAN))
+        m.commands.driver.take(0, FlipperCommand::Rate(f64::NAN));
     }),
     ("velocity", |m| m.state.velocity.x = f64::NAN),
     ("a flipper less", |m| m.state.flippers.clear()),

@@ -1,0 +1,152 @@
+"""Episodes of a task side by side: what `FlipperEnv` has one of, and `FlipperVectorEnv` many."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.common.extras import extra
+from crawler2d.envs.task import Rewards, Task
+from crawler2d.errors import ScenarioError
+from crawler2d.results.outcome import Outcome
+from crawler2d.runs.branch import Trials
+from crawler2d.runs.run import Run
+from crawler2d.runs.simulation import Simulation
+from crawler2d.runs.simulations import Simulations, States
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Episodes", "Step"]
+
+_STOPPED, _DIVERGED = "stopped", "diverged"
+"""Outcomes that need no trial: any stop, and no result."""
+
+_SAME_TIME = 1e-9
+"""[s] Times that differ by less differ by rounding."""
+
+_PICTURE, _DOTS_PER_INCH = (6.4, 3.6), 100
+"""[inch] Size of a rendered picture, and its resolution."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What a step of N episodes has led to.
+
+    Attributes
+    ----------
+    observations : ndarray of float32, shape (N, n)
+        What a policy sees.
+    rewards : Rewards
+        Of this step.
+    terminated, truncated : ndarray of bool, shape (N,)
+        Whether an episode has ended by what happened, or by time, a stop or an error.
+    outcomes, errors : tuple of str or None, length N
+        How those that have ended did, and why those cannot go on that failed.
+    """
+
+    observations: NDArray[np.float32]
+    rewards: Rewards
+    terminated: NDArray[np.bool_]
+    truncated: NDArray[np.bool_]
+    outcomes: tuple[str | None, ...]
+    errors: tuple[str | None, ...]
+
+    @property
+    def ended(self) -> NDArray[np.bool_]:
+        """Whether an episode has ended."""
+        return self.terminated | self.truncated
+
+
+class Episodes:
+    """N episodes of a task, bit by bit as each would be alone."""
+
+    def __init__(self, task: Task, scenarios: Sequence[_core.Passed], threads: int | None) -> None:
+        self._task, self._many = task, Simulations(scenarios, threads=threads)
+        self._states = self._many.state()
+
+    @property
+    def states(self) -> States:
+        """The present states."""
+        return self._states
+
+    def reset(self, places: NDArray[np.intp], scenarios: Sequence[_core.Passed]) -> None:
+        """Begin new episodes at some places."""
+        self._many.reset(places, scenarios)
+        self._states = self._many.state()
+
+    def observe(self) -> NDArray[np.float32]:
+        """Return what a policy sees, shape (N, n)."""
+        return self._task.observe(self._many, self._states)
+
+    def step(self, actions: ArrayLike, which: NDArray[np.bool_] | None = None) -> Step:
+        """Command and advance the episodes, or those of a mask.
+
+        Raises
+        ------
+        ScenarioError
+            If actions have another shape or are not finite.
+        """
+        task, before, count = self._task, self._states, len(self._many)
+        driven = np.ones(count, bool) if which is None else which
+        speeds, flippers = task.commands(self._read(actions))
+        given = np.where(driven[:, None], np.column_stack([speeds, flippers]), np.nan)
+        kind = "angle" if task.commands_angles else "rate"
+        names = ("speed", f"flipper_{kind}", f"rear_flipper_{kind}")
+        self._many.command(**dict(zip(names, given.T, strict=True)))
+        self._many.advance(task.dt, driven)
+        after = self._states = self._many.state()
+        return self._judged(task.rewards(before, after), after)
+
+    def _judged(self, rewards: Rewards, states: States) -> Step:
+        """Say which episodes have ended, and how."""
+        failed = np.array([error is not None for error in states.error])
+        terminated = np.array([outcome is not None for outcome in states.outcome]) & ~failed
+        late = states.time >= self._task.scenario.duration - _SAME_TIME
+        stopped = states.stopped if self._task.ends_when_stopped else np.zeros_like(failed)
+        truncated = (late | stopped | failed) & ~terminated
+        outcomes: list[str | None] = [None] * len(failed)
+        for place in np.flatnonzero(terminated | truncated):
+            without = _STOPPED if states.stopped[place] else str(Outcome.TIMED_OUT)
+            outcomes[place] = _DIVERGED if failed[place] else states.outcome[place] or without
+        return Step(self.observe(), rewards, terminated, truncated, tuple(outcomes), states.error)
+
+    def _read(self, actions: ArrayLike) -> NDArray[np.float64]:
+        array = np.asarray(actions, float)
+        shape = (len(self._many), 1 + len(self._task.ends))
+        if array.shape != shape:
+            raise ScenarioError("action", array.shape, f"must have the shape {shape}")
+        if not np.isfinite(array).all():
+            raise ScenarioError("action", array[~np.isfinite(array)][0], "must be finite")
+        clipped: NDArray[np.float64] = np.clip(array, -1.0, 1.0)
+        return clipped
+
+    def run(self, place: int, trials: Trials = "auto") -> Run:
+        """Return one episode as a run, with trials of what would free the robot if it is stopped.
+
+        Raises
+        ------
+        SimulationDiverged
+            If the state became non-finite.
+        """
+        return self._many.to_run(place, trials=trials)
+
+    def render(self, place: int) -> NDArray[np.uint8]:
+        """Draw one of them as it is now, shape (height, width, 3).
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+        """
+        figures = extra("matplotlib.figure", "plot")
+        agg = extra("matplotlib.backends.backend_agg", "plot")
+        figure = figures.Figure(figsize=_PICTURE, dpi=_DOTS_PER_INCH, layout="constrained")
+        canvas = agg.FigureCanvasAgg(figure)
+        Simulation.from_snapshot(self._many.snapshot(place)).plot(figure.subplots())
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()

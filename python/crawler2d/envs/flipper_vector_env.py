@@ -1,0 +1,300 @@
+"""Many robots that a policy drives over obstacles, as a vector environment of Gymnasium."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import EzPickle, seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from crawler2d.common.arrays import whole_number
+from crawler2d.common.keywords import TakesKeywords
+from crawler2d.envs.episodes import Episodes, Step
+from crawler2d.envs.flipper_env import METADATA, check_render_mode, spaces_of
+from crawler2d.envs.task import FlipperCommand, Observe, Task
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.runs.run import Run
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.runs.simulations import States
+
+__all__ = ["FlipperVectorEnv"]
+
+_MOST = 100_000
+
+
+class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
+    """Many of `FlipperEnv`, advanced together on all cores.
+
+    Environment k with seed s is bit by bit what `FlipperEnv` is with seed s + k, whatever the
+    number of environments and threads. One that fails ends its episode, and the others go on.
+
+    Parameters
+    ----------
+    num_envs : int
+        How many, 1 to 100,000.
+    scenario, terrain, randomize, dt, observe, flipper_command, end_when_stopped
+        See `FlipperEnv`.
+    shock_weight, effort_weight, render_mode
+        See `FlipperEnv`.
+    autoreset_mode : AutoresetMode or str
+        When an episode that has ended is followed by another, see `gymnasium.vector.AutoresetMode`:
+        "NextStep", in whose step the action is without meaning; "SameStep", where ``info`` has
+        `final_obs` and `final_info`; or "Disabled", where `reset` is called with a mask.
+    threads : int, optional
+        Most threads; None takes one a core.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument breaks a rule.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from crawler2d.envs import FlipperVectorEnv
+    >>> many = FlipperVectorEnv(64, autoreset_mode="SameStep")
+    >>> observations, infos = many.reset(seed=0)
+    >>> for _ in range(100):
+    ...     ahead = np.tile([1.0, 0.0, 0.0], (64, 1))
+    ...     observations, rewards, terminated, truncated, infos = many.step(ahead)
+    >>> observations.shape, rewards.shape
+    ((64, 7), (64,))
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        scenario: Scenario | str = "flipper_climb",
+        *,
+        terrain: Terrain | None = None,
+        randomize: Mapping[str, Any] | None = None,
+        dt: float = 0.05,
+        observe: Observe = "proprioception",
+        flipper_command: FlipperCommand = "rate",
+        end_when_stopped: bool = False,
+        shock_weight: float = 1.0,
+        effort_weight: float = 0.1,
+        render_mode: str | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+    ) -> None:
+        given = {key: value for key, value in locals().items() if key not in ("self", "__class__")}
+        EzPickle.__init__(self, **given)
+        self.render_mode = check_render_mode(render_mode)
+        self.num_envs = whole_number(num_envs, "num_envs", 1, _MOST)
+        self.task = Task.read(
+            scenario,
+            terrain=terrain,
+            randomize=randomize,
+            dt=dt,
+            observe=observe,
+            flipper_command=flipper_command,
+            end_when_stopped=end_when_stopped,
+            shock_weight=shock_weight,
+            effort_weight=effort_weight,
+        )
+        self.metadata = METADATA | {"autoreset_mode": _read_mode(autoreset_mode)}
+        spaces = spaces_of(self.task)
+        self.single_observation_space, self.single_action_space = spaces
+        self.observation_space, self.action_space = (
+            batch_space(space, self.num_envs) for space in spaces
+        )
+        self._threads = threads
+        self._episodes: Episodes | None = None
+        self._ended = np.zeros(self.num_envs, bool)
+        self._generators: list[np.random.Generator] = []
+        self._seeds: list[int] = []
+
+    @property
+    def observation_names(self) -> list[str]:
+        """Of the numbers of an observation."""
+        return self.task.names
+
+    @property
+    def state(self) -> States:
+        """The present states; everything that a policy does not see."""
+        return self._begun().states
+
+    @property  # type: ignore[misc] # of the base it can be set
+    @property
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override] # one each
+        """The generators of the draws."""
+        self._seed([None] * self.num_envs)
+        return tuple(self._generators)
+
+    @property
+    def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override] # one each
+        """Their seeds."""
+        self._seed([None] * self.num_envs)
+        return tuple(self._seeds)
+
+    def run(self, place: int) -> Run:
+        """Return the present episode of one as a run, with its diagnosis, see `FlipperEnv.run`.
+
+        Where another one follows in the same step, that is the new one.
+        """
+        return self._begun().run(whole_number(place, "place", 0, self.num_envs - 1))
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin episodes, each with another draw.
+
+        Parameters
+        ----------
+        seed : int or sequence of int or None, optional
+            Environment k takes seed + k; or one each.
+        options : dict, optional
+            `reset_mask`, a mask of shape (N,), says which are to begin; without it all do.
+
+        Returns
+        -------
+        observations : ndarray of float32, shape (N, n)
+        infos : dict
+            Empty.
+        """
+        seeds = [seed + k for k in range(self.num_envs)] if isinstance(seed, int) else seed
+        seeds = [None] * self.num_envs if seeds is None else list(seeds)
+        if len(seeds) != self.num_envs:
+            raise ScenarioError("seed", len(seeds), f"must be one or {self.num_envs}")
+        mask = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)))
+        if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
+            rule = f"must be a mask of shape ({self.num_envs},) with at least one True"
+            raise ScenarioError("options['reset_mask']", mask.tolist(), rule)
+        if self._episodes is None and not mask.all():
+            raise gymnasium.error.ResetNeeded("the first reset is of all: without a mask")
+        self._seed([each if m else None for each, m in zip(seeds, mask, strict=True)])
+        self._begin(mask)
+        return self._begun().observe(), {}
+
+    def step(
+        self, actions: NDArray[np.float32]
+    ) -> tuple[
+        NDArray[np.float32],
+        NDArray[np.float64],
+        NDArray[np.bool_],
+        NDArray[np.bool_],
+        dict[str, Any],
+    ]:
+        """Drive on for `dt`.
+
+        Parameters
+        ----------
+        actions : array_like, shape (N, 1 to 3)
+            [-] Speeds and flippers, from -1 to 1.
+
+        Returns
+        -------
+        observations : ndarray of float32, shape (N, n)
+        rewards : ndarray, shape (N,)
+        terminated, truncated : ndarray of bool, shape (N,)
+        infos : dict
+            The terms of the rewards, and outcomes where episodes have ended, each with a mask.
+
+        Raises
+        ------
+        ScenarioError
+            If the actions have another shape or are not finite.
+        gymnasium.error.ResetNeeded
+            If an episode has ended and nothing follows by itself.
+        KeyboardInterrupt
+            On Ctrl-C; then reset.
+        """
+        episodes, mode = self._begun(), self.metadata["autoreset_mode"]
+        begun = self._ended
+        if mode is AutoresetMode.DISABLED and begun.any():
+            raise gymnasium.error.ResetNeeded("episodes have ended: reset them by a mask")
+        step = episodes.step(actions, ~begun)
+        observations, ended = step.observations, step.ended & ~begun
+        rewards = np.where(begun, 0.0, step.rewards.total)
+        terminated, truncated = step.terminated & ~begun, step.truncated & ~begun
+        infos = _infos(step, ~begun, ended)
+        if begun.any():
+            self._begin(begun)
+            observations = episodes.observe()
+        self._ended = ended
+        if mode is AutoresetMode.SAME_STEP and ended.any():
+            infos = _infos(step, ~ended, np.zeros_like(ended))
+            infos |= {"final_obs": _rows(observations, ended), "_final_obs": ended.copy()}
+            infos |= {"final_info": _infos(step, ended, ended), "_final_info": ended.copy()}
+            self._begin(ended)
+            observations = episodes.observe()
+        return observations, rewards, terminated, truncated, infos
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Draw each robot on its ground; None without a render mode."""
+        if self.render_mode is None:
+            return None
+        return tuple(self._begun().render(place) for place in range(self.num_envs))
+
+    def _begin(self, mask: NDArray[np.bool_]) -> None:
+        """Begin episodes where a mask says so."""
+        places = np.flatnonzero(mask)
+        scenarios = self.task.draw([self._generators[place] for place in places])
+        if self._episodes is None:
+            self._episodes = Episodes(self.task, scenarios, self._threads)
+        else:
+            self._episodes.reset(places, scenarios)
+        self._ended = self._ended & ~mask
+
+    def _seed(self, seeds: list[int | None]) -> None:
+        """Set generators of given seeds, and of others where there are none yet."""
+        if not self._generators:
+            pairs = [seeding.np_random(seed) for seed in seeds]
+            self._generators = [generator for generator, _ in pairs]
+            self._seeds = [seed for _, seed in pairs]
+            return
+        for place, seed in enumerate(seeds):
+            if seed is not None:
+                self._generators[place], self._seeds[place] = seeding.np_random(seed)
+
+    def _begun(self) -> Episodes:
+        if self._episodes is None:
+            raise gymnasium.error.ResetNeeded("there are no episodes yet: call reset()")
+        return self._episodes
+
+
+def _read_mode(given: AutoresetMode | str) -> AutoresetMode:
+    try:
+        return AutoresetMode(given)
+    except ValueError:
+        names = [mode.value for mode in AutoresetMode]
+        raise ScenarioError("autoreset_mode", given, f"must be one of {names}") from None
+
+
+def _infos(step: Step, shown: NDArray[np.bool_], ended: NDArray[np.bool_]) -> dict[str, Any]:
+    """Give what is shown of a step as arrays with masks, as Gymnasium does."""
+    infos: dict[str, Any] = {}
+    if not shown.any():
+        return infos
+    rewards = step.rewards
+    for name in ("progress", "shock", "effort", "ending"):
+        infos[f"reward_{name}"] = np.where(shown, getattr(rewards, name), 0.0)
+        infos[f"_reward_{name}"] = shown.copy()
+    for name, values in (("outcome", step.outcomes), ("error", step.errors)):
+        mask = ended & [value is not None for value in values]
+        if mask.any():
+            infos[name] = np.array(values, dtype=object)
+            infos[name][~mask] = None
+            infos[f"_{name}"] = mask
+    return infos
+
+
+def _rows(observations: NDArray[np.float32], mask: NDArray[np.bool_]) -> NDArray[np.object_]:
+    """Return the rows of a mask, as an array of objects that is None elsewhere."""
+    rows = np.full(len(mask), None, dtype=object)
+    for place in np.flatnonzero(mask):
+        rows[place] = observations[place].copy()
+    return rows

@@ -1,0 +1,280 @@
+"""What a policy achieves on other track models than the one it was trained on."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.common.extras import extra
+from crawler2d.common.keywords import takes_keywords
+from crawler2d.envs.episodes import Episodes
+from crawler2d.envs.task import Task
+from crawler2d.errors import Crawler2dError, ScenarioError, raise_first
+from crawler2d.parameters.settings import Climb, Gait
+from crawler2d.results.record import Row
+from crawler2d.runs.progress import Progress, Reporter, reporter, thread_count
+from crawler2d.sweeps.axes import Axis, Label
+from crawler2d.sweeps.rates import rates_of
+from crawler2d.sweeps.statistics import Interval, newcombe_paired
+from crawler2d.sweeps.sweep import Variant, variants
+from crawler2d.sweeps.tabulate import Tabulation
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike, NDArray
+
+    from crawler2d.sweeps.figure_dataset import FigureDataset
+
+__all__ = ["Policy", "audit_policy"]
+
+Policy = Callable[["NDArray[np.float32]"], "ArrayLike"]
+"""Maps observations, shape (N, n), to actions, shape (N, m)."""
+
+_POLICY, _BASELINE = "policy", "baseline"
+
+
+@takes_keywords
+def audit_policy(
+    policy: Policy,
+    env: gymnasium.Env[Any, Any] | gymnasium.vector.VectorEnv[Any, Any, Any],
+    *,
+    models: Mapping[Any, Variant],
+    obstacles: Mapping[Any, Variant],
+    baseline: Gait = Climb(),
+    repeats: int = 20,
+    seed: int = 0,
+    vary: Mapping[str, Any] | None = None,
+    threads: int | None = None,
+    progress: bool | Progress | None = True,
+) -> FigureDataset:
+    """Drive a policy on several track models over several obstacles, and a gait for comparison.
+
+    What a policy gains over the gait on the model that it was trained on may be lost on others:
+    then it may have learned to use what only that model does, such as a pocket between two wheels
+    that hooks an edge. All models and both drivers meet the same draws.
+
+    Parameters
+    ----------
+    policy : callable
+        Maps observations, shape (N, n), to actions, shape (N, m), as those of `env`; rows of
+        episodes that have ended do not matter. Of stable-baselines3:
+        ``lambda seen: model.predict(seen, deterministic=True)[0]``.
+    env : FlipperEnv or FlipperVectorEnv
+        What it was trained on: scenario, `dt`, and what a policy sees and commands. It is not
+        changed.
+    models : mapping of str to model
+        What replaces the scenario's own, as for `compare`; the first is what the policy was trained
+        on.
+    obstacles : mapping of str or number to Terrain
+        By label; or mappings from paths to values, as for `compare`.
+    baseline : Climb or Hold
+        The gait for comparison, at the speed of the scenario.
+    repeats : int
+        Runs of each driver per model and obstacle, 1 to 1,000,000.
+    seed, vary, progress
+        See `sweep`.
+    threads : int, optional
+        Most threads; None takes one a core.
+
+    Returns
+    -------
+    FigureDataset
+        The table of `sweep` with the dimensions `driver` (policy, baseline), `model`, `obstacle`
+        and `repeat`, so that it says where each run stopped and why; ``plot()`` draws the rates.
+        With 95 % intervals, besides:
+
+        - `rate`, `low`, `high`: rate of clearing, Wilson's interval;
+        - `gain`, `gain_low`, `gain_high`: the policy's rate minus the baseline's, Newcombe's
+          interval for paired data;
+        - `lost`, `lost_low`, `lost_high`: the gain on the first model minus that on this one; the
+          interval adds the squares of those of both gains, as if these were independent;
+        - `ending`: how most of the runs end that do not clear, and how many do.
+
+        The attribute `summary` says in words where a gain is lost.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument or a scenario breaks a rule, or a model has flippers at other ends.
+    SimulationDiverged
+        If a state became non-finite under the baseline; under the policy its run is `diverged`.
+    ImportError
+        If xarray is missing; the message names the extra to install.
+
+    References
+    ----------
+    Zou, G. Y., Donner, A. (2008). Construction of confidence limits about effect measures: a
+    general approach. Statistics in Medicine 27, 1693-1702.
+
+    Examples
+    --------
+    A policy that lifts its flippers and drives on, against the gait `Climb`:
+
+    >>> import numpy as np
+    >>> import crawler2d as c2d
+    >>> from crawler2d.envs import FlipperEnv, audit_policy
+    >>> found = audit_policy(
+    ...     lambda seen: np.tile([1.0, 0.5, 0.5], (len(seen), 1)),
+    ...     FlipperEnv(),
+    ...     models={"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()},
+    ...     obstacles={0.1: c2d.terrains.step(0.1), 0.2: c2d.terrains.step(0.2)},
+    ...     repeats=5,
+    ...     progress=False,
+    ... )
+    >>> found.rate.sel(model="belt", driver="policy").values.tolist()
+    [1.0, 0.0]
+    >>> found.gain.sel(model="belt", obstacle=0.2).item()
+    -1.0
+    """
+    extra("xarray", "analysis")
+    task = _task_of(env)
+    if not callable(policy):
+        raise ScenarioError("policy", policy, "must be callable")
+    if not isinstance(baseline, Gait):
+        raise ScenarioError("baseline", baseline, "must be a Climb or a Hold")
+    options: Any = {"repeats": repeats, "seed": seed, "vary": vary, "threads": threads}
+    options |= {"store": None, "executor": None}
+    axes = [_axis("model", models), _axis("obstacle", obstacles)]
+    gait = task.scenario.replace({"drive.gait": baseline})
+    driven, compared = (Tabulation(each, axes, **options) for each in (task.scenario, gait))
+    for each in (driven, compared):
+        raise_first(each.checked)
+    scenarios = [each for each in driven.checked if isinstance(each, _core.Passed)]
+    with reporter(progress, 2 * len(scenarios)) as report:
+        driven.take(_drive(policy, task, scenarios, thread_count(threads), report))
+        compared.simulate(range(len(scenarios)), _Counted(report))
+    compared.raise_first()
+    return _compared(driven.table(), compared.table())
+
+
+def _task_of(env: Any) -> Task:
+    task = getattr(getattr(env, "unwrapped", None), "task", None)
+    if not isinstance(task, Task):
+        raise ScenarioError("env", env, "must be a FlipperEnv or a FlipperVectorEnv")
+    return replace(task, ends_when_stopped=False)  # the baseline may go on, too
+
+
+def _axis(name: str, given: Mapping[Any, Variant]) -> Axis:
+    named: dict[Label, Mapping[str, Any]] = variants(given)
+    return Axis(name, tuple(dict.fromkeys(path for row in named.values() for path in row)), named)
+
+
+class _Counted:
+    """Passes on what was done since the last report."""
+
+    def __init__(self, report: Reporter) -> None:
+        self._report, self._done = report, 0
+
+    def __call__(self, done: int, _total: int) -> None:
+        self._report(done - self._done)
+        self._done = done
+
+
+def _drive(
+    policy: Policy,
+    task: Task,
+    scenarios: Sequence[_core.Passed],
+    threads: int,
+    report: Reporter,
+) -> list[Row]:
+    """Have the policy drive all scenarios to their ends, and return their rows."""
+    episodes = Episodes(task, scenarios, threads)
+    observations = episodes.observe()
+    runs = np.ones(len(scenarios), bool)
+    while runs.any():
+        step = episodes.step(policy(observations), runs)
+        observations = step.observations
+        report(int((runs & step.ended).sum()))
+        runs &= ~step.ended
+
+    def row(place: int) -> Row:
+        try:
+            return Row.of_record(episodes.run(place, trials=None))
+        except Crawler2dError as error:
+            return Row.of_error(error, scenarios[place].identity, scenarios[place].text)
+
+    with ThreadPoolExecutor(threads) as pool:
+        return list(pool.map(row, range(len(scenarios))))
+
+
+def _compared(driven: xarray.Dataset, compared: xarray.Dataset) -> FigureDataset:
+    """Put both drivers into one table, with rates, gains and what is lost of them."""
+    xr = extra("xarray", "analysis")
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
+
+    table = xr.concat(
+        [driven, compared],
+        xr.IndexVariable("driver", [_POLICY, _BASELINE]),
+        combine_attrs="drop_conflicts",
+    )
+    rates = rates_of(table)
+    cleared = (table["outcome"] == "cleared").to_numpy()
+    cells = cleared.shape[1:3]
+    gains = np.empty((*cells, 3))
+    for cell in np.ndindex(cells):
+        gains[cell] = _gain(*cleared[(slice(None), *cell)])
+    losses = np.array([[_lost(*pair) for pair in zip(gains[0], row, strict=True)] for row in gains])
+    endings = [_ending(table.isel(driver=0, model=m, obstacle=o)) for m, o in np.ndindex(cells)]
+    over = ("model", "obstacle")
+    columns: dict[str, Any] = {"ending": (over, np.array(endings, object).reshape(cells))}
+    for name, values in (("gain", gains), ("lost", losses)):
+        for k, part in enumerate(("", "_low", "_high")):
+            attributes = {"units": "1", "long_name": f"{name}{part}".replace("_", " ")}
+            columns[name + part] = (over, values[..., k], attributes)
+    whole = table.merge(rates[["rate", "low", "high"]]).assign(columns)
+    found = FigureDataset(dict(whole.data_vars), coords=whole.coords, attrs=whole.attrs)
+    found.attrs |= {"figure": "policy", "interval": "Wilson", "confidence_level": 0.95}
+    found.attrs["summary"] = _summary(found)
+    return found
+
+
+def _gain(ours: NDArray[np.bool_], theirs: NDArray[np.bool_]) -> Interval:
+    counts = [(ours & theirs), (ours & ~theirs), (~ours & theirs), ~(ours | theirs)]
+    return newcombe_paired(*(int(each.sum()) for each in counts))
+
+
+def _lost(first: Sequence[float], other: Sequence[float]) -> Interval:
+    """Subtract two gains by the method of Zou and Donner."""
+    (a, a_low, a_high), (b, b_low, b_high) = first, other
+    below, above = math.hypot(a - a_low, b_high - b), math.hypot(a_high - a, b - b_low)
+    return Interval(a - b, a - b - below, a - b + above)
+
+
+def _ending(runs: xarray.Dataset) -> str:
+    """Say how most of the runs end that do not clear, such as ``seized, straddled: 7 of 20``."""
+    outcomes, mechanisms = (runs[name].to_numpy() for name in ("outcome", "mechanism"))
+    ends = Counter(
+        ", ".join(filter(None, pair))
+        for pair in zip(outcomes.tolist(), mechanisms.tolist(), strict=True)
+        if pair[0] != "cleared"
+    )
+    if not ends:
+        return ""
+    ((ending, count),) = ends.most_common(1)
+    return f"{ending.replace('_', ' ')}: {count} of {len(outcomes)}"
+
+
+def _summary(found: xarray.Dataset) -> str:
+    """Say in words what is gained on the first model, and where it is lost."""
+    trained, *others = found["model"].to_numpy().tolist()
+    lines = []
+    for obstacle in found["obstacle"].to_numpy().tolist():
+        here = found.sel(obstacle=obstacle)
+        own = here.sel(model=trained)
+        if not own["gain_low"] > 0.0:
+            continue
+        rates = [own["rate"].sel(driver=driver).item() for driver in (_POLICY, _BASELINE)]
+        text = f"{obstacle}: clears {rates[0]:.0%} on {trained}, the baseline {rates[1]:.0%}"
+        lost = [f"{model}" for model in others if here.sel(model=model)["lost_low"] > 0.0]
+        if lost:
+            text += f"; some of this gain is lost on {', '.join(lost)}"
+        lines.append(text)
+    return "\n".join(lines) or f"no gain over the baseline on {trained} that is certain"

@@ -1,0 +1,256 @@
+"""What a policy is to do: commands from actions, observations and rewards from states."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.common.arrays import real_number
+from crawler2d.common.keywords import read_choice
+from crawler2d.envs.scenarios import read_scenario
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.results.outcome import Outcome
+from crawler2d.runs.simulations import Simulations, States
+from crawler2d.sweeps.plan import Planner, World
+from crawler2d.variation.draws import Variation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["ENDING", "FlipperCommand", "Observe", "Rewards", "Task"]
+
+Observe = Literal["proprioception", "privileged"]
+FlipperCommand = Literal["rate", "angle"]
+_VIEWS, _COMMANDS = get_args(Observe), get_args(FlipperCommand)
+
+_FASTEST_TURN = 20.0
+"""[rad/s] Rates of the chassis beyond this are observed as this."""
+_FARTHEST_HEIGHT = 5.0
+"""[m] The same of heights, from the chassis."""
+
+ENDING = 1.0
+"""[m] What clearing is worth, and what tipping over costs: about the way of an episode."""
+
+_HEIGHTS = np.linspace(-1.0, 2.0, 16)
+"""[-] Where a privileged policy sees the ground, in axle distances from the chassis frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rewards:
+    """The terms of N rewards, which are their sum.
+
+    Attributes
+    ----------
+    progress : ndarray, shape (N,)
+        [m] By how much the robot has come closer to the goal.
+    shock : ndarray, shape (N,)
+        [m] Less the height of a fall to a velocity as large as the change of the chassis'.
+    effort : ndarray, shape (N,)
+        [m] Less the height to which the work of all motors would lift the robot.
+    ending : ndarray, shape (N,)
+        [m] `ENDING` once it has cleared, less so much once it has ended otherwise.
+    """
+
+    progress: NDArray[np.float64]
+    shock: NDArray[np.float64]
+    effort: NDArray[np.float64]
+    ending: NDArray[np.float64]
+
+    @property
+    def total(self) -> NDArray[np.float64]:
+        """[m] Their sum."""
+        return self.progress + self.shock + self.effort + self.ending
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A task, the same for any number of episodes.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        Before anything is drawn.
+    planner, world : Planner, World
+        What is drawn for each episode, and what it is drawn about.
+    dt : float
+        [s] Between two actions.
+    sees_heights : bool
+        Whether a policy sees the ground.
+    commands_angles : bool
+        Whether it commands angles of flippers, not rates.
+    ends_when_stopped : bool
+        Whether a stop ends an episode.
+    weights : tuple of float
+        [-] Of shock and effort.
+    """
+
+    scenario: Scenario
+    planner: Planner
+    world: World
+    dt: float
+    sees_heights: bool
+    commands_angles: bool
+    ends_when_stopped: bool
+    weights: tuple[float, float]
+
+    @classmethod
+    def read(
+        cls,
+        scenario: Scenario | str,
+        *,
+        terrain: Terrain | None,
+        randomize: Mapping[str, Any] | None,
+        dt: float,
+        observe: Observe,
+        flipper_command: FlipperCommand,
+        end_when_stopped: bool,
+        shock_weight: float,
+        effort_weight: float,
+    ) -> Task:
+        """Read the arguments of an environment, see `FlipperEnv`.
+
+        Raises
+        ------
+        ScenarioError
+            If one of them breaks a rule.
+        """
+        scenario, vary = read_scenario(scenario, terrain, randomize)
+        varied = Variation.read(scenario, vary, (), "randomize")
+        planner = Planner(varied, unknowns=Variation({}), seed=0)
+        (world,) = planner.worlds(scenario, ())
+        middle = dict.fromkeys(varied.distributions, np.array([0.5]))
+        for each in (world.checked, *planner.draw(world, middle, 1)[0]):
+            if isinstance(each, ScenarioError):
+                raise each
+        dt = real_number(dt, "dt")
+        if not 1e-3 <= dt <= scenario.duration:
+            rule = f"must be >= 0.001 s and <= the duration, {scenario.duration:g} s"
+            raise ScenarioError("dt", dt, rule)
+        if not scenario.gravity > 0.0:
+            rule = "must be > 0 m/s^2: shock and effort are measured in it"
+            raise ScenarioError("gravity", scenario.gravity, rule)
+        return cls(
+            scenario=scenario,
+            planner=planner,
+            world=world,
+            dt=dt,
+            sees_heights=read_choice(observe, "observe", _VIEWS) == "privileged",
+            commands_angles=read_choice(flipper_command, "flipper_command", _COMMANDS) == "angle",
+            ends_when_stopped=end_when_stopped,
+            weights=(
+                _weight(shock_weight, "shock_weight"),
+                _weight(effort_weight, "effort_weight"),
+            ),
+        )
+
+    @property
+    def ends(self) -> list[int]:
+        """Columns of the flippers that there are: 0 in front, 1 at the rear."""
+        flippers = self.scenario.robot.flippers
+        names = ("front", "rear")
+        return [k for k in (0, 1) if flippers and flippers.ends in ("both", names[k])]
+
+    @property
+    def offsets(self) -> NDArray[np.float64]:
+        """[m] Where a privileged policy sees the ground, from the chassis frame along x."""
+        return self.scenario.robot.outline.axle_distance * _HEIGHTS
+
+    @property
+    def names(self) -> list[str]:
+        """Of the observed numbers."""
+        ends = [("front", "rear")[k] for k in self.ends]
+        names = ["pitch", "pitch_rate", "track_speed"]
+        names += [f"{end}_{what}" for what in ("angle", "torque") for end in ends]
+        return names + [f"height[{x:+.2f} m]" for x in self.offsets if self.sees_heights]
+
+    @property
+    def bounds(self) -> NDArray[np.float32]:
+        """Largest observed numbers; what is beyond is observed as this."""
+        robot = self.scenario.robot
+        bounds = [np.pi, _FASTEST_TURN, 2.0 * robot.drivetrain.max_speed]
+        if robot.flippers:
+            bounds += [np.pi] * len(self.ends)
+            bounds += [2.0 * robot.flippers.torque_limit] * len(self.ends)
+        bounds += [_FARTHEST_HEIGHT] * (len(self.names) - len(bounds))
+        return np.array(bounds, np.float32)
+
+    def draw(self, generators: list[np.random.Generator]) -> list[_core.Passed]:
+        """Draw the scenario of one episode from each generator.
+
+        Raises
+        ------
+        ScenarioError
+            If what was drawn breaks a rule.
+        """
+        paths = self.planner.variation.distributions
+        rows = np.array([each.random(len(paths)) for each in generators])
+        numbers = dict(zip(paths, rows.T, strict=True))
+        drawn, _ = self.planner.draw(self.world, numbers, len(generators))
+        for each in drawn:
+            if isinstance(each, ScenarioError):
+                raise each
+        return cast("list[_core.Passed]", drawn)
+
+    def commands(self, actions: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """Return speeds, shape (N,), and angles or rates of the flippers, shape (N, 2)."""
+        flippers = self.scenario.robot.flippers
+        values = np.full((len(actions), 2), np.nan)
+        if flippers is not None:
+            full = np.pi if self.commands_angles else flippers.rate_limit
+            values[:, self.ends] = full * actions[:, 1:]
+        return actions[:, 0] * self.scenario.drive.speed, values
+
+    def observe(self, many: Simulations, states: States) -> NDArray[np.float32]:
+        """Return what a policy sees, shape (N, number of names); 0 for what is not finite."""
+        columns = [
+            _wrapped(states.chassis_angle),
+            states.angular_velocity,
+            states.track_speed,
+            *_wrapped(states.flipper_angles[:, self.ends]).T,
+            *states.flipper_torques[:, self.ends].T,
+        ]
+        seen = np.column_stack(columns)
+        if self.sees_heights:
+            heights = many.heights(self.offsets) - states.position[:, 1:]
+            seen = np.hstack([seen, heights])
+        bounds = self.bounds
+        found: NDArray[np.float32] = np.clip(np.nan_to_num(seen), -bounds, bounds).astype(
+            np.float32
+        )
+        return found
+
+    def rewards(self, before: States, after: States) -> Rewards:
+        """Return the terms of the rewards of a step."""
+        robot, gravity = self.scenario.robot, self.scenario.gravity
+        of_shock, of_effort = self.weights
+        change = ((after.velocity - before.velocity) ** 2).sum(axis=1)
+        of_flippers = np.nansum(np.abs(after.flipper_torques * after.flipper_rates), axis=1)
+        work = after.drive_work - before.drive_work + of_flippers * self.dt
+        cleared = np.array([outcome == Outcome.CLEARED for outcome in after.outcome])
+        ended = np.array([outcome is not None for outcome in after.outcome])
+        terms = (
+            np.maximum(before.to_goal, 0.0) - np.maximum(after.to_goal, 0.0),
+            -of_shock * change / (2.0 * gravity),
+            -of_effort * work / (robot.mass * gravity),
+            np.where(cleared, ENDING, np.where(ended, -ENDING, 0.0)),
+        )
+        return Rewards(*(np.nan_to_num(each, posinf=0.0, neginf=0.0) for each in terms))
+
+
+def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[rad] The same angles from -pi to pi."""
+    wrapped: NDArray[np.float64] = np.remainder(angles + np.pi, 2.0 * np.pi) - np.pi
+    return wrapped
+
+
+def _weight(value: float, name: str) -> float:
+    weight = real_number(value, name)
+    if not 0.0 <= weight < np.inf:
+        raise ScenarioError(name, weight, "must be >= 0 and finite")
+    return weight

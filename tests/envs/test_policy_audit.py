@@ -1,0 +1,123 @@
+"""The audit of a policy: what it does, and what is said of it."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import crawler2d as c2d
+from crawler2d.envs import FlipperEnv, FlipperVectorEnv, audit_policy
+from crawler2d.envs.policy_audit import _lost
+
+FLIPPERS = c2d.robots.absolem().flippers
+START = FLIPPERS.angle if FLIPPERS else 0.0
+MODELS = {"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()}
+STEPS = {height: c2d.terrains.step(height) for height in (0.1, 0.2)}
+VARIED = c2d.variability.of_start()
+
+
+def holding(seen: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Drive on with the flippers where they are at the start."""
+    return np.tile([1.0, START / np.pi, START / np.pi], (len(seen), 1))
+
+
+def climbing(seen: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Keep the front flippers level and push with the rear ones as the nose rises."""
+    pitch, front, rear = seen[:, 0], seen[:, 3], seen[:, 4]
+    rates = [0.4 - pitch - front, 0.3 - 2.0 * pitch - rear]
+    return np.stack([np.ones(len(seen)), *(np.clip(3.0 * rate, -1.0, 1.0) for rate in rates)], 1)
+
+
+def audited(policy: Any, env: Any = None, **options: Any) -> Any:
+    given: dict[str, Any] = {"models": MODELS, "obstacles": STEPS, "repeats": 4, "vary": VARIED}
+    return audit_policy(policy, env or FlipperEnv(), progress=False, **(given | options))
+
+
+def test_a_policy_that_does_what_a_gait_does_gains_nothing_and_loses_nothing() -> None:
+    env = FlipperVectorEnv(1, flipper_command="angle")
+    found = audited(holding, env, baseline=c2d.Hold(START))
+    outcome = found.outcome
+    assert (outcome.sel(driver="policy") == outcome.sel(driver="baseline")).all()
+    assert (found.gain == 0.0).all()
+    assert (found.lost == 0.0).all()
+    assert (found.gain_low < 0.0).all()
+    assert found.attrs["summary"].startswith("no gain over the baseline on belt")
+
+
+def test_its_runs_are_those_of_the_environment() -> None:
+    found = audited(climbing)
+    cell = found.sel(driver="policy", model="skids", obstacle=0.2)
+    for repeat in range(4):
+        text = str(cell.scenario.isel(repeat=repeat).item())
+        scenario = c2d.Scenario.from_json(text)
+        env = FlipperEnv(scenario, randomize={})
+        seen, _ = env.reset()
+        done = False
+        while not done:
+            seen, _, terminated, truncated, info = env.step(climbing(seen[None])[0])
+            done = terminated or truncated
+        own = cell.isel(repeat=repeat)
+        assert env.state.position[0, 0] == pytest.approx(own.final_x.item(), abs=1e-9)
+        if info["outcome"] in ("cleared", "tipped_over"):
+            assert info["outcome"] == own.outcome.item()
+
+
+def test_it_says_where_gains_are_lost() -> None:
+    weak = c2d.Hold(1.2)
+    found = audited(climbing, baseline=weak, repeats=10, obstacles={"step": c2d.terrains.step(0.2)})
+    belt, skids = (found.sel(model=model, obstacle="step") for model in ("belt", "skids"))
+    rates = belt.rate.values.tolist()
+    assert rates == [1.0, 0.0]
+    assert belt.gain.item() == 1.0
+    assert belt.lost.item() == 0.0
+    assert skids.lost.item() == pytest.approx(1.0 - skids.gain.item())
+    is_lost = bool(skids.lost_low > 0.0)
+    summary = found.attrs["summary"]
+    assert summary.startswith("step: clears 100% on belt, the baseline 0%")
+    assert ("lost on skids" in summary) == is_lost
+    if skids.rate.sel(driver="policy").item() < 1.0:
+        assert " of 10" in skids.ending.item()
+    ax = found.plot()
+    drawn = " ".join(text.get_text() for text in ax.texts)
+    assert "100% (0%)" in drawn
+    assert len(ax.patches) == is_lost
+    with pytest.raises(c2d.ScenarioError, match="must have models and obstacles"):
+        found.sel(model="belt").plot()
+
+
+def test_what_is_lost_has_the_interval_of_two_independent_differences() -> None:
+    first, other = (0.8, 0.6, 0.9), (0.3, 0.1, 0.6)
+    found = _lost(first, other)
+    assert found.rate == pytest.approx(0.5)
+    assert found.low == pytest.approx(0.5 - math.hypot(0.2, 0.3))
+    assert found.high == pytest.approx(0.5 + math.hypot(0.1, 0.2))
+
+
+def test_wrong_arguments_are_refused_before_anything_runs() -> None:
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"policy": 1.0}, "policy"),
+        ({"env": "crawler2d/FlipperClimb-v0"}, "env"),
+        ({"baseline": 0.8}, "baseline"),
+        ({"models": {"belt": "belt"}}, "models['belt']"),
+        ({"obstacles": {}}, "obstacles"),
+        ({"repeats": 0}, "repeats"),
+        ({"vary": {"terrain.friction": 0.5}}, "vary['terrain.friction']"),
+    ]
+    for options, path in wrong:
+        given = {"policy": climbing, "env": FlipperEnv()} | options
+        with pytest.raises(c2d.ScenarioError) as failure:
+            audited(given.pop("policy"), given.pop("env"), **given)
+        assert failure.value.path == path
+
+
+def test_a_model_with_flippers_elsewhere_is_refused() -> None:
+    robots = {"as it is": {}, "without": c2d.robots.absolem(flippers=None)}
+    with pytest.raises(c2d.ScenarioError, match="flippers"):
+        audited(climbing, models=robots)
+
+
+def test_a_policy_of_the_wrong_shape_is_refused() -> None:
+    with pytest.raises(c2d.ScenarioError, match="action"):
+        audited(lambda seen: seen)
