@@ -67,7 +67,8 @@ from crawler2d.variation import variability
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 
 if TYPE_CHECKING:
-    from crawler2d import envs, studies
+    from crawler2d import envs as envs  # not in __all__, see _LAZY
+    from crawler2d import studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
     from crawler2d.runs.jams import jams

@@ -116,7 +116,6 @@ impl Simulation {
     }
 
     /// Commands a new speed, pushes the robot, or has its flippers, front and rear, turn to angles or at rates.
-    #[pyo3(signature = (speed = None, push = None, angles = (None, None), rates = (None, None)))]
     fn command(
         &self,
         py: Python<'_>,
@@ -360,6 +359,12 @@ impl PreparedScenario {
     #[getter]
     fn text(&self) -> String {
         self.checked.scenario().to_json()
+    }
+
+    /// \[m/s\] The speed that it commands.
+    #[getter]
+    fn speed(&self) -> f64 {
+        self.checked.scenario().drive.speed
     }
 
     /// SHA-256 of the canonical JSON.

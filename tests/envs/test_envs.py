@@ -232,6 +232,17 @@ def test_what_is_drawn_is_in_the_scenarios_of_the_episodes() -> None:
     assert seeds[0] != seeds[1]
 
 
+def test_a_full_action_is_the_speed_that_was_drawn() -> None:
+    flat = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat(), duration=4.0)
+    many = FlipperVectorEnv(3, flat, randomize={"drive.speed": c2d.uniform(0.1, 0.2)})
+    many.reset(seed=0)
+    for _ in range(40):
+        many.step(np.ones((3, 1), np.float32))
+    drawn = [many.run(k).scenario.drive.speed for k in range(3)]
+    assert len(set(drawn)) == 3
+    assert many.state.track_speed == pytest.approx(drawn, rel=1e-3)
+
+
 def test_a_simulation_that_fails_ends_its_episode_and_the_others_go_on() -> None:
     # A drop of kilometres at a large step: its state becomes non-finite.
     wild = WHEELED.replace({"solver.contact_frequency": 1000.0})

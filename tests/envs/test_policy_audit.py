@@ -102,6 +102,7 @@ def test_wrong_arguments_are_refused_before_anything_runs() -> None:
         ({"baseline": 0.8}, "baseline"),
         ({"models": {"belt": "belt"}}, "models['belt']"),
         ({"obstacles": {}}, "obstacles"),
+        ({"obstacles": {"step": 0.1}}, "obstacles['step']"),
         ({"repeats": 0}, "repeats"),
         ({"vary": {"terrain.friction": 0.5}}, "vary['terrain.friction']"),
     ]
@@ -114,7 +115,7 @@ def test_wrong_arguments_are_refused_before_anything_runs() -> None:
 
 def test_a_model_with_flippers_elsewhere_is_refused() -> None:
     robots = {"as it is": {}, "without": c2d.robots.absolem(flippers=None)}
-    with pytest.raises(c2d.ScenarioError, match="flippers"):
+    with pytest.raises(c2d.ScenarioError, match=r"models\['without'\] must have flippers"):
         audited(climbing, models=robots)
 
 

@@ -67,6 +67,7 @@ class Episodes:
 
     def __init__(self, task: Task, scenarios: Sequence[_core.Passed], threads: int | None) -> None:
         self._task, self._many = task, Simulations(scenarios, threads=threads)
+        self._full_speeds = np.array([each.speed for each in scenarios])
         self._states = self._many.state()
 
     @property
@@ -77,6 +78,7 @@ class Episodes:
     def reset(self, places: NDArray[np.intp], scenarios: Sequence[_core.Passed]) -> None:
         """Begin new episodes at some places."""
         self._many.reset(places, scenarios)
+        self._full_speeds[places] = [each.speed for each in scenarios]
         self._states = self._many.state()
 
     def observe(self) -> NDArray[np.float32]:
@@ -93,7 +95,7 @@ class Episodes:
         """
         task, before, count = self._task, self._states, len(self._many)
         driven = np.ones(count, bool) if which is None else which
-        speeds, flippers = task.commands(self._read(actions))
+        speeds, flippers = task.commands(self._read(actions), self._full_speeds)
         given = np.where(driven[:, None], np.column_stack([speeds, flippers]), np.nan)
         kind = "angle" if task.commands_angles else "rate"
         names = ("speed", f"flipper_{kind}", f"rear_flipper_{kind}")
@@ -104,13 +106,17 @@ class Episodes:
 
     def _judged(self, rewards: Rewards, states: States) -> Step:
         """Say which episodes have ended, and how."""
-        failed = np.array([error is not None for error in states.error])
-        terminated = np.array([outcome is not None for outcome in states.outcome]) & ~failed
-        late = states.time >= self._task.scenario.duration - _SAME_TIME
-        stopped = states.stopped if self._task.ends_when_stopped else np.zeros_like(failed)
-        truncated = (late | stopped | failed) & ~terminated
-        outcomes: list[str | None] = [None] * len(failed)
-        for place in np.flatnonzero(terminated | truncated):
+        count = len(self._many)
+        terminated, failed = np.zeros(count, bool), np.zeros(count, bool)
+        terminated[states.ended] = True
+        failed[states.failed] = True
+        terminated &= ~failed
+        truncated = failed | (states.time >= self._task.scenario.duration - _SAME_TIME)
+        if self._task.ends_when_stopped:
+            truncated |= states.stopped
+        truncated &= ~terminated
+        outcomes: list[str | None] = [None] * count
+        for place in np.flatnonzero(terminated | truncated).tolist():
             without = _STOPPED if states.stopped[place] else str(Outcome.TIMED_OUT)
             outcomes[place] = _DIVERGED if failed[place] else states.outcome[place] or without
         return Step(self.observe(), rewards, terminated, truncated, tuple(outcomes), states.error)

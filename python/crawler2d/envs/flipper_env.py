@@ -11,6 +11,7 @@ from gymnasium.utils import EzPickle
 
 from crawler2d.common.keywords import TakesKeywords
 from crawler2d.envs.episodes import Episodes, Step
+from crawler2d.envs.supply import Supply
 from crawler2d.envs.task import FlipperCommand, Observe, Task
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
@@ -131,7 +132,7 @@ class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
         )
         self.observation_space, self.action_space = spaces_of(self.task)
         self._episodes: Episodes | None = None
-        self._ended = False
+        self._ended, self._supply = False, Supply(self.task, 1)
 
     @property
     def observation_names(self) -> list[str]:
@@ -167,7 +168,9 @@ class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
             Empty.
         """
         super().reset(seed=seed, options=options)
-        scenarios = self.task.draw([self.np_random])
+        if seed is not None:
+            self._supply.forget(0)
+        scenarios = self._supply.take([0], [self.np_random])
         if self._episodes is None:
             self._episodes = Episodes(self.task, scenarios, 1)
         else:

@@ -15,6 +15,7 @@ from crawler2d.common.arrays import whole_number
 from crawler2d.common.keywords import TakesKeywords
 from crawler2d.envs.episodes import Episodes, Step
 from crawler2d.envs.flipper_env import METADATA, check_render_mode, spaces_of
+from crawler2d.envs.supply import Supply
 from crawler2d.envs.task import FlipperCommand, Observe, Task
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
@@ -108,7 +109,7 @@ class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
         self.observation_space, self.action_space = (
             batch_space(space, self.num_envs) for space in spaces
         )
-        self._threads = threads
+        self._threads, self._supply = threads, Supply(self.task, self.num_envs)
         self._episodes: Episodes | None = None
         self._ended = np.zeros(self.num_envs, bool)
         self._generators: list[np.random.Generator] = []
@@ -124,8 +125,7 @@ class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
         """The present states; everything that a policy does not see."""
         return self._begun().states
 
-    @property  # type: ignore[misc] # of the base it can be set
-    @property
+    @property  # type: ignore[misc] # that of the base can be set
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override] # one each
         """The generators of the draws."""
         self._seed([None] * self.num_envs)
@@ -242,7 +242,7 @@ class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
     def _begin(self, mask: NDArray[np.bool_]) -> None:
         """Begin episodes where a mask says so."""
         places = np.flatnonzero(mask)
-        scenarios = self.task.draw([self._generators[place] for place in places])
+        scenarios = self._supply.take(places.tolist(), self._generators)
         if self._episodes is None:
             self._episodes = Episodes(self.task, scenarios, self._threads)
         else:
@@ -259,6 +259,7 @@ class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
         for place, seed in enumerate(seeds):
             if seed is not None:
                 self._generators[place], self._seeds[place] = seeding.np_random(seed)
+                self._supply.forget(place)
 
     def _begun(self) -> Episodes:
         if self._episodes is None:
@@ -284,7 +285,7 @@ def _infos(step: Step, shown: NDArray[np.bool_], ended: NDArray[np.bool_]) -> di
         infos[f"reward_{name}"] = np.where(shown, getattr(rewards, name), 0.0)
         infos[f"_reward_{name}"] = shown.copy()
     for name, values in (("outcome", step.outcomes), ("error", step.errors)):
-        mask = ended & [value is not None for value in values]
+        mask = ended & [value is not None for value in values] if ended.any() else ended
         if mask.any():
             infos[name] = np.array(values, dtype=object)
             infos[name][~mask] = None

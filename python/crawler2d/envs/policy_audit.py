@@ -16,7 +16,7 @@ from crawler2d import _core
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.envs.episodes import Episodes
-from crawler2d.envs.task import Task
+from crawler2d.envs.task import Task, flipper_ends
 from crawler2d.errors import Crawler2dError, ScenarioError, raise_first
 from crawler2d.parameters.settings import Climb, Gait
 from crawler2d.results.record import Row
@@ -143,6 +143,7 @@ def audit_policy(
     options: Any = {"repeats": repeats, "seed": seed, "vary": vary, "threads": threads}
     options |= {"store": None, "executor": None}
     axes = [_axis("model", models), _axis("obstacle", obstacles)]
+    _check_flippers(task, axes[0])
     gait = task.scenario.replace({"drive.gait": baseline})
     driven, compared = (Tabulation(each, axes, **options) for each in (task.scenario, gait))
     for each in (driven, compared):
@@ -163,8 +164,21 @@ def _task_of(env: Any) -> Task:
 
 
 def _axis(name: str, given: Mapping[Any, Variant]) -> Axis:
-    named: dict[Label, Mapping[str, Any]] = variants(given)
+    try:
+        named: dict[Label, Mapping[str, Any]] = variants(given)
+    except ScenarioError as error:
+        place = error.path.replace("models", f"{name}s", 1)
+        raise ScenarioError(place, error.value, error.rule) from None
     return Axis(name, tuple(dict.fromkeys(path for row in named.values() for path in row)), named)
+
+
+def _check_flippers(task: Task, models: Axis) -> None:
+    """Refuse models whose flippers a policy could not command, or that it would miss."""
+    for label, values in models.values.items():
+        robot = task.scenario.replace(values).robot
+        if flipper_ends(robot) != task.ends:
+            rule = "must have flippers at the same ends as the robot of the environment"
+            raise ScenarioError(f"models[{label!r}]", robot.in_words, rule)
 
 
 class _Counted:

@@ -8,6 +8,7 @@ from typing import Any
 from crawler2d.common.keywords import read_choice
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.presets import robots, terrains
 from crawler2d.variation import variability
@@ -16,6 +17,9 @@ from crawler2d.variation.distributions import uniform
 __all__ = ["read_scenario"]
 
 _NAMES = ("flipper_climb", "step_field")
+
+_DRIVE = Drive(speed=0.39)
+"""A little slower than the robot can, so that the speed can vary either way."""
 
 _DURATION = 10.0
 """[s] Twice what a robot needs that does not hesitate."""
@@ -52,8 +56,10 @@ def read_scenario(
 def _named(name: str) -> tuple[Scenario, Mapping[str, Any]]:
     run_to_run = variability.of_start() | variability.of_contact()
     if name == "step_field":
-        scenario = Scenario(robots.absolem(), terrains.random_stepfield(), duration=2 * _DURATION)
+        scenario = Scenario(
+            robots.absolem(), terrains.random_stepfield(), drive=_DRIVE, duration=2 * _DURATION
+        )
         return scenario, run_to_run | variability.of_field()
-    scenario = Scenario(robots.absolem(), terrains.step(0.25), duration=_DURATION)
+    scenario = Scenario(robots.absolem(), terrains.step(0.25), drive=_DRIVE, duration=_DURATION)
     heights = {"terrain.height": uniform(0.1, 0.4)}
     return scenario, run_to_run | heights

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast, get_args
@@ -13,6 +14,7 @@ from crawler2d.common.arrays import real_number
 from crawler2d.common.keywords import read_choice
 from crawler2d.envs.scenarios import read_scenario
 from crawler2d.errors import ScenarioError
+from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.results.outcome import Outcome
@@ -23,7 +25,7 @@ from crawler2d.variation.draws import Variation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["ENDING", "FlipperCommand", "Observe", "Rewards", "Task"]
+__all__ = ["ENDING", "FlipperCommand", "Observe", "Rewards", "Task", "flipper_ends"]
 
 Observe = Literal["proprioception", "privileged"]
 FlipperCommand = Literal["rate", "angle"]
@@ -68,7 +70,7 @@ class Rewards:
         return self.progress + self.shock + self.effort + self.ending
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Task:
     """A task, the same for any number of episodes.
 
@@ -149,19 +151,17 @@ class Task:
             ),
         )
 
-    @property
+    @functools.cached_property
     def ends(self) -> list[int]:
         """Columns of the flippers that there are: 0 in front, 1 at the rear."""
-        flippers = self.scenario.robot.flippers
-        names = ("front", "rear")
-        return [k for k in (0, 1) if flippers and flippers.ends in ("both", names[k])]
+        return flipper_ends(self.scenario.robot)
 
-    @property
+    @functools.cached_property
     def offsets(self) -> NDArray[np.float64]:
         """[m] Where a privileged policy sees the ground, from the chassis frame along x."""
         return self.scenario.robot.outline.axle_distance * _HEIGHTS
 
-    @property
+    @functools.cached_property
     def names(self) -> list[str]:
         """Of the observed numbers."""
         ends = [("front", "rear")[k] for k in self.ends]
@@ -169,7 +169,7 @@ class Task:
         names += [f"{end}_{what}" for what in ("angle", "torque") for end in ends]
         return names + [f"height[{x:+.2f} m]" for x in self.offsets if self.sees_heights]
 
-    @property
+    @functools.cached_property
     def bounds(self) -> NDArray[np.float32]:
         """Largest observed numbers; what is beyond is observed as this."""
         robot = self.scenario.robot
@@ -197,50 +197,64 @@ class Task:
                 raise each
         return cast("list[_core.Passed]", drawn)
 
-    def commands(self, actions: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """Return speeds, shape (N,), and angles or rates of the flippers, shape (N, 2)."""
+    def commands(
+        self, actions: NDArray[np.float64], full: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], ...]:
+        """Return speeds, shape (N,), and angles or rates of the flippers, shape (N, 2).
+
+        `full` are the speeds of full actions [m/s].
+        """
         flippers = self.scenario.robot.flippers
         values = np.full((len(actions), 2), np.nan)
         if flippers is not None:
-            full = np.pi if self.commands_angles else flippers.rate_limit
-            values[:, self.ends] = full * actions[:, 1:]
-        return actions[:, 0] * self.scenario.drive.speed, values
+            most = np.pi if self.commands_angles else flippers.rate_limit
+            values[:, self.ends] = most * actions[:, 1:]
+        return actions[:, 0] * full, values
 
     def observe(self, many: Simulations, states: States) -> NDArray[np.float32]:
         """Return what a policy sees, shape (N, number of names); 0 for what is not finite."""
-        columns = [
-            _wrapped(states.chassis_angle),
-            states.angular_velocity,
-            states.track_speed,
-            *_wrapped(states.flipper_angles[:, self.ends]).T,
-            *states.flipper_torques[:, self.ends].T,
-        ]
-        seen = np.column_stack(columns)
+        ends, (count,) = self.ends, states.time.shape
+        seen = np.empty((count, len(self.names)))
+        seen[:, 0] = _wrapped(states.chassis_angle)
+        seen[:, 1] = states.angular_velocity
+        seen[:, 2] = states.track_speed
+        past = 3 + 2 * len(ends)
+        if ends:
+            seen[:, 3 : 3 + len(ends)] = _wrapped(states.flipper_angles[:, ends])
+            seen[:, 3 + len(ends) : past] = states.flipper_torques[:, ends]
         if self.sees_heights:
-            heights = many.heights(self.offsets) - states.position[:, 1:]
-            seen = np.hstack([seen, heights])
-        bounds = self.bounds
-        found: NDArray[np.float32] = np.clip(np.nan_to_num(seen), -bounds, bounds).astype(
-            np.float32
-        )
-        return found
+            seen[:, past:] = many.heights(self.offsets) - states.position[:, 1:]
+        seen[states.failed] = 0.0
+        np.clip(seen, -self.bounds, self.bounds, out=seen)
+        return seen.astype(np.float32)
 
     def rewards(self, before: States, after: States) -> Rewards:
-        """Return the terms of the rewards of a step."""
+        """Return the terms of the rewards of a step; 0 for one that has failed in it."""
         robot, gravity = self.scenario.robot, self.scenario.gravity
         of_shock, of_effort = self.weights
         change = ((after.velocity - before.velocity) ** 2).sum(axis=1)
-        of_flippers = np.nansum(np.abs(after.flipper_torques * after.flipper_rates), axis=1)
-        work = after.drive_work - before.drive_work + of_flippers * self.dt
-        cleared = np.array([outcome == Outcome.CLEARED for outcome in after.outcome])
-        ended = np.array([outcome is not None for outcome in after.outcome])
-        terms = (
+        work = after.drive_work - before.drive_work
+        if self.ends:
+            power = after.flipper_torques[:, self.ends] * after.flipper_rates[:, self.ends]
+            work += np.abs(power).sum(axis=1) * self.dt
+        ending = np.zeros(len(work))
+        for place in after.ended:
+            ending[place] = ENDING if after.outcome[place] == Outcome.CLEARED else -ENDING
+        terms = Rewards(
             np.maximum(before.to_goal, 0.0) - np.maximum(after.to_goal, 0.0),
-            -of_shock * change / (2.0 * gravity),
-            -of_effort * work / (robot.mass * gravity),
-            np.where(cleared, ENDING, np.where(ended, -ENDING, 0.0)),
+            change * (-of_shock / (2.0 * gravity)),
+            work * (-of_effort / (robot.mass * gravity)),
+            ending,
         )
-        return Rewards(*(np.nan_to_num(each, posinf=0.0, neginf=0.0) for each in terms))
+        for each in (terms.progress, terms.shock, terms.effort, terms.ending):
+            each[after.failed] = 0.0
+        return terms
+
+
+def flipper_ends(robot: Robot) -> list[int]:
+    """Return columns of the flippers that a robot has: 0 in front, 1 at the rear."""
+    names = ("front", "rear")
+    return [k for k in (0, 1) if robot.flippers and robot.flippers.ends in ("both", names[k])]
 
 
 def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -67,6 +67,16 @@ class States:
     outcome: tuple[str | None, ...]
     error: tuple[str | None, ...]
 
+    @property
+    def ended(self) -> list[int]:
+        """Places of those that have an outcome."""
+        return [place for place, outcome in enumerate(self.outcome) if outcome is not None]
+
+    @property
+    def failed(self) -> list[int]:
+        """Places of those that cannot go on."""
+        return [place for place, error in enumerate(self.error) if error is not None]
+
 
 class Simulations(TakesKeywords):
     """Running simulations side by side, as `Simulation` is one: for training and for control.
