@@ -86,15 +86,18 @@ class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
 
     Examples
     --------
-    >>> import crawler2d as c2d
+    Flippers that keep level in front and push behind as the nose rises:
+
     >>> from crawler2d.envs import FlipperEnv
     >>> env = FlipperEnv()
-    >>> observation, info = env.reset(seed=0)
-    >>> env.observation_names[:4], observation.shape
-    (['pitch', 'pitch_rate', 'track_speed', 'front_angle'], (7,))
+    >>> env.observation_names[:5]
+    ['pitch', 'pitch_rate', 'track_speed', 'front_angle', 'rear_angle']
+    >>> seen, info = env.reset(seed=1)
     >>> ended = False
-    >>> while not ended:  # full speed ahead, and all flippers down
-    ...     observation, reward, terminated, truncated, info = env.step([1.0, -1.0, -1.0])
+    >>> while not ended:
+    ...     pitch, front, rear = seen[[0, 3, 4]]
+    ...     action = [1.0, 1.2 - 3.0 * (pitch + front), 0.9 - 3.0 * (2.0 * pitch + rear)]
+    ...     seen, reward, terminated, truncated, info = env.step(action)
     ...     ended = terminated or truncated
     >>> info["outcome"], str(env.run.outcome)
     ('cleared', 'cleared')

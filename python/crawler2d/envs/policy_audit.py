@@ -116,23 +116,26 @@ def audit_policy(
 
     Examples
     --------
-    A policy that lifts its flippers and drives on, against the gait `Climb`:
+    A policy that keeps the front flippers level and pushes with the rear ones as the nose rises:
 
     >>> import numpy as np
     >>> import crawler2d as c2d
     >>> from crawler2d.envs import FlipperEnv, audit_policy
+    >>> def lift(seen):
+    ...     pitch, front, rear = seen[:, [0, 3, 4]].T
+    ...     rates = [1.2 - 3.0 * (pitch + front), 0.9 - 3.0 * (2.0 * pitch + rear)]
+    ...     return np.stack([np.ones(len(seen)), *rates], axis=1)
+    >>> robots = {"belt": {}, "public wheels": c2d.robots.absolem(track="public")}
+    >>> steps = {height: c2d.terrains.step(height) for height in (0.2, 0.25)}
     >>> found = audit_policy(
-    ...     lambda seen: np.tile([1.0, 0.5, 0.5], (len(seen), 1)),
-    ...     FlipperEnv(),
-    ...     models={"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()},
-    ...     obstacles={0.1: c2d.terrains.step(0.1), 0.2: c2d.terrains.step(0.2)},
-    ...     repeats=5,
-    ...     progress=False,
+    ...     lift, FlipperEnv(), models=robots, obstacles=steps, repeats=10, progress=False
     ... )
-    >>> found.rate.sel(model="belt", driver="policy").values.tolist()
-    [1.0, 0.0]
-    >>> found.gain.sel(model="belt", obstacle=0.2).item()
-    -1.0
+    >>> found.rate.sel(obstacle=0.25, driver="baseline").values.tolist()
+    [1.0, 0.1]
+    >>> found.rate.sel(obstacle=0.25, driver="policy").values.tolist()
+    [0.0, 0.5]
+    >>> found.attrs["summary"]
+    'no gain over the baseline on belt that is certain'
     """
     extra("xarray", "analysis")
     task = _task_of(env)
