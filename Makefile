@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -88,6 +88,9 @@ bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet, ODE 
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour
 	$(BIN)/python -m benches.peers $(ARGS)
+
+bench-envs: $(VENV)/.built $(VENV)/.peers ## steps of environments a second, two minutes
+	$(BIN)/python -m benches.envs $(ARGS)
 
 bench-scaling: $(VENV)/.built ## cost against wheels, ground, threads and accuracy, some minutes
 	$(BIN)/python -m benches.scaling $(ARGS)

@@ -1,0 +1,1 @@
+"""Steps of environments a second."""

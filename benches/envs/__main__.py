@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import argparse
 import resource
+import sys
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -27,6 +30,11 @@ _NOISE = 0.2
 _DT = 0.05
 _COUNTS, _THREADS = (64, 256), (1, 2)
 _MANY = 4096
+
+Rate = tuple[float, float]
+"""[1/s], [-] Steps, and the share of their time in the physics, if that is known."""
+
+Job = Callable[[], Rate]
 
 _DRIVE = c2d.Drive(speed=0.39)
 
@@ -51,14 +59,19 @@ def actions(count: int, width: int, steps: int) -> NDArray[np.float64]:
     """Return actions that drive on with noise, shape (steps, count, width)."""
     noise = np.random.default_rng(0).standard_normal((steps, count, width))
     ahead = np.eye(1, width)[0]
-    return np.clip(ahead + _NOISE * noise, -1.0, 1.0)
+    clipped: NDArray[np.float64] = np.clip(ahead + _NOISE * noise, -1.0, 1.0)
+    return clipped
 
 
-def by_hand(scenario: c2d.Scenario, steps: int) -> float:
+def width_of(scenario: c2d.Scenario) -> int:
+    """Return how many numbers an action has."""
+    return 1 if scenario.robot.flippers is None else 3
+
+
+def by_hand(scenario: c2d.Scenario, steps: int) -> Rate:
     """[1/s] Steps of a `Simulation` that is commanded, advanced, asked and reset."""
     simulation, flippers = c2d.Simulation(scenario), scenario.robot.flippers
-    width = 1 if flippers is None else 3
-    given = actions(1, width, steps)[:, 0].tolist()
+    given = actions(1, width_of(scenario), steps)[:, 0].tolist()
     begin = time.perf_counter()
     for action in given:
         simulation.command(speed=scenario.drive.speed * action[0])
@@ -70,10 +83,10 @@ def by_hand(scenario: c2d.Scenario, steps: int) -> float:
         np.array([state.chassis_angle, state.track_speed, *state.flipper_angles], np.float32)
         if state.outcome is not None or state.time >= scenario.duration:
             simulation.reset()
-    return steps / (time.perf_counter() - begin)
+    return steps / (time.perf_counter() - begin), np.nan
 
 
-def alone(env: Any, steps: int) -> float:
+def alone(env: Any, steps: int) -> Rate:
     """[1/s] Steps of an environment by itself."""
     env.reset(seed=0)
     given = actions(1, env.action_space.shape[0], steps)[:, 0]
@@ -82,7 +95,7 @@ def alone(env: Any, steps: int) -> float:
         _, _, terminated, truncated, _ = env.step(action)
         if terminated or truncated:
             env.reset()
-    return steps / (time.perf_counter() - begin)
+    return steps / (time.perf_counter() - begin), np.nan
 
 
 class _Timed:
@@ -100,13 +113,13 @@ class _Timed:
         self.seconds += time.perf_counter() - begin
 
 
-def together(scenario: c2d.Scenario, count: int, threads: int, steps: int) -> tuple[float, float]:
+def together(scenario: c2d.Scenario, count: int, threads: int, steps: int) -> Rate:
     """[1/s], [-] Steps of a vector environment, and the share of its time in the physics."""
     env = FlipperVectorEnv(count, scenario, threads=threads)
     env.reset(seed=0)
     many = env._begun()._many
     many._core = core = _Timed(many._core)  # type: ignore[assignment] # the same methods
-    given = actions(count, env.action_space.shape[1], steps)
+    given = actions(count, width_of(scenario), steps)
     begin = time.perf_counter()
     for action in given:
         env.step(action)
@@ -118,7 +131,7 @@ def gigabytes_of(scenario: c2d.Scenario, count: int) -> float:
     """[GB] Most memory of this process with so many in their first second."""
     env = FlipperVectorEnv(count, scenario)
     env.reset(seed=0)
-    for action in actions(count, env.action_space.shape[1], 20):
+    for action in actions(count, width_of(scenario), 20):
         env.step(action)
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
 
@@ -130,37 +143,39 @@ def main() -> None:
     quick = parser.parse_args().quick
     steps, rounds = (20, 1) if quick else (300, 3)
     about = machine({"crawler2d": c2d.__version__, "pymunk": pymunk.version})
-    print(", ".join(f"{name} {value}" for name, value in about.items()))
+    say(", ".join(f"{name} {value}" for name, value in about.items()))
     for name, scenario in scenes().items():
-        jobs: dict[str, Callable[[], tuple[float, float]]] = {
-            "by hand": lambda s=scenario: (by_hand(s, 4 * steps), np.nan),
-            "FlipperEnv": lambda s=scenario: (alone(FlipperEnv(s), 4 * steps), np.nan),
+        jobs: dict[str, Job] = {
+            "by hand": partial(by_hand, scenario, 4 * steps),
+            "FlipperEnv": partial(alone, FlipperEnv(scenario), 4 * steps),
         }
         if scenario.robot.flippers is not None:
-            env = ChipmunkClimb(scenario.robot, 0.2)
-            jobs["the same in Chipmunk"] = lambda env=env: (alone(env, steps), np.nan)
-        for count in _COUNTS:
-            for threads in _THREADS:
-                jobs[f"{count} of FlipperVectorEnv, {threads} threads"] = (
-                    lambda s=scenario, n=count, t=threads: together(s, n, t, steps)
-                )
+            jobs["the same in Chipmunk"] = partial(alone, ChipmunkClimb(scenario.robot, 0.2), steps)
+        for count, threads in product(_COUNTS, _THREADS):
+            label = f"{count} of FlipperVectorEnv, {threads} threads"
+            jobs[label] = partial(together, scenario, count, threads, steps)
         report(name, jobs, rounds)
     absolem = next(iter(scenes().values()))
     count = 64 if quick else _MANY
-    print(f"{count} of the Absolem: {gigabytes_of(absolem, count):.2f} GB of memory at most")
+    say(f"{count} of the Absolem: {gigabytes_of(absolem, count):.2f} GB of memory at most")
 
 
-def report(name: str, jobs: Mapping[str, Callable[[], tuple[float, float]]], rounds: int) -> None:
-    """Print the most steps a second of each job, of some rounds of all of them."""
+def report(name: str, jobs: Mapping[str, Job], rounds: int) -> None:
+    """Say the most steps a second of each job, of some rounds of all of them."""
     found = []
     for k in range(rounds):
         progress(f"{name}: round {k + 1} of {rounds}")
         found.append([job() for job in jobs.values()])
     best = np.max(found, axis=0)
-    print(f"\n{name}: steps of {_DT} s a second")
+    say(f"\n{name}: steps of {_DT} s a second")
     for job, (rate, share) in zip(jobs, best, strict=True):
         physics = "" if np.isnan(share) else f"   {share:.0%} of it in the physics"
-        print(f"  {job:36} {rate:8.0f}{physics}")
+        say(f"  {job:36} {rate:8.0f}{physics}")
+
+
+def say(line: str) -> None:
+    """Write a line of the report."""
+    sys.stdout.write(f"{line}\n")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""The task of `FlipperClimb` with Chipmunk as users write it: belts as surface velocity of capsules."""
+"""The task of `FlipperClimb` in Chipmunk as users write it: belts are surfaces that slide."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -20,7 +20,7 @@ _TIME_STEP, _ITERATIONS, _SLOP = 1e-3, 20, 1e-4
 
 
 class ChipmunkClimb(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """A robot with flippers at both ends before a step, with the observation and the action of ours.
+    """A robot with flippers before a step, with the observation and the action of ours.
 
     Parameters
     ----------
@@ -29,8 +29,6 @@ class ChipmunkClimb(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     height : float
         [m] Of the step.
     """
-
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
 
     def __init__(self, robot: Robot, height: float) -> None:
         self._robot, self._height = robot, height
@@ -63,9 +61,9 @@ class ChipmunkClimb(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             pivot = np.array([x + side * half, radius])
             inertia = arms_mass * flippers.length**2 / 12.0
             arm = plane.body(arms_mass, inertia, pivot + 0.5 * flippers.length * out, angle)
-            ends = [(-flippers.length / 2.0, 0.0), (flippers.length / 2.0, 0.0)]
-            self._tracks.append(pymunk.Segment(arm, *ends, flippers.tip_radius))
-            plane.pin(chassis, arm, (side * half, 0.0), ends[0])
+            root, tip = (-flippers.length / 2.0, 0.0), (flippers.length / 2.0, 0.0)
+            self._tracks.append(pymunk.Segment(arm, root, tip, flippers.tip_radius))
+            plane.pin(chassis, arm, (side * half, 0.0), root)
             self._motors.append(plane.motor(chassis, arm, 2.0 * flippers.torque_limit))
             self._arms.append((arm, side, angle))
         for track in self._tracks:

@@ -68,6 +68,24 @@ except KeyboardInterrupt:
     print(now, before > 0.0, abs(sim.time - before - 0.5) < 1e-9, flush=True)
 """
 
+POLICY = """
+import time
+import numpy as np
+from crawler2d.envs import FlipperVectorEnv
+
+many = FlipperVectorEnv(4096)
+many.reset(seed=0)
+print("ready", flush=True)
+try:
+    while True:
+        many.step(np.zeros((4096, 3)))
+except KeyboardInterrupt:
+    now = time.monotonic()
+    many.reset()
+    many.step(np.zeros((4096, 3)))
+    print(now, (many.state.time == 0.05).all(), flush=True)
+"""
+
 # A run whose end is only claimed: it would take long to repeat it up to there.
 BRANCH = """
 import time
@@ -156,3 +174,10 @@ def test_a_simulation_answers_ctrl_c_and_can_go_on(say: Say) -> None:
     say(f"a simulation answered Ctrl-C after {1000 * latency:.0f} ms")
     assert latency < SLACK
     assert said == ["True", "True"]
+
+
+def test_environments_answer_ctrl_c_and_can_begin_anew(say: Say) -> None:
+    latency, said = interrupted(POLICY, 0.5)
+    say(f"4096 environments answered Ctrl-C after {1000 * latency:.0f} ms")
+    assert latency < SLACK
+    assert said == ["True"]

@@ -29,6 +29,9 @@ _STOPPED, _DIVERGED = "stopped", "diverged"
 _SAME_TIME = 1e-9
 """[s] Times that differ by less differ by rounding."""
 
+_BELOW, _HIGH = 0.12, 0.45
+"""[-] What is seen below the start and the height of the view, in its widths."""
+
 _PICTURE, _DOTS_PER_INCH = (6.4, 3.6), 100
 """[inch] Size of a rendered picture, and its resolution."""
 
@@ -69,6 +72,7 @@ class Episodes:
         self._task, self._many = task, Simulations(scenarios, threads=threads)
         self._full_speeds = np.array([each.speed for each in scenarios])
         self._states = self._many.state()
+        self._starts = _places_of(self._states)
 
     @property
     def states(self) -> States:
@@ -80,6 +84,7 @@ class Episodes:
         self._many.reset(places, scenarios)
         self._full_speeds[places] = [each.speed for each in scenarios]
         self._states = self._many.state()
+        self._starts[places] = _places_of(self._states)[places]
 
     def observe(self) -> NDArray[np.float32]:
         """Return what a policy sees, shape (N, n)."""
@@ -153,6 +158,20 @@ class Episodes:
         agg = extra("matplotlib.backends.backend_agg", "plot")
         figure = figures.Figure(figsize=_PICTURE, dpi=_DOTS_PER_INCH, layout="constrained")
         canvas = agg.FigureCanvasAgg(figure)
-        Simulation.from_snapshot(self._many.snapshot(place)).plot(figure.subplots())
+        ax = Simulation.from_snapshot(self._many.snapshot(place)).plot(figure.subplots())
+        if legend := ax.get_legend():
+            legend.remove()
+        # The same view for all of an episode: from behind the start to beyond the goal.
+        robot = self._task.scenario.robot
+        reach = robot.outline.axle_distance + (robot.flippers.length if robot.flippers else 0.0)
+        x, y, to_goal = self._starts[place]
+        left, right = x - 1.5 * reach, x + to_goal + 1.5 * reach
+        bottom = y - _BELOW * (right - left)
+        ax.set(xlim=(left, right), ylim=(bottom, bottom + _HIGH * (right - left)))
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _places_of(states: States) -> NDArray[np.float64]:
+    """[m] Return where robots are, and how far they have to the goal, shape (N, 3)."""
+    return np.column_stack([states.position, states.to_goal])

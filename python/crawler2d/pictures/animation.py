@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -121,7 +122,10 @@ def _write_gif(
     durations[-1] += round(1e3 * _HOLD)
     first = next(frames)
     timing: Any = {"duration": durations.tolist(), "loop": 0}
-    first.save(part, save_all=True, append_images=frames, comment=about, **timing)
+    # Pillow takes a part of a write to a file for all of it.
+    whole = io.BytesIO()
+    first.save(whole, "GIF", save_all=True, append_images=frames, comment=about, **timing)
+    part.write_bytes(whole.getvalue())
 
 
 def palette_of(images: Any, pixels: NDArray[np.uint8]) -> Any:

@@ -16,6 +16,7 @@ import numpy as np
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.bodies import Lane, discs_in, end_discs
+from crawler2d.common.files import write_text
 from crawler2d.drawings.scene import Scene
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Friction, Pose, Tree, from_rpy
@@ -266,7 +267,7 @@ def _save(root: XML, comment: str, path: str | os.PathLike[str] | None) -> Model
     """Write a file, if there is a path, and return its text."""
     text = ModelText(document(root, comment))
     if path is not None:
-        Path(path).write_text(text, encoding="utf-8")
+        write_text(path, text)
     return text
 
 
