@@ -25,7 +25,7 @@ __all__ = ["NOTEBOOKS", "executed", "hash_of_sources", "keep_hash", "kept_hash",
 STUDIES = Path(__file__).parents[2] / "studies"
 NOTEBOOKS = sorted(STUDIES.glob("*.ipynb"))
 
-_OF_A_CELL = 300
+_OF_A_CELL = 1800
 """[s] After this time a cell counts as hanging."""
 
 
