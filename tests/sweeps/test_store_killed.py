@@ -81,7 +81,7 @@ def holds(path: Path, rows: list[Row]) -> int:
     return len(found)
 
 
-@pytest.mark.parametrize("kills", [12, pytest.param(300, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("kills", [12, pytest.param(2000, marks=pytest.mark.soak)])
 def test_a_killed_process_loses_no_finished_row(
     tmp_path: Path, rows: list[Row], kills: int
 ) -> None:
