@@ -33,6 +33,7 @@ extensions = [
     "contents",
     "mathml",
     "names",
+    "signatures",
 ]
 nitpicky = True
 root_doc = "docs/index"

@@ -52,7 +52,7 @@ class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
     terrain. It is truncated when the scenario's duration is over, when the simulation fails, of
     which ``info["error"]`` says why, and if asked for when the robot is stopped. Then
     ``info["outcome"]`` is `cleared`, `tipped_over`, `left_terrain`, `stopped`, `timed_out` or
-    `diverged`; why it stopped says `run`.
+    `diverged`; `run` says why it stopped.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
 
     @property
     def observation_names(self) -> list[str]:
-        """Of the numbers of an observation."""
+        """Names of the numbers of an observation."""
         return self.task.names
 
     @property

@@ -117,7 +117,7 @@ class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
 
     @property
     def observation_names(self) -> list[str]:
-        """Of the numbers of an observation."""
+        """Names of the numbers of an observation."""
         return self.task.names
 
     @property
