@@ -309,7 +309,9 @@ def test_a_wrong_argument_is_refused_before_anything_runs(
         assert failure.value.path == path
 
 
-@pytest.mark.parametrize("action", [[1.0], [1.0, 0.0, np.nan], [[1.0, 0.0, 0.0]]])
+@pytest.mark.parametrize(
+    "action", [[1.0], [1.0, 0.0, np.nan], [[1.0, 0.0, 0.0]], "fast", None, [1.0, "up", 0.0]]
+)
 def test_a_wrong_action_is_refused(action: Any) -> None:
     env = FlipperEnv()
     env.reset(seed=0)

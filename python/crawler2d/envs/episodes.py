@@ -127,7 +127,10 @@ class Episodes:
         return Step(self.observe(), rewards, terminated, truncated, tuple(outcomes), states.error)
 
     def _read(self, actions: ArrayLike) -> NDArray[np.float64]:
-        array = np.asarray(actions, float)
+        try:
+            array = np.asarray(actions, float)
+        except (TypeError, ValueError):
+            raise ScenarioError("action", actions, "must be numbers") from None
         shape = (len(self._many), 1 + len(self._task.ends))
         if array.shape != shape:
             raise ScenarioError("action", array.shape, f"must have the shape {shape}")

@@ -209,7 +209,7 @@ class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
         episodes = self._begun()
         if self._ended:
             raise gymnasium.error.ResetNeeded("the episode has ended: call reset()")
-        step = episodes.step(np.asarray(action, float)[None])
+        step = episodes.step([action])
         self._ended = bool(step.ended[0])
         info = _info(step)
         reward = float(step.rewards.total[0])
