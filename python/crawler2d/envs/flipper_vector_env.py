@@ -213,16 +213,16 @@ class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
             On Ctrl-C; then reset.
         """
         episodes, mode = self._begun(), self.metadata["autoreset_mode"]
-        begun = self._ended
-        if mode is AutoresetMode.DISABLED and begun.any():
+        over = self._ended
+        if mode is AutoresetMode.DISABLED and over.any():
             raise gymnasium.error.ResetNeeded("episodes have ended: reset them by a mask")
-        step = episodes.step(actions, ~begun)
-        observations, ended = step.observations, step.ended & ~begun
-        rewards = np.where(begun, 0.0, step.rewards.total)
-        terminated, truncated = step.terminated & ~begun, step.truncated & ~begun
-        infos = _infos(step, ~begun, ended)
-        if begun.any():
-            self._begin(begun)
+        step = episodes.step(actions, ~over)
+        observations, ended = step.observations, step.ended & ~over
+        rewards = np.where(over, 0.0, step.rewards.total)
+        terminated, truncated = step.terminated & ~over, step.truncated & ~over
+        infos = _infos(step, ~over, ended)
+        if over.any():
+            self._begin(over)
             observations = episodes.observe()
         self._ended = ended
         if mode is AutoresetMode.SAME_STEP and ended.any():
