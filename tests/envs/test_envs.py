@@ -334,5 +334,9 @@ def test_nothing_is_done_before_a_reset_or_after_the_end() -> None:
 
 
 def test_an_unknown_keyword_is_refused_with_the_nearest_name() -> None:
-    with pytest.raises(TypeError, match="randomize"):
-        FlipperEnv(randomise={})  # type: ignore[call-arg] # misspelt
+    makers: list[Any] = [FlipperEnv, FlipperVectorEnv]
+    makers += [lambda **given: gymnasium.make(IDS[0], **given)]
+    makers += [lambda **given: gymnasium.make_vec(IDS[0], num_envs=2, **given)]
+    for make in makers:
+        with pytest.raises(TypeError, match="did you mean randomize"):
+            make(randomise={})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import gymnasium
 import numpy as np
@@ -13,7 +13,7 @@ from crawler2d.common.keywords import TakesKeywords
 from crawler2d.envs.episodes import Episodes, Step
 from crawler2d.envs.supply import Supply
 from crawler2d.envs.task import FlipperCommand, Observe, Task
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ArgumentError, ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.runs.run import Run
@@ -23,13 +23,24 @@ if TYPE_CHECKING:
 
     from crawler2d.runs.simulations import States
 
-__all__ = ["METADATA", "FlipperEnv", "check_render_mode", "spaces_of"]
+__all__ = ["METADATA", "FlipperEnv", "TakesMadeKeywords", "check_render_mode", "spaces_of"]
 
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}
 """Of both environments; `render_fps` is that of the default `dt`."""
 
 
-class FlipperEnv(TakesKeywords, gymnasium.Env, EzPickle):
+class TakesMadeKeywords(TakesKeywords):
+    """Base of what Gymnasium makes, which raises another of any TypeError, from its text alone."""
+
+    def __new__(cls, *given: Any, **keywords: Any) -> Self:
+        """Check the keywords; `__init__` takes them."""
+        try:
+            return super().__new__(cls, *given, **keywords)
+        except ArgumentError as error:
+            raise TypeError(str(error)) from None
+
+
+class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
     """A robot on obstacles whose tracks and flippers a policy commands.
 
     An action holds the speed of the tracks, as a share of the scenario's `drive.speed`, and of

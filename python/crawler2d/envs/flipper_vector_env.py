@@ -12,9 +12,13 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from crawler2d.common.arrays import whole_number
-from crawler2d.common.keywords import TakesKeywords
 from crawler2d.envs.episodes import Episodes, Step
-from crawler2d.envs.flipper_env import METADATA, check_render_mode, spaces_of
+from crawler2d.envs.flipper_env import (
+    METADATA,
+    TakesMadeKeywords,
+    check_render_mode,
+    spaces_of,
+)
 from crawler2d.envs.supply import Supply
 from crawler2d.envs.task import FlipperCommand, Observe, Task
 from crawler2d.errors import ScenarioError
@@ -32,7 +36,7 @@ __all__ = ["FlipperVectorEnv"]
 _MOST = 100_000
 
 
-class FlipperVectorEnv(TakesKeywords, VectorEnv, EzPickle):
+class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
     """Many of `FlipperEnv`, advanced together on all cores.
 
     Environment k with seed s is bit by bit what `FlipperEnv` is with seed s + k, whatever the
