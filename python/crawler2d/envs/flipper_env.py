@@ -130,7 +130,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         effort_weight: float = 0.1,
         render_mode: str | None = None,
     ) -> None:
-        given = {key: value for key, value in locals().items() if key not in _NO_ARGUMENTS}
+        given = {name: value for name, value in locals().items() if name != "self"}
         EzPickle.__init__(self, **given)
         self.render_mode = check_render_mode(render_mode)
         self.task = Task.read(
@@ -240,9 +240,6 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         if self._episodes is None:
             raise gymnasium.error.ResetNeeded("there is no episode yet: call reset()")
         return self._episodes
-
-
-_NO_ARGUMENTS = ("self", "__class__")
 
 
 def spaces_of(task: Task) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:

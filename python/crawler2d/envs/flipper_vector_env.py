@@ -92,7 +92,7 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         threads: int | None = None,
     ) -> None:
-        given = {key: value for key, value in locals().items() if key not in ("self", "__class__")}
+        given = {name: value for name, value in locals().items() if name != "self"}
         EzPickle.__init__(self, **given)
         self.render_mode = check_render_mode(render_mode)
         self.num_envs = whole_number(num_envs, "num_envs", 1, _MOST)

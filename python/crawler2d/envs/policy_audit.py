@@ -21,10 +21,10 @@ from crawler2d.errors import Crawler2dError, ScenarioError, raise_first
 from crawler2d.parameters.settings import Climb, Gait
 from crawler2d.results.record import Row
 from crawler2d.runs.progress import Progress, Reporter, reporter, thread_count
-from crawler2d.sweeps.axes import Axis, Label
+from crawler2d.sweeps.axes import Axis
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.statistics import Interval, newcombe_paired
-from crawler2d.sweeps.sweep import Variant, variants
+from crawler2d.sweeps.sweep import Variant, axis_of, variants
 from crawler2d.sweeps.tabulate import Tabulation
 
 if TYPE_CHECKING:
@@ -145,7 +145,8 @@ def audit_policy(
         raise ScenarioError("baseline", baseline, "must be a Climb or a Hold")
     options: Any = {"repeats": repeats, "seed": seed, "vary": vary, "threads": threads}
     options |= {"store": None, "executor": None}
-    axes = [_axis("model", models), _axis("obstacle", obstacles)]
+    given = {"model": variants(models), "obstacle": variants(obstacles, "obstacles")}
+    axes = [axis_of(name, named) for name, named in given.items()]
     _check_flippers(task, axes[0])
     gait = task.scenario.replace({"drive.gait": baseline})
     driven, compared = (Tabulation(each, axes, **options) for each in (task.scenario, gait))
@@ -164,15 +165,6 @@ def _task_of(env: Any) -> Task:
     if not isinstance(task, Task):
         raise ScenarioError("env", env, "must be a FlipperEnv or a FlipperVectorEnv")
     return replace(task, ends_when_stopped=False)  # the baseline may go on, too
-
-
-def _axis(name: str, given: Mapping[Any, Variant]) -> Axis:
-    try:
-        named: dict[Label, Mapping[str, Any]] = variants(given)
-    except ScenarioError as error:
-        place = error.path.replace("models", f"{name}s", 1)
-        raise ScenarioError(place, error.value, error.rule) from None
-    return Axis(name, tuple(dict.fromkeys(path for row in named.values() for path in row)), named)
 
 
 def _check_flippers(task: Task, models: Axis) -> None:

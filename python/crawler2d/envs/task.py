@@ -246,8 +246,9 @@ class Task:
             work * (-of_effort / (robot.mass * gravity)),
             ending,
         )
+        failed = after.failed
         for each in (terms.progress, terms.shock, terms.effort, terms.ending):
-            each[after.failed] = 0.0
+            each[failed] = 0.0
         return terms
 
 

@@ -156,16 +156,12 @@ class Simulations(TakesKeywords):
             a rate the flippers' own, its end has no flippers, or is given both. Then no command
             changes.
         """
-        pairs = {"angle": (flipper_angle, rear_flipper_angle)}
-        pairs |= {"rate": (flipper_rate, rear_flipper_rate)}
         angles, rates = (
-            np.column_stack(
-                [
-                    self._column(given, f"{end}flipper_{kind}")
-                    for end, given in zip(("", "rear_"), pair, strict=True)
-                ]
+            np.column_stack([self._column(front, name), self._column(rear, f"rear_{name}")])
+            for name, front, rear in (
+                ("flipper_angle", flipper_angle, rear_flipper_angle),
+                ("flipper_rate", flipper_rate, rear_flipper_rate),
             )
-            for kind, pair in pairs.items()
         )
         both = ~np.isnan(angles) & ~np.isnan(rates)
         if both.any():
@@ -300,11 +296,7 @@ class Simulations(TakesKeywords):
             array = np.asarray(values, float)
         except (TypeError, ValueError):
             raise ScenarioError(name, values, "must be numbers") from None
-        return (
-            np.ascontiguousarray(np.broadcast_to(array, len(self)))
-            if array.ndim == 0
-            else (self._shaped(array, name))
-        )
+        return self._shaped(np.broadcast_to(array, len(self)) if array.ndim == 0 else array, name)
 
     def _shaped(self, array: NDArray[Any], name: str) -> NDArray[Any]:
         if array.shape != (len(self),):

@@ -144,7 +144,7 @@ def search(
     fresh = whole_number(confirm, "confirm", 1, 10**6)
     check_scenario(scenario)
     grounds = read_terrains(scenario, terrains)
-    fields = _fields(space)
+    fields = variants(space, "space")
     swept = ["terrain", *paths_of(fields)]
     if any(hasattr(ground, "seed") for ground in grounds.values()):
         how = {"vary": of_start() | of_contact() | of_field(), **how}
@@ -162,15 +162,6 @@ def search(
             refused=len(refusals),
             refusals="; ".join(refusals),
         )
-
-
-def _fields(space: object) -> dict[Label, Mapping[str, Any]]:
-    """Return what each candidate replaces, by path."""
-    try:
-        return variants(space)
-    except ScenarioError as error:
-        path = f"space{error.path.removeprefix('models')}"
-        raise ScenarioError(path, error.value, error.rule) from None
 
 
 def _candidates(

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["Variant", "compare", "sweep", "variants"]
+__all__ = ["Variant", "axis_of", "compare", "sweep", "variants"]
 
 
 @takes_keywords
@@ -312,10 +312,9 @@ def compare(
     if reference is not None and reference not in labels:
         names = ", ".join(map(str, labels))
         raise ScenarioError("reference", reference, f"must be a label of the models: {names}")
-    paths = dict.fromkeys(path for fields in named.values() for path in fields)
     table = tabulate(
         scenario,
-        [Axis("model", tuple(paths), named)],
+        [axis_of("model", named)],
         repeats=repeats,
         seed=seed,
         vary=vary,
@@ -332,12 +331,19 @@ def compare(
     return table.merge(rates).assign(columns).assign_attrs(reference=labels[base])
 
 
-def variants(models: object) -> dict[Label, Mapping[str, Any]]:
-    """Read the argument `models`: what each replaces, by path, by its label."""
-    return {label: _fields(model, label) for label, model in read_labels(models, "models").items()}
+def variants(models: object, place: str = "models") -> dict[Label, Mapping[str, Any]]:
+    """Read an argument such as `models`: what each replaces, by path, by its label."""
+    labels = read_labels(models, place)
+    return {label: _fields(model, f"{place}[{label!r}]") for label, model in labels.items()}
 
 
-def _fields(model: object, label: Label) -> Mapping[str, Any]:
+def axis_of(name: str, named: Mapping[Label, Mapping[str, Any]]) -> Axis:
+    """Return the axis of what `variants` read."""
+    paths = dict.fromkeys(path for fields in named.values() for path in fields)
+    return Axis(name, tuple(paths), named)
+
+
+def _fields(model: object, place: str) -> Mapping[str, Any]:
     """Return what a model replaces, by path."""
     if isinstance(model, Mapping):
         return model
@@ -346,7 +352,7 @@ def _fields(model: object, label: Label) -> Mapping[str, Any]:
     rule = (
         "must be a track, a robot or another part of a scenario, or a mapping from paths to values"
     )
-    raise ScenarioError(f"models[{label!r}]", model, rule)
+    raise ScenarioError(place, model, rule)
 
 
 def _compare_pair(table: xarray.Dataset, model: int, base: int) -> dict[str, float]:
