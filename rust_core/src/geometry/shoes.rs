@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn ends_so_unequal_that_no_shoe_fits_between_them_take_no_chain() {
         for (rear, front) in [(0.05, 0.39), (0.39, 0.05)] {
-            for count in 3..400 {
+            for count in (3..40).chain((40..400).step_by(17)) {
                 if let Some(chain) = ShoeLoop::new(ends(rear, front), count) {
                     assert!(chain.pitch < 0.14);
                     chain.places(0.1);

@@ -108,7 +108,7 @@ fn within(region: &Region, ranges: Ranges, draw: &mut Draw) -> [f64; 2] {
 fn what_is_certified_has_no_jam_with_ground_inside_the_track() {
     let mut draw = Draw(99);
     let (mut regions, mut tipping) = (0, 0);
-    for case in 0..few_or_many(25, 600) {
+    for case in 0..few_or_many(12, 600) {
         let (scenario, ranges) = drawn(&mut draw);
         for region in certificate(&scenario, ranges).regions {
             if !matches!(region.status, RegionStatus::Certified(_)) {

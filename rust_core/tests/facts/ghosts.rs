@@ -178,19 +178,20 @@ fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
     let mut striking = articulated();
     striking.retain(|(name, _)| strikes(name));
     for (name, mut scenario) in striking {
-        let two_seconds = |scenario: &Scenario, ground| drive_for(2, scenario, ground);
+        let seconds = few_or_many(1, 2);
+        let driven = |scenario: &Scenario, ground| drive_for(seconds, scenario, ground);
         let level = |pieces| cut(pieces, 0.0, &mut Draw(0));
-        let (whole, upward_on_whole) = two_seconds(&scenario, level(1));
+        let (whole, upward_on_whole) = driven(&scenario, level(1));
         let approach = scenario.start.approach;
         let (mut spread, mut fastest) = (0.0_f64, upward_on_whole);
         for nanometres in 1..=12 {
             scenario.start.approach = approach + 1e-9 * f64::from(nanometres);
-            let (twin, upward) = two_seconds(&scenario, level(1));
+            let (twin, upward) = driven(&scenario, level(1));
             (spread, fastest) = (spread.max(apart(&whole, &twin)), fastest.max(upward));
         }
         scenario.start.approach = approach;
         for pieces in [101, 1000] {
-            let (path, upward) = two_seconds(&scenario, level(pieces));
+            let (path, upward) = driven(&scenario, level(pieces));
             let off = apart(&whole, &path);
             println!(
                 "{name}, {pieces} pieces: off {off:.1e} m, starts {spread:.1e} m; upwards {upward:.1e} m/s, \
@@ -210,7 +211,7 @@ fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
         .expect("a level profile");
         far.first_edge = 100.0;
         far.goal = 104.0;
-        let (mut path, _) = two_seconds(&scenario, far);
+        let (mut path, _) = driven(&scenario, far);
         for point in &mut path {
             point[0] -= 100.0;
         }

@@ -84,6 +84,7 @@ fn a_close_row_of_wheels_climbs_as_high_as_a_rigid_track_in_rapier() {
 
 /// Oracle 2.
 #[test]
+#[ignore = "ten seconds of rapier; run by make soak"]
 fn the_nose_climbs_a_face_from_the_friction_of_the_balance_on_in_rapier() {
     for share in [0.4, 0.5].into_iter().take(few_or_many(1, 2) as usize) {
         let expected = friction_of_the_nose(0.365, 0.064, share * 0.365);
