@@ -144,7 +144,9 @@ def _version() -> str:
 
 
 def _tell(called: str, text: str) -> None:
-    """Print one line to standard error."""
+    """Print one line to standard error, unless that was closed."""
+    if sys.stderr is None:  # which print takes for the standard output
+        return
     # A terminal shows ^C where the line would begin.
     begin = "\n" if text.startswith("interrupted") and sys.stderr.isatty() else ""
     print(f"{begin}{called}: {' '.join(text.split())}", file=sys.stderr)  # noqa: T201

@@ -2,8 +2,7 @@
 //! a batch.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
-use std::thread;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crawler2d_core::{ByHand, ContactTable, Error, Log, Outcome, ValidScenario};
@@ -13,6 +12,7 @@ use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
 use pyo3::types::{PyBytes, PyDict, PyList};
 
 use crate::calls::{build_interruptible, run_interruptible};
+use crate::turns::{Turn, Turns};
 use crate::{calls, convert};
 
 /// A running simulation; a lock lets any thread use it, one at a time.
@@ -21,7 +21,7 @@ pub(crate) struct Simulation {
     inner: Arc<Inner>,
     /// What it was asked to do; held by the thread that advances: of two at once, one would count the other's steps as
     /// its own.
-    turn: Mutex<Log>,
+    turn: Turns<Log>,
     /// Its steps take so long that Ctrl-C must not have to wait for one.
     is_slow: AtomicBool,
     /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
@@ -44,11 +44,9 @@ impl Contacts {
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 /// A step that takes longer is too slow to let Ctrl-C wait for it.
 const SLOW: Duration = Duration::from_millis(20);
-/// Time between two attempts to take the turn.
-const BETWEEN_ATTEMPTS: Duration = Duration::from_micros(100);
 
 /// `None` after a step has failed, because its state cannot be trusted.
-type Inner = Mutex<Option<crawler2d_core::Simulation>>;
+type Inner = Turns<Option<crawler2d_core::Simulation>>;
 
 #[pymethods]
 impl Simulation {
@@ -201,8 +199,8 @@ impl Simulation {
         let (points, parts) = simulation.size();
         Self {
             is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
-            inner: Arc::new(Mutex::new(Some(simulation))),
-            turn: Mutex::new(log),
+            inner: Arc::new(Turns::new(Some(simulation))),
+            turn: Turns::new(log),
             outcome: Mutex::new(None),
         }
     }
@@ -224,20 +222,12 @@ impl Simulation {
     }
 
     /// Waits until no other thread advances it; Ctrl-C is answered meanwhile. The log says how far it has come.
-    fn turn(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Log>> {
-        let mut log = loop {
-            match self.turn.try_lock() {
-                Ok(turn) => break turn,
-                Err(TryLockError::Poisoned(turn)) => break turn.into_inner(),
-                Err(TryLockError::WouldBlock) => {
-                    py.detach(|| thread::sleep(BETWEEN_ATTEMPTS));
-                    py.check_signals()?;
-                }
-            }
-        };
+    fn turn(&self, py: Python<'_>) -> PyResult<Turn<'_, Log>> {
+        let mut turn = self.turn.take(py)?;
         // Ctrl-C may have ended the last advance before its end, in the middle of a step that nobody waited for.
-        log.has_reached(self.with(py, |simulation| Ok(simulation.time()))?);
-        Ok(log)
+        let time = self.with(py, |simulation| Ok(simulation.time()))?;
+        turn.has_reached(time);
+        Ok(turn)
     }
 
     /// Takes steps up to the time `end` [s]; Ctrl-C is answered meanwhile.
@@ -291,20 +281,27 @@ impl Simulation {
         py: Python<'_>,
         change: impl Send + FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
     ) -> PyResult<T> {
-        py.detach(|| calls::guarded(|| call(&self.inner, change)))
+        self.inner.with(py, |inner| changed(inner, change))
     }
 }
 
-/// Calls the core with the simulation, one thread at a time; after a failure the simulation is closed.
+/// Calls the core with the simulation once it is this thread's turn, which Python does not know.
 fn call<T>(
     inner: &Inner,
+    change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
+) -> Result<T, Error> {
+    changed(&mut *inner.wait()?, change)
+}
+
+/// Calls the core with the simulation; after a failure the simulation is closed.
+fn changed<T>(
+    inner: &mut Option<crawler2d_core::Simulation>,
     change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
 ) -> Result<T, Error> {
     let closed = || {
         let message = "this simulation has failed before and cannot continue";
         Error::Internal(message.to_owned())
     };
-    let mut inner = inner.lock().map_err(|_| closed())?;
     let simulation = inner.as_mut().ok_or_else(closed)?;
     let result = crawler2d_core::caught(|| change(simulation));
     if matches!(result, Err(Error::Simulation(_) | Error::Internal(_))) {

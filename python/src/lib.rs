@@ -4,6 +4,7 @@ mod calls;
 mod classes;
 mod convert;
 mod pictures;
+mod turns;
 mod worlds;
 
 use pyo3::prelude::*;

@@ -1,6 +1,6 @@
 //! Many simulations that Python commands and advances together.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use crawler2d_core::{ByHand, Outcome, ValidScenario, WorldState};
 use numpy::ndarray::Array2;
@@ -11,10 +11,11 @@ use pyo3::types::PyDict;
 use crate::calls::{self, run_interruptible};
 use crate::classes::PreparedScenario;
 use crate::convert;
+use crate::turns::Turns;
 
 /// Simulations side by side; any thread may use them, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
-pub(crate) struct Worlds(Arc<Mutex<crawler2d_core::Worlds>>);
+pub(crate) struct Worlds(Arc<Turns<crawler2d_core::Worlds>>);
 
 #[pymethods]
 impl Worlds {
@@ -22,7 +23,7 @@ impl Worlds {
     fn new(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<Self> {
         let scenarios = checked(&scenarios);
         let worlds = run_interruptible(py, move |_| Ok(crawler2d_core::Worlds::new(scenarios)))?;
-        Ok(Self(Arc::new(Mutex::new(worlds))))
+        Ok(Self(Arc::new(Turns::new(worlds))))
     }
 
     /// Sets some out anew, with other scenarios if some are given.
@@ -33,15 +34,12 @@ impl Worlds {
         scenarios: Option<Vec<PyRef<'_, PreparedScenario>>>,
     ) -> PyResult<()> {
         let mut scenarios = scenarios.map(|given| checked(&given).into_iter());
-        py.detach(|| {
-            calls::guarded(|| {
-                let mut worlds = lock(&self.0);
-                for index in which {
-                    let next = scenarios.as_mut().and_then(Iterator::next);
-                    worlds.reset(index, next);
-                }
-                Ok(())
-            })
+        self.0.with(py, |worlds| {
+            for index in which {
+                let next = scenarios.as_mut().and_then(Iterator::next);
+                worlds.reset(index, next);
+            }
+            Ok(())
         })
     }
 
@@ -54,24 +52,21 @@ impl Worlds {
         rates: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
         let (speeds, angles, rates) = (speeds.to_vec()?, angles.to_vec()?, rates.to_vec()?);
-        py.detach(|| {
-            calls::guarded(|| {
-                let mut worlds = lock(&self.0);
-                let of = |index: usize| {
-                    let given = |column: &[f64], k: usize| Some(column[k]).filter(|x| !x.is_nan());
-                    let flippers = [0, 1].map(|end| {
-                        let k = 2 * index + end;
-                        calls::flipper_command(given(&angles, k), given(&rates, k))
-                    });
-                    ByHand {
-                        speed: given(&speeds, index),
-                        flippers,
-                        push: None,
-                    }
-                };
-                let commands: Vec<ByHand> = (0..worlds.count()).map(of).collect();
-                worlds.command(&commands)
-            })
+        self.0.with(py, |worlds| {
+            let of = |index: usize| {
+                let given = |column: &[f64], k: usize| Some(column[k]).filter(|x| !x.is_nan());
+                let flippers = [0, 1].map(|end| {
+                    let k = 2 * index + end;
+                    calls::flipper_command(given(&angles, k), given(&rates, k))
+                });
+                ByHand {
+                    speed: given(&speeds, index),
+                    flippers,
+                    push: None,
+                }
+            };
+            let commands: Vec<ByHand> = (0..worlds.count()).map(of).collect();
+            worlds.command(&commands)
         })
     }
 
@@ -85,13 +80,14 @@ impl Worlds {
     ) -> PyResult<()> {
         let inner = Arc::clone(&self.0);
         run_interruptible(py, move |cancel| {
-            lock(&inner).advance(&which, duration, threads, cancel)
+            let worlds = inner.wait()?;
+            worlds.advance(&which, duration, threads, cancel)
         })
     }
 
     /// The state of each as columns.
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let states = py.detach(|| lock(&self.0).states());
+        let states = self.0.with(py, |worlds| Ok(worlds.states()))?;
         columns(py, &states)
     }
 
@@ -101,10 +97,9 @@ impl Worlds {
         py: Python<'py>,
         offsets: Vec<f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (count, flat) = py.detach(|| {
-            let worlds = lock(&self.0);
-            (worlds.count(), worlds.heights(&offsets))
-        });
+        let (count, flat) = self
+            .0
+            .with(py, |worlds| Ok((worlds.count(), worlds.heights(&offsets))))?;
         rows(py, (count, offsets.len()), flat)
     }
 
@@ -117,10 +112,9 @@ impl Worlds {
         trials: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, "full", &trials)?;
-        let (log, scenario) = py.detach(|| {
-            let worlds = lock(&self.0);
-            (worlds.log(index), worlds.scenario(index))
-        });
+        let (log, scenario) = self
+            .0
+            .with(py, |worlds| Ok((worlds.log(index), worlds.scenario(index))))?;
         let run = run_interruptible(py, move |cancel| {
             log.replay(scenario.scenario(), record, cancel)
         })?;
@@ -128,25 +122,19 @@ impl Worlds {
     }
 
     /// The scenario of one.
-    fn scenario(&self, py: Python<'_>, index: usize) -> PreparedScenario {
-        PreparedScenario {
-            checked: py.detach(|| lock(&self.0).scenario(index)),
-        }
+    fn scenario(&self, py: Python<'_>, index: usize) -> PyResult<PreparedScenario> {
+        let checked = self.0.with(py, |worlds| Ok(worlds.scenario(index)))?;
+        Ok(PreparedScenario { checked })
     }
 
     /// A snapshot of one.
     fn snapshot(&self, py: Python<'_>, index: usize) -> PyResult<Vec<u8>> {
-        py.detach(|| calls::guarded(|| lock(&self.0).snapshot(index)))
+        self.0.with(py, |worlds| worlds.snapshot(index))
     }
 }
 
 fn checked(scenarios: &[PyRef<'_, PreparedScenario>]) -> Vec<ValidScenario> {
     scenarios.iter().map(|each| each.checked.clone()).collect()
-}
-
-/// A call that panicked has left no world half done; see `Worlds::advance` of the core.
-fn lock(worlds: &Mutex<crawler2d_core::Worlds>) -> MutexGuard<'_, crawler2d_core::Worlds> {
-    worlds.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn rows(

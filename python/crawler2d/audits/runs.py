@@ -64,20 +64,27 @@ class LivePrinter:
 
     Parameters
     ----------
-    out : text stream
-        Where the parts go. Runs are counted on the standard error, if that is a terminal.
+    out : text stream or None
+        Where the parts go, if anywhere: Python has None for an output that was closed before it
+        began. Runs are counted on the standard error, if that is a terminal.
     spell : callable
         How the parts are spelt.
     """
 
-    def __init__(self, out: TextIO, spell: Callable[[str], str] = str) -> None:
+    def __init__(self, out: TextIO | None, spell: Callable[[str], str] = str) -> None:
         self._out, self._spell = out, spell
         self._begin = time.monotonic()
 
     def print(self, text: str) -> None:
         """Print a part."""
+        if self._out is None:  # which print takes for the standard output
+            return
         self._write("\r\x1b[K")
-        print(self._spell(text), file=self._out, flush=True)
+        try:
+            print(self._spell(text), file=self._out, flush=True)
+        except OSError:
+            if self._out is not sys.stderr:  # which shows progress alone, and is not worth the runs
+                raise
 
     def __call__(self, done: int, total: int) -> None:
         """Count runs."""
@@ -85,7 +92,7 @@ class LivePrinter:
         self._write(f"\r\x1b[K{done} of at most {total} runs, {passed:.0f} s\r")
 
     def _write(self, text: str) -> None:
-        if sys.stderr.isatty():
+        if sys.stderr is not None and sys.stderr.isatty():
             sys.stderr.write(text)
             sys.stderr.flush()
 

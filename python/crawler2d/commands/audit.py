@@ -136,6 +136,8 @@ def run(options: argparse.Namespace) -> int:
         interrupt.add_note(kept)
         raise
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
+        if isinstance(error, OSError) and not isinstance(error, StoreError) and not error.filename:
+            raise  # of the output, whose reader has seen enough or whose disk is full
         _print_error(error)
         return 2
     if any(isinstance(each, ScenarioError) for _, each in found):

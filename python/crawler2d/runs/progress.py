@@ -129,6 +129,9 @@ def reporter(
 
 @contextlib.contextmanager
 def _bar(total: int, begun: int, unit: str) -> Iterator[Progress]:
+    if sys.stderr is None:  # so Python has it where the process was started without one
+        yield lambda _done, _total: None
+        return
     # Notebooks draw their own bar and are no terminal; a log would get one copy of it a second.
     if not sys.stderr.isatty() and not _in_a_notebook():
         yield _line(unit)
@@ -168,7 +171,9 @@ def _line(unit: str) -> Progress:
             return
         last = part
         end = "\r" if terminal and done < total else "\n"
-        sys.stderr.write(f"{done} of {total} {unit}s, {now - begin:.0f} s{end}")
-        sys.stderr.flush()
+        # No disk that is full, or terminal that is gone, is worth the runs.
+        with contextlib.suppress(OSError):
+            sys.stderr.write(f"{done} of {total} {unit}s, {now - begin:.0f} s{end}")
+            sys.stderr.flush()
 
     return write

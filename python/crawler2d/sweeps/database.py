@@ -150,6 +150,17 @@ _locked: set[tuple[int, int]] = set()
 _guard = threading.Lock()
 
 
+def _forget_locks() -> None:
+    """Begin anew in a fork: it has no lock of its parent, nor a thread that is taking one."""
+    global _guard  # noqa: PLW0603 - of this module alone
+    _guard = threading.Lock()
+    _locked.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_locks)
+
+
 class Lock:
     """Keeps every other writer out of a file, by whatever name it finds the file.
 
@@ -215,7 +226,7 @@ class Lock:
         """Let others write."""
         with _guard:
             if self._descriptor >= 0:
-                _locked.remove(self._key)
+                _locked.discard(self._key)  # a fork has forgotten it
                 os.close(self._descriptor)
                 self._descriptor = -1
 

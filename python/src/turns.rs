@@ -1,0 +1,136 @@
+//! A lock for what Python's threads share: whoever waits for it answers Ctrl-C, and in a fork nobody waits for a thread
+//! that only the parent has.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use std::{process, thread};
+
+use crawler2d_core::Error;
+use pyo3::prelude::*;
+
+use crate::calls;
+
+/// Time between two attempts to take the turn.
+const BETWEEN_ATTEMPTS: Duration = Duration::from_micros(100);
+
+/// A value that one thread has at a time.
+pub(crate) struct Turns<T> {
+    /// The process whose thread has it; 0 if none has. A fork copies this number, and has another one of its own.
+    holder: AtomicU32,
+    /// Taken by the holder alone.
+    value: Mutex<T>,
+}
+
+/// The value, until this is dropped.
+pub(crate) struct Turn<'a, T> {
+    value: MutexGuard<'a, T>,
+    /// Dropped after the value.
+    _end: End<'a>,
+}
+
+impl<T> Deref for Turn<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T> DerefMut for Turn<'_, T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.value
+    }
+}
+
+struct End<'a>(&'a AtomicU32);
+
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        self.0.store(0, Ordering::Release);
+    }
+}
+
+impl<T> Turns<T> {
+    pub(crate) fn new(value: T) -> Self {
+        Self {
+            holder: AtomicU32::new(0),
+            value: Mutex::new(value),
+        }
+    }
+
+    /// Takes the turn, unless another thread has it.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if a thread had it that this process was forked without.
+    fn attempt(&self) -> Result<Option<Turn<'_, T>>, Error> {
+        let own = process::id();
+        let (taken, failed) = (Ordering::Acquire, Ordering::Relaxed);
+        match self.holder.compare_exchange(0, own, taken, failed) {
+            Ok(_) => {
+                let end = End(&self.holder);
+                let value = self.value.lock().unwrap_or_else(PoisonError::into_inner);
+                Ok(Some(Turn { value, _end: end }))
+            }
+            Err(holder) if holder == own => Ok(None),
+            Err(_) => Err(Error::Internal(
+                "a thread was using this simulation when this process was forked, and left it half done here: make a \
+                 new one, or hand over a snapshot"
+                    .to_owned(),
+            )),
+        }
+    }
+
+    /// Waits for the turn, in a thread that Python does not know.
+    ///
+    /// # Errors
+    /// As [`attempt`](Self::attempt).
+    pub(crate) fn wait(&self) -> Result<Turn<'_, T>, Error> {
+        loop {
+            if let Some(turn) = self.attempt()? {
+                return Ok(turn);
+            }
+            thread::sleep(BETWEEN_ATTEMPTS);
+        }
+    }
+
+    /// Waits for the turn; Ctrl-C is answered meanwhile.
+    pub(crate) fn take(&self, py: Python<'_>) -> PyResult<Turn<'_, T>> {
+        loop {
+            if let Some(turn) = self.attempt().map_err(calls::to_python)? {
+                return Ok(turn);
+            }
+            pause(py)?;
+        }
+    }
+
+    /// Waits for the turn and calls the core with the value, detached from the interpreter; Ctrl-C is answered before that.
+    pub(crate) fn with<R: Send>(
+        &self,
+        py: Python<'_>,
+        change: impl Send + FnOnce(&mut T) -> Result<R, Error>,
+    ) -> PyResult<R>
+    where
+        T: Send,
+    {
+        let mut change = Some(change);
+        loop {
+            let attempt = || {
+                let Some(mut turn) = self.attempt()? else {
+                    return Ok(None);
+                };
+                change.take().map(|change| change(&mut turn)).transpose()
+            };
+            if let Some(result) = py.detach(|| calls::guarded(attempt))? {
+                return Ok(result);
+            }
+            pause(py)?;
+        }
+    }
+}
+
+fn pause(py: Python<'_>) -> PyResult<()> {
+    py.detach(|| thread::sleep(BETWEEN_ATTEMPTS));
+    py.check_signals()
+}
