@@ -139,7 +139,12 @@ def test_a_fork_that_outlives_the_store_of_its_parent_can_open_it(tmp_path: Path
         return quiet(BRIEF, {}, repeats=3, store=path).sizes["repeat"]
 
     store = Store(path)
-    closing = threading.Timer(0.2, lambda: (store.close(), os.write(went, b"1")))
+
+    def close() -> None:
+        store.close()
+        os.write(went, b"1")
+
+    closing = threading.Timer(0.2, close)
     closing.start()
     assert forked(write) == "3"
     closing.join()
