@@ -65,19 +65,20 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
         [N m] Largest torque of one sprocket, acting at the belt radius. The robot has two.
     torque_sharing : {"track", "wheel"}
         "track": one motor per track; all its wheels keep one speed, and the sum of their traction
-        is limited. "wheel": each of the N wheels of a line has its own servo with 1/N of the
-        torque, the rotor inertia and the controller's gains.
+        is limited. "wheel": each of the N driven wheels of a model that has some, on flippers,
+        too, has its own servo with 1/N of the torque, the rotor inertia and the controller's gains.
     rotor_inertia : float
         [kg m^2] Of the motor of one track as its sprocket feels it: the rotor's own times the
-        square of the gear's ratio, MuJoCo's `armature`. It turns with the drive over the chassis
-        and holds the track's speed through a blow, which no torque limit can.
+        square of the gear's ratio, MuJoCo's `armature`; at most 100,000 times the moment of inertia
+        of the robot. It turns with the drive over the chassis and holds the track's speed through a
+        blow, which no torque limit can.
     no_load_speed : float, optional
         [m/s] Track speed at which the torque, which falls in a line from `max_torque` at rest, is
         used up, as that of a DC motor does. None: the motor has `max_torque` at any speed.
     torque_curve : array_like, shape (n, 2), optional
-        In place of that line: track speeds [m/s], from 0, and the torques [N m] of one sprocket
-        there, which start with `max_torque` and do not rise; straight between them, and the last
-        beyond. Against its motion a motor has the torque that it has at rest.
+        In place of that line: 1 to 1000 increasing track speeds [m/s], from 0, and the torques
+        [N m] of one sprocket there, which start with `max_torque` and do not rise; straight between
+        them, and the last beyond. Against its motion a motor has the torque that it has at rest.
     controller : PI, optional
         How motors correct the speed of their sprocket. None: they hold the commanded speed as long
         as their torque suffices.

@@ -31,12 +31,13 @@ class Flippers(Parameters, path="robot.flippers"):
     length : float
         [m] Distance from the pivot to the axle at the tip.
     root_radius, tip_radius : float
-        [m] Radii at the pivot and at the tip, measured to the grouser tips. The grousers
-        are those of `robot.outline`. A line of wheels with a `wheel_radius` has that radius
-        instead.
+        [m] Radii at the pivot and at the tip, measured to the grouser tips; they differ by less
+        than the length. The grousers are those of `robot.outline`, less high than either radius.
+        A line of wheels with a `wheel_radius` has that radius instead.
     mass : float
-        [kg] Of one arm with its track; part of `robot.mass`. It is spread evenly between pivot and
-        tip axle.
+        [kg] Of one arm with its track; part of `robot.mass`, of which it is at least a
+        hundred-thousandth. All arms and tracks together must leave mass for the chassis. It is
+        spread evenly between pivot and tip axle.
     ends : {"front", "rear", "both"}
         The ends of the robot that have arms.
     angle : float
@@ -48,13 +49,15 @@ class Flippers(Parameters, path="robot.flippers"):
         gear locks itself.
     rotor_inertia : float
         [kg m^2] Of the motor of one arm as the pivot feels it: the rotor's own times the square of
-        the gear's ratio. It turns with the arm over the chassis.
+        the gear's ratio; at most 100,000 times the moment of inertia of the robot. It turns with
+        the arm over the chassis.
     self_locking : bool
         Whether the gear locks itself, as a worm does: then no load turns an arm back, or on faster
         than its motor turns it, whatever the torque limit; that limits what turns the arm. A gear
         that does not lock is taken to turn back without loss.
     track : Track, optional
-        How their tracks are modelled: any model but a chain of shoes. The placements of
+        How their tracks are modelled: any model but a chain of shoes or a closed one, and a
+        `ForceTrack` exactly if that of the robot is one. The placements of
         `HybridWheels` are measured from midway between the arm's axles. None takes the model of the
         robot's track, with two exceptions: for a chain it takes a belt with grousers, and for small
         wheels all round it adds wheels where a tip needs more. If the robot's wheels are placed by

@@ -25,16 +25,18 @@ class TrackOutline(Parameters, path="robot.outline"):
     ----------
     discs : array_like, shape (n, 3)
         [m] Centre x and y in the chassis frame and radius of each disc, in any order. The track
-        must bend round each: a disc inside the hull of the others is refused, and so are more than
-        64 discs.
+        must bend round each: a disc inside the hull of the others is refused, and so are less than
+        2 discs and more than 64.
     axle_distance : float
         [m] Distance of the end axles along the chassis. The end axles are those of the discs that
         reach farthest back and forwards, of two that reach equally far the higher one; the rear one
-        is the sprocket's.
+        is the sprocket's. At least 0.1 mm.
     front_radius, rear_radius : float
-        [m] Radius of the disc on each end axle.
+        [m] Radius of the disc on each end axle. Two discs that are given by these differ by less
+        than their distance, or one would enclose the other.
     grouser_height : float
-        [m] Height of the grousers above the belt; 0 for a smooth belt.
+        [m] Height of the grousers above the belt, less than the smallest radius; 0 for a smooth
+        belt.
     grouser_pitch : float
         [m] Spacing of the grousers along the belt.
     grouser_thickness : float

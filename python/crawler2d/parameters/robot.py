@@ -46,15 +46,17 @@ class Robot(Parameters, path="robot"):
     Parameters
     ----------
     name : str
-        Name shown in tables and plots.
+        Name shown in tables and plots, of at most 1000 characters.
     mass : float
         [kg] Of the whole robot, including both tracks and all flippers.
     center_of_mass : array_like, shape (2,)
         [m] In the chassis frame: that of the outline, x forward, y up.
     moment_of_inertia : float
-        [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0.
+        [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0. More
+        than that of all moving parts, and than `track_mass` times the square of the largest radius.
     track_mass : float
-        [kg] Of both tracks together, all of it moving at track speed.
+        [kg] Of both tracks together, all of it moving at track speed: less than `mass`, and at
+        least a hundred-thousandth of it.
     outline : TrackOutline
         Side view of the track.
     gauge : float
@@ -62,7 +64,8 @@ class Robot(Parameters, path="robot"):
     drivetrain : Drivetrain
         What drives the tracks, and its limits.
     belly : array_like, shape (n, 2), optional
-        [m] Convex polygon in the chassis frame, counter-clockwise; None: it never touches.
+        [m] Convex polygon of 3 to 64 corners in the chassis frame, counter-clockwise; None: it
+        never touches.
     flippers : Flippers, optional
         Pivoting arms, or None. Setting this field alone changes no mass: see `with_flippers`
         and `without_flippers`.

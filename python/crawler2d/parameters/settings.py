@@ -23,7 +23,7 @@ class Hold(Parameters, kind="hold", path="drive.gait"):
     angle : float
         [rad] Relative to the chassis, upwards > 0; of the flippers at both ends.
     schedule : array_like, shape (n, 2), optional
-        Increasing times [s], and the angles [rad] that apply from then on.
+        Up to 10,000 increasing times [s], and the angles [rad] that apply from then on.
     front, rear : float, optional
         [rad] Of the flippers at that end, all the time; None follows `angle` and `schedule`.
 
@@ -83,9 +83,10 @@ class Drive(Parameters, path="drive"):
     Parameters
     ----------
     speed : float
-        [m/s] Track speed; above 0 drives towards +x.
+        [m/s] Track speed; above 0 drives towards +x. No command exceeds the `max_speed` of the
+        drivetrain.
     schedule : array_like, shape (n, 2), optional
-        Increasing times [s], and the speeds [m/s] that apply from then on.
+        Up to 10,000 increasing times [s], and the speeds [m/s] that apply from then on.
     gait : Hold, Climb or callable, optional
         How the flippers move; None holds them where they start. It has no effect on a robot
         without flippers, so that a sweep may remove the flippers and keep the gait. A function is
@@ -113,7 +114,8 @@ class Start(Parameters, path="start"):
     Parameters
     ----------
     approach : float
-        [m] From the robot's foremost point to the first edge at or beyond x = 0.
+        [m] From the robot's foremost point to the first edge at or beyond x = 0. The ground must
+        reach under the whole robot there.
     track_phase : float
         [m] Initial advance of all wheels, or of the belt.
     angle : float
@@ -144,7 +146,8 @@ class Solver(Parameters, path="solver"):
         bodies, joints and motors of the game engine rapier, and is there for comparison (see
         docs/decisions/0016). It holds lines, circumferential and hybrid wheels and force tracks
         without arms; nothing else, no snapshots, and no accuracy: its steps are 0.125 ms unless
-        given.
+        given. All other settings but the time step keep their defaults, and drives have no rotors,
+        no torque that falls with speed, no controllers and no gears that lock.
     contact : {"own", "reference"}
         How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
         queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,
@@ -156,7 +159,8 @@ class Solver(Parameters, path="solver"):
         promises nothing about the whole path. None takes 0.3 um, unless a time step is given.
     time_step : float, optional
         [s] The same length for every step, in place of an accuracy, for comparison. Steps are
-        shorter only where something strikes the ground, a command changes or a run ends.
+        shorter only where something strikes the ground, a command changes or a run ends. No wheel
+        at the largest speed of the tracks, and no flipper, may turn by more than 0.7 rad in a step.
     iterations : int, optional
         Largest number of rounds in the search for forces that satisfy all contacts; each is a
         path of pivots to states that fit all contacts and motors, and settles. None takes 8;
@@ -230,7 +234,8 @@ class SeizureCriteria(Parameters, path="criteria"):
         [rad] Chassis angle at which the robot has tipped over.
     intrusion_depth : float
         [m] Ground inside the envelope of the track is an intrusion if deeper than this, 0 to 0.1.
-        The default is more than round wheels and belts sink in when they strike an edge (0.2 mm).
+        It is less than the smallest radius of the track model, without grousers. The default is
+        more than round wheels and belts sink in when they strike an edge (0.2 mm).
         With 0, the ground that the robot rests on joins the pieces under it.
     intrusion_load : float
         [-] Fraction of the weight above which an intrusion counts as loaded.

@@ -265,7 +265,8 @@ class RandomStepfield(GroundWithEdges, kind="random_stepfield"):
     barrier_height : float
         [m] Height of a barrier across the middle of the field; 0 for none.
     barrier_thickness : float
-        [m] Thickness of the barrier at right angles to its front face.
+        [m] Thickness of the barrier at right angles to its front face. One that is longer than the
+        field begins before x = 0.
     barrier_yaw : float
         [rad] Turn of the barrier, as for `DiagonalBarrier`.
     edge_radius : float
@@ -298,12 +299,14 @@ class Points(GroundWithEdges, kind="points"):
     Parameters
     ----------
     points : array_like, shape (n, 2)
-        [m] Points (x, y) in order, from left to right or from right to left. Vertical faces are
-        allowed, overhangs are not. Any array of real numbers; it is copied.
+        [m] 2 to 200,000 points (x, y) in order, from left to right or from right to left. Vertical
+        faces are allowed, overhangs are not, nor faces that fold back on each other. Any array of
+        real numbers; it is copied.
     goal : float
-        [m] The x that the whole robot must pass.
+        [m] The x that the whole robot must pass, on this ground.
     edge_radius : float
-        [m] Radius of every convex edge; 0 is sharp.
+        [m] Radius of every convex edge; 0 is sharp. A million facets of 1 degree are the most that
+        all edges together may take.
     friction : float
         [-] Coulomb friction between robot and ground.
     segment_friction : array_like, shape (n - 1,), optional
@@ -342,7 +345,8 @@ class Lanes(HasHeights, kind="lanes"):
     """A profile under each track and one under the belly.
 
     Each track has half of the moving track mass and half of the motor force; roll and yaw are held.
-    Equal profiles are simulated as one, with both tracks lumped together.
+    Equal profiles are simulated as one, with both tracks lumped together. All profiles have a
+    stretch of x in common, on which the farther goal of the two tracks lies.
 
     Parameters
     ----------

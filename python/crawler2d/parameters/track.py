@@ -45,14 +45,15 @@ class GearWheel(Parameters, kind="gear", path="robot.track.wheel"):
         Grousers on the wheel, 3 to 200. None takes the whole number that comes closest to the
         robot's grouser pitch on the root circle, or 8 if that number is less than 6.
     grouser_height : float, optional
-        [m] Radius of the wheel less that of its root circle. None takes the robot's grouser height,
-        but at most a quarter of the radius.
+        [m] Radius of the wheel less that of its root circle, which must be left. None takes the
+        robot's grouser height, but at most a quarter of the radius.
     tip_thickness : float, optional
         [m] Thickness of a grouser at its tip. None takes the robot's, reduced in the same
         proportion as the height.
     base_thickness : float, optional
-        [m] Thickness of a grouser at the root circle, at least that at the tip. Its flanks must
-        stay outside that circle. None takes the thickness at the tip: parallel flanks.
+        [m] Thickness of a grouser at the root circle, at least that at the tip. Neighbours must not
+        overlap there, and flanks must stay outside that circle. None takes the thickness at the
+        tip: parallel flanks.
     phase_fraction : float
         [-] Wheel n, counted from 1 at the rear, starts turned by n times this share of the angle
         between two grousers: eq. (1) of the paper, where it is a third.
@@ -155,7 +156,8 @@ class HybridWheels(Parameters, kind="hybrid", path="robot.track"):
     Parameters
     ----------
     placements : array_like, shape (n, 3)
-        [m] Centre x and y in the chassis frame and radius of each wheel, the rearmost first.
+        [m] Centre x and y in the chassis frame and radius of each wheel, the rearmost first; 1 to
+        200 wheels.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
 
@@ -207,8 +209,8 @@ class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
     Parameters
     ----------
     grouser_count : int, optional
-        Grousers per belt, evenly spaced; None takes the whole number that comes closest to the
-        outline's `grouser_pitch`: 22 for the Engineer.
+        Grousers per belt, evenly spaced, 1 to 200; they must fit on it side by side. None takes
+        the whole number that comes closest to the outline's `grouser_pitch`: 22 for the Engineer.
     """
 
     grouser_count: int | None = None
@@ -250,14 +252,15 @@ class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
     shoe_count : int, optional
         Shoes per chain, 3 to 400; None takes the whole number that comes closest to the outline's
         `grouser_pitch`: 22 for the Engineer. A shoe must not be longer than the diameter of the
-        smallest disc, half the axle distance or a straight run, and must weigh at least 1/3000 of
-        the rest of the robot.
+        smallest disc, half the axle distance or a straight run, also if the chain is a tenth longer
+        than the belt in its place; and it must weigh at least 1/3000 of the rest of the robot.
     mechanism : {"guide", "sprocket"}
         What the chain runs on and what drives it.
     shoe_shape : {"rectangle", "trapezoid"}
         A flat plate with a grouser in the middle, or one body that tapers from the pins to the tip.
     plate_thickness : float, optional
-        [m] Thickness of the plates. None takes 1/16 of the pitch, our assumption.
+        [m] Thickness of the plates, less than the smallest radius without its grousers. None takes
+        1/16 of the pitch, our assumption.
     pre_tension : float, optional
         [N] Force of the tensioner of one track. None takes 1/40 of the robot's weight, our
         assumption: much more would lift the robot over the corners of the polygon.
@@ -355,7 +358,8 @@ class ClosedTrack(Parameters, kind="closed", path="robot.track"):
         The model round whose bodies it runs; not a closed one.
     surface : {"own", "smooth"}
         "own": grousers where the model has some, as high as the model's, as thick and as far apart
-        as the outline's, within the same circles; none if that thickness is 0. "smooth": none.
+        as the outline's, within the same circles, at most 200; none if that thickness is 0.
+        "smooth": none.
 
     Examples
     --------
