@@ -127,6 +127,12 @@ def test_what_cannot_be_closed_is_refused(track: Any, path: str, rule: str) -> N
     assert error.rule.startswith(rule)
 
 
+def test_a_chain_of_too_light_shoes_is_refused_at_the_mass_of_tracks_when_closed_too() -> None:
+    for track in (c2d.SegmentalTrack(shoe_count=400), c2d.SegmentalTrack(shoe_count=399)):
+        for model in (track, c2d.ClosedTrack(track)):
+            assert refusal(lambda m=model: ROBOT.with_track(m)).path == "robot.track_mass"  # type: ignore[misc]
+
+
 def test_arms_alone_are_not_closed() -> None:
     robot = with_flippers(c2d.LineOfWheels(5), c2d.ClosedTrack(c2d.LineOfWheels(3)))
     error = refusal(robot)

@@ -123,6 +123,12 @@ def test_a_rounded_terrain_keeps_its_height() -> None:
         assert set(made["edges"]["radius"][~convex]) == {0.0}
 
 
+def test_a_field_takes_a_barrier_hundreds_of_metres_longer_than_itself() -> None:
+    terrain = c2d.terrains.stepfield_with_barrier(3, height=0.05, thickness=400.0, yaw=0.0)
+    heights = terrain.height_at([-250.0, -199.0, 199.0, 250.0], lane="left", gauge=0.3)
+    assert heights.tolist() == [0.0, 0.05, 0.05, 0.0]
+
+
 @pytest.mark.parametrize(
     ("terrain", "path", "largest"),
     [

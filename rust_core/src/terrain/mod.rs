@@ -94,8 +94,10 @@ impl Ground {
     /// Level tops and vertical faces under the left track, the right one and the belly.
     fn skylines(lanes: &[Skyline; 3], surface: Surface) -> Result<Self, ScenarioError> {
         let end = lanes[2].end();
+        // A barrier that is longer than its field begins before it.
+        let begin = lanes[2].begin().min(0.0);
         let profile = |skyline: &Skyline| {
-            let points = skyline.points(-RUN_OUT.value(), end + RUN_OUT.value());
+            let points = skyline.points(begin - RUN_OUT.value(), end + RUN_OUT.value());
             Profile::new("terrain", &points, surface, true)
         };
         if lanes[0] == lanes[1] {

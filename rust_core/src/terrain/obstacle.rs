@@ -154,6 +154,11 @@ impl Skyline {
         }
     }
 
+    /// [m] The x at which it begins.
+    pub(super) fn begin(&self) -> f64 {
+        self.rises[0][0]
+    }
+
     /// [m] The x at which it ends.
     pub(super) fn end(&self) -> f64 {
         self.rises[self.rises.len() - 1][0]

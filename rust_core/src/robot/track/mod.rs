@@ -59,16 +59,23 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
                 track: (*closed.of).clone(),
                 ..robot.clone()
             };
-            return build(&open).map_err(|error| ScenarioError {
-                path: error.path.replacen("robot.track", "robot.track.of", 1),
-                ..error
-            });
+            return build(&open).map_err(|error| moved(error, "robot.track.of"));
         }
     }?;
     if let Some(flippers) = &robot.flippers {
         add_flipper_tracks(robot, flippers, &mut track)?;
     }
     Ok(track)
+}
+
+/// An error about a field of a track that is at another path; others, such as one about the track's mass, stay.
+fn moved(error: ScenarioError, to: &str) -> ScenarioError {
+    let field = error.path.strip_prefix("robot.track.");
+    let path = field.map(|field| format!("{to}.{field}"));
+    ScenarioError {
+        path: path.unwrap_or(error.path),
+        ..error
+    }
 }
 
 /// Adds the tracks of the arms to the track of a robot, whose motors drive them.
@@ -78,12 +85,8 @@ fn add_flipper_tracks(
     track: &mut TrackModel,
 ) -> Result<(), ScenarioError> {
     for (number, end) in flippers.ends().enumerate() {
-        let own = of_arm(robot, flippers, end).map_err(|error| ScenarioError {
-            path: error
-                .path
-                .replacen("robot.track", "robot.flippers.track", 1),
-            ..error
-        })?;
+        let own =
+            of_arm(robot, flippers, end).map_err(|error| moved(error, "robot.flippers.track"))?;
         let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
         // One motor per track drives its flippers, too; free wheels turn independently. A chain cannot share a motor
         // with a belt, because its motor has no spin to turn one with.
