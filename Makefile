@@ -115,7 +115,7 @@ format: $(VENV)/.dependencies ## format all code
 
 build: $(VENV)/.built ## the compiled core, in place
 
-fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, 120,000 model files and meshes read, minutes; other ones with CRAWLER2D_FUZZ_SEED=...
+fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, as many held to the rules, 10,000 run, 120,000 model files and meshes read, minutes; other ones with CRAWLER2D_FUZZ_SEED=...
 	$(BIN)/python -m pytest -m soak tests/fuzz
 
 map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other

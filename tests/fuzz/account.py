@@ -16,7 +16,7 @@ SEED = int(os.environ.get("CRAWLER2D_FUZZ_SEED", "1"))
 def cases(name: str, usual: int) -> int:
     """How many cases the long form of a test has, unless an environment variable says.
 
-    It is named after TEXTS, OBJECTS, RUNS, MODELS, MESHES, MJCF, XACRO or CHILDREN.
+    It is named after TEXTS, OBJECTS, RULES, RUNS, MODELS, MESHES, MJCF, XACRO or CHILDREN.
     """
     return int(os.environ.get(f"CRAWLER2D_FUZZ_{name}", usual))
 
