@@ -86,6 +86,11 @@ MORE = [
     Scenario(ROBOT.with_track(c2d.SegmentalTrack(plate_thickness=0.004)), STEP),
     Scenario(ROBOT.with_track(c2d.ClosedTrack(c2d.SegmentalTrack(shoe_count=36))), STEP),
     Scenario(ROBOT.with_track(c2d.CircumferentialWheels(14)), STEP),
+    Scenario(ROBOT.with_track(c2d.GrouserBeltTrack(grouser_count=40)), STEP),
+    Scenario(
+        ROBOT.with_track(c2d.LineOfWheels(3, wheel=dataclasses.replace(GEAR, grouser_count=5))),
+        STEP,
+    ),
     Scenario(
         ROBOT.with_track(c2d.HybridWheels(PLACEMENTS, wheel=GEAR)),
         c2d.terrains.gap(0.2),

@@ -150,7 +150,8 @@ def _check_gear(path: str, wheel: Json, outline: Outline, radius: float, v: Verd
     of_outline = "robot.outline.grouser_"
     to, rule = at if given is not None else f"{of_outline}height", "a gear wheel has grousers"
     must(v.at_least(rule, at, height, 0.0, more=True, at=to))
-    must(v.at_most("grousers leave a root circle", at, height, radius, less=True))
+    rule = "grousers leave a root circle"
+    must(v.at_most(rule, at, height, radius, less=True, exact=False))
     root = radius - height
     count = wheel["grouser_count"]
     if count is None:
