@@ -139,6 +139,13 @@ JOINED: list[tuple[str | Scenario, dict[str, Json]]] = [
     (MORE[0], {"terrain": {**_profile(LEVEL), "segment_friction": [0.5] * 3}}),
     (MORE[3], {"robot.drivetrain.self_locking": True}),
     ("belt-on-discs-step", {"robot.track": FORCE}),
+    ("belt-on-discs-step", {"robot.track": {**CHAIN, "mechanism": "sprocket"}}),
+    ("segmental-step", {"robot.track.road_wheel_count": 3}),
+    ("segmental-step", {"solver.restitution": 0.5}),
+    (
+        "belt-on-discs-step",
+        {"robot.outline.discs": [[-5e-5, 0, 0.06], [5.0000001e-5, 0, 0.06], [0, -0.05, 0.05]]},
+    ),
     ("belt-step", {"solver.accuracy": None}),
     ("belt-points", {"terrain.points": [[0, 0], [0, 1]]}),
     ("belt-points", {"terrain.points": [[0, 0], [0, 0]]}),

@@ -19,15 +19,21 @@ def check(scenario: Json, verdict: Verdict) -> None:
     if isinstance(robot, dict):
         _check_robot(robot, v)
     _check_lanes(scenario.get("terrain"), v)
-    if v.is_clean("drive"):
-        _check_times("drive.schedule", scenario["drive"]["schedule"], v)
-        gait = scenario["drive"]["gait"]
-        if gait is not None and gait["kind"] == "hold":
-            _check_times("drive.gait.schedule", gait["schedule"], v)
+    _check_schedules(scenario.get("drive"), v)
     if v.is_clean("solver"):
         _check_steps(scenario["solver"], v)
     if v.is_clean("drive", "robot.drivetrain") and isinstance(robot, dict):
         _check_speeds(scenario["drive"], robot["drivetrain"]["max_speed"], v)
+
+
+def _check_schedules(drive: Json, v: Verdict) -> None:
+    """Each where it can be read itself."""
+    if isinstance(drive, dict):
+        if v.is_clean("drive.schedule"):
+            _check_times("drive.schedule", drive.get("schedule"), v)
+        gait: Json = drive.get("gait")
+        if _kind(gait) == "hold" and v.is_clean("drive.gait.schedule"):
+            _check_times("drive.gait.schedule", gait.get("schedule"), v)
 
 
 def _check_times(path: str, rows: Json, v: Verdict) -> None:
@@ -123,6 +129,11 @@ def _check_robot(robot: Json, v: Verdict) -> None:
         _check_outline(robot["outline"], v)
     if v.is_clean("robot.belly") and robot["belly"] is not None:
         _check_belly(robot["belly"], v)
+    drivetrain = robot.get("drivetrain")
+    if isinstance(drivetrain, dict):
+        curve, most = drivetrain.get("torque_curve"), "robot.drivetrain.max_torque"
+        if curve and v.is_clean("robot.drivetrain.torque_curve", most):
+            _check_curve(curve, drivetrain["max_torque"], v)
     if v.is_clean("robot.drivetrain"):
         _check_drivetrain(robot["drivetrain"], v)
     _check_track("robot.track", robot.get("track"), v)
@@ -194,11 +205,13 @@ def _check_drivetrain(drivetrain: Json, v: Verdict) -> None:
     curve, locking = drivetrain.get("torque_curve"), drivetrain.get("self_locking", False)
     if drivetrain.get("controller") is not None:
         v.need("no controller on a gear that locks", f"{path}.self_locking", not locking)
-    if curve is None:
-        return
-    none = drivetrain.get("no_load_speed") is None
-    v.need("a curve or a speed without load", f"{path}.no_load_speed", none)
-    at, most = f"{path}.torque_curve", drivetrain["max_torque"]
+    if curve is not None:
+        none = drivetrain.get("no_load_speed") is None
+        v.need("a curve or a speed without load", f"{path}.no_load_speed", none)
+
+
+def _check_curve(curve: Json, most: float, v: Verdict) -> None:
+    at = "robot.drivetrain.torque_curve"
     v.need("a curve starts at rest", f"{at}[0][0]", curve[0][0] == 0.0)
     same = abs(curve[0][1] - most) <= 1e-9 * most
     v.need("a curve starts with the largest torque", f"{at}[0][1]", same)
