@@ -1,9 +1,11 @@
 """Stores that tests damage, and what can be read of them."""
 
 import contextlib
+import hashlib
 import os
 import sqlite3
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +34,19 @@ def read(path: Path) -> dict[str, str]:
     kept = [(row.identity, told(row, build, trials)) for row, build, trials in stored_rows(path)]
     assert len(dict(kept)) == len(kept)
     return dict(kept)
+
+
+def bits(path: Path) -> dict[str, str]:
+    """The same without what differs from one computation to the next: the computing time."""
+    return {
+        row.identity: told(replace(row, wall_time=0.0), build, trials)
+        for row, build, trials in stored_rows(path)
+    }
+
+
+def hash_of(path: Path) -> str:
+    """Hash these rows, sorted by identity."""
+    return hashlib.sha256(repr(sorted(bits(path).items())).encode()).hexdigest()
 
 
 def told(row: Row, *more: Any) -> str:

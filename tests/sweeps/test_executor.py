@@ -12,24 +12,26 @@ from concurrent.futures import (
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.sweeps import collect
-from crawler2d.sweeps import collect as chunk
 from crawler2d.sweeps.store import stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
 
+KILLED = BrokenExecutor("a worker was killed")
+
+
 class Unreliable(Executor):
     """Runs at once, but loses the first `losses` tasks after that many others."""
 
-    def __init__(self, losses: int, after: int = 0, error: Exception | None = None) -> None:
-        self.losses, self.after = losses, after
-        self.error = error or BrokenExecutor("a worker was killed")
+    def __init__(self, losses: int, after: int = 0, error: BaseException = KILLED) -> None:
+        self.losses, self.after, self.error = losses, after, error
 
     def submit(self, call: Any, /, *args: Any, **options: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -67,14 +69,51 @@ def test_rows_of_threads_are_those_of_one_thread(plain: xr.Dataset) -> None:
         xr.testing.assert_identical(plain, swept(executor))
 
 
-def test_a_lost_worker_costs_nothing_but_its_time(plain: xr.Dataset) -> None:
-    xr.testing.assert_identical(plain, swept(Unreliable(losses=4)))
+@pytest.mark.parametrize("error", [KILLED, KeyboardInterrupt()], ids=["killed", "interrupted"])
+def test_a_lost_worker_costs_nothing_but_its_time(plain: xr.Dataset, error: BaseException) -> None:
+    """Also one that was interrupted, which once counted as Ctrl-C of the user."""
+    xr.testing.assert_identical(plain, swept(Unreliable(losses=4, error=error)))
+
+
+class Poisoned(Executor):
+    """Runs at once, but loses every task with one of two runs in it."""
+
+    def __init__(self) -> None:
+        self.poison: list[str] = []
+
+    def submit(self, call: Any, /, *args: Any, **options: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        texts = args[0]
+        self.poison = self.poison or [texts[3], texts[5]]
+        if set(self.poison) & set(texts):
+            future.set_exception(KILLED)
+        else:
+            future.set_result(call(*args, **options))
+        return future
+
+
+def test_runs_that_kill_their_workers_take_no_others_with_them(
+    plain: xr.Dataset, tmp_path: Path
+) -> None:
+    store, poisoned = tmp_path / "a.sqlite", Poisoned()
+    found = swept(poisoned, on_error="record", store=store)
+    failed = found["outcome"].to_numpy() == "failed"
+    assert np.argwhere(failed).tolist() == [[0, 0, 3], [0, 0, 5]]
+    errors = set(found["error"].to_numpy()[failed])
+    assert errors == {"none of 3 attempts gave a result: BrokenExecutor: a worker was killed"}
+    with pytest.raises(c2d.errors.InternalError, match="none of 3 attempts") as caught:
+        swept(poisoned, store=store)
+    assert caught.value.__notes__ == ["in cell[track=belt, height=0.03, repeat=3]"]
+    assert len(list(stored_rows(store))) == 30
+    with ThreadPoolExecutor(1) as executor:
+        xr.testing.assert_identical(plain, swept(executor, store=store))
 
 
 def test_workers_lost_for_good_leave_what_was_finished_in_the_store(
     plain: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(collect, "_CHUNK", 4)
+    monkeypatch.setattr(collect, "_GIVEN_UP", 10)
     store = tmp_path / "a.sqlite"
     with pytest.raises(
         c2d.errors.InternalError, match=r"executor failed \(BrokenExecutor: .*another executor"
@@ -101,18 +140,26 @@ def test_a_killed_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_ctrl_c_keeps_what_came_back() -> None:
+    def interrupt(done: int, _total: int) -> None:
+        if done:
+            raise KeyboardInterrupt
+
     with pytest.raises(c2d.BatchInterrupted) as caught:
-        swept(Unreliable(losses=1, error=KeyboardInterrupt()))  # type: ignore[arg-type]
+        swept(Unreliable(losses=0), progress=interrupt)
     table = c2d.table(caught.value.runs)
     assert table.sizes == {"run": 32}
     failed = table["outcome"] == "failed"
-    assert 0 < failed.sum() <= 32
+    assert 0 < failed.sum() < 32
     assert "interrupted" in str(table["error"].values[failed][0])
 
 
-def test_a_worker_of_another_build_is_refused() -> None:
-    with pytest.raises(c2d.errors.InternalError, match="another build of crawler2d"):
-        chunk.simulate_chunk([BASE.to_json()], (), "0123")
+def test_an_error_of_the_progress_is_no_fault_of_the_executor() -> None:
+    def report(done: int, _total: int) -> None:
+        if done:
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        swept(Unreliable(losses=0), progress=report)
 
 
 def test_what_is_no_executor_is_refused() -> None:

@@ -8,8 +8,8 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any, Self, cast
 
 from crawler2d import _core
+from crawler2d.common.units import METRICS
 from crawler2d.errors import (
-    Crawler2dError,
     InternalError,
     RunUnfinished,
     ScenarioError,
@@ -17,9 +17,11 @@ from crawler2d.errors import (
     StoreError,
 )
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import Row
 from crawler2d.runs.batch import BatchInterrupted
 from crawler2d.runs.run import Run
+from crawler2d.sweeps.dask import reliable
 from crawler2d.sweeps.database import Place
 from crawler2d.sweeps.plan import Checked
 from crawler2d.sweeps.store import Store
@@ -29,31 +31,49 @@ __all__ = ["Batch", "Collector", "RowsInterrupted", "runs_of", "simulate_chunk"]
 
 def simulate_chunk(
     texts: Sequence[str], trials: Sequence[str], build: str
-) -> list[dict[str, Any] | None]:
-    """Simulate a few valid scenarios on one thread; an interrupted run is None.
+) -> tuple[str, list[tuple[str, dict[str, Any] | None]]]:
+    """Simulate a few valid scenarios on one thread, unless another build of the core shall.
 
-    Raises
-    ------
-    InternalError
-        If the worker has another build of the core, whose bits may differ.
+    Parameters
+    ----------
+    texts : sequence of str
+        The scenarios, as JSON.
+    trials : sequence of str
+        What to try at a stop.
+    build : str
+        The build of the core whose bits are wanted.
+
+    Returns
+    -------
+    build : str
+        That of this process; if it is another one, nothing was simulated.
+    answers : list of (str, dict or None)
+        The identity of each scenario, and its result; None if it was interrupted.
     """
-    own = str(_core.build_info()["build_id"])
+    own = _build()
     if own != build:
-        raise InternalError(f"a worker has another build of crawler2d ({own}, not {build})")
+        return own, []
     results: dict[int, dict[str, Any]] = {}
     checked = [_core.Passed(text) for text in texts]
     _core.simulate_many(checked, 1, 0.01, "row", list(trials), results.update)
-    return [results.get(index) for index in range(len(texts))]
+    return own, [(each.identity, results.get(index)) for index, each in enumerate(checked)]
+
+
+def _build() -> str:
+    """Return the identity of the core of this process."""
+    return str(_core.build_info()["build_id"])
 
 
 # Runs per task of an executor: milliseconds to seconds of work, little to send.
 _CHUNK = 25
 # Tasks submitted at once: more than any executor of this size of work has workers.
 _OUT = 256
-# How often a task is submitted before the loss of its worker ends the batch.
-_ATTEMPTS = 5
+# How often a run is submitted: at first with others, then alone. Dask makes four attempts of each.
+_ATTEMPTS = 3
+# As many runs in a row without an answer are the fault of the executor, not of the runs.
+_GIVEN_UP = 100
 
-Take = Callable[[list[tuple[int, dict[str, Any]]]], None]
+Take = Callable[[list[Row]], None]
 
 
 class RowsInterrupted(KeyboardInterrupt):
@@ -92,7 +112,8 @@ class Collector:
         threads: int = 1,
     ) -> None:
         self._trials = list(trials)
-        self._executor, self._threads = executor, threads
+        self._executor = None if executor is None else reliable(executor)
+        self._threads = threads
         self._store = None if store is None else Store(store, trials)
 
     def __enter__(self) -> Self:
@@ -121,16 +142,13 @@ class Collector:
         StoreError
             If the store cannot be written any longer; its `runs` have what was simulated.
         InternalError
-            If the executor lost its workers; what was finished is in the store.
+            If the executor takes no more tasks, comes to nothing with all of them, or has workers
+            of another build; what was finished is in the store.
         """
         missing = batch.missing
         _core.warn(missing)
 
-        def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
-            rows = [
-                Row.of_result(missing[index].identity, missing[index].text, result)
-                for index, result in finished
-            ]
+        def take(rows: list[Row]) -> None:
             new = batch.take(rows)
             if self._store is not None:
                 self._store.add(row for row in rows if _is_reproducible(row))
@@ -138,9 +156,7 @@ class Collector:
 
         try:
             if self._executor is None:
-                interrupted = _core.simulate_many(
-                    missing, self._threads, 0.01, "row", self._trials, take
-                )
+                interrupted = _simulate_here(missing, self._trials, self._threads, take)
             else:
                 interrupted = _simulate_by_executor(self._executor, missing, self._trials, take)
         except StoreError as error:
@@ -221,47 +237,119 @@ def _is_reproducible(row: Row) -> bool:
     return row.error is None or isinstance(row.error, SimulationDiverged)
 
 
+def _simulate_here(
+    missing: list[_core.Passed], trials: Sequence[str], threads: int, take: Take
+) -> bool:
+    """Simulate the runs on threads of this process; returns whether Ctrl-C ended it."""
+
+    def take_results(finished: list[tuple[int, dict[str, Any]]]) -> None:
+        take([_row(missing[index], result) for index, result in finished])
+
+    return _core.simulate_many(missing, threads, 0.01, "row", list(trials), take_results)
+
+
 def _simulate_by_executor(
     executor: Executor, missing: Sequence[_core.Passed], trials: Sequence[str], take: Take
 ) -> bool:
-    """Submit the runs in chunks, and take the results in any order.
+    """Submit the runs in chunks, and take the rows in any order; returns whether Ctrl-C ended it.
 
-    A chunk whose worker is lost is submitted again. Returns whether Ctrl-C ended it.
+    The runs of a task that came to nothing are submitted again, each alone, for one of them may be
+    what kills its workers. After some attempts it has an error for its result.
     """
-    build = str(_core.build_info()["build_id"])
-    due = deque((begin, _ATTEMPTS) for begin in range(0, len(missing), _CHUNK))
-    out: dict[Future[list[dict[str, Any] | None]], tuple[int, int]] = {}
+    build = _build()
+    due = deque((missing[k : k + _CHUNK], 1) for k in range(0, len(missing), _CHUNK))
+    out: dict[Future[Any], tuple[Sequence[_core.Passed], int]] = {}
+    given_up = 0
     try:
         while due or out:
             while due and len(out) < _OUT:
-                begin, attempts = due.popleft()
-                texts = [each.text for each in missing[begin : begin + _CHUNK]]
-                future = executor.submit(simulate_chunk, texts, list(trials), build)
-                out[future] = (begin, attempts - 1)
+                runs, attempt = due.popleft()
+                texts = [each.text for each in runs]
+                out[_submit(executor, texts, list(trials), build)] = runs, attempt
             for future in wait(out, return_when=FIRST_COMPLETED).done:
-                begin, attempts = out.pop(future)
-                lost = future.exception()
-                if isinstance(lost, KeyboardInterrupt):
-                    return True
-                if isinstance(lost, InternalError) or (lost is not None and attempts == 0):
-                    raise lost
-                if lost is not None:
-                    due.append((begin, attempts))
-                    continue
-                results = future.result()
-                take([(begin + k, r) for k, r in enumerate(results) if r is not None])
-                if None in results:
-                    return True
+                runs, attempt = out.pop(future)
+                try:
+                    rows = _read_answer(future, runs, build)
+                    given_up = 0
+                except _LostTask as lost:
+                    if attempt < _ATTEMPTS:
+                        due.extend(([each], attempt + 1) for each in runs)
+                        continue
+                    given_up += 1
+                    if given_up == _GIVEN_UP:
+                        raise _failed(lost) from lost
+                    error = InternalError(f"none of {attempt} attempts gave a result: {lost}")
+                    rows = [Row.of_error(error, each.identity, each.text) for each in runs]
+                take(rows)
     except KeyboardInterrupt:
         return True
-    except Crawler2dError:
-        raise
-    except Exception as error:
-        raise InternalError(
-            f"the executor failed ({type(error).__name__}: {error}); a store keeps the finished"
-            " runs: the same call with another executor continues from there"
-        ) from error
     finally:
         for future in out:
             future.cancel()
     return False
+
+
+def _submit(executor: Executor, *args: Any) -> Future[Any]:
+    try:
+        return executor.submit(simulate_chunk, *args)
+    except Exception as error:
+        raise _failed(f"{type(error).__name__}: {error}") from error
+
+
+def _failed(why: object) -> InternalError:
+    return InternalError(
+        f"the executor failed ({why}); a store keeps the finished runs: the same call with another"
+        " executor continues from there"
+    )
+
+
+class _LostTask(Exception):
+    """A task came to nothing; the text says why."""
+
+
+def _read_answer(future: Future[Any], runs: Sequence[_core.Passed], build: str) -> list[Row]:
+    """Make rows of an answer, which must be one to these runs.
+
+    Raises
+    ------
+    _LostTask
+        If it is not, or there is none.
+    InternalError
+        If it is that of another build, whose bits may differ.
+    """
+    if future.cancelled():
+        raise _LostTask("its executor cancelled it")
+    error = future.exception()
+    if error is not None:
+        raise _LostTask(f"{type(error).__name__}: {error}")
+    try:
+        answer = future.result()
+        if not isinstance(answer, tuple):
+            raise TypeError(f"it is a {type(answer).__name__}")
+        own, answers = answer
+        if own != build:
+            raise InternalError(f"a worker has another build of crawler2d ({own}, not {build})")
+        return [_read_row(run, *answer) for run, answer in zip(runs, answers, strict=True)]
+    except (AttributeError, LookupError, TypeError, ValueError) as fault:
+        text = f"its answer cannot be read ({type(fault).__name__}: {fault})"
+        raise _LostTask(text) from fault
+
+
+def _read_row(run: _core.Passed, identity: str, result: dict[str, Any] | None) -> Row:
+    """Make the row of a run of what a worker sent."""
+    if identity != run.identity:
+        raise ValueError(f"it is of the run {str(identity)[:12]}, not {run.identity[:12]}")
+    if result is None:
+        raise ValueError("the worker was interrupted")
+    row = _row(run, result)
+    if row.error is None:
+        Outcome(row.outcome)
+        figures = [*row.metrics.values(), row.wall_time]
+        if row.metrics.keys() != METRICS.keys() or {*map(type, figures)} != {float}:
+            raise ValueError("its figures are others")
+        row.read_diagnosis()
+    return row
+
+
+def _row(run: _core.Passed, result: dict[str, Any]) -> Row:
+    return Row.of_result(run.identity, run.text, result)

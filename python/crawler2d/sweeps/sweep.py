@@ -89,7 +89,10 @@ def sweep(
     executor : concurrent.futures.Executor, optional
         Where to simulate instead: ``ProcessPoolExecutor()``, or ``client.get_executor()`` of Dask.
         Its workers need the same build of crawler2d; each takes some runs at a time, on one
-        thread. Rows are the same as without.
+        thread. Rows are the same as without. Runs of a worker that is lost are submitted again,
+        each alone; one that is lost three times is an `InternalError` of that run. There is no
+        time limit: a cluster knows better than a sweep whether a worker hangs, and after Ctrl-C
+        the same call goes on where it was.
     wall_time : bool
         Whether to add the computing time. It differs from run to run, so that tables with it cannot
         be merged where they overlap.
@@ -112,7 +115,7 @@ def sweep(
         Every column has every dimension.
 
         - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
-          memory, or a fault of the program), and `error` says why;
+          memory, its workers were lost, or a fault of the program), and `error` says why;
         - of a stop, else "", False, NaN or -1: `symptom`, `passing`, `mechanism`, `jammed` and
           `belly_side` as in `Diagnosis`; where it is: `stop_x` [m], `stop_angle` [rad]; and where
           ground is inside a track: `stop_edge`, `stop_side`, `stop_carrier`, `stop_bodies`, such as
@@ -139,7 +142,9 @@ def sweep(
         If the store is none, is damaged, is written by another process, or cannot grow. What it
         holds is kept, and `runs` of the error has what was simulated since.
     InternalError
-        If the executor lost its workers for good; what was finished is in the store.
+        If the executor takes no more tasks, or one of its workers has another build of crawler2d,
+        which the message names; or if workers are lost each time that they simulate a run, which a
+        note names. What was finished is in the store.
     BatchInterrupted
         On Ctrl-C; its `runs`, cell by cell, holds the finished runs and the other scenarios;
         `table` arranges them.
