@@ -1,0 +1,391 @@
+"""Which numbers of a file change with its wheels, by which factor, and what cannot be changed."""
+
+import re
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.patching.patch import _check, patch_file
+from tests.patching.test_patch import on_chassis
+from tests.reading.carts import FILES, WHEELS, pair, quietly, urdf
+
+CART = {
+    name: (FILES / f"cart.{name}").read_text(encoding="utf-8") for name in ("urdf", "sdf", "xml")
+}
+
+
+def read(folder: Path, text: str, suffix: str) -> c2d.Reading:
+    path = folder / f"cart.{suffix}"
+    path.write_text(text, encoding="utf-8")
+    return quietly(path)
+
+
+def paths(text: str) -> list[tuple[str, str, str]]:
+    """Every attribute and text of a file, in its order: element, path and value."""
+    found = []
+
+    def walk(element: ElementTree.Element, path: str) -> None:
+        path = f"{path}/{element.tag}"
+        found.extend((f"{path}@{name}", value) for name, value in element.attrib.items())
+        found.append((path, (element.text or "").strip()))
+        for child in element:
+            walk(child, path)
+
+    walk(ElementTree.fromstring(text), "")
+    return [(path.rpartition("/")[2], path, value) for path, value in found]
+
+
+def factors(old: str, new: str) -> dict[str, set[tuple[float, ...]]]:
+    """By what the numbers of a file were multiplied, of each element or attribute that differs."""
+    changed: dict[str, set[tuple[float, ...]]] = defaultdict(set)
+    before, after = paths(old), paths(new)
+    assert [each[1] for each in before] == [each[1] for each in after]
+    for (name, _, was), (_, _, now) in zip(before, after, strict=True):
+        if was != now:
+            numbers = [[float(word) for word in value.split()] for value in (was, now)]
+            pairs = zip(*numbers, strict=True)
+            changed[name].add(tuple(round(b / a, 9) if a else b for a, b in pairs))
+    return dict(changed)
+
+
+def resized(reading: c2d.Reading, radius: float) -> str:
+    return patch_file(reading, on_chassis(reading, 3, radius)).text
+
+
+SIZE, SQUARE = 0.8, 0.64  # of a radius of 0.1 m in place of 0.125 m
+"""Mass stays; at the same force and speed torques are in proportion, angular speeds the inverse."""
+
+
+def test_smaller_wheels_of_a_urdf_scale_with_their_radius(tmp_path: Path) -> None:
+    reading = read(tmp_path, CART["urdf"], "urdf")
+    assert factors(reading.text, resized(reading, 0.1)) == {
+        "cylinder@radius": {(SIZE,)},
+        "limit@effort": {(SIZE,)},
+        "limit@velocity": {(1.0 / SIZE,)},
+        **{f"inertia@{name}": {(SQUARE,)} for name in ("ixx", "iyy", "izz")},
+        **{f"inertia@{name}": {(0.0,)} for name in ("ixy", "ixz", "iyz")},
+    }
+
+
+def test_smaller_wheels_of_an_sdf_scale_with_their_radius(tmp_path: Path) -> None:
+    reading = read(tmp_path, CART["sdf"], "sdf")
+    assert factors(reading.text, resized(reading, 0.1)) == {
+        "radius": {(SIZE,)},
+        "effort": {(SIZE,)},
+        "velocity": {(1.0 / SIZE,)},
+        **{name: {(SQUARE,)} for name in ("ixx", "iyy", "izz")},
+    }
+
+
+def test_smaller_wheels_of_an_mjcf_scale_with_their_radius(tmp_path: Path) -> None:
+    reading = read(tmp_path, CART["xml"], "xml")
+    assert factors(reading.text, resized(reading, 0.1)) == {
+        "geom@size": {(SIZE, 1.0)},
+        "inertial@diaginertia": {(SQUARE,) * 3},
+        "velocity@kv": {(SQUARE,)},
+        "velocity@forcerange": {(SIZE,) * 2},
+        "velocity@ctrlrange": {(1.0 / SIZE,) * 2},
+    }
+
+
+SHARE = 0.75
+"""Of three wheels on a side that become four; those of the flippers stay."""
+
+
+@pytest.mark.parametrize("suffix", CART)
+def test_wheels_and_their_copies_share_mass_and_torque(suffix: str, tmp_path: Path) -> None:
+    reading = read(tmp_path, CART[suffix], suffix)
+    text = patch_file(reading, on_chassis(reading, 4)).text
+    count = {"urdf": "limit@effort", "sdf": "effort", "xml": "velocity@forcerange"}[suffix]
+    effort = "-3.75 3.75" if suffix == "xml" else "3.75"
+    mass = {"urdf": "mass@value", "sdf": "mass", "xml": "inertial@mass"}[suffix]
+    found = defaultdict(list)
+    for name, _, value in paths(text):
+        found[name].append(value)
+    assert found[mass].count(str(SHARE)) == found[count].count(effort) == 8
+
+
+def names(text: str) -> set[str]:
+    return set(re.findall(r'name="(\w+_added\w*)"', text))
+
+
+def test_copies_of_one_wheel_have_names_of_their_own(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS), "urdf")
+    found = names(patch_file(reading, on_chassis(reading, 5)).text)
+    assert {name for name in found if name.startswith("left_front") and "joint" not in name} == {
+        "left_front_added"
+    }
+    assert {name for name in found if name.startswith("left_rear") and "joint" not in name} == {
+        "left_rear_added",
+        "left_rear_added_2",
+    }
+
+
+def test_a_wheel_without_an_origin_gets_one(tmp_path: Path) -> None:
+    held = "".join(
+        f"""<link name="{side}_holder"/><joint name="{side}_arm" type="fixed"><parent link="hull"/>
+        <child link="{side}_holder"/><origin xyz="0.02 {y} 0"/></joint>"""
+        for side, y in (("left", 0.15), ("right", -0.15))
+    )
+    middle = pair("middle", 0.0)
+    for side in ("left", "right"):
+        middle = re.sub(
+            rf'<parent link="hull"/>(<child link="{side}_middle"/>)\s*<origin [^>]*/>',
+            rf'<parent link="{side}_holder"/>\1',
+            middle,
+        )
+    assert middle.count("<origin xyz") == 0
+    reading = read(tmp_path, urdf(WHEELS, held, middle), "urdf")
+    text = patch_file(reading, on_chassis(reading, 3)).text
+    assert text.count('<origin xyz="-0.02 0 0"/>') == 2
+    assert factors(reading.text, text.replace('<origin xyz="-0.02 0 0"/>', "")) == {}
+
+
+DRIVERS = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
+
+
+@pytest.mark.parametrize("setting", DRIVERS)
+def test_each_name_of_a_size_in_a_plugin_is_known(setting: str, tmp_path: Path) -> None:
+    plugin = f"""<gazebo><plugin name="d" filename="d.so"><left_joint>left_front_joint</left_joint>
+<{setting}>0.08</{setting}></plugin></gazebo>"""
+    reading = read(tmp_path, urdf(WHEELS, plugin), "urdf")
+    text = patch_file(reading, on_chassis(reading, 2, 0.1)).text
+    assert f"<{setting}>0.1</{setting}>" in text
+
+
+@pytest.mark.parametrize("setting", ["num_wheel_pairs", "wheel_torque", "max_wheel_torque"])
+def test_each_setting_that_counts_wheels_is_left_by_name(setting: str, tmp_path: Path) -> None:
+    plugin = f"""<gazebo><plugin name="d" filename="d.so">
+<{setting}>4</{setting}></plugin></gazebo>"""
+    reading = read(tmp_path, urdf(WHEELS, plugin), "urdf")
+    patch = patch_file(reading, on_chassis(reading, 3))
+    line = 1 + reading.text[: reading.text.index(f"<{setting}>")].count("\n")
+    assert patch.left == (f"{setting} in line {line} is still 4",)
+    assert patch.summary.endswith(f"(there are 2 wheels more): {setting} in line {line} is still 4")
+    fewer = replace(reading.robot, track=c2d.LineOfWheels(2, wheel_radius=0.1))
+    assert patch_file(reading, fewer).left == ()
+
+
+def test_a_summary_counts_wheels_and_lines(tmp_path: Path) -> None:
+    reading = read(tmp_path, CART["urdf"], "urdf")
+    patch = patch_file(reading, on_chassis(reading, 2))
+    lines = [line for line in patch.diff.splitlines()[2:] if line[0] in "+-"]
+    new, gone = (sum(line[0] == mark for line in lines) for mark in "+-")
+    assert patch.summary == f"wheels: 2 removed, 4 changed; lines: {new} new, {gone} gone"
+
+
+def test_the_new_file_is_compared_with_the_robot(tmp_path: Path) -> None:
+    reading = read(tmp_path, CART["urdf"], "urdf")
+    count = len(reading.robot.wheels())
+    for robot, rule in (
+        (on_chassis(reading, 4), f"wheels must have {count + 2}, got {count} wheels"),
+        (on_chassis(reading, 3, 0.1), r"radius of wheel \d must be 0\.1 m, got 0\.125"),
+        (replace(reading.robot, mass=24.1), r"mass must be 24\.1 kg, got 24"),
+        (
+            replace(reading.robot, center_of_mass=(0.02, reading.robot.center_of_mass[1])),
+            "center_of_mass must not move by more than 1% of the axle distance",
+        ),
+    ):
+        with pytest.raises(c2d.ScenarioError, match=f"^the changed file, read again: {rule}"):
+            _check(reading, robot, reading.text)
+    _check(reading, reading.robot, reading.text)
+
+
+def moved(text: str, suffix: str, tmp_path: Path) -> tuple[str, str]:
+    """A file whose middle wheels are not in the middle, before and after they are moved there."""
+    reading = read(tmp_path, text, suffix)
+    return reading.text, patch_file(reading, on_chassis(reading, 3)).text
+
+
+FRAMES = {
+    # What the pose of the left middle wheel is in the file, and must become: it moves by -0.02.
+    "model": ("<pose>0.02 0.25 0 0 0 0</pose>", "<pose>0 0.25 0 0 0 0</pose>"),
+    "link": (
+        '<pose relative_to="hull">0.02 0.25 0 0 0 0</pose>',
+        '<pose relative_to="hull">0 0.25 0 0 0 0</pose>',
+    ),
+    "turned": (
+        '<pose relative_to="mast">0 0.25 0.02 0 -1.5707963267948966 0</pose>',
+        '<pose relative_to="mast">0 0.25 0 0 -1.5707963267948966 0</pose>',
+    ),
+}
+MAST = """<link name="mast"><pose>0 0 0 0 1.5707963267948966 0</pose><inertial><mass>0.1</mass>
+</inertial></link><joint name="mast_joint" type="fixed"><parent>hull</parent><child>mast</child>
+</joint></model>"""
+
+
+def off_middle(text: str, pose: str) -> str:
+    """The SDF with its middle wheels ahead of the middle, the left one placed by this element."""
+    text = text.replace("</model>", MAST)
+    text = text.replace("<pose>0.0 0.25 0 0 0 0</pose>", pose)
+    return text.replace("<pose>0.0 -0.25 0 0 0 0</pose>", "<pose>0.02 -0.25 0 0 0 0</pose>")
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_a_wheel_moves_in_the_frame_in_which_it_is_placed(frame: str, tmp_path: Path) -> None:
+    old, new = FRAMES[frame]
+    before, after = moved(off_middle(CART["sdf"], old), "sdf", tmp_path)
+    right = ("<pose>0.02 -0.25 0 0 0 0</pose>", "<pose>0 -0.25 0 0 0 0</pose>")
+    assert after == before.replace(old, new).replace(*right)
+
+
+def test_a_joint_that_is_placed_in_another_frame_moves_with_its_wheel(tmp_path: Path) -> None:
+    text = off_middle(CART["sdf"], FRAMES["model"][0]).replace(
+        '<joint name="left_middle_joint" type="continuous">',
+        '<joint name="left_middle_joint" type="continuous">'
+        '<pose relative_to="hull">0.02 0.25 0 0 0 0</pose>',
+    )
+    _, after = moved(text, "sdf", tmp_path)
+    assert '<pose relative_to="hull">0 0.25 0 0 0 0</pose>' in after
+
+
+def test_a_wheel_placed_in_a_frame_that_is_no_link_is_refused(tmp_path: Path) -> None:
+    text = off_middle(CART["sdf"], '<pose relative_to="side">0.02 0 0 0 0 0</pose>')
+    text = text.replace(
+        "</model>", '<frame name="side"><pose>0 0.25 0 0 0 0</pose></frame></model>'
+    )
+    with pytest.raises(c2d.ScenarioError) as caught:
+        moved(text, "sdf", tmp_path)
+    assert caught.value.path == "link[left_middle]"
+    assert caught.value.rule == "must be placed in the frame of a link or of the model"
+    assert caught.value.value == "side"
+
+
+@pytest.mark.parametrize("none", ["-1", "inf"])
+def test_a_limit_that_is_none_stays_none(none: str, tmp_path: Path) -> None:
+    text = CART["sdf"].replace("<velocity>10</velocity>", f"<velocity>{none}</velocity>")
+    reading = read(tmp_path, text, "sdf")
+    found = factors(reading.text.replace(none, "9"), resized(reading, 0.1).replace(none, "9"))
+    assert "velocity" not in found
+    assert found["effort"] == {(SIZE,)}
+
+
+def test_wheels_without_a_mass_cannot_share_it(tmp_path: Path) -> None:
+    text = re.sub(
+        r'(<link name="left_middle">\s*<pose>[^<]*</pose>\s*<inertial>)<mass>1</mass>',
+        r"\1",
+        CART["sdf"],
+    )
+    assert text != CART["sdf"]
+    reading = read(tmp_path, text, "sdf")
+    with pytest.raises(c2d.ScenarioError) as caught:
+        patch_file(reading, on_chassis(reading, 4))
+    assert caught.value.path == "link[left_middle]"
+    assert caught.value.rule == "must state its mass, for wheels to share it"
+
+
+GEAR = c2d.GearWheel(grouser_count=12, grouser_height=0.02, tip_thickness=0.008)
+
+
+def with_gears(reading: c2d.Reading, gear: c2d.GearWheel) -> c2d.Robot:
+    return reading.robot.with_track(c2d.LineOfWheels(4, wheel=gear))
+
+
+def test_gear_wheels_replace_round_ones_alone(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS), "urdf")
+    gears = patch_file(reading, with_gears(reading, GEAR)).text
+    again = read(tmp_path, gears, "urdf")
+    with pytest.raises(c2d.ScenarioError, match="chassis must be round in the file, got gear"):
+        patch_file(again, with_gears(again, replace(GEAR, grouser_count=10)))
+
+
+def test_grousers_that_taper_are_no_boxes(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS), "urdf")
+    with pytest.raises(c2d.ScenarioError) as caught:
+        patch_file(reading, with_gears(reading, replace(GEAR, base_thickness=0.012)))
+    assert caught.value.path == "robot.track.wheel.base_thickness"
+    assert caught.value.rule == "must be as thick as the tip: grousers are added as boxes"
+
+
+def test_tracks_that_are_no_wheels_are_refused_of_the_file_or_the_robot(tmp_path: Path) -> None:
+    reading = read(tmp_path, CART["urdf"], "urdf")
+    belted = replace(
+        reading.robot,
+        track=c2d.BeltTrack(),
+        drivetrain=replace(reading.robot.drivetrain, torque_sharing="track"),
+    )
+    rule = "must be wheels, to be replaced by others, got belt: those of the"
+    with pytest.raises(c2d.ScenarioError, match=f"^tracks of the chassis {rule} robot are not"):
+        patch_file(reading, belted)
+    with pytest.raises(c2d.ScenarioError, match=f"^tracks of the chassis {rule} file are not"):
+        patch_file(replace(reading, robot=belted), reading.robot)
+
+
+def mjcf(folder: Path, *changes: tuple[str, str]) -> c2d.Reading:
+    """The cart with replaced text, each of it once at least."""
+    text = CART["xml"]
+    for pattern, new in changes:
+        text, count = re.subn(pattern, new, text)
+        assert count
+    return read(folder, text, "xml")
+
+
+def test_torques_of_mjcf_are_limited_in_three_places(tmp_path: Path) -> None:
+    of_wheels = r"<velocity (joint=\"\w+_(?:rear|middle|front)_joint\") [^/]*/>"
+    motors = mjcf(tmp_path, (of_wheels, r'<motor \1 gear="5 0 0 0 0 0" ctrlrange="-1 1"/>'))
+    found = factors(motors.text, resized(motors, 0.1))
+    assert found["motor@gear"] == {(SIZE, 0.0, 0.0, 0.0, 0.0, 0.0)}
+    assert "motor@ctrlrange" not in found
+    joints = mjcf(
+        tmp_path,
+        (of_wheels, r'<velocity \1 kv="10" ctrlrange="-10 10"/>'),
+        (r'(_(?:rear|middle|front)_joint") axis', r'\1 actuatorfrcrange="-5 5" axis'),
+    )
+    found = factors(joints.text, resized(joints, 0.1))
+    assert found["joint@actuatorfrcrange"] == {(SIZE, SIZE)}
+    assert found["velocity@kv"] == {(SQUARE,)}
+
+
+def test_a_full_tensor_of_mjcf_scales_as_a_whole(tmp_path: Path) -> None:
+    reading = mjcf(
+        tmp_path,
+        ('diaginertia="0.004 0.0078125 0.004"', 'fullinertia="0.004 0.0078 0.004 1e-5 1e-5 1e-5"'),
+    )
+    assert factors(reading.text, resized(reading, 0.1))["inertial@fullinertia"] == {(SQUARE,) * 6}
+
+
+SIZED = ('<geom type="cylinder" zaxis', '<geom type="cylinder" size="0.125 0.03125" zaxis')
+UNSIZED = ('<geom class="tread" size="0.125 0.03125"/>', '<geom class="tread"/>')
+MIDDLES = r'(<body name="(?:left|right)_middle"[^>]*>\s*<joint [^>]*>\s*)'
+
+
+def test_a_wheel_whose_size_is_of_a_class_gets_its_own(tmp_path: Path) -> None:
+    reading = mjcf(tmp_path, SIZED, UNSIZED)
+    text = resized(reading, 0.1)
+    assert text.count('<geom class="tread" size="0.1 0.03125"/>') == 6
+    assert text.count('<geom class="tread"/>') == 2  # of the flippers
+
+
+def test_two_shapes_whose_size_is_of_a_class_are_refused(tmp_path: Path) -> None:
+    reading = mjcf(tmp_path, SIZED, (UNSIZED[0], 2 * UNSIZED[1]))
+    with pytest.raises(c2d.ScenarioError, match=r"^body\[left_rear\] must state the sizes of its"):
+        resized(reading, 0.1)
+
+
+def test_a_mass_by_density_becomes_one_that_is_stated(tmp_path: Path) -> None:
+    without = (MIDDLES + r"<inertial [^>]*>", r"\1")
+    heavy = (UNSIZED[0], UNSIZED[0].replace("size", 'mass="1" size'))
+    reading = mjcf(tmp_path, without, heavy)
+    text = patch_file(reading, on_chassis(reading, 4)).text
+    middle = r'<body name="left_middle"[^>]*>\s*<joint [^>]*>\s*<geom class="tread" mass="0\.75"'
+    assert re.search(middle, text)
+    two = mjcf(tmp_path, without, (heavy[0], 2 * heavy[1].replace('"1"', '"0.5"')))
+    with pytest.raises(c2d.ScenarioError, match=r"^body\[left_middle\] must state its mass, for"):
+        patch_file(two, on_chassis(two, 4))
+
+
+def test_wheels_of_mjcf_that_are_not_found_or_moved_are_named(tmp_path: Path) -> None:
+    body = r'<body name="(left|right)_middle" pos="0.0 (\S+) 0">((?:.|\n)*?)</body>'
+    in_frame = r'<frame pos="0.02 \2 0"><body name="\1_middle">\3</body></frame>'
+    framed = mjcf(tmp_path, (body, in_frame))
+    with pytest.raises(c2d.ScenarioError, match="must be in another body itself"):
+        patch_file(framed, on_chassis(framed, 3))
+    nameless = mjcf(tmp_path, ('<body name="left_middle" ', "<body "))
+    with pytest.raises(
+        c2d.ScenarioError, match=r"must have a name, to be found in the text, got no"
+    ):
+        patch_file(nameless, on_chassis(nameless, 4))
