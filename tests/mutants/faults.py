@@ -1,36 +1,13 @@
-"""Whether the tests of a module notice a change in it: one change at a time, each must fail a test.
-
-    python tests/mutants.py [NAME ...]
-
-Names are those of `TESTS`, all by default. Each mutant is a copy of the package with one operator,
-number, text, condition, returned value or statement changed. Survivors are printed with their
-line; the exit status is 1 if there are others than `EQUIVALENT` argues away. Needs fork, and some
-three seconds a mutant.
-"""
+"""Small faults in a module: one operator, number, text, condition, value or statement each."""
 
 import ast
 import copy
-import importlib
-import os
-import shutil
-import signal
-import sys
-import tempfile
-import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parent.parent
-
-TESTS = {
-    "statistics": ["tests/sweeps/test_statistics.py", "tests/sweeps/test_statistics_scipy.py"],
-    "../variation/draws": ["tests/sweeps/test_draws.py"],
-    "../variation/distributions": ["tests/sweeps/test_draws.py"],
-    "rates": ["tests/sweeps/test_rates.py", "tests/sweeps/test_unknowns.py"],
-    "sequential": ["tests/sweeps/test_sequential.py"],
-}
-"""Of each module of the sweeps that is tried."""
+PACKAGE = "python/crawler2d"
 
 EQUIVALENT = [
     ("if excess > 0.0", "excess > 0.0 -> excess >= 0.0", "of 0 the correction leaves 0"),
@@ -42,9 +19,6 @@ EQUIVALENT = [
     ("nearest[0]", "0 -> -1", "the only one"),
 ]
 """Mutants that no test can tell from the module: of the line, the change, and why."""
-
-# [s] A mutant that takes longer loops for ever.
-LONGEST = 120
 
 OTHERS: dict[type[ast.AST], list[type[ast.AST]]] = {
     ast.Lt: [ast.LtE, ast.GtE],
@@ -62,35 +36,86 @@ OTHERS: dict[type[ast.AST], list[type[ast.AST]]] = {
     ast.Mult: [ast.Div],
     ast.Div: [ast.Mult],
     ast.Pow: [ast.Mult],
+    ast.FloorDiv: [ast.Div],
+    ast.Mod: [ast.Mult],
+    ast.MatMult: [ast.Mult],
     ast.BitOr: [ast.BitAnd],
+    ast.BitAnd: [ast.BitOr],
+    ast.BitXor: [ast.BitOr],
+    ast.LShift: [ast.RShift],
+    ast.RShift: [ast.LShift],
 }
 NAMES = {"min": "max", "max": "min", "any": "all", "all": "any"}
 
 
-def mutants(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
-    """Yield the text of each mutant, and on which line what was changed."""
-    for path, node in places(tree):
-        for change, other in variants(node):
-            mutant = copy.deepcopy(tree)
-            put(mutant, path, other)
-            line = getattr(node, "lineno", 0)
-            yield ast.unparse(ast.fix_missing_locations(mutant)), line, change
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one file, and the lines whose tests must notice it."""
+
+    file: Path
+    text: str
+    line: int
+    change: str
+    lines: frozenset[int]
+    place: "Place"
+    which: int
+
+    def source(self) -> str:
+        """Return the text of the changed module."""
+        tree = ast.parse(self.text)
+        node: ast.AST = tree
+        for step in self.place:
+            node = at(node, step)
+        _, other = list(variants(node))[self.which]
+        put(tree, self.place, other)
+        return ast.unparse(ast.fix_missing_locations(tree))
+
+    @property
+    def code(self) -> str:
+        return self.text.splitlines()[self.line - 1].strip()
+
+    @property
+    def argued(self) -> list[str]:
+        """Why no test can notice it, if so."""
+        return [why for part, what, why in EQUIVALENT if part in self.code and what == self.change]
+
+    def __str__(self) -> str:
+        return f"{self.file.relative_to(PACKAGE)}:{self.line}: {self.change}, in {self.code}"
+
+
+def mutants(file: Path) -> Iterator[Mutant]:
+    """Yield every mutant of a file."""
+    text = file.read_text(encoding="utf-8")
+    for place, node, statement in places(ast.parse(text)):
+        for which, (change, _) in enumerate(variants(node)):
+            line = getattr(node, "lineno", statement)
+            lines = frozenset(
+                (statement, *range(line, (getattr(node, "end_lineno", 0) or line) + 1))
+            )
+            yield Mutant(file, text, line, change, lines, place, which)
 
 
 Place = tuple[tuple[str, int | None], ...]
 """Names of fields, with indices in lists, that lead from a module to a node."""
 
 
-def places(node: ast.AST, path: Place = ()) -> Iterator[tuple[Place, ast.AST]]:
-    """Yield every node whose change can matter: no annotation, docstring or list of names."""
-    if path:
-        yield path, node
+def places(
+    node: ast.AST, place: Place = (), statement: int = 0
+) -> Iterator[tuple[Place, ast.AST, int]]:
+    """Yield every node whose change can matter, and the line of its statement.
+
+    Annotations, docstrings and lists of names do not matter.
+    """
+    if isinstance(node, ast.stmt):
+        statement = node.lineno
+    if place:
+        yield place, node, statement
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "decorator_list", "bases", "type_params"):
             continue
         for index, child in enumerate(value) if isinstance(value, list) else [(None, value)]:
             if isinstance(child, ast.AST) and not is_silent(child):
-                yield from places(child, (*path, (name, index)))
+                yield from places(child, (*place, (name, index)), statement)
 
 
 def is_silent(node: ast.AST) -> bool:
@@ -167,58 +192,3 @@ def at(node: ast.AST, step: tuple[str, int | None]) -> ast.AST:
     name, index = step
     found: ast.AST = getattr(node, name) if index is None else getattr(node, name)[index]
     return found
-
-
-def is_noticed(package: Path, tests: list[str]) -> bool:
-    """Whether a test fails with the package of a folder, in a process of its own."""
-    child = os.fork()
-    if child == 0:
-        signal.alarm(LONGEST)
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, 1)
-        os.dup2(nowhere, 2)
-        sys.path.insert(0, str(package))
-        import pytest  # noqa: PLC0415 - after `main` has
-
-        os._exit(int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests])))
-    _, status = os.waitpid(child, 0)
-    return status != 0
-
-
-def main(names: list[str]) -> int:
-    for library in ("numpy", "pytest", "scipy.stats", "xarray"):
-        importlib.import_module(library)  # once for all children; the package is each child's own
-    os.chdir(ROOT)
-    sys.dont_write_bytecode = True
-    unexplained = 0
-    with tempfile.TemporaryDirectory() as folder:
-        package = Path(folder)
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / "python/crawler2d", package / "crawler2d", ignore=ignored)
-        for name in names or TESTS:
-            begin = time.monotonic()
-            source = package / "crawler2d/sweeps" / f"{name}.py"
-            text = source.read_text(encoding="utf-8")
-            if is_noticed(package, TESTS[name]):
-                raise SystemExit(f"the tests of {name} fail without a mutant")
-            killed = total = 0
-            for mutant, number, change in mutants(ast.parse(text)):
-                source.write_text(mutant, encoding="utf-8")
-                total += 1
-                if is_noticed(package, TESTS[name]):
-                    killed += 1
-                    continue
-                line = text.splitlines()[number - 1].strip()
-                found = [why for part, what, why in EQUIVALENT if part in line and what == change]
-                unexplained += not found
-                print(f"{name}.py:{number}: {change}, in {line}", *found, sep="  # ", flush=True)
-            source.write_text(text, encoding="utf-8")
-            took = time.monotonic() - begin
-            print(
-                f"{name}: {killed} of {total} mutants noticed ({killed / total:.1%}), {took:.0f} s"
-            )
-    return 1 if unexplained else 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))

@@ -1,0 +1,249 @@
+"""Whether tests notice small faults in the package: each of a random sample must fail a test.
+
+    python -m tests.mutants [ROOM ...] [--sample 400] [--seed 1] [--again]
+
+A room is a folder or file of the package, `ROOMS` by default. Each mutant is tried with the tests
+that execute its line, quickest first; `make coverage-python` leaves in `out/coverage` which these
+are and how long they take. `out/mutants` keeps the survivors, and `--again` tries those alone. The
+exit status is 1 if there are others than `EQUIVALENT` argues away. Needs fork, and some three
+seconds a mutant.
+"""
+
+import argparse
+import compileall
+import contextlib
+import importlib
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from xml.etree import ElementTree
+
+from tests.mutants.faults import PACKAGE, Mutant, mutants
+
+ROOT = Path(__file__).resolve().parents[2]
+KNOWN = ROOT / "out/coverage"
+
+LIBRARIES = (
+    *("numpy", "pytest", "hypothesis", "scipy.stats", "scipy.optimize", "xarray", "pandas"),
+    *("matplotlib.pyplot", "mujoco", "trimesh", "netCDF4", "pyarrow.parquet"),
+)
+"""Imported once for all mutants."""
+
+ROOMS = ("sweeps", "variation", "audits", "reading", "patching")
+
+# [s] Of the tests that are tried on a mutant, with coverage: a survivor of these has survived.
+LONGEST = 120.0
+
+BROKEN = "no test ran"
+
+
+class Tests:
+    """Which tests execute a line, and how long each takes, from a run of all with coverage."""
+
+    def __init__(self) -> None:
+        from coverage import CoverageData  # noqa: PLC0415 - of the group `coverage`
+
+        self.data = CoverageData(str(KNOWN / "data"))
+        self.data.read()
+        self.seconds: dict[str, float] = {}
+        cases = {}
+        for case in ElementTree.parse(KNOWN / "tests.xml").iter("testcase"):
+            if len(case) == 0:  # neither failed nor skipped
+                name = f"{case.attrib['classname']}.{case.attrib['name']}"
+                cases[name] = float(case.attrib["time"])
+        for context in self.data.measured_contexts():
+            test = context.rpartition("|")[0]
+            if (name := as_reported(test)) in cases:
+                self.seconds[test] = cases[name]
+
+    def of(self, mutant: Mutant) -> list[str]:
+        """Return the tests that can notice a mutant, quickest first; none if it never runs."""
+        contexts = self.data.contexts_by_lineno(str(mutant.file))
+        found = [context for line in mutant.lines for context in contexts.get(line, ())]
+        if not any(found):
+            # Executed by an import or in another process, unless it is not executed at all.
+            if not found:
+                return []
+            found = [context for line in contexts.values() for context in line]
+        tests = {context.rpartition("|")[0] for context in found}
+        # What a fixture does is told of the first test alone that asks for it.
+        files = {context.partition("::")[0] for context in found if context.endswith("|setup")}
+        tests |= {test for test in self.seconds if test.partition("::")[0] in files}
+        if not any(tests):
+            room = mutant.file.relative_to(PACKAGE).parts[0].removesuffix(".py")
+            tests = {test for test in self.seconds if test.startswith(f"tests/{room}/")}
+        chosen, total = list[str](), 0.0
+        for test in sorted(
+            tests & self.seconds.keys(), key=lambda test: (self.seconds[test], test)
+        ):
+            total += self.seconds[test]
+            if chosen and total > LONGEST:
+                break
+            chosen.append(test)
+        return chosen
+
+    def drop(self, tests: Iterable[str]) -> None:
+        """Try these no more."""
+        for test in tests:
+            del self.seconds[test]
+
+
+def as_reported(test: str) -> str:
+    """Return class and name of a test in JUnit's file, of its name for pytest."""
+    path, bracket, parameters = test.partition("[")
+    names = path.split("::")
+    names[0] = re.sub(r"\.py$", "", names[0].replace("/", "."))
+    return ".".join(names) + bracket + parameters
+
+
+def run_pytest(arguments: list[str], seconds: float, told: int) -> int:
+    """Run tests within so many seconds of computing, and write the names of those that fail."""
+    for name in [name for name in sys.modules if name.partition(".")[0] == "tests"]:
+        del sys.modules[name]  # which come from the copy, too
+    os.setsid()
+    resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds)))
+    signal.alarm(4 * int(seconds))
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for stream in range(3):
+        os.dup2(nowhere, stream)
+    import pytest  # noqa: PLC0415 - after `main` has
+
+    class Told:
+        def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+            if report.failed:
+                os.write(told, f"{report.nodeid}\n".encode())
+
+    plain = ["-q", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:cov", "-p", "no:xdist"]
+    return int(pytest.main([*plain, *arguments], plugins=[Told()]))
+
+
+def failures(tests: list[str], seconds: float, *options: str) -> list[str]:
+    """Return the tests that fail here, in a process of its own, or why they could not end."""
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            os._exit(run_pytest([*options, *tests], seconds, write))
+        finally:
+            os._exit(1)
+    os.close(write)
+    with open(read, encoding="utf-8") as pipe:
+        failed = pipe.read().splitlines()
+    _, status = os.waitpid(child, 0)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child, signal.SIGKILL)  # what a test started
+    if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGXCPU):
+        return ["out of time"]
+    return failed or ([BROKEN] if status else [])
+
+
+def copied(folder: Path) -> Path:
+    """Copy what the tests need, for faults to be put into, and make it what is imported."""
+    tree = folder / "tree"
+    ignored = shutil.ignore_patterns("__pycache__", ".*", "target", "out", "dist")
+    shutil.copytree(ROOT, tree, ignore=ignored)
+    for code in ("python", "tests"):
+        compileall.compile_dir(tree / code, quiet=2)
+    os.chdir(tree)
+    paths = [str(tree / "python"), str(tree)]
+    sys.path[:0] = paths
+    os.environ["PYTHONPATH"] = os.pathsep.join(paths)
+    return tree
+
+
+def notices(mutant: Mutant, tests: Tests, number: int) -> str:
+    """Return the test that fails of a mutant, or what else ends it; nothing if none does."""
+    chosen = tests.of(mutant)
+    if not chosen:
+        return ""
+    before = mutant.file.stat()
+    seconds = 20 + 5 * sum(tests.seconds[test] for test in chosen)
+    try:
+        mutant.file.write_text(mutant.source(), encoding="utf-8")
+        os.utime(mutant.file, (number, number))  # of no byte code that there is
+        failed = next(iter(failures(chosen, seconds, "-x")), "")
+    finally:
+        mutant.file.write_text(mutant.text, encoding="utf-8")
+        os.utime(mutant.file, ns=(before.st_atime_ns, before.st_mtime_ns))
+    if failed == BROKEN and failures(chosen, seconds, "--collect-only"):
+        raise SystemExit(f"these tests do not run without a mutant: {chosen}")
+    return failed
+
+
+def survivors(sample: list[Mutant], tests: Tests) -> list[Mutant]:
+    """Return the mutants that no test notices which passes without one; print them as they come."""
+    survived: list[Mutant] = []
+    waiting = sample
+    while waiting:
+        failed: dict[Mutant, str] = {}
+        for number, mutant in enumerate(waiting):
+            failed[mutant] = notices(mutant, tests, number)
+            if not failed[mutant]:
+                survived.append(mutant)
+                unreached = [] if tests.of(mutant) else ["never executed"]
+                print(mutant, *unreached, *mutant.argued, sep="  # ", flush=True)
+        failing = {test for test in failed.values() if test in tests.seconds}
+        failing &= set(failures(sorted(failing), 3600)) if failing else set()
+        tests.drop(failing)
+        waiting = [mutant for mutant, test in failed.items() if test in failing]
+    return survived
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("rooms", nargs="*", metavar="ROOM", default=ROOMS)
+    parser.add_argument("--sample", type=int, default=400)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--again", action="store_true")
+    asked = parser.parse_args()
+    for library in LIBRARIES:
+        importlib.import_module(library)
+    sys.dont_write_bytecode = True
+    tests = Tests()
+    unexplained = 0
+    with tempfile.TemporaryDirectory() as folder:
+        copied(Path(folder))
+        for room in asked.rooms:
+            begin = time.monotonic()
+            files = sorted(Path(PACKAGE).glob(f"{room}/**/*.py")) or [Path(PACKAGE, room)]
+            known = [mutant for file in files for mutant in mutants(file)]
+            report = ROOT / "out/mutants" / f"{room.replace('/', '.')}.txt"
+            if asked.again:
+                before = set(report.read_text(encoding="utf-8").splitlines())
+                sample = [mutant for mutant in known if str(mutant) in before]
+            else:
+                sample = random.Random(asked.seed).sample(known, min(asked.sample, len(known)))
+            survived = survivors(sample, tests)
+            report.parent.mkdir(parents=True, exist_ok=True)
+            report.write_text("".join(f"{mutant}\n" for mutant in survived), encoding="utf-8")
+            unexplained += sum(not mutant.argued for mutant in survived)
+            print(
+                scored(room, len(sample), survived), f"{time.monotonic() - begin:.0f} s", flush=True
+            )
+    return 1 if unexplained else 0
+
+
+def scored(room: str, total: int, survived: list[Mutant]) -> str:
+    """Return how many mutants were noticed, with Wilson's interval, also without those argued."""
+    binomtest = importlib.import_module("scipy.stats").binomtest
+    words = []
+    argued = sum(bool(mutant.argued) for mutant in survived)
+    noticed = total - len(survived)
+    for of, what in ((total, "mutants"), (total - argued, "that can be noticed")):
+        low, high = binomtest(noticed, max(of, 1)).proportion_ci(method="wilson")
+        words.append(
+            f"{noticed} of {of} {what} ({noticed / max(of, 1):.1%}, {low:.1%} to {high:.1%})"
+        )
+    return f"{room}: {', '.join(words)}"
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
