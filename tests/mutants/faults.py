@@ -45,6 +45,7 @@ OTHERS: dict[type[ast.AST], list[type[ast.AST]]] = {
     ast.LShift: [ast.RShift],
     ast.RShift: [ast.LShift],
 }
+TYPES = ("Literal", "Callable", "list", "dict", "set", "tuple")
 NAMES = {"min": "max", "max": "min", "any": "all", "all": "any"}
 
 
@@ -125,6 +126,8 @@ def is_silent(node: ast.AST) -> bool:
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True  # a docstring
     if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+        return True
+    if isinstance(node, ast.Subscript) and ast.unparse(node.value) in TYPES:
         return True
     return isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
 

@@ -10,7 +10,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.sweeps.axes import COLUMNS
+from crawler2d.sweeps.axes import COLUMNS, _dimensions, stop_columns
 from crawler2d.sweeps.rates import rate
 from crawler2d.sweeps.sweep import sweep
 from tests.shared import ROBOT, VARIANTS
@@ -208,3 +208,39 @@ def test_what_is_no_axis_is_refused_by_name(over: Any, path: str, hint: str) -> 
     assert caught.value.path == path
     assert caught.value.rule.startswith("must")
     assert hint in caught.value.rule
+
+
+def test_a_table_has_these_columns_of_stops_with_these_units() -> None:
+    found = stop_columns([None])
+    jams = ("closed_track", "closed_track_clear_of_the_ground", "belt")
+    trials = (*jams, "belt_from_the_start", "closed_track_from_the_start")
+    units = {name: unit for name, (_, unit, _) in found.items() if unit}
+    assert {name for name in found if name.startswith("tried_")} == {f"tried_{t}" for t in trials}
+    assert {name: values for name, (_, _, values) in found.items() if name in NO_STOP} == NO_STOP
+    assert units["stop_x"] == "m"
+    assert units["stop_angle"] == "rad"
+    table = quiet(BASE, {}, repeats=1)
+    assert {name for name in found if "units" in table[name].attrs} == units.keys()
+
+
+NO_STOP = {
+    "symptom": [""],
+    "mechanism": [""],
+    "belly_side": [""],
+    "stop_side": [""],
+    "stop_carrier": [""],
+    "stop_bodies": [""],
+    "passing": [False],
+    "jammed": [False],
+    "stop_edge": [-1],
+}
+
+
+def test_an_axis_of_several_paths_whose_name_is_taken_has_that_of_its_paths() -> None:
+    two = ("start.approach", "robot.mass")
+    other = ("start.approach", "robot.track_mass", "robot.mass")
+    assert _dimensions([two]) == ["approach_mass"]
+    assert _dimensions([("terrain.height",), other[1:]]) == ["height", "track_mass_mass"]
+    # Of the same last parts as another axis.
+    front, rear = (("robot.a.x", "robot.a.y"), ("robot.b.x", "robot.b.y"))
+    assert _dimensions([front, rear]) == ["robot_a_x_robot_a_y", "robot_b_x_robot_b_y"]

@@ -188,3 +188,9 @@ def test_what_cannot_be_compared_is_refused_by_name(
         quiet(models, **options)
     assert caught.value.path == path
     assert caught.value.rule.startswith("must")
+
+
+def test_a_reference_that_is_none_of_the_models_is_refused_with_their_labels() -> None:
+    rule = "^reference must be a label of the models: belt, line of 3, skids, got tracks$"
+    with pytest.raises(c2d.ScenarioError, match=rule):
+        quiet(MODELS, reference="tracks")

@@ -347,3 +347,10 @@ def test_every_interval_refuses_an_impossible_confidence(confidence: float) -> N
         newcombe_paired(1, 2, 3, 4, confidence)
     with pytest.raises(c2d.ScenarioError, match="confidence"):
         bootstrap_mean([1.0, 2.0], confidence)
+
+
+@pytest.mark.parametrize("name", ["both", "first", "second", "neither"])
+def test_each_kind_of_pair_is_refused_by_its_name(name: str) -> None:
+    pairs = {"both": 1, "first": 2, "second": 3, "neither": 4, name: -1}
+    with pytest.raises(c2d.ScenarioError, match=f"^{name} must be a whole number"):
+        newcombe_paired(**pairs)

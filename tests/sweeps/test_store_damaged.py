@@ -240,7 +240,12 @@ def test_a_damaged_store_of_the_former_format_is_refused_and_left_alone(
 
 @pytest.mark.parametrize(
     ("version", "message"),
-    [(3, "newer crawler2d"), (99, "newer crawler2d"), (0, "is damaged"), (-1, "is damaged")],
+    [
+        (3, r"by a newer crawler2d \(version 3 of the format; this one reads 2\): upgrade"),
+        (99, "newer crawler2d"),
+        (0, "is damaged"),
+        (-1, "is damaged"),
+    ],
 )
 def test_a_store_of_another_format_is_refused(path: Path, version: int, message: str) -> None:
     with opened(path) as connection:

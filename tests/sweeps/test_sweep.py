@@ -242,3 +242,17 @@ def test_progress_is_shown_unless_refused(capsys: pytest.CaptureFixture[str]) ->
     assert "4 of 4 runs" in capsys.readouterr().err
     quiet(BRIEF, {"terrain.height": [0.02, 0.03]})
     assert capsys.readouterr().err == ""
+
+
+def test_twenty_runs_a_cell_and_twenty_samples_of_what_is_unknown_unless_told() -> None:
+    totals: list[int] = []
+
+    def stop(_done: int, total: int) -> None:
+        totals.append(total)
+        raise KeyboardInterrupt
+
+    several: list[Any] = [{}, {"unknown": {"robot.mass": scaled(0.9, 1.1)}}]
+    for options in several:
+        with pytest.raises((KeyboardInterrupt, c2d.BatchInterrupted)):
+            sweep(BRIEF, {}, progress=stop, **options)
+    assert (totals[0], totals[-1]) == (20, 400)

@@ -109,7 +109,7 @@ class Collector:
         *,
         store: Place | None = None,
         executor: Executor | None = None,
-        threads: int = 1,
+        threads: int,
     ) -> None:
         self._trials = list(trials)
         self._executor = None if executor is None else reliable(executor)
