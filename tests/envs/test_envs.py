@@ -338,3 +338,38 @@ def test_an_unknown_keyword_is_refused_with_the_nearest_name() -> None:
     for make in makers:
         with pytest.raises(TypeError, match="did you mean randomize"):
             make(randomise={})
+
+
+@pytest.mark.parametrize(
+    ("call", "path", "rule"),
+    [
+        (lambda env: env.reset(seed=[1, 2, 3]), "seed", "must be one or 2"),
+        (
+            lambda env: env.reset(options={"reset_mask": np.zeros(2, bool)}),
+            "options['reset_mask']",
+            "must be a mask of shape (2,) with at least one True",
+        ),
+        (
+            lambda env: env.reset(options={"reset_mask": np.ones(3, bool)}),
+            "options['reset_mask']",
+            "must be a mask of shape (2,) with at least one True",
+        ),
+    ],
+    ids=["seeds", "nothing", "three"],
+)
+def test_two_environments_are_reset_by_two_seeds_or_a_mask_of_two(
+    call: Any, path: str, rule: str
+) -> None:
+    env = FlipperVectorEnv(2)
+    with pytest.raises(c2d.ScenarioError) as caught:
+        call(env)
+    assert (caught.value.path, caught.value.rule) == (path, rule)
+
+
+def test_environments_side_by_side_step_after_a_reset_in_a_mode_of_gymnasium() -> None:
+    env = FlipperVectorEnv(2)
+    with pytest.raises(gymnasium.error.ResetNeeded, match="call reset"):
+        env.step(env.action_space.sample())
+    mode: Any = "never"
+    with pytest.raises(c2d.ScenarioError, match=r"^autoreset_mode must be one of \['NextStep'"):
+        FlipperVectorEnv(2, autoreset_mode=mode)
