@@ -8,6 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.patching.patch import patch_file
+from crawler2d.reading.loading import _scale_lengths
 from tests.reading.carts import FILES, ROBOTS, quietly
 
 
@@ -68,12 +69,47 @@ def test_a_mesh_has_its_own_scale_times_that_of_the_file() -> None:
     assert found.text.count("<scale>0.5 0.5 0.5</scale>") == text.count("<mesh>") - with_scale
 
 
+LENGTHS = {
+    "origin": ("xyz",),
+    "box": ("size",),
+    "capsule": ("radius", "length"),
+    "cone": ("radius", "length"),
+    "cylinder": ("radius", "length"),
+    "ellipsoid": ("radii",),
+    "heightmap": ("size", "pos"),
+    "mesh": ("scale",),
+    "plane": ("size",),
+    "polyline": ("point", "height"),
+    "sphere": ("radius",),
+}
+
+
+@pytest.mark.parametrize("tag", LENGTHS)
+def test_every_length_of_a_shape_is_scaled_in_attributes_and_elements(tag: str) -> None:
+    names = LENGTHS[tag]
+    given = "".join(f' {name}="1 2"' for name in names)
+    inside = "".join(f"<{name}>3</{name}>" for name in names)
+    text = f'<a><{tag}{given} rpy="1"/><{tag}>{inside}<more>1</more></{tag}></a>'
+    scaled = text.replace('="1 2"', '="2 4"').replace(">3<", ">6<")
+    assert _scale_lengths(text.encode(), 2.0, "cart").decode() == scaled
+
+
+def test_limits_of_slides_and_tensors_are_scaled_and_no_angles() -> None:
+    text = """<a><joint type="{}"><limit lower="-1" upper="2" velocity="3" effort="4"/></joint>
+<inertia ixx="1" ixy="1" ixz="1" iyy="1" iyz="1" izz="1"/><pose>1 2 3 0.1 0.2 0.3</pose></a>"""
+    scaled = text.replace('="1"', '="4.0"').replace("1 2 3 0.1", "2 4 6 0.1")
+    turns, slides = text.format("revolute"), text.format("prismatic")
+    assert _scale_lengths(turns.encode(), 2.0, "cart").decode() == scaled.format("revolute")
+    moved = scaled.replace('"-1" upper="2" velocity="3"', '"-2" upper="4" velocity="6"')
+    assert _scale_lengths(slides.encode(), 2.0, "cart").decode() == moved.format("prismatic")
+
+
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), 1e9, "0.1", True])
 def test_a_scale_that_is_none_is_refused(scale: object) -> None:
     with pytest.raises(c2d.ScenarioError, match="scale"):
         quietly(ROBOTS / "absolem.sdf", scale=scale)
 
 
-def test_mjcf_is_not_scaled() -> None:
+def test_mjcf_is_not_scale_lengths() -> None:
     with pytest.raises(c2d.ScenarioError, match="must be 1 for MJCF"):
         quietly(FILES / "cart.xml", scale=0.1)

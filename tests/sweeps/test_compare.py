@@ -191,6 +191,6 @@ def test_what_cannot_be_compared_is_refused_by_name(
 
 
 def test_a_reference_that_is_none_of_the_models_is_refused_with_their_labels() -> None:
-    rule = "^reference must be a label of the models: belt, line of 3, skids, got tracks$"
+    rule = "^reference must be a label of the models, got tracks: belt, line of 3, skids$"
     with pytest.raises(c2d.ScenarioError, match=rule):
         quiet(MODELS, reference="tracks")
