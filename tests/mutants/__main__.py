@@ -15,7 +15,6 @@ import contextlib
 import importlib
 import os
 import random
-import re
 import resource
 import shutil
 import signal
@@ -53,31 +52,21 @@ class Tests:
 
         self.data = CoverageData(str(KNOWN / "data"))
         self.data.read()
-        self.seconds: dict[str, float] = {}
-        cases = {}
-        for case in ElementTree.parse(KNOWN / "tests.xml").iter("testcase"):
-            if len(case) == 0:  # neither failed nor skipped
-                name = f"{case.attrib['classname']}.{case.attrib['name']}"
-                cases[name] = float(case.attrib["time"])
-        for context in self.data.measured_contexts():
-            test = context.rpartition("|")[0]
-            if (name := as_reported(test)) in cases:
-                self.seconds[test] = cases[name]
+        self.seconds = {
+            name_of(case): float(case.attrib["time"])
+            for case in ElementTree.parse(KNOWN / "tests.xml").iter("testcase")
+            if len(case) == 0  # neither failed nor skipped
+        }
 
     def of(self, mutant: Mutant) -> list[str]:
         """Return the tests that can notice a mutant, quickest first; none if it never runs."""
         contexts = self.data.contexts_by_lineno(str(mutant.file))
         found = [context for line in mutant.lines for context in contexts.get(line, ())]
-        if not any(found):
-            # Executed by an import or in another process, unless it is not executed at all.
-            if not found:
-                return []
-            found = [context for line in contexts.values() for context in line]
         tests = {context.rpartition("|")[0] for context in found}
         # What a fixture does is told of the first test alone that asks for it.
         files = {context.partition("::")[0] for context in found if context.endswith("|setup")}
         tests |= {test for test in self.seconds if test.partition("::")[0] in files}
-        if not any(tests):
+        if "" in tests and len(tests) == 1:  # in another process
             room = mutant.file.relative_to(PACKAGE).parts[0].removesuffix(".py")
             tests = {test for test in self.seconds if test.startswith(f"tests/{room}/")}
         chosen, total = list[str](), 0.0
@@ -96,12 +85,12 @@ class Tests:
             del self.seconds[test]
 
 
-def as_reported(test: str) -> str:
-    """Return class and name of a test in JUnit's file, of its name for pytest."""
-    path, bracket, parameters = test.partition("[")
-    names = path.split("::")
-    names[0] = re.sub(r"\.py$", "", names[0].replace("/", "."))
-    return ".".join(names) + bracket + parameters
+def name_of(case: ElementTree.Element) -> str:
+    """Return pytest's name of a test, of class and name in JUnit's file."""
+    parts, classes = case.attrib["classname"].split("."), list[str]()
+    while len(parts) > 1 and not (ROOT / "/".join(parts)).with_suffix(".py").is_file():
+        classes.insert(0, parts.pop())
+    return "::".join(["/".join(parts) + ".py", *classes, case.attrib["name"]])
 
 
 def run_pytest(arguments: list[str], seconds: float, told: int) -> int:

@@ -87,13 +87,45 @@ class Mutant:
 def mutants(file: Path) -> Iterator[Mutant]:
     """Yield every mutant of a file."""
     text = file.read_text(encoding="utf-8")
-    for place, node, statement in places(ast.parse(text)):
-        for which, (change, _) in enumerate(variants(node)):
-            line = getattr(node, "lineno", statement)
-            lines = frozenset(
-                (statement, *range(line, (getattr(node, "end_lineno", 0) or line) + 1))
-            )
-            yield Mutant(file, text, line, change, lines, place, which)
+    tree = ast.parse(text)
+    for place, node, statements in places(tree):
+        changes = [change for change, _ in variants(node)]
+        if not changes:
+            continue
+        line = getattr(node, "lineno", statements[-1].lineno)
+        lines = {statements[-1].lineno, *range(line, (getattr(node, "end_lineno", 0) or line) + 1)}
+        if not any(isinstance(each, ast.FunctionDef) for each in statements[:-1]):
+            lines = set(users(tree, statements))
+        for which, change in enumerate(changes):
+            yield Mutant(file, text, line, change, frozenset(lines), place, which)
+
+
+def users(tree: ast.Module, statements: tuple[ast.stmt, ...]) -> Iterator[int]:
+    """Yield the lines of the functions that use what a statement defines when it is imported.
+
+    They are those that have its name; else those of its class, or all of the module.
+    """
+    targets = getattr(statements[-1], "targets", [getattr(statements[-1], "target", None)])
+    names = {each.id for each in targets if isinstance(each, ast.Name)}
+    if isinstance(statements[-1], ast.FunctionDef):
+        names = {statements[-1].name}
+    holder = next((each for each in statements if isinstance(each, ast.ClassDef)), tree)
+    for scope in (tree, holder, tree):
+        found = [
+            each
+            for each in ast.walk(scope)
+            if isinstance(each, ast.FunctionDef)
+            and (not names or any(named(part) in names for part in ast.walk(each)))
+        ]
+        names = set()
+        if found:
+            break
+    for each in found:
+        yield from range(each.body[0].lineno, (each.end_lineno or each.lineno) + 1)
+
+
+def named(node: ast.AST) -> str:
+    return str(getattr(node, "id", "") or getattr(node, "attr", "") or getattr(node, "name", ""))
 
 
 Place = tuple[tuple[str, int | None], ...]
@@ -101,22 +133,22 @@ Place = tuple[tuple[str, int | None], ...]
 
 
 def places(
-    node: ast.AST, place: Place = (), statement: int = 0
-) -> Iterator[tuple[Place, ast.AST, int]]:
-    """Yield every node whose change can matter, and the line of its statement.
+    node: ast.AST, place: Place = (), statements: tuple[ast.stmt, ...] = ()
+) -> Iterator[tuple[Place, ast.AST, tuple[ast.stmt, ...]]]:
+    """Yield every node whose change can matter, and the statements in which it is.
 
     Annotations, docstrings and lists of names do not matter.
     """
     if isinstance(node, ast.stmt):
-        statement = node.lineno
+        statements = (*statements, node)
     if place:
-        yield place, node, statement
+        yield place, node, statements
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "decorator_list", "bases", "type_params"):
             continue
         for index, child in enumerate(value) if isinstance(value, list) else [(None, value)]:
             if isinstance(child, ast.AST) and not is_silent(child):
-                yield from places(child, (*place, (name, index)), statement)
+                yield from places(child, (*place, (name, index)), statements)
 
 
 def is_silent(node: ast.AST) -> bool:
