@@ -1,0 +1,107 @@
+//! What a scenario that was checked keeps, and what is built anew for another.
+
+use super::*;
+use crate::run::Simulation;
+use crate::scenario::{Surface, Terrain};
+
+mod rules;
+
+fn engineer() -> Scenario {
+    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+    Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+fn opened(scenario: &Scenario, like: Option<&ValidScenario>) -> ValidScenario {
+    ValidScenario::from_json_like(&scenario.to_json(), like).expect("it is valid")
+}
+
+#[test]
+fn a_simulation_takes_over_what_was_built_to_check_it() {
+    let checked = opened(&engineer(), None);
+    let simulation = Simulation::new(&checked);
+    assert!(std::ptr::eq(
+        simulation.ground(),
+        &raw const **checked.ground()
+    ));
+    assert_eq!(simulation.reading().position, checked.position);
+}
+
+#[test]
+fn what_is_equal_in_another_scenario_is_not_built_again() {
+    let first = opened(&engineer(), None);
+    let mut variant = engineer();
+    variant.start.approach = 0.2;
+    let second = opened(&variant, Some(&first));
+    assert!(Arc::ptr_eq(&first.ground, &second.ground));
+    assert!(Arc::ptr_eq(&first.model, &second.model));
+    assert!((first.position.x - second.position.x - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn a_varied_scenario_is_the_one_that_is_read_with_these_numbers() {
+    let first = opened(&engineer(), None);
+    let field = |pointer: &str| (pointer.to_owned(), false);
+    let fields = [field("/robot/center_of_mass/1"), field("/terrain/friction")];
+    let rows: [&[f64]; 3] = [&[0.03, 0.7], &[0.02, f64::NAN], &[0.02, 0.9]];
+    let found = first.varied(&fields, rows);
+    let mut variant = engineer();
+    variant.robot.center_of_mass[1] = 0.03;
+    if let Terrain::Step { surface, .. } = &mut variant.terrain {
+        surface.friction.coefficient = 0.7;
+    }
+    let moved = found[0].as_ref().expect("it is valid");
+    assert_eq!(moved.scenario, variant);
+    assert_eq!(moved.position, opened(&variant, None).position);
+    let refused = found[1].as_ref().expect_err("NaN is no friction");
+    assert!(
+        refused.to_string().contains("terrain.friction"),
+        "{refused}"
+    );
+    let own = found[2].as_ref().expect("it is valid");
+    assert_eq!(own.scenario.terrain, engineer().terrain);
+}
+
+#[test]
+fn a_field_that_texts_leave_out_can_be_varied() {
+    let first = opened(&engineer(), None);
+    let pointer = "/robot/drivetrain/rotor_inertia".to_owned();
+    let rows: [&[f64]; 2] = [&[0.02], &[0.0]];
+    let found = first.varied(&[(pointer, false)], rows);
+    let inertias = found.into_iter().map(|each| {
+        let varied = each.expect("it is valid");
+        varied.scenario.robot.drivetrain.rotor_inertia
+    });
+    assert_eq!(inertias.collect::<Vec<_>>(), [0.02, 0.0]);
+    for unknown in ["/robot/drivetrain/rotor", "/robot/rotors/inertia"] {
+        let found = first.varied(&[(unknown.to_owned(), false)], rows);
+        let error = found[0].as_ref().expect_err("there is no such field");
+        assert!(
+            error.to_string().contains("must be a known field"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn what_differs_is_built_for_itself_and_as_it_would_be_alone() {
+    let first = opened(&engineer(), None);
+    let (mut heavier, mut apart) = (engineer(), engineer());
+    heavier.robot.mass += 1.0;
+    let flat = |height| Terrain::Step {
+        height,
+        surface: Surface::sharp(0.9),
+    };
+    apart.terrain = Terrain::Lanes {
+        left: Box::new(flat(0.05)),
+        right: Box::new(flat(0.1)),
+        middle: None,
+    };
+    for variant in [heavier, apart] {
+        let (alone, beside) = (opened(&variant, None), opened(&variant, Some(&first)));
+        assert!(!Arc::ptr_eq(&first.model, &beside.model));
+        assert_eq!(beside.position, alone.position);
+        assert_eq!(beside.model.mass.to_bits(), alone.model.mass.to_bits());
+        assert_eq!(beside.model.parts.len(), alone.model.parts.len());
+        assert_eq!(beside.ground.lanes.len(), alone.ground.lanes.len());
+    }
+}
