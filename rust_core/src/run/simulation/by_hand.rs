@@ -133,3 +133,6 @@ impl Simulation {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -137,6 +137,7 @@ belt | | /robot/weight | - | 5 | robot.weight must be a known field:
 belt | | /speed | - | 5 | speed must be a known field:
 belt | | /robot | - | 5 | robot must be an object, got 5
 belt | | /schema | 2 | 1 | schema must be
+belt | | /gravity | 9.81 | [1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111] | gravity must be a number, got [1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,11...
 "#;
 
 /// Texts that are no scenario: a part of the belt's, what stands in its place, the error.
@@ -281,4 +282,43 @@ fn a_text_that_is_no_scenario_is_refused_by_its_place() {
         let found = refusal(&BELT.replacen(part, other, 1));
         assert!(found.contains(error), "{other}\n{found}");
     }
+}
+
+#[test]
+fn lists_and_texts_have_a_largest_length() {
+    let long = |row: &str, count: usize| -> Value { vec![value(row); count].into() };
+    let cases = [
+        (
+            "belt",
+            "/robot/name",
+            json!("x".repeat(1000)),
+            json!("x".repeat(1001)),
+            "characters",
+        ),
+        (
+            "belt",
+            "/robot/belly",
+            Value::Null,
+            long("[0, 0]", 65),
+            "64 rows, got 65 rows",
+        ),
+        (
+            "points",
+            "/terrain/segment_friction",
+            json!([0.9]),
+            long("0.9", 200_001),
+            "200000 numbers, got 200001 numbers",
+        ),
+    ];
+    for (name, field, legal, broken, error) in cases {
+        let mut scene = scene(name);
+        put(&mut scene, field, legal);
+        assert_eq!(refusal(&scene.to_string()), "", "{field}");
+        put(&mut scene, field, broken);
+        let found = refusal(&scene.to_string());
+        assert!(found.contains("must have at most"), "{found}");
+        assert!(found.contains(error), "{found}");
+    }
+    let found = refusal(&" ".repeat((64 << 20) + 1));
+    assert_eq!(found, "scenario must be at most 64 MiB of JSON, got 64 MiB");
 }
