@@ -163,4 +163,16 @@ mod tests {
         assert_eq!(rest_of_series(None, 0.1), None);
         assert_eq!(rest_of_series(Some(0.1), 0.1), None);
     }
+
+    #[test]
+    fn the_base_stands_if_it_hardly_moves_or_has_a_short_way_left() {
+        let least = STANDS.value();
+        assert!(stands(None, 0.5 * least));
+        assert!(!stands(None, 2.0 * least));
+        // A change that is half of the one before has as far to go again, one that is 4/5 of it four times as far.
+        let moved = 0.5 * CLOSE.value();
+        assert!(stands(Some(2.0 * moved), moved));
+        assert!(!stands(Some(1.25 * moved), moved));
+        assert!(!stands(Some(moved), moved));
+    }
 }

@@ -226,3 +226,12 @@ fn opposed_contacts_on_one_belt_share_its_motor() {
         }
     }
 }
+
+#[test]
+fn a_constraint_gives_way_by_a_millionth_of_what_its_impulse_would_move() {
+    let mut held = Bilateral::new(Row::on_base([1.0, 0.0, 0.0]));
+    (held.admittance, held.center) = (0.5, 3.0);
+    let damper = held.damper();
+    assert_relative_eq!(damper.at(0.0), 3.0);
+    assert_relative_eq!(damper.at(-1e-6), 5.0, max_relative = 1e-12);
+}
