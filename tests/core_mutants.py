@@ -52,7 +52,7 @@ GROUPS = {
     "judges": Group(("observe", "diagnosis"), (), ("basics", "judged", "snapshots", "stops")),
     "runs": Group(
         ("run", "robot", "scenario"),
-        ("run::poses", "run::simulation::tests", "run::tests"),
+        ("run::poses", "run::simulation", "run::tests", "run::trials"),
         ("basics", "drive", "judged", "rotor", "snapshots", "stops", "worlds"),
     ),
 }
