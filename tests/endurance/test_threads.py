@@ -118,19 +118,6 @@ def test_a_batch_that_sixteen_threads_share_for_long_does_all_they_ask() -> None
     check_shared_batch(600)
 
 
-def test_a_state_is_seen_while_another_thread_advances() -> None:
-    sim = c2d.Simulation(VARIANTS["belt-step"].replace({"solver.time_step": 1e-4}))
-    thread = threading.Thread(target=sim.advance, args=(5.0,))
-    thread.start()
-    times = []
-    while thread.is_alive():
-        begin = time.monotonic()
-        sim.state()
-        times.append(time.monotonic() - begin)
-    assert len(times) > 3
-    assert max(times) < 1.0
-
-
 def test_sweeps_of_several_threads_have_the_tables_of_one(tmp_path: Path) -> None:
     over = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 

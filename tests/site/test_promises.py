@@ -1,0 +1,35 @@
+"""The page of promises names tests that exist, and no promise is without one."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/promises.md").read_text(encoding="utf-8")
+NAMED = re.findall(r"`([\w/.]+\.(?:py|rs))::(\w+)`", PAGE)
+PROMISES = PAGE.split("\n## ")[1:]
+NONE = ("What is not promised",)
+"""Sections that promise nothing."""
+
+
+def names_in(path: Path) -> set[str]:
+    """Names of the functions of a file that are tests."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".rs":
+        return set(re.findall(r"#\[test\]\s+(?:#\[ignore[^\n]*\n\s*)?fn (\w+)", text))
+    functions = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef))
+    return {node.name for node in functions if node.name.startswith("test_")}
+
+
+@pytest.mark.parametrize(("file", "name"), NAMED)
+def test_a_test_that_is_named_is_there(file: str, name: str) -> None:
+    assert name in names_in(ROOT / file)
+
+
+@pytest.mark.parametrize("promise", PROMISES, ids=lambda text: text.splitlines()[0])
+def test_every_promise_has_a_test_in_every_line(promise: str) -> None:
+    rows = [line for line in promise.splitlines() if line.startswith("| ")][1:]
+    assert bool(rows) == (promise.splitlines()[0] not in NONE)
+    assert [row for row in rows if not re.search(r"\.(?:py|rs)::\w+`", row)] == []
