@@ -109,9 +109,11 @@ html_sidebars: dict[str, list[str]] = {
     "CHANGELOG": [],
     "CONTRIBUTING": [],
     "docs/accuracy": [],
+    "docs/dependencies": [],
     "docs/engines": [],
     "docs/index": [],
     "docs/physics": [],
+    "docs/promises": [],
 }
 html_theme_options = {
     "navbar_align": "left",
