@@ -172,6 +172,15 @@ def check(scenario: Json, v: Verdict) -> Ground | None:
     return check_profile("terrain", terrain, v)
 
 
+def check_lanes_apart(terrain: Json, v: Verdict) -> None:
+    """Hold the lanes that can be read to their own rules, beside one that cannot."""
+    if isinstance(terrain, dict) and terrain.get("kind") == "lanes":
+        for name in ("left", "right", "middle"):
+            lane, path = terrain.get(name), f"terrain.{name}"
+            if isinstance(lane, dict) and v.is_clean(path):
+                check_profile(path, lane, v)
+
+
 def _as_read(value: Json) -> Json:
     """The same without what may be left out; whole numbers equal others."""
     return {k: each for k, each in value.items() if k != "segment_friction" or each is not None}

@@ -38,6 +38,8 @@ def _check(scenario: Json, v: Verdict) -> None:
     ground = None
     if v.is_clean("terrain", "robot"):
         ground = grounds.check(scenario, v)
+    else:
+        grounds.check_lanes_apart(scenario.get("terrain"), v)
     if is_robot and has_settings:
         parts.check_engine(scenario, v)
     if ground is not None and model is not None and not v.broken:
