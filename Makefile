@@ -193,35 +193,18 @@ $(VENV)/.dependencies: pyproject.toml | tools
 	$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
 
-# Built aside, so that nothing of it stays in the target folder.
+# Built aside, so that nothing of them stays in the target folder.
+INSTALL := env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV)
 $(BIN)/cargo-mutants: | tools
-	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) cargo-mutants@27.1.0
-
-# Built aside, too.
+	$(INSTALL) cargo-mutants@27.1.0
 $(BIN)/cargo-deny: | tools
-	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) cargo-deny@0.20.2
-
-$(VENV)/.supply: $(VENV)/.dependencies
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group supply
-	@touch $@
-
-$(VENV)/.coverage: $(VENV)/.dependencies
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group coverage
-	@touch $@
-
+	$(INSTALL) cargo-deny@0.20.2
 $(BIN)/cov: | tools
-	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) --features cli llvm_profparser@0.15.0
+	$(INSTALL) --features cli llvm_profparser@0.15.0
 
-$(VENV)/.peers: $(VENV)/.dependencies
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers
-	@touch $@
-
-$(VENV)/.docs: $(VENV)/.dependencies
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs
-	@touch $@
-
-$(VENV)/.engines: $(VENV)/.dependencies
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group engines
+# Groups of pyproject.toml that single verbs need.
+$(addprefix $(VENV)/.,coverage docs engines peers supply): $(VENV)/.%: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group $*
 	@touch $@
 
 # Which browser the pages are tested in: one of this machine, playwright's own, or Debian's.
