@@ -230,5 +230,6 @@ def test_a_child_that_stands_ready_is_ended_as_any_other(tmp_path: Path) -> None
         for _ in range(2):  # the next one is answered again
             with pytest.raises(c2d.ScenarioError, match=r"loop\.xacro must be parsed in 2 s"):
                 c2d.read_robot(path, trusted=True)
-            # The system counts what a timer has run in ticks, and what was used exactly.
-            assert 1.5 < standing.seconds < LONGEST
+            # The system counts what a timer has run in ticks, a whole one for whoever runs when it
+            # ends, and what was used exactly: on a busy machine they differ by a quarter and more.
+            assert 1 < standing.seconds < LONGEST
