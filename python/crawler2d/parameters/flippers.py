@@ -36,7 +36,7 @@ class Flippers(Parameters, path="robot.flippers"):
         A line of wheels with a `wheel_radius` has that radius instead.
     mass : float
         [kg] Of one arm with its track; part of `robot.mass`, of which it is at least a
-        hundred-thousandth. All arms and tracks together must leave mass for the chassis. It is
+        hundred-thousandth. All arms and tracks together leave as much for the chassis. It is
         spread evenly between pivot and tip axle.
     ends : {"front", "rear", "both"}
         The ends of the robot that have arms.

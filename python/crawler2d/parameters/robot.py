@@ -55,8 +55,8 @@ class Robot(Parameters, path="robot"):
         [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0. More
         than that of all moving parts, and than `track_mass` times the square of the largest radius.
     track_mass : float
-        [kg] Of both tracks together, all of it moving at track speed: less than `mass`, and at
-        least a hundred-thousandth of it.
+        [kg] Of both tracks together, all of it moving at track speed: at least a
+        hundred-thousandth of `mass`, and as much is left for the chassis.
     outline : TrackOutline
         Side view of the track.
     gauge : float

@@ -57,11 +57,14 @@ impl Robot {
 
     /// Checks rules that involve several fields.
     fn check(&self, f: &Fields) -> Checked<()> {
-        if self.track_mass >= self.mass {
-            let rule = format!("must be less than robot.mass = {} kg", self.mass);
+        let least = LEAST_FRACTION * self.mass;
+        let most = self.mass - least;
+        if self.track_mass > most {
+            let rule = format!(
+                "must leave a hundred-thousandth of robot.mass for the chassis: at most {most} kg"
+            );
             return Err(f.error("track_mass", self.track_mass, rule));
         }
-        let least = LEAST_FRACTION * self.mass;
         if self.track_mass < least {
             let rule = format!("must be at least a hundred-thousandth of robot.mass, {least} kg");
             return Err(f.error("track_mass", self.track_mass, rule));
@@ -119,10 +122,10 @@ impl Robot {
         }
         self.check_rotor("flippers", flippers.rotor_inertia)?;
         let of_arms = 2.0 * flippers.mass * flippers.ends().count() as f64;
-        if of_arms + self.track_mass >= self.mass {
+        let most = self.mass - least;
+        if of_arms + self.track_mass > most {
             let rule = format!(
-                "must leave mass for the chassis: arms ({of_arms} kg) and robot.track_mass together reach robot.mass = {} kg",
-                self.mass
+                "must leave a hundred-thousandth of robot.mass for the chassis: arms ({of_arms} kg) and robot.track_mass together are more than {most} kg"
             );
             return error("mass", flippers.mass, rule);
         }

@@ -249,8 +249,8 @@ def _check_lanes(terrain: Json, v: Verdict) -> None:
 
 def _check_masses(robot: Json, v: Verdict) -> None:
     mass, of_track = robot["mass"], robot["track_mass"]
-    v.at_most("tracks are lighter than the robot", "robot.track_mass", of_track, mass, less=True)
     rule, least = "tracks weigh a hundred-thousandth", LEAST_FRACTION * mass
+    v.at_most("tracks leave as much for the chassis", "robot.track_mass", of_track, mass - least)
     v.at_least(rule, "robot.track_mass", of_track, least)
     radius = max(disc[2] for disc in discs_of(robot["outline"]))
     at, inertia = "robot.moment_of_inertia", robot["moment_of_inertia"]
@@ -296,10 +296,10 @@ def _check_arms(robot: Json, arms: Json, v: Verdict) -> None:
     rule, least = "an arm weighs a hundred-thousandth", LEAST_FRACTION * robot["mass"]
     v.at_least(rule, f"{path}.mass", arms["mass"], least)
     count = 4 if arms["ends"] == "both" else 2
-    left = (robot["mass"] - robot["track_mass"]) / count
-    rule = "arms leave mass for the chassis"
+    left = (robot["mass"] - least - robot["track_mass"]) / count
+    rule = "arms leave as much for the chassis"
     # A sum or a quotient: nothing is known where these are the same but for rounding.
-    v.at_most(rule, f"{path}.mass", arms["mass"], left, less=True, exact=False)
+    v.at_most(rule, f"{path}.mass", arms["mass"], left, exact=False)
     own, track = open_track(robot["track"])["kind"], arms["track"]
     at = f"{path}.track"
     if track is None:

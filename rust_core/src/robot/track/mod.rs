@@ -117,9 +117,10 @@ fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, Sc
     let mut arm = arm_as_robot(robot, flippers, end);
     loop {
         let built = build(&arm);
+        let too_few = matches!(&built, Err(error) if error.path == "robot.track.count");
         match &mut arm.track {
             Track::Circumferential(wheels)
-                if flippers.track.is_none() && built.is_err() && wheels.count < MAX_WHEELS =>
+                if flippers.track.is_none() && too_few && wheels.count < MAX_WHEELS =>
             {
                 wheels.count += 1;
             }

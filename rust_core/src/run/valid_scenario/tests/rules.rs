@@ -7,7 +7,7 @@ use super::super::{ValidScenario, place_of};
 /// A scene; what of it is changed first; a field; a value that it may have, if any; one that breaks a rule; the error.
 /// Where the bound is a float64, so is the value on it: sums of powers of two.
 const RULES: &str = r#"
-belt | | /robot/track_mass | 21.1 | 21.2 | robot.track_mass must be less than robot.mass = 21.2 kg
+belt | /robot/mass=32; /robot/moment_of_inertia=100 | /robot/track_mass | 31.99968 | 31.9997 | robot.track_mass must leave a hundred-thousandth of robot.mass for the chassis: at most 31.99968 kg
 belt | /robot/mass=32 | /robot/track_mass | 0.00032 | 0.000319 | robot.track_mass must be at least a hundred-thousandth of robot.mass, 0.00032 kg
 belt | /robot/track_mass=2.5; /robot/outline/front_radius=0.0625; /robot/outline/rear_radius=0.0625 | /robot/moment_of_inertia | 0.00977 | 0.009765625 | robot.moment_of_inertia must exceed track_mass x radius^2 = 0.009765625 kg m^2, the inertia of the moving track
 belt | | /robot/drivetrain/rotor_inertia | 44027 | 44029 | robot.drivetrain.rotor_inertia must be at most 100,000 times robot.moment_of_inertia, 44028
@@ -25,9 +25,10 @@ triangle | | /robot/track | {"kind":"closed","of":{"kind":"belt"},"surface":"own
 flippers | /criteria/intrusion_depth=0.00001 | /robot/flippers/tip_radius | 0.0121 | 0.012 | robot.flippers.tip_radius must exceed robot.outline.grouser_height = 0.012 m
 flippers | /robot/mass=32 | /robot/flippers/mass | 0.00032 | 0.000319 | robot.flippers.mass must be at least a hundred-thousandth of robot.mass, 0.00032 kg
 flippers | | /robot/flippers/rotor_inertia | 60212 | 60213 | robot.flippers.rotor_inertia must be at most 100,000 times robot.moment_of_inertia, 60212
-flippers | /robot/mass=32; /robot/track_mass=2; /robot/moment_of_inertia=100 | /robot/flippers/mass | 14.9 | 15 | robot.flippers.mass must leave mass for the chassis: arms (30 kg) and robot.track_mass together reach robot.mass = 32 kg
+flippers | /robot/mass=32; /robot/track_mass=2; /robot/moment_of_inertia=100 | /robot/flippers/mass | 14.9 | 15 | robot.flippers.mass must leave a hundred-thousandth of robot.mass for the chassis: arms (30 kg) and robot.track_mass together are more than 31.99968 kg
 flippers | /robot/flippers/root_radius=0.1875; /robot/flippers/tip_radius=0.0625 | /robot/flippers/length | 0.126 | 0.125 | robot.flippers.tip_radius must differ from root_radius by less than the length
 flippers | /robot/track={"kind":"hybrid","placements":[[0,0,0.064]],"wheel":{"kind":"round"}} | /robot/flippers/track | {"kind":"belt"} | null | robot.flippers.track must be given, because the robot's own track has wheels placed by hand
+flippers | /robot/track={"kind":"circumferential","count":20,"wheel_radius":null,"wheel":{"kind":"gear","grouser_count":8,"grouser_height":null,"tip_thickness":0.001,"base_thickness":null,"phase_fraction":0}} | /robot/track/wheel/grouser_height | 0.004 | 0.02 | robot.flippers.track.wheel.grouser_height must be less than the radius of wheel 0, 0.01
 flippers | | /robot/flippers/track | {"kind":"belt"} | CHAIN | robot.flippers.track must not be segmental
 flippers | | /robot/flippers/track | null | {"kind":"closed","of":{"kind":"belt"},"surface":"own"} | robot.flippers.track must not be closed, because a closed robot.track closes the arms' too
 flippers | | /robot/flippers/track | {"kind":"belt"} | {"kind":"force","support":"skids","skid_friction":0,"wheel_count":2} | robot.flippers.track must be a force track exactly when robot.track is one
