@@ -50,12 +50,12 @@ test-explorer: $(VENV)/.built $(VENV)/.browser ## the explorer in a real browser
 check: $(VENV)/.built ## format, lint, types, walls, stubs and documentation, nothing changed
 	cargo fmt --all --check
 	$(CARGO) clippy --release --workspace --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --no-deps
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --workspace --no-deps
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -q --noconftest tests/walls
-	$(BIN)/python -m mypy.stubtest crawler2d._core
+	$(BIN)/python -m mypy.stubtest crawler2d._core --mypy-config-file tests/walls/stubtest.ini
 
 atlas: $(VENV)/.built ## audit every model file in a tree of repositories, FOLDER=..., on one page; a minute a robot
 	$(BIN)/python -m crawler2d atlas $(FOLDER) $(ARGS)
