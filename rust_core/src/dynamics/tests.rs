@@ -198,15 +198,17 @@ fn energy(m: &Model, state: &State) -> f64 {
         + of_drives.sum::<f64>())
 }
 
-/// Random contacts from all sides: they hold, slide, part or jam.
+/// Random contacts from all sides: they hold, slide, part or jam. Many more with `CRAWLER2D_SOAK`.
 #[test]
 fn contacts_from_all_sides_take_energy_within_coulombs_law() {
+    let is_soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
+    let cases = if is_soak { 20_000 } else { 4_000 };
     for seed in [1, 8] {
         let mut drawn = Draw(seed);
         let mut draw = |low, high| drawn.between(low, high);
         for iterations in [1, 8] {
             let (mut jams, mut unresolved) = (0, 0);
-            for case in 0..20_000 {
+            for case in 0..cases {
                 let (mut dynamics, mut state) = setup(|s| {
                     s.robot.drivetrain.max_torque = 0.0;
                     s.robot.drivetrain.rotor_inertia = if case % 2 == 0 { 0.0 } else { 0.05 };
@@ -236,8 +238,8 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
                 }
             }
             // Rounding leaves some of the jams open.
-            assert!(iterations == 1 || unresolved <= 4, "{unresolved} of 40,000");
-            assert!(jams > 2000, "{jams} of 20,000 jam");
+            assert!(iterations == 1 || unresolved <= 4, "{unresolved} of {cases}");
+            assert!(jams > cases / 10, "{jams} of {cases} jam");
         }
     }
 }

@@ -108,7 +108,7 @@ fn within(region: &Region, ranges: Ranges, draw: &mut Draw) -> [f64; 2] {
 fn what_is_certified_has_no_jam_with_ground_inside_the_track() {
     let mut draw = Draw(99);
     let (mut regions, mut tipping) = (0, 0);
-    for case in 0..few_or_many(12, 600) {
+    for case in 0..few_or_many(8, 600) {
         let (scenario, ranges) = drawn(&mut draw);
         for region in certificate(&scenario, ranges).regions {
             if !matches!(region.status, RegionStatus::Certified(_)) {
@@ -133,8 +133,8 @@ fn what_is_certified_has_no_jam_with_ground_inside_the_track() {
         }
     }
     println!("{regions} regions, {tipping} poses in which it tips");
-    assert!(regions > few_or_many(12, 300), "{regions}");
-    assert!(tipping > few_or_many(60, 1_500), "{tipping}");
+    assert!(regions > few_or_many(5, 300), "{regions}");
+    assert!(tipping > few_or_many(20, 1_500), "{tipping}");
 }
 
 #[test]

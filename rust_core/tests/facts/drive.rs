@@ -168,7 +168,7 @@ fn equal_commands_drive_towards_plus_x_and_minus_x_alike() {
         // over several. On arms the robot stands on those that go round the tips, which are faster than the belt by
         // turns.
         let (phases, limit) = if strikes(name) {
-            (few_or_many(3, 8), 0.03)
+            (few_or_many(2, 8), 0.03)
         } else {
             (1, 2e-7)
         };

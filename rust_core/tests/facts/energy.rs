@@ -106,7 +106,7 @@ fn unpowered_robots_never_gain_energy() {
 #[test]
 fn drawn_robots_gain_no_more_than_their_motors_give() {
     for seed in [97, 1234] {
-        drawn_robots_gain_no_more(seed, few_or_many(30, 2000));
+        drawn_robots_gain_no_more(seed, few_or_many(15, 2000));
     }
 }
 

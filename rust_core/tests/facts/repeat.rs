@@ -98,7 +98,8 @@ fn threads_and_order_do_not_change_a_bit() {
         .iter()
         .map(|s| fingerprint(&simulate(s, Record::default()).expect("finite")))
         .collect();
-    for threads in [1, 2, 3, 8] {
+    let threads: &[usize] = if is_soak() { &[1, 2, 3, 8] } else { &[1, 3] };
+    for &threads in threads {
         assert_eq!(go(&scenarios, threads), alone);
     }
     let reversed: Vec<ValidScenario> = scenarios.iter().rev().cloned().collect();

@@ -78,7 +78,7 @@ fn on_level_ground_speed_and_height_are_the_geometrys() {
             simulation.reading().track_position,
         );
         let (mut lowest, mut highest) = (f64::INFINITY, 0.0_f64);
-        let span = f64::from(few_or_many(4, 10));
+        let span = f64::from(few_or_many(2, 10));
         while simulation.time() < 3.0 + span {
             simulation.step_until(3.0 + span).expect("finite");
             let height = simulation.reading().position.y;
@@ -224,7 +224,7 @@ fn a_chain_runs_as_far_as_its_sprocket_turns() {
             simulation.reading().track_position,
             simulation.chain().sprocket_slip,
         );
-        let span = f64::from(few_or_many(4, 10));
+        let span = f64::from(few_or_many(2, 10));
         advance(&mut simulation, span);
         let run = simulation.reading().track_position - start;
         let apart = (simulation.chain().sprocket_slip - slip).abs();

@@ -273,7 +273,7 @@ fn no_drawn_robot_sinks_in_behind_an_arc_that_takes_up_a_whole_face() {
     const SEED: u64 = 41;
     let mut draw = Draw(SEED);
     let (mut runs, mut deepest) = (0, 0.0_f64);
-    for case in 0..few_or_many(30, 2000) {
+    for case in 0..few_or_many(15, 2000) {
         let mut scenario = drawn(&mut draw);
         let radius = scenario.robot.outline.rear_radius();
         let share = [0.0, 0.0, 1e-11, 1e-7, 1e-4][(draw.unit() * 5.0) as usize];

@@ -26,7 +26,7 @@ fn poses() -> usize {
     if std::env::var_os("CRAWLER2D_SOAK").is_some() {
         50_000
     } else {
-        2_000
+        1_400
     }
 }
 
