@@ -12,6 +12,7 @@ seconds a mutant.
 import argparse
 import compileall
 import contextlib
+import functools
 import importlib
 import os
 import random
@@ -52,6 +53,7 @@ class Tests:
 
         self.data = CoverageData(str(KNOWN / "data"))
         self.data.read()
+        self.contexts = functools.cache(self.data.contexts_by_lineno)
         self.seconds = {
             name_of(case): float(case.attrib["time"])
             for case in ElementTree.parse(KNOWN / "tests.xml").iter("testcase")
@@ -60,7 +62,7 @@ class Tests:
 
     def of(self, mutant: Mutant) -> list[str]:
         """Return the tests that can notice a mutant, quickest first; none if it never runs."""
-        contexts = self.data.contexts_by_lineno(str(mutant.file))
+        contexts = self.contexts(str(mutant.file))
         found = [context for line in mutant.lines for context in contexts.get(line, ())]
         tests = {context.rpartition("|")[0] for context in found}
         # What a fixture does is told of the first test alone that asks for it.

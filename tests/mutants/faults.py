@@ -17,6 +17,17 @@ EQUIVALENT = [
     ('"" if outcome is None', "'' -> 'x'", "no outcome is called so either"),
     ("get_close_matches", "1 -> 2", "the first of them is taken"),
     ("nearest[0]", "0 -> -1", "the only one"),
+    ("holder.children[0]", "0 -> -1", "the only one"),
+    ('("diaginertia", 3)', "3 -> 4", "there are but three"),
+    ("round_size: float", "1.0 -> 1.01", "left out of wheels that are removed, alone"),
+    ("if more > 0", "0 -> -1", "wheels come in pairs, and without a difference nothing is told"),
+    ("if more > 0", "0 -> 1", "wheels come in pairs, and without a difference nothing is told"),
+    ("_MASS = ", "0.0001 -> 0.000101", "far above what rounding leaves, either"),
+    (
+        "_SCALARS = (bool",
+        "(bool, int, float, str, type(None)) -> (int, float, str, type(None))",
+        "a bool is an int",
+    ),
 ]
 """Mutants that no test can tell from the module: of the line, the change, and why."""
 

@@ -13,7 +13,7 @@ from crawler2d.patching.edits import copy_elements, items_about
 from crawler2d.patching.patch import _check, patch_file
 from crawler2d.writing.document import Document
 from tests.patching.test_patch import on_chassis
-from tests.reading.carts import FILES, WHEELS, pair, quietly, urdf
+from tests.reading.carts import ACROSS, FILES, ROUND, WHEELS, link, pair, quietly, urdf
 
 CART = {
     name: (FILES / f"cart.{name}").read_text(encoding="utf-8") for name in ("urdf", "sdf", "xml")
@@ -34,6 +34,7 @@ def paths(text: str) -> list[tuple[str, str, str]]:
         path = f"{path}/{element.tag}"
         found.extend((f"{path}@{name}", value) for name, value in element.attrib.items())
         found.append((path, (element.text or "").strip()))
+        found.append((f"{path}~", (element.tail or "").strip()))
         for child in element:
             walk(child, path)
 
@@ -145,6 +146,7 @@ def test_a_wheel_without_an_origin_gets_one(tmp_path: Path) -> None:
     text = patch_file(reading, on_chassis(reading, 3)).text
     assert text.count('<origin xyz="-0.02 0 0"/>') == 2
     assert factors(reading.text, text.replace('<origin xyz="-0.02 0 0"/>', "")) == {}
+    assert patch_file(reading, on_chassis(reading, 3)).summary.startswith("wheels: 2 changed; ")
 
 
 DRIVERS = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
@@ -161,7 +163,8 @@ def test_each_name_of_a_size_in_a_plugin_is_known(setting: str, tmp_path: Path) 
 
 @pytest.mark.parametrize("setting", ["num_wheel_pairs", "wheel_torque", "max_wheel_torque"])
 def test_each_setting_that_counts_wheels_is_left_by_name(setting: str, tmp_path: Path) -> None:
-    plugin = f"""<gazebo><plugin name="d" filename="d.so">
+    blank = 200 * "\n"  # a line is found by what all before it take
+    plugin = f"""{blank}<gazebo><plugin name="d" filename="d.so">
 <{setting}>4</{setting}></plugin></gazebo>"""
     reading = read(tmp_path, urdf(WHEELS, plugin), "urdf")
     patch = patch_file(reading, on_chassis(reading, 3))
@@ -299,7 +302,8 @@ def test_wheels_without_a_mass_cannot_share_it(tmp_path: Path) -> None:
     assert caught.value.rule == "must state its mass, for wheels to share it"
 
 
-GEAR = c2d.GearWheel(grouser_count=12, grouser_height=0.02, tip_thickness=0.008)
+GEAR_COUNT = 12
+GEAR = c2d.GearWheel(grouser_count=GEAR_COUNT, grouser_height=0.02, tip_thickness=0.008)
 
 
 def with_gears(reading: c2d.Reading, gear: c2d.GearWheel) -> c2d.Robot:
@@ -312,6 +316,55 @@ def test_gear_wheels_replace_round_ones_alone(tmp_path: Path) -> None:
     again = read(tmp_path, gears, "urdf")
     with pytest.raises(c2d.ScenarioError, match="chassis must be round in the file, got gear"):
         patch_file(again, with_gears(again, replace(GEAR, grouser_count=10)))
+
+
+def test_gear_wheels_of_a_file_do_not_stay_where_round_ones_are_asked_for(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS), "urdf")
+    again = read(tmp_path, patch_file(reading, with_gears(reading, GEAR)).text, "urdf")
+    for count in (4, 5):
+        with pytest.raises(c2d.ScenarioError, match="chassis must be round in the file, got gear"):
+            patch_file(again, on_chassis(again, count))
+
+
+def test_grousers_are_as_wide_as_the_tread_and_on_it(tmp_path: Path) -> None:
+    tread = ROUND.format(radius="0.08")
+    hub = tread.replace("0.08", "0.03").replace("0.05", "0.2")
+    place = '<origin xyz="0 0.01 0" rpy="1.5707963267948966 0 0"/>'
+    shapes = f"{tread}</geometry></collision><collision>{ACROSS}<geometry>{hub}"
+    wheels = pair("front", 0.2, origin=place, geometry=shapes)
+    wheels += pair("rear", -0.2, origin=place, geometry=shapes)
+    reading = read(tmp_path, urdf(wheels), "urdf")
+    root = ElementTree.fromstring(patch_file(reading, with_gears(reading, GEAR)).text)
+    boxes = [each for each in root.iter("collision") if each.find("geometry/box") is not None]
+    assert len(boxes) == 8 * GEAR_COUNT
+    for each in boxes:
+        size, at = each.find("geometry/box"), each.find("origin")
+        assert size is not None
+        assert at is not None
+        assert float(size.attrib["size"].split()[1]) == pytest.approx(0.05)
+        assert float(at.attrib["xyz"].split()[1]) == pytest.approx(0.01)
+
+
+def test_copies_of_a_part_on_a_wheel_have_joints_of_their_own(tmp_path: Path) -> None:
+    hubs = "".join(
+        link(f"{side}_{end}_hub", 'type="fixed">', parent=f"{side}_{end}")
+        for side in ("left", "right")
+        for end in ("front", "rear")
+    )
+    reading = read(tmp_path, urdf(WHEELS, hubs), "urdf")
+    root = ElementTree.fromstring(patch_file(reading, on_chassis(reading, 3)).text)
+    for tag in ("link", "joint"):
+        found = [each.get("name") for each in root.iter(tag)]
+        assert len(found) == len(set(found)) == (13 if tag == "link" else 12)
+    assert {"left_rear_hub_joint", "left_rear_hub_joint_added"} <= set(found)
+
+
+def test_wheels_that_are_spheres_change_their_radius(tmp_path: Path) -> None:
+    ball = '<sphere radius="0.08"/>'
+    wheels = pair("front", 0.2, geometry=ball) + pair("rear", -0.2, geometry=ball)
+    reading = read(tmp_path, urdf(wheels), "urdf")
+    text = patch_file(reading, on_chassis(reading, 2, 0.1)).text
+    assert text.count('<sphere radius="0.1"/>') == 4
 
 
 def test_grousers_that_taper_are_no_boxes(tmp_path: Path) -> None:

@@ -212,8 +212,8 @@ class _CarrierChange:
         shift = frame.along((x, 0.0, z))
         size = now.radius / was.radius
         root, grousers = size, tuple[Shape, ...]()
-        if now.outline is not None and not _has_same_outline(was, now):
-            if was.outline is not None:
+        if not _has_same_outline(was, now):
+            if was.outline is not None or now.outline is None:
                 raise ScenarioError(self.name, "gear wheels", "must be round in the file")
             root = grousers_of(now.outline)[0] / was.radius
             grousers = self.grousers(joint, now.outline, now.center)

@@ -28,11 +28,14 @@ _ROUNDS = ("cylinder", "sphere", "capsule")
 
 
 def names_of(scope: Span, links: Collection[str], joint: str) -> set[str]:
-    """Return the names of a wheel, and of all parts in its bodies in MJCF."""
+    """Return the names of a wheel, of the joints of its parts, and in MJCF of all in its bodies."""
     names = {*links, joint}
-    for body in scope.within():
-        if body.tag == "body" and body.name in links:
-            names |= {each.name for each in body.within() if each.name}
+    for each in scope.within():
+        if each.tag == "body" and each.name in links:
+            names |= {part.name for part in each.within() if part.name}
+        child = each.only("child") if each.tag == "joint" else None
+        if child is not None and (child.text or child.attributes.get("link")) in links:
+            names.add(each.name)
     return names
 
 
@@ -177,9 +180,6 @@ def _is_about(span: Span, names: Collection[str]) -> bool:
         return True
     if span.tag == "transmission":
         return any(joint.name in names for joint in span.all("joint"))
-    if span.tag == "joint":
-        child = span.only("child")
-        return child is not None and (child.text or child.attributes.get("link")) in names
     return not span.children and span.text in names
 
 
