@@ -279,6 +279,14 @@ def test_a_store_whose_list_of_tables_is_lost_is_no_new_one(path: Path) -> None:
     assert path.read_bytes() == content
 
 
+def test_a_store_cut_to_one_byte_is_no_new_one(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:1])
+    for use in (c2d.table, c2d.check_store, c2d.join_stores, found_in):
+        with pytest.raises(c2d.StoreError, match="is damaged"):
+            use(path)
+    assert path.stat().st_size == 1
+
+
 def test_damage_that_sqlite_cannot_even_tell_is_told(path: Path) -> None:
     content = path.read_bytes()
     assert content.count(b"CREATE TABLE run") == 1

@@ -413,6 +413,8 @@ def _kind(error: sqlite3.Error) -> str:
 
 
 def _connect(real: Path, mode: str) -> sqlite3.Connection:
+    if real.stat().st_size == 1:  # which SQLite takes for an empty file, and overwrites
+        raise StoreError(f"{real} is no SQLite file, or is damaged (it has a single byte)")
     uri = f"{real.as_uri()}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, timeout=_PATIENCE, isolation_level=None)
     # Damaged text is for the checksum to find.
