@@ -130,8 +130,12 @@ format: $(VENV)/.dependencies ## format all code
 
 build: $(VENV)/.built ## the compiled core, in place
 
-fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, as many held to the rules, 10,000 run, 120,000 model files and meshes read, minutes; other ones with CRAWLER2D_FUZZ_SEED=...
-	$(BIN)/python -m pytest -m soak tests/fuzz
+# Needs a C++ compiler, too: libFuzzer is built from source. Only our own crates are compiled for it.
+MINUTES ?= 20
+fuzz: $(VENV)/.built $(VENV)/.fuzz ## changed inputs that look for paths in core and readers, MINUTES=20 in all; TARGETS="solver xacro" are those alone
+	RUSTC_WORKSPACE_WRAPPER=$(CURDIR)/rust_core/fuzz/rustc.sh \
+		cargo build --release --package crawler2d-fuzz --features libfuzzer --bins
+	$(BIN)/python -m tests.fuzz.guided $(MINUTES) $(TARGETS)
 
 map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
 	$(BIN)/python -m tests.walls.map
@@ -203,7 +207,7 @@ $(BIN)/cov: | tools
 	$(INSTALL) --features cli llvm_profparser@0.15.0
 
 # Groups of pyproject.toml that single verbs need.
-$(addprefix $(VENV)/.,coverage docs engines peers supply): $(VENV)/.%: $(VENV)/.dependencies
+$(addprefix $(VENV)/.,coverage docs engines fuzz peers supply): $(VENV)/.%: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group $*
 	@touch $@
 

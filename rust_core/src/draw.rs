@@ -1,15 +1,39 @@
-//! Random numbers for tests.
+//! Random numbers for tests, and numbers that a fuzzer gives as bytes.
+
+/// Where the bits come from.
+pub(crate) trait Source {
+    fn bits(&mut self) -> u64;
+}
 
 /// splitmix64
-pub(crate) struct Draw(pub(crate) u64);
-
-impl Draw {
-    pub(crate) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
+impl Source for u64 {
+    fn bits(&mut self) -> u64 {
+        *self = self.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = *self;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
+    }
+}
+
+/// Two bytes a number, so that equal numbers and ends of ranges come often; zeros when there are no more.
+impl Source for &[u8] {
+    fn bits(&mut self) -> u64 {
+        let (two, rest) = self.split_at(self.len().min(2));
+        *self = rest;
+        let number = two
+            .iter()
+            .fold(0, |number, byte| number << 8 | u64::from(*byte));
+        number * 0x0001_0001_0001_0001
+    }
+}
+
+/// Numbers of a source.
+pub(crate) struct Draw<S = u64>(pub(crate) S);
+
+impl<S: Source> Draw<S> {
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.0.bits()
     }
 
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {

@@ -16,11 +16,13 @@
 
 mod contact;
 mod diagnosis;
-#[cfg(test)]
+#[cfg(any(test, fuzzing))]
 mod draw;
 mod dynamics;
 mod engine;
 mod error;
+#[cfg(any(test, fuzzing))]
+pub mod fuzz;
 mod geometry;
 mod jams;
 mod limits;

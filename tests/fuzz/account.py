@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 SEED = int(os.environ.get("CRAWLER2D_FUZZ_SEED", "1"))
-"""Of everything that is drawn; make fuzz hands it on."""
+"""Of everything that is drawn, and of what make fuzz changes."""
 
 
 def cases(name: str, usual: int) -> int:

@@ -13,8 +13,9 @@ _NO_CODE = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 _VISIBLE_IN = re.compile(r"\(in [^)]*\)")
-_TEST = re.compile(r"#\[cfg\(test\)\]")
-_TEST_MODULE = re.compile(r"#\[cfg\(test\)\]\s*mod\s+(\w+)\s*;")
+_OF_TESTS = r"#\[cfg\((?:test|any\(test, fuzzing\))\)\]"
+_TEST = re.compile(_OF_TESTS)
+_TEST_MODULE = re.compile(_OF_TESTS + r"\s*(?:pub(?:\(crate\))?\s+)?mod\s+(\w+)\s*;")
 _USE = re.compile(r"\buse\s+([^;]+);")
 _HANDED_ON = re.compile(r"\bpub(?:\([^)]*\))?\s+use\s+([^;]+);")
 _PATH = re.compile(r"\b((?:crate|super|self)(?:\s*::\s*\w+)+)")

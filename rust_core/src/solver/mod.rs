@@ -11,6 +11,8 @@ mod bodies;
 mod contact;
 mod damper;
 mod effort;
+#[cfg(any(test, fuzzing))]
+pub(crate) mod judge;
 mod motor;
 mod path;
 mod ring;

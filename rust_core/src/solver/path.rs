@@ -11,7 +11,7 @@
 
 use super::contact::{Contact, Grip};
 use super::motor::{Hold, Motor};
-use super::{Problem, Start};
+use super::{AGREEMENT, Problem, Start};
 
 /// Pivots, at most, for each contact and motor, from where all contacts are open, ...
 const FROM_AIR: usize = 16;
@@ -77,7 +77,8 @@ impl Problem {
         }
         let most = self.relax();
         let ends = most == 0.0 || self.pivot_along(pivots, together);
-        ends.then(|| self.follow_unknowns())
+        // Where conditions are met together, a motor may come to hold beyond its limit.
+        (ends && self.beyond_limits() < AGREEMENT.value()).then(|| self.follow_unknowns())
     }
 
     /// The pivots of [`Problem::pivot`], from relaxed laws; returns whether the relaxation became nothing.
@@ -117,15 +118,7 @@ impl Problem {
         let unknowns = &self.unknowns;
         let bearing = self.contacts.iter().filter(|c| c.bears);
         let of_contacts = bearing.fold(0.0, |most: f64, c| most.max(c.violation(unknowns)));
-        let short = |motor: &Motor| {
-            let mut short: f64 = 0.0;
-            self.conditions_of(motor, |_, value| short = short.max(-value));
-            short
-        };
-        let holding = self.motors.iter().filter(|m| m.hold == Hold::Holds);
-        let most = holding.fold(of_contacts, |most, m| {
-            most.max(short(m) * m.admittance(&self.system))
-        });
+        let most = of_contacts.max(self.beyond_limits());
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
             contact.relax(&self.unknowns, most);
         }
@@ -138,6 +131,17 @@ impl Problem {
             };
         }
         most
+    }
+
+    /// [m/s] By how much motors that hold their speeds are beyond their limits at most.
+    fn beyond_limits(&self) -> f64 {
+        let short = |motor: &Motor| {
+            let mut short: f64 = 0.0;
+            self.conditions_of(motor, |_, value| short = short.max(-value));
+            short * motor.admittance(&self.system)
+        };
+        let holding = self.motors.iter().filter(|m| m.hold == Hold::Holds);
+        holding.map(short).fold(0.0, f64::max)
     }
 
     /// Lets motors at a limit or at a lock hold their speed if their state does not fit: with limits that are wide enough

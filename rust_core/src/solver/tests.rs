@@ -9,9 +9,9 @@ mod worst;
 
 use approx::assert_relative_eq;
 
+use super::judge::*;
 use super::*;
-use crate::geometry::{Twist, Vector, cross, right_of};
-use crate::scenario::Friction;
+use crate::geometry::{Twist, Vector, right_of};
 
 /// [m/s^2], and [s] the time of a solve here.
 const GRAVITY: f64 = 9.81;
@@ -29,34 +29,7 @@ fn body_with(spins: &[f64], velocity: Vector, turn: f64) -> Problem {
     problem
 }
 
-/// A contact of the body at `arm` from its centre, which bears.
-fn contact(arm: Vector, normal: Vector, friction: f64) -> Contact {
-    let rows = [normal, right_of(normal)];
-    let rows = rows.map(|unit| Row::on_base([unit.x, unit.y, cross(arm, unit)]));
-    bearing(rows, friction)
-}
-
-/// A contact of the surface of a belt that a spin drives, at a radius.
-fn on_belt(arm: Vector, normal: Vector, friction: f64, (spin, radius): (usize, f64)) -> Contact {
-    let rows = [(normal, 0.0), (right_of(normal), radius)];
-    let rows = rows.map(|(unit, lever)| {
-        Row::on_base([unit.x, unit.y, cross(arm, unit) - lever]).and(spin, lever)
-    });
-    bearing(rows, friction)
-}
-
-fn bearing(rows: [Row; 2], friction: f64) -> Contact {
-    let mut contact = Contact::new(rows);
-    (contact.friction, contact.bears) = (Friction::dry(friction), true);
-    contact.mass = Some(2.0);
-    contact
-}
-
 impl Problem {
-    fn set_free(&mut self, velocity: Vector, turn: f64) {
-        self.free[..3].copy_from_slice(&[velocity.x, velocity.y, turn]);
-    }
-
     /// The velocity of the base.
     fn base(&self) -> Twist {
         Twist::from([self.unknowns[0], self.unknowns[1], self.unknowns[2]])

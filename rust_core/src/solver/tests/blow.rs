@@ -114,7 +114,7 @@ fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
 
 /// A random problem whose contacts are hard and push nothing out.
 fn drawn_hard(draw: &mut Draw) -> Problem {
-    let mut problem = random::drawn(draw);
+    let mut problem = drawn(draw);
     for contact in &mut problem.contacts {
         (contact.bias, contact.compliance) = (0.0, 0.0);
     }

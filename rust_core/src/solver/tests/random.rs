@@ -8,55 +8,12 @@ use nalgebra::{DMatrix, DVector};
 use super::interior_point::minimised;
 use super::*;
 use crate::draw::Draw;
-use crate::geometry::direction;
-
-/// A random problem: a body, up to two others that spin on it with a motor each, and contacts from all sides.
-pub(super) fn drawn(draw: &mut Draw) -> Problem {
-    let base = [draw.size(0.5, 50.0), draw.size(0.01, 5.0)];
-    let spins: Vec<f64> = (0..draw.below(3)).map(|_| draw.size(1e-4, 0.1)).collect();
-    let mut problem = Problem::new(base, 0, &spins, &[]);
-    let mut speed = |most: f64| draw.between(-most, most);
-    let velocity = Vector::new(speed(1.0), speed(1.0));
-    problem.set_free(velocity, speed(3.0));
-    for k in 0..spins.len() {
-        problem.free[problem.layout.spin(k)] = speed(10.0);
-    }
-    for k in 0..spins.len() {
-        let on = Driven::Body(problem.layout.spin(k));
-        let mut motor = Motor::new(on, -0.1, draw.chance(0.8));
-        motor.aim(draw.between(-1.0, 1.0), draw.size(1e-3, 10.0));
-        problem.motors.push(motor);
-    }
-    let friction = if draw.chance(0.1) {
-        0.0
-    } else {
-        draw.between(0.05, 1.2)
-    };
-    for _ in 0..=draw.below(8) {
-        let (arm, normal) = (
-            0.3 * direction(draw.between(0.0, 6.3)),
-            direction(draw.between(0.0, 6.3)),
-        );
-        let mut next = if !spins.is_empty() && draw.chance(0.7) {
-            let spin = problem.layout.spin(draw.below(spins.len()));
-            on_belt(arm, normal, friction, (spin, 0.1))
-        } else {
-            contact(arm, normal, friction)
-        };
-        next.mass = Some(base[0]);
-        if draw.chance(0.3) {
-            (next.bias, next.compliance) = (draw.between(-0.1, 0.1), draw.size(1e-3, 1.0));
-        }
-        problem.contacts.push(next);
-    }
-    problem
-}
 
 /// What acts along a row: its entries, target, compliance and the bounds of its impulse.
 type Acting = (DVector<f64>, f64, f64, (f64, f64));
 
 /// Where the other method gets, from the limits of friction that the solver has found: velocities of body and spins.
-pub(super) fn by_interior_point(problem: &Problem) -> DVector<f64> {
+fn by_interior_point(problem: &Problem) -> DVector<f64> {
     let inertias = problem.masses.clone();
     let dofs = inertias.len();
     let mut free = DVector::from_column_slice(&problem.free);
@@ -133,24 +90,6 @@ fn ten_thousand_random_problems_are_solved_as_by_an_interior_point_method() {
     assert!(off[9_950] < 1e-6, "{:e}", off[9_950]);
     assert!(off[9_990] < 1e-5, "{:e}", off[9_990]);
     assert!(off[9_999] < 5e-4, "{:e}", off[9_999]);
-}
-
-/// [m/s], [N s] How far a motor behind a lock is off its law: at a stop with an impulse that only that can give, or between the
-/// two with its own.
-fn off_its_law(problem: &Problem, motor: &Motor) -> [f64; 2] {
-    let way = motor.target.signum();
-    let now = [problem.motor_speed(motor), problem.motor_impulse(motor)];
-    let [speed, impulse] = now.map(|x| way * x);
-    let (most, far) = (motor.limits[0].at(0.0), motor.target.abs());
-    match motor.hold {
-        Hold::Holds => [(speed - far).abs(), (impulse - most).max(0.0)],
-        Hold::Locked => [speed.abs(), (most - impulse).max(0.0)],
-        Hold::Pushes | Hold::Brakes => {
-            let beyond = (-speed).max(speed - far).max(0.0);
-            [beyond, (impulse - most).abs()]
-        }
-        Hold::Free => [f64::INFINITY; 2],
-    }
 }
 
 /// The same with gears that lock themselves: a law of three pieces, as that of a motor with two limits.

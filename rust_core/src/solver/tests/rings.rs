@@ -1,7 +1,7 @@
 //! Rings of links.
 
 use super::*;
-use crate::geometry::{direction, left_of};
+use crate::geometry::{cross, direction, left_of};
 
 /// [kg], [kg m^2] and [m] A link: its mass, inertia, and the way from its centre to either hinge.
 const MASS: f64 = 0.3;

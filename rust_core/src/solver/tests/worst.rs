@@ -98,25 +98,6 @@ fn problem_of(line: &str) -> Problem {
     problem
 }
 
-/// [m/s] By how much a contact breaks its law: it approaches, or moves where it should stick, or is helped on by
-/// friction.
-fn breach(contact: &Contact, problem: &Problem) -> f64 {
-    let v = &problem.unknowns;
-    let spring = contact.mass.expect("a mass").recip();
-    let (n, t) = (contact.normal_impulse, contact.friction_impulse);
-    let gives = contact.bias + contact.compliance * spring * n;
-    let opens = contact.normal.speed(v) + gives;
-    let slip = contact.tangent.speed(v);
-    let of_normal = if n > 0.0 {
-        opens.abs()
-    } else {
-        (-opens).max(0.0)
-    };
-    let sticks = t.abs() < contact.friction.coefficient * n * (1.0 - 1e-9);
-    let helps = slip * t > 0.0;
-    of_normal.max(if sticks || helps { slip.abs() } else { 0.0 })
-}
-
 #[test]
 fn the_worst_hundred_problems_of_studies_obey_coulombs_law() {
     for (number, line) in PROBLEMS.lines().enumerate() {

@@ -1,0 +1,79 @@
+//! What a fuzzer that is guided by coverage calls, and the cases that it has kept: a function for each target, which panics
+//! if bytes break a rule. Only tests and `make fuzz` compile it.
+
+mod json;
+mod run;
+mod scenario;
+mod snapshot;
+mod solver;
+mod terrain;
+
+pub use json::mutated;
+pub use run::run;
+pub use scenario::scenario;
+pub use snapshot::snapshot;
+pub use solver::solver;
+pub use terrain::terrain;
+
+/// Texts of the shared scenarios, with which most targets begin.
+pub(crate) const TEXTS: [&str; 12] = [
+    include_str!("../../../tests/scenarios/engineer_belt_step.json"),
+    include_str!("../../../tests/scenarios/engineer_chain_step.json"),
+    include_str!("../../../tests/scenarios/engineer_flippers_step.json"),
+    include_str!("../../../tests/scenarios/engineer_force_step.json"),
+    include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
+    include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json"),
+    include_str!("../../../tests/scenarios/engineer_hybrid_step.json"),
+    include_str!("../../../tests/scenarios/engineer_sprocket_step.json"),
+    include_str!("../../../tests/scenarios/judge_gear3_bar.json"),
+    include_str!("../../../tests/scenarios/judge_gear3_blocks.json"),
+    include_str!("../../../tests/scenarios/peer_cwa24_gear_field.json"),
+    include_str!("../../../tests/scenarios/peer_lwa5_round_step.json"),
+];
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Calls a target with each case that is kept for it.
+    fn replay(name: &str, target: fn(&[u8])) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("fuzz/corpus")
+            .join(name);
+        let cases = std::fs::read_dir(&folder).expect("cases are kept");
+        let mut count = 0;
+        for case in cases {
+            let path = case.expect("a case").path();
+            target(&std::fs::read(path).expect("a case can be read"));
+            count += 1;
+        }
+        assert!(count > 10, "{count} cases of {name}");
+    }
+
+    #[test]
+    fn every_kept_text_is_a_scenario_or_is_refused() {
+        replay("scenario", scenario);
+    }
+
+    #[test]
+    fn every_kept_terrain_is_built_or_is_refused() {
+        replay("terrain", terrain);
+    }
+
+    #[test]
+    fn every_kept_damage_of_a_snapshot_is_refused_or_goes_on() {
+        replay("snapshot", snapshot);
+    }
+
+    #[test]
+    fn every_kept_problem_is_solved_by_the_laws() {
+        replay("solver", solver);
+    }
+
+    #[test]
+    fn every_kept_scenario_steps_to_numbers() {
+        replay("run", run);
+    }
+}
