@@ -238,7 +238,10 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
                 }
             }
             // Rounding leaves some of the jams open.
-            assert!(iterations == 1 || unresolved <= 4, "{unresolved} of {cases}");
+            assert!(
+                iterations == 1 || unresolved <= 4,
+                "{unresolved} of {cases}"
+            );
             assert!(jams > cases / 10, "{jams} of {cases} jam");
         }
     }
