@@ -114,7 +114,7 @@ fn is_lane(lane: &Profile) {
     assert!(lane.points.iter().all(|point| point.is_finite()));
     for pair in lane.points.windows(2) {
         assert!(pair[0] != pair[1]);
-        let rounding = 1e-12 * (1.0 + pair[0].x.abs());
+        let rounding = 1e-12 * (1.0 + pair[0].length());
         assert!(
             pair[0].x <= pair[1].x + rounding,
             "{} then {}",

@@ -318,6 +318,12 @@ impl<'a> Fields<'a> {
         };
         let rule = one_of(Some(name), &self.known);
         let rule = rule.replacen("must be one of", "must be a known field:", 1);
+        // A path that ends in nothing would name no field.
+        let name = if name.is_empty() {
+            "\"\""
+        } else {
+            name.as_str()
+        };
         Err(self.error(name, value, rule))
     }
 }

@@ -136,6 +136,7 @@ belt | | /robot/track/kind | "belt" | "bolt" | robot.track.kind must be one of l
 belt | | /robot/track/kind | "belt" | "none of these" | robot.track.kind must be one of line, circumferential, hybrid, belt, grouser_belt, segmental, force, closed, got none of these
 belt | | /robot/weight | - | 5 | robot.weight must be a known field:
 belt | | /speed | - | 5 | speed must be a known field:
+belt | | / | - | 5 | "" must be a known field:
 belt | | /robot | - | 5 | robot must be an object, got 5
 belt | | /schema | 2 | 1 | schema must be
 belt | | /gravity | 9.81 | [1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111] | gravity must be a number, got [1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,1111111111,11...
