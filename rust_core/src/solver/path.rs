@@ -77,8 +77,8 @@ impl Problem {
         }
         let most = self.relax();
         let ends = most == 0.0 || self.pivot_along(pivots, together);
-        // Where conditions are met together, a motor may come to hold beyond its limit.
-        (ends && self.beyond_limits() < AGREEMENT.value()).then(|| self.follow_unknowns())
+        // Where conditions are met together, a motor may come to a state that does not fit.
+        (ends && self.motors_off(|_| true) < AGREEMENT.value()).then(|| self.follow_unknowns())
     }
 
     /// The pivots of [`Problem::pivot`], from relaxed laws; returns whether the relaxation became nothing.
@@ -118,7 +118,7 @@ impl Problem {
         let unknowns = &self.unknowns;
         let bearing = self.contacts.iter().filter(|c| c.bears);
         let of_contacts = bearing.fold(0.0, |most: f64, c| most.max(c.violation(unknowns)));
-        let most = of_contacts.max(self.beyond_limits());
+        let most = of_contacts.max(self.motors_off(|motor| motor.hold == Hold::Holds));
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
             contact.relax(&self.unknowns, most);
         }
@@ -133,15 +133,20 @@ impl Problem {
         most
     }
 
-    /// [m/s] By how much motors that hold their speeds are beyond their limits at most.
-    fn beyond_limits(&self) -> f64 {
-        let short = |motor: &Motor| {
+    /// [m/s] By how much some motors are beyond what their states allow at most.
+    fn motors_off(&self, are: impl Fn(&&Motor) -> bool) -> f64 {
+        let off = |motor: &Motor| {
             let mut short: f64 = 0.0;
             self.conditions_of(motor, |_, value| short = short.max(-value));
-            short * motor.admittance(&self.system)
+            let is_impulse = motor.given().is_none() || motor.correction.is_some();
+            if is_impulse {
+                short * motor.admittance(&self.system)
+            } else {
+                short
+            }
         };
-        let holding = self.motors.iter().filter(|m| m.hold == Hold::Holds);
-        holding.map(short).fold(0.0, f64::max)
+        let motors = self.motors.iter().filter(are);
+        motors.map(off).fold(0.0, f64::max)
     }
 
     /// Lets motors at a limit or at a lock hold their speed if their state does not fit: with limits that are wide enough
