@@ -291,6 +291,7 @@ def test_rates_have_their_intervals_and_pairs_the_same_draw() -> None:
     assert not apart([stops] * 2, [clears] * 1)
 
 
+@pytest.mark.soak  # it computes the jams of fifty robots
 def test_the_page_has_the_tables_of_the_results() -> None:
     page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text("utf-8")
     files = [file_runs.RESULTS / f"{name}.json.xz" for name in file_runs.ENGINES]

@@ -97,6 +97,7 @@ def test_five_gears_stay_on_an_edge_of_2_mm_that_three_gears_clear(work: Work) -
     assert "| 1 | gears end seizure on sharp edges |" in claims_text([claim])
 
 
+@pytest.mark.soak  # the others hold its parts
 def test_every_claim_has_its_verdict(work: Work, shaken: list[Shaking]) -> None:
     tiny = replace(QUICK, claim_repeats=1, field_repeats=1, driving_repeats=1, computing_repeats=1)
     little = replace(work, design=tiny)
