@@ -58,6 +58,17 @@ def test_shares_add_up_and_figures_show_them(part: Certificate) -> None:
         part.share("proven")
 
 
+def test_regions_of_three_fields_have_no_figure() -> None:
+    low_and_high = {
+        "terrain.height": 0.05,
+        "terrain.friction": 0.5,
+        "robot.center_of_mass[1]": 0.02,
+    }
+    over = {field: (low, 1.001 * low) for field, low in low_and_high.items()}
+    with pytest.raises(c2d.ScenarioError, match="plot must vary one field or two"):
+        certify(BASE, over, most_cells=10).plot()
+
+
 @pytest.mark.parametrize(
     ("over", "options", "message"),
     [

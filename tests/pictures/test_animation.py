@@ -200,6 +200,13 @@ def test_a_number_out_of_range_is_refused(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_film_of_more_than_ten_thousand_frames_is_refused(short: c2d.Run, tmp_path: Path) -> None:
+    error = refused(lambda: short.animate(tmp_path / "run.gif", fps=50, speed=1e-3))
+    assert (error.path, error.value) == ("speed", 1e-3)
+    assert error.rule.startswith("must give at most 10000 frames")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_film_that_fails_leaves_the_old_one_and_nothing_else(
     short: c2d.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -90,6 +90,12 @@ def test_every_element_gets_the_same_shift() -> None:
     assert list(moved.values()) == pytest.approx([y + 0.01 for _, y in ROBOT.belly])
 
 
+def test_a_number_has_no_elements_to_draw() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    with pytest.raises(c2d.ScenarioError, match="must be a path of elements, got"):
+        draw(base, {"terrain.height[*]": uniform(0.05, 0.06)})
+
+
 def test_no_value_lies_beyond_the_upper_bound() -> None:
     almost_1 = math.nextafter(1.0, 0.0)
     for low, high in np.random.default_rng(0).uniform(-1.0, 1.0, (1000, 2)):
