@@ -133,11 +133,11 @@ class View:
         wheels = BASE.robot.wheels()
         self.radius = wheels["radius"]
         self.place = np.stack([wheels["x"], wheels["y"]], axis=-1)
-        self.gaps, self.normals = self._gaps(self.axles(points), points[:, 3, None])
+        self.gaps, _ = self._gaps(self.axles(points[:, None]), points[:, 3, None])
         self.is_free = (self.gaps >= 0.0).all(axis=1)
 
     def axles(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        x, y, angle = points[:, None, :3].transpose(2, 0, 1)
+        x, y, angle = np.moveaxis(points[..., :3], -1, 0)
         cosine, sine = np.cos(angle), np.sin(angle)
         along, up = self.place.T
         return np.stack([x + cosine * along - sine * up, y + sine * along + cosine * up], axis=-1)
@@ -176,33 +176,31 @@ class View:
         """Set each wheel on the surface within the cell, and ask whether its force has power."""
         vx, vy, rate = motion
         assert vy < 0.0  # the weight works
-        found = 0
-        for wheel in range(len(self.radius)):
-            touching = self.points.copy()
-            # Along the vertical, by Newton's steps.
-            for _ in range(8):
-                gaps, normals = self._gaps(self.axles(touching), touching[:, 3, None])
-                up = np.where(np.abs(normals[:, wheel, 1]) > 0.2, normals[:, wheel, 1], np.inf)
-                touching[:, 1] -= gaps[:, wheel] / up
-            axles = self.axles(touching)
-            gaps, normals = self._gaps(axles, touching[:, 3, None])
-            is_there = (np.abs(gaps[:, wheel]) < 1e-9) & (touching[:, 1] > low[1])
-            is_there &= touching[:, 1] < high[1]
-            normal = normals[:, wheel]
-            friction = touching[:, 4, None]
-            force = normal + friction * np.stack([normal[:, 1], -normal[:, 0]], axis=-1)
-            center = View.center(touching)
-            arm = axles[:, wheel] - self.radius[wheel] * normal - center
-            velocity = np.stack([vx - rate * arm[:, 1], vy + rate * arm[:, 0]], axis=-1)
-            power = (force * velocity).sum(axis=-1)
-            assert (power[is_there] > 0.0).all()
-            found += int(is_there.any())
-        return min(found, 1)
+        # For each wheel poses of its own.
+        touching = np.repeat(self.points[:, None], len(self.radius), axis=1)
+        # Along the vertical, by Newton's steps.
+        for _ in range(8):
+            gaps, normals = self._gaps(self.axles(touching), touching[..., 3])
+            touching[..., 1] -= gaps / np.where(
+                np.abs(normals[..., 1]) > 0.2, normals[..., 1], np.inf
+            )
+        axles = self.axles(touching)
+        gaps, normal = self._gaps(axles, touching[..., 3])
+        is_there = (
+            (np.abs(gaps) < 1e-9) & (touching[..., 1] > low[1]) & (touching[..., 1] < high[1])
+        )
+        along = np.stack([normal[..., 1], -normal[..., 0]], axis=-1)
+        force = normal + touching[..., 4, None] * along
+        arm = axles - self.radius[:, None] * normal - View.center(touching)
+        velocity = np.stack([vx - rate * arm[..., 1], vy + rate * arm[..., 0]], axis=-1)
+        power = (force * velocity).sum(axis=-1)
+        assert (power[is_there] > 0.0).all()
+        return int(is_there.any())
 
     @staticmethod
     def center(points: NDArray[np.float64]) -> NDArray[np.float64]:
         along, up = BASE.robot.center_of_mass
-        x, y, angle = points[:, :3].T
+        x, y, angle = np.moveaxis(points[..., :3], -1, 0)
         cosine, sine = np.cos(angle), np.sin(angle)
         return np.stack([x + cosine * along - sine * up, y + sine * along + cosine * up], axis=-1)
 
