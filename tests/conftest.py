@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -23,10 +24,22 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Of the many processes that import the package the first writes its byte code, for all others.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# The next run of the tests has not to rewrite their assertions again.
+sys.dont_write_bytecode = False
+# While tests are collected nearly nothing is garbage, and looking for it takes a fifth of the time.
+_USUAL = gc.get_threshold()
+gc.set_threshold(50_000, 20, 20)
 
-hypothesis.settings.register_profile("test", max_examples=50, deadline=None, derandomize=True)
+hypothesis.settings.register_profile("test", max_examples=30, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("soak", max_examples=10_000, deadline=None)
 hypothesis.settings.load_profile("soak" if SOAK else "test")
+
+
+def pytest_collection_finish() -> None:
+    """Keep the collector of garbage from looking through thousands of tests again and again."""
+    gc.set_threshold(*_USUAL)
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture
