@@ -142,7 +142,9 @@ class ObstacleRuns:
     """
 
     def __init__(self, table: xarray.Dataset, model: str, obstacle: str) -> None:
-        self._table = table.sel(model=model, terrain=obstacle)
+        self._table = table
+        labels = {"model": model, "terrain": obstacle}
+        self._at = {dim: table.get_index(dim).get_loc(label) for dim, label in labels.items()}
         self.ends, self.speeds = self.column("outcome"), self.column("speed")
         self.cleared: NDArray[np.bool_] = self.ends == Outcome.CLEARED
         self.seized: NDArray[np.bool_] = self.ends == Outcome.SEIZED
@@ -154,7 +156,8 @@ class ObstacleRuns:
 
     def column(self, name: str) -> NDArray[Any]:
         """Return a column of the table."""
-        return np.asarray(self._table[name].transpose("sample", "repeat").values)
+        own = self._table.variables[name].isel(self._at, missing_dims="ignore")
+        return np.asarray(own.transpose("sample", "repeat").values)
 
     def proportion(
         self, happened: NDArray[np.bool_], among: NDArray[np.bool_] | None = None
