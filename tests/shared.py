@@ -14,6 +14,9 @@ from crawler2d.parameters.track import Track
 SOAK = "CRAWLER2D_SOAK" in os.environ
 """Set by make soak: a hundred times the cases."""
 
+NO_DASK = "import sys; sys.modules['dask'] = None\n"
+"""Begins programs that make tables: xarray would import it, and that takes longest."""
+
 ROBOT = c2d.robots.engineer(flippers=None).without_rotors()
 """Without rotors, which rapier does not hold: jams are those of its tracks alone."""
 TRAPEZOID = dataclasses.replace(

@@ -121,8 +121,10 @@ REQUESTS: list[Callable[[], None]] = [
 
 def main() -> None:
     count, seed = int(sys.argv[1]), int(sys.argv[2])
-    # pandas imports it where it is installed, and it takes 165 MB of addresses.
-    sys.modules["pyarrow"] = None  # type: ignore[assignment]
+    # pandas imports the first where it is installed, and it takes 165 MB of addresses; xarray
+    # imports the second, which takes longest.
+    for name in ("pyarrow", "dask"):
+        sys.modules[name] = None  # type: ignore[assignment]
     resource.setrlimit(resource.RLIMIT_AS, (LIMIT, LIMIT))
     rng = random.Random(seed)
     told: Counter[str] = Counter()

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Iterator
+
 import pytest
 
 import crawler2d as c2d
 from crawler2d.audits import audit as audit_module
+from crawler2d.audits.page import chart
 from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
+
+
+@pytest.fixture(scope="package", autouse=True)
+def _charts_once() -> Iterator[None]:
+    """Where a robot can jam takes half the time of its page, and many pages are of few robots."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(chart, "_figure", functools.cache(chart._figure))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -17,6 +17,7 @@ import crawler2d as c2d
 from crawler2d.__main__ import main
 from crawler2d.commands import audit as command
 from tests.audits.seizing import instant_audit, seizing_file
+from tests.shared import NO_DASK
 from tests.walls.rooms import ROOT
 
 
@@ -177,12 +178,12 @@ def yaml(name: str) -> Any:
 
 
 # Its arguments are those of `python -m crawler2d`.
-ON_ONE_STEP = """
-import sys
+ON_ONE_STEP = f"""{NO_DASK}
 import crawler2d as c2d
 from crawler2d.__main__ import main
-from crawler2d.audits import audit
-audit.standard_obstacles = lambda *_: {"step of 75 mm": c2d.terrains.step(0.075)}
+from crawler2d.audits import audit, page
+page.chart_section = lambda *_: ""
+audit.standard_obstacles = lambda *_: {{"step of 75 mm": c2d.terrains.step(0.075)}}
 sys.exit(main(sys.argv[3:]))
 """
 
