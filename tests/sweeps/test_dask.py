@@ -36,7 +36,13 @@ OTHER_BUILD = "0123456789abcdef"
 @contextlib.contextmanager
 def started(**options: Any) -> Iterator[Any]:
     options = {"dashboard_address": ":0", "silence_logs": 50, "threads_per_worker": 1} | options
-    with distributed.LocalCluster(2, **options) as made:
+    import dask.config  # noqa: PLC0415 - optional
+
+    # What a worker imports takes longest, and each has a successor: they are forks of one process.
+    with (
+        dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"}),
+        distributed.LocalCluster(2, **options) as made,
+    ):
         yield made
 
 
