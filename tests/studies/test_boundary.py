@@ -52,7 +52,7 @@ def test_monotone_is_a_rate_that_passes_one_half_once() -> None:
     edge = c2d.Scenario(
         c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5)),
         c2d.terrains.step(0.05),
-        drive=c2d.Drive(speed=0.1),
+        drive=c2d.Drive(speed=0.2),
     )
     found = c2d.studies.critical(edge, "terrain.height", (0.02, 0.16), points=8, **STEADY)
     ways = found["rate"].sel(model=found["model"].values[0]).to_numpy() >= 0.5

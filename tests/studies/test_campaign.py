@@ -15,13 +15,26 @@ MODELS = {"belt": c2d.BeltTrack(), "3 gears": c2d.LineOfWheels(3, wheel=c2d.Gear
 HEIGHTS = [0.04, 0.088]
 
 
+TEN = c2d.Until(width=0.01, least=10, most=10)
+
+
 def found_of(**how: Any) -> Any:
     given = {"models": MODELS, "heights": HEIGHTS, "progress": False, **how}
     return c2d.studies.max_obstacle(BASE, **given)
 
 
-def test_a_cell_is_simulated_until_it_is_known_and_no_longer() -> None:
-    found = found_of()
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("campaign") / "a.sqlite"
+
+
+@pytest.fixture(scope="module")
+def stored(store: Path) -> Any:
+    return found_of(store=store)
+
+
+def test_a_cell_is_simulated_until_it_is_known_and_no_longer(stored: Any) -> None:
+    found = stored
     counts = found["count"].to_numpy()
     assert counts[0, 0] == 10  # ten of ten are certain enough
     assert (counts <= 250).all()
@@ -37,7 +50,7 @@ def test_a_cell_is_simulated_until_it_is_known_and_no_longer() -> None:
 
 
 def test_the_runs_are_those_of_a_sweep_with_the_same_seed() -> None:
-    found = found_of(seed=4)
+    found = found_of(seed=4, until=TEN)
     over = {"robot.track": MODELS, "terrain.height": HEIGHTS}
     table = c2d.sweep(BASE, over, repeats=10, seed=4, progress=False)
     first = found.isel(repeat=slice(0, 10))
@@ -61,9 +74,8 @@ def test_what_is_not_known_has_a_rate_for_every_sample() -> None:
     assert "terrain.friction" in found.attrs["unknown"]
 
 
-def test_a_store_keeps_the_runs_of_a_study(tmp_path: Path) -> None:
-    store = tmp_path / "a.sqlite"
-    first = found_of(store=store)
+def test_a_store_keeps_the_runs_of_a_study(store: Path, stored: Any) -> None:
+    first = stored
     assert len(list(stored_rows(store))) == first.attrs["runs"]
     calls: list[tuple[int, int]] = []
     again = found_of(store=store, progress=lambda done, total: calls.append((done, total)))
@@ -99,14 +111,15 @@ def test_ctrl_c_is_told_and_the_store_goes_on(tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(c2d.BatchInterrupted, match=r"a\.sqlite keeps them"):
-        found_of(store=store, progress=stop, threads=1)
+        found_of(store=store, until=TEN, progress=stop, threads=1)
     kept = len(list(stored_rows(store)))
     assert kept > 5
-    assert found_of(store=store).identical(found_of(store=store))
+    again = found_of(store=store, until=TEN)
+    assert again.identical(found_of(store=store, until=TEN))
 
 
 def test_the_highest_obstacle_its_gaps_and_its_limit_are_those_of_the_rates() -> None:
-    found = found_of(heights=[0.04, 0.088, 0.2])
+    found = found_of(heights=[0.04, 0.088, 0.2], until=TEN)
     rates = found["rate"].sel(model="belt").to_numpy()
     heights = found["height"].to_numpy()
     assert found["highest"].sel(model="belt").item() == heights[rates >= 0.5].max()
@@ -114,7 +127,7 @@ def test_the_highest_obstacle_its_gaps_and_its_limit_are_those_of_the_rates() ->
     assert (found["gaps"] == 0).all()
     above = found["outcome"].sel(model="belt", height=0.2).to_numpy()
     assert found["limit"].sel(model="belt").item() in set(above)
-    none = found_of(heights=[0.3, 0.4])
+    none = found_of(heights=[0.3, 0.4], until=TEN)
     assert np.isnan(none["highest"]).all()
     assert (none["gaps"] == 0).all()
 

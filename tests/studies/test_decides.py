@@ -94,7 +94,7 @@ def held(case: tuple[Output, Indices], count: int, designs: int = 200) -> Any:
     return np.mean(inside, axis=0)
 
 
-@pytest.mark.parametrize("rough", [1, 7919])
+@pytest.mark.parametrize("rough", [pytest.param(1, marks=pytest.mark.soak), 7919])
 def test_intervals_hold_the_indices_as_often_as_they_promise(rough: int) -> None:
     # Of 200 designs that hold with a probability of 0.95, less than 0.90 do in one case of 500.
     assert (held(either(rough), 256) >= 0.90).all()
