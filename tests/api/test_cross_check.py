@@ -17,7 +17,7 @@ from tests.shared import ROBOT, refused
 
 STEP = c2d.terrains.step
 SEIZING = c2d.Scenario(ROBOT.with_track(c2d.LineOfWheels(4)), STEP(0.10), duration=6.0)
-STEADY = SEIZING.replace({"terrain": c2d.terrains.flat(), "duration": 2.0})
+STEADY = SEIZING.replace({"terrain": c2d.terrains.flat(), "duration": 1.0})
 
 
 @pytest.fixture(scope="module")

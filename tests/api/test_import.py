@@ -59,7 +59,7 @@ def test_the_import_costs_less_than_twice_that_of_numpy(say: Callable[[str], Non
     # An installed package has its byte code; here the first of the runs writes it. Ours takes 0.5
     # to 1.0 of numpy's 57 to 80 ms; an optional package would add a hundred or more.
     compiled = {"PYTHONDONTWRITEBYTECODE": ""}
-    both = [map(float, python(MEASURE, **compiled).split()) for _ in range(9)]
+    both = [map(float, python(MEASURE, **compiled).split()) for _ in range(5)]
     ours, numpys = (min(times) for times in zip(*both, strict=True))
     say(f"import crawler2d took {1000 * ours:.1f} ms beyond numpy's {1000 * numpys:.1f}")
     assert ours < 2.0 * numpys

@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+from tests.shared import SOAK
+
 SCENES = """
 import signal, threading, time
 import numpy as np
@@ -27,7 +29,9 @@ field = c2d.Scenario(
 )
 """
 
-# Each is called again and again until it is interrupted, at three instants.
+DELAYS = (0.02, 0.1, 0.3) if SOAK else (0.02, 0.1)  # [s]
+
+# Each is called again and again until it is interrupted, at some instants.
 CALLS = {
     "simulate": "c2d.simulate(dense, record='summary')",
     "batch": "c2d.simulate_many([dense, chain] * 4, threads=2, record='summary')",
@@ -59,7 +63,7 @@ def interrupt(delay):
 slowest = {}
 for name, call in json.loads(sys.argv[1]).items():
     code = compile(call, name, "eval")
-    for delay in (0.02, 0.1, 0.3):
+    for delay in json.loads(sys.argv[2]):
         threading.Thread(target=interrupt, args=(delay,)).start()
         try:
             while True:
@@ -74,7 +78,7 @@ print(json.dumps(slowest))
 @pytest.fixture(scope="module")
 def slowest_answers() -> dict[str, float]:
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, json.dumps(CALLS)],
+        [sys.executable, "-c", PROGRAM, json.dumps(CALLS), json.dumps(DELAYS)],
         capture_output=True,
         text=True,
         check=True,

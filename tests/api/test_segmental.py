@@ -48,8 +48,8 @@ def _pitch(run: c2d.Run) -> float:
 
 @pytest.mark.parametrize("mechanism", ["guide", "sprocket"])
 def test_ground_speed_is_the_belts(mechanism: str) -> None:
-    run = c2d.simulate(Scenario(chain(mechanism=mechanism), c2d.terrains.flat(), duration=8.0))
-    steady = run.time > 4.0
+    run = c2d.simulate(Scenario(chain(mechanism=mechanism), c2d.terrains.flat(), duration=5.0))
+    steady = run.time > 2.0
     ground = np.ptp(run.position[steady, 0]) / np.ptp(run.time[steady])
     belt = np.ptp(run.track_position[steady]) / np.ptp(run.time[steady])
     assert belt == pytest.approx(0.4, rel=0.005)

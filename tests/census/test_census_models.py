@@ -46,7 +46,7 @@ SIZES = {
 @pytest.fixture(
     scope="module",
     params=[
-        pytest.param(120, id="a few"),
+        pytest.param(200, id="a few"),
         pytest.param(1, id="all", marks=pytest.mark.soak),
     ],
 )

@@ -186,7 +186,7 @@ def nothing_of_other_tests_is_collected() -> Iterator[None]:
 def test_extreme_scenarios_run_to_numbers_or_say_why_not(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
-    check(150)
+    check(100)
     assert "panicked" not in capfd.readouterr().err
 
 

@@ -60,7 +60,13 @@ def frames_of(path: Path) -> list[tuple[int, Any]]:
 
 
 @pytest.mark.parametrize(
-    ("fps", "speed", "count"), [(25.0, 1.0, 7), (50.0, 1.0, 12), (10.0, 0.5, 6), (20.0, 2.0, 4)]
+    ("fps", "speed", "count"),
+    [
+        (25.0, 1.0, 7),
+        pytest.param(50.0, 1.0, 12, marks=pytest.mark.soak),
+        pytest.param(10.0, 0.5, 6, marks=pytest.mark.soak),
+        (20.0, 2.0, 4),
+    ],
 )
 def test_a_gif_takes_as_long_as_the_run(
     short: c2d.Run, tmp_path: Path, fps: float, speed: float, count: int

@@ -12,7 +12,7 @@ from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar
 from tests.shared import SOAK
 
 DRAWN = random.Random(0)
-CASES = 20_000 if SOAK else 400
+CASES = 20_000 if SOAK else 150
 CONFIDENCES = (0.5, 0.8, 0.9, 0.95, 0.99, 0.9999)
 # Of sums of a dozen floats of the order of 1.
 EXACT = 1e-12

@@ -149,12 +149,12 @@ def check(numbers: range, name: str, folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["sdf", "urdf"])
 def test_a_drawn_robot_is_read_as_it_was_written(name: str, tmp_path: Path) -> None:
-    check(range(15), name, tmp_path)
+    check(range(8), name, tmp_path)
 
 
 def test_a_drawn_robot_is_read_from_mjcf_as_it_was_written(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    check(range(12), "mjcf", tmp_path)
+    check(range(7), "mjcf", tmp_path)
 
 
 def check_discs(numbers: range, name: str, folder: Path) -> None:
@@ -168,12 +168,12 @@ def check_discs(numbers: range, name: str, folder: Path) -> None:
 
 
 def test_a_belt_round_three_to_five_discs_is_read_as_it_was_written(tmp_path: Path) -> None:
-    check_discs(range(15), "sdf", tmp_path)
+    check_discs(range(8), "sdf", tmp_path)
 
 
 def test_a_belt_round_more_than_two_discs_is_read_from_mjcf(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    check_discs(range(10), "mjcf", tmp_path)
+    check_discs(range(6), "mjcf", tmp_path)
 
 
 @pytest.mark.soak

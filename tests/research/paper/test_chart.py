@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
+from research import study
 from research.__main__ import main
 from research.paper import chart
 from research.paper.chart import TABLES, DriveCell, Drives, real_inertias
@@ -66,6 +67,7 @@ def test_drives_that_are_left_are_tried_more_often(
         return {model for _, model in TABLES["large gears"]} if rows[0].torque == 0.1 else set()
 
     monkeypatch.setattr(chart, "layouts_left", first_reading)
+    monkeypatch.setattr(study.Job, "draw", lambda *_, **__: None)
     assert main(["chart", "--out", str(tmp_path), *TINY, "--most", "3"]) == 0
     counts = {(row["torque"], row["count"]) for row in rows(tmp_path / "paper_drives.csv")}
     assert counts == {*(("0.05", each) for each in "321"), *(("0.1", each) for each in "31")}
