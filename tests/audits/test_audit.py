@@ -500,6 +500,7 @@ def test_reading_an_audited_file_is_quiet() -> None:
     assert quietly(FILES / "cart.urdf").doubts == ()
 
 
+@pytest.mark.usefixtures("one_obstacle")
 @pytest.mark.parametrize("how", [{"engine": "isaac"}, {"ground_friction": 0.4}])
 def test_a_reading_is_audited_as_it_was_read(how: Any) -> None:
     path = FILES / "cart.urdf"

@@ -133,21 +133,24 @@ def test_every_link_has_a_target_and_every_name_is_there_once(file_page: Page) -
     assert {(link or "")[1:] for link in links} <= set(names)
 
 
-def test_names_are_only_ever_text(of_file: c2d.Audit, file_page: Page, tmp_path: Path) -> None:
+def test_names_are_only_ever_text(of_file: c2d.Audit, tmp_path: Path) -> None:
     """Those of robot and links in a file, of the file, and of obstacles."""
     name = f"{HOSTILE}</TITLE><script>alert(1)</script>rouge-gorge é"
-    path = tmp_path / "cart <b>&.urdf"
+    path, harmless = tmp_path / "cart <b>&.urdf", tmp_path / "cart.urdf"
     quoted = html.escape(name.replace("\u2028", " "))
     path.write_text(seizing_file(quoted, quoted), encoding="utf-8")
+    harmless.write_text(seizing_file(), encoding="utf-8")
+    how: Any = {"samples": 2, "repeats": 1, "repair": False, "seed": 3, **QUIET}
     obstacles = {f"{label}{name}": each for label, each in of_file.obstacles.items()}
-    found = c2d.audit(path, obstacles, samples=12, repeats=1, repair=False, seed=3, **QUIET)
+    found = c2d.audit(path, obstacles, **how)
     assert found.robot.name == name.replace("\u2028", " ")
     hostile = Page(audit_page(found, {"no such repair": name}))
+    page = Page(c2d.audit(harmless, of_file.obstacles, **how).to_html())
 
     def kinds(of: Page) -> list[tuple[str, str | None]]:
         return [(tag, each.get("class")) for tag, each in of.tags]
 
-    assert kinds(hostile) == kinds(file_page)
+    assert kinds(hostile) == kinds(page)
     ((_, title),) = hostile.all("title")
     assert title == f"{found.robot.name}: audit"
     assert [row[0] for row in hostile.rows("verdicts")] == list(obstacles)

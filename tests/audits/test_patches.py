@@ -21,7 +21,9 @@ from tests.reading.carts import quietly
 STRONG = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_torque=60.0))
 
 
-@pytest.fixture(scope="module", params=["sdf", "urdf", "mjcf"])
+@pytest.fixture(
+    scope="module", params=["sdf", "urdf", pytest.param("mjcf", marks=pytest.mark.soak)]
+)
 def audited(request: Any, tmp_path_factory: Any) -> c2d.Audit:
     """Four touching wheels as a file, on a step of 75 mm, everything known but the start."""
     path = tmp_path_factory.mktemp("model") / f"robot.{request.param}"
