@@ -24,8 +24,12 @@ def found_of(**how: Any) -> Any:
     return c2d.studies.success(BASE, **given)
 
 
-def test_every_run_of_a_cell_ended_somehow() -> None:
-    found = found_of()
+@pytest.fixture(scope="module")
+def found() -> Any:
+    return found_of()
+
+
+def test_every_run_of_a_cell_ended_somehow(found: Any) -> None:
     ended = [name for name in found.data_vars if name.startswith("ended_")]
     assert (sum(found[name] for name in ended) == found["count"]).all()
     rates = found["ended_cleared"] / found["count"]
@@ -60,10 +64,9 @@ def test_what_is_no_ground_is_refused_by_name() -> None:
         assert caught.value.path == path
 
 
-def test_the_figure_has_a_bar_for_every_cell_and_says_its_rate() -> None:
+def test_the_figure_has_a_bar_for_every_cell_and_says_its_rate(found: Any) -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
-    found = found_of()
     _, ax = plt.subplots()
     assert found.plot(ax) is ax
     written = [text.get_text() for text in ax.texts]
