@@ -219,8 +219,11 @@ def test_only_undecided_cells_get_more_runs(tmp_path: Path) -> None:
     assert [cell.name for cell in undecided(found)] == ["open"]
 
 
-def test_everything_is_tried_in_half_a_minute(tmp_path: Path) -> None:
-    main(["--quick", "--store", str(tmp_path / "runs.sqlite")])
+@pytest.mark.parametrize(
+    "only", [pytest.param("round", id="one"), pytest.param("", id="all", marks=pytest.mark.soak)]
+)
+def test_everything_is_tried_in_half_a_minute(only: str, tmp_path: Path) -> None:
+    main(["--quick", "--only", only, "--store", str(tmp_path / "runs.sqlite")])
     drawn = json.loads((tmp_path / "accuracy-quick.json").read_text(encoding="utf-8"))
     page = (tmp_path / "accuracy-quick.md").read_text(encoding="utf-8")
     folder = tmp_path / "accuracy-quick"

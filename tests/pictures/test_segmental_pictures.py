@@ -1,6 +1,7 @@
 """A chain of shoes in pictures and words: where its shoes lie, and what they are called."""
 
 import dataclasses
+import functools
 import re
 from typing import Any
 
@@ -34,6 +35,7 @@ def simulated(track: Track, terrain: Any = STEP, **fields: Any) -> c2d.Run:
     return c2d.simulate(c2d.robots.engineer(flippers=None, track=track), terrain, **fields)
 
 
+@functools.cache
 def stalled(shape: Any = "rectangle") -> c2d.Run:
     """Stand before an edge with weak motors, for fifteen seconds."""
     robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack(shoe_shape=shape))
@@ -119,7 +121,7 @@ def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
 def test_teeth_stand_between_the_pins_that_are_drawn(terrain: Any, flippers: bool) -> None:
     bare = c2d.robots.engineer(flippers=None, track=SPROCKET)
     robot = c2d.robots.engineer(track=SPROCKET) if flippers else bare
-    run = c2d.simulate(robot, terrain, duration=4.0)
+    run = c2d.simulate(robot, terrain, duration=2.5)
     scene, poses = scene_of(run), run.poses
     assert (len(scene.carriers) > 1) == flippers
     (sprocket,) = rows_of(scene, BodyKind.SPROCKET)

@@ -199,7 +199,12 @@ ENDLESS = {
 }
 
 
-@pytest.mark.parametrize("what", ENDLESS)
+LONG = {"20,000 unknown arguments"}
+
+
+@pytest.mark.parametrize(
+    "what", [pytest.param(n, marks=pytest.mark.soak if n in LONG else ()) for n in ENDLESS]
+)
 def test_xacro_that_goes_round_without_an_end_is_refused(tmp_path: Path, what: str) -> None:
     pytest.importorskip("xacrodoc")
     for name, other in ("ab", "ba"):

@@ -16,8 +16,8 @@ from tests.research.notebooks import NOTEBOOKS, executed, hash_of_sources, kept_
 of_each = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
 
-SHORT = ("phase_rule", "why_it_stopped")
-"""Notebooks that take seconds; `make soak` runs the others, too."""
+SHORT = ("why_it_stopped",)
+"""What takes seconds; `make soak` runs the others, too."""
 
 TRAINED = ("what_a_policy_learned",)
 """Notebooks whose figures depend on the processor: eigenvalues of LAPACK differ in their last bits,

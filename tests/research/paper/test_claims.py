@@ -29,7 +29,7 @@ from research.paper.figures import (
 @pytest.fixture(scope="module")
 def work(tmp_path_factory: pytest.TempPathFactory) -> Work:
     """Few runs, in a store: what one test has simulated another has not to."""
-    design = replace(QUICK, claim_repeats=2, driving_repeats=1)
+    design = replace(QUICK, claim_repeats=1, driving_repeats=1)
     store = tmp_path_factory.mktemp("claims") / "paper.sqlite"
     return Work(store=store, design=design, threads=1, progress=False)
 
