@@ -1,7 +1,7 @@
 //! The core for a web page: a request as JSON in, an answer as JSON and columns of numbers out.
 //!
 //! A page puts the bytes of a request where [`input`] says, calls [`run`], and reads what [`text`] and [`numbers`] say.
-//! The request: see [`answer::Request`].
+//! The request: see `answer::Request`.
 
 mod answer;
 mod carrier;
