@@ -53,3 +53,13 @@ impl<S: Source> Draw<S> {
         self.between(0.0, 1.0) < share
     }
 }
+
+/// Number of cases of a test: `few` by default, `many` with `CRAWLER2D_SOAK`.
+#[cfg(test)]
+pub(crate) fn cases(few: usize, many: usize) -> usize {
+    if std::env::var_os("CRAWLER2D_SOAK").is_some() {
+        many
+    } else {
+        few
+    }
+}

@@ -1,18 +1,7 @@
-//! See rust_core/src/fuzz/run.rs; most changes leave a text JSON.
+//! See rust_core/src/fuzz/run.rs.
 
 #![no_main]
 
-use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
+mod texts;
 
-fuzz_mutator!(|data: &mut [u8], size: usize, most: usize, seed: u32| {
-    let changed = crawler2d_core::fuzz::mutated(&data[..size], seed);
-    match changed.filter(|text| seed % 8 != 0 && text.len() <= most) {
-        Some(text) => {
-            data[..text.len()].copy_from_slice(&text);
-            text.len()
-        }
-        None => fuzzer_mutate(data, size, most),
-    }
-});
-
-fuzz_target!(|data: &[u8]| crawler2d_core::fuzz::run(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| crawler2d_core::fuzz::run(data));

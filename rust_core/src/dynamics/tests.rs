@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::draw::Draw;
+use crate::draw::{Draw, cases};
 use crate::geometry::{Vector, direction};
 use crate::scenario::{Friction, Scenario, Track};
 use crate::terrain::GroundFriction;
@@ -198,11 +198,10 @@ fn energy(m: &Model, state: &State) -> f64 {
         + of_drives.sum::<f64>())
 }
 
-/// Random contacts from all sides: they hold, slide, part or jam. Many more with `CRAWLER2D_SOAK`.
+/// Random contacts from all sides: they hold, slide, part or jam.
 #[test]
 fn contacts_from_all_sides_take_energy_within_coulombs_law() {
-    let is_soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
-    let cases = if is_soak { 20_000 } else { 4_000 };
+    let cases = cases(4_000, 20_000) as u32;
     for seed in [1, 8] {
         let mut drawn = Draw(seed);
         let mut draw = |low, high| drawn.between(low, high);

@@ -58,7 +58,7 @@ pub fn mutated(data: &[u8], seed: u32) -> Option<Vec<u8>> {
     serde_json::to_vec(&whole).ok()
 }
 
-/// Calls `each` with every value, parts after their whole; returns how many there are.
+/// Calls `each` with every value, parts before their whole; returns how many there are.
 fn places(value: &mut Value, each: &mut impl FnMut(&mut Value)) -> usize {
     let mut count = 1;
     match value {

@@ -1,4 +1,4 @@
-//! Scenarios that are accepted: their first steps lead to numbers, by the law of contacts, and to no energy from nowhere.
+//! Scenarios that are accepted: their first steps lead to numbers, and no contact pulls.
 
 use super::scenario::accepted;
 use crate::{Error, Simulation, ValidScenario};

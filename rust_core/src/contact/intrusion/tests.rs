@@ -12,7 +12,7 @@ mod judge;
 use judge::{Judge, Range, SLICES, ranges};
 
 use super::*;
-use crate::draw::Draw;
+use crate::draw::{Draw, cases};
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::{Model, Mount};
 use crate::scenario::{
@@ -20,15 +20,6 @@ use crate::scenario::{
     Track, Wheel,
 };
 use crate::terrain::Ground;
-
-/// How many poses are judged; many more with `CRAWLER2D_SOAK`.
-fn poses() -> usize {
-    if std::env::var_os("CRAWLER2D_SOAK").is_some() {
-        50_000
-    } else {
-        1_400
-    }
-}
 
 fn wheels() -> [Wheel; 2] {
     let gear = GearWheel {
@@ -281,7 +272,8 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
         .map(|m| [false, true].map(|roots| judge(m, Pose::IDENTITY, roots).deepest()))
         .collect();
     let (mut judged, mut pieces, mut pairs) = (0, 0, 0);
-    for number in 0..poses() {
+    let poses = cases(1_400, 50_000);
+    for number in 0..poses {
         let model = &models[number % models.len()];
         let ground = Ground::new(&terrain(number % 6, &mut draw), 0.2).expect("a ground");
         let x = draw.between(-0.3, 0.5);
@@ -313,5 +305,5 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
         }
     }
     println!("seed {SEED}: {judged} poses judged, {pieces} pieces, {pairs} with their bodies");
-    assert!(judged > poses() * 9 / 10 && pairs > pieces / 2);
+    assert!(judged > poses * 9 / 10 && pairs > pieces / 2);
 }

@@ -1,7 +1,7 @@
 //! Parts that move in small steps.
 
-use super::scene::{Scene, cases};
-use crate::draw::Draw;
+use super::scene::Scene;
+use crate::draw::{Draw, cases};
 use crate::geometry::Vector;
 
 /// [m] The way out of a deeper overlap may change from step to step.

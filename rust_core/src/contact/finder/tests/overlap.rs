@@ -4,9 +4,9 @@ use super::super::OwnContact;
 use super::curve::Curve;
 use super::grounds::{Ground, largest_radius};
 use super::judge::Judge;
-use super::scene::{Scene, cases};
+use super::scene::Scene;
 use crate::contact::Contact;
-use crate::draw::Draw;
+use crate::draw::{Draw, cases};
 use crate::geometry::{Pose, Rotation, Vector, cross, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 

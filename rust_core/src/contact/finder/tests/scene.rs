@@ -12,15 +12,6 @@ use crate::draw::Draw;
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::Running;
 
-/// Number of cases: `few` by default, `many` where time allows.
-pub(super) fn cases(few: usize, many: usize) -> usize {
-    if std::env::var_os("CRAWLER2D_SOAK").is_some() {
-        many
-    } else {
-        few
-    }
-}
-
 pub(super) struct Scene {
     pub name: String,
     pub ground: Ground,
