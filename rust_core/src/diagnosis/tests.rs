@@ -3,9 +3,9 @@
 
 use super::*;
 use crate::contact::{Contact, TrackEnvelope};
-use crate::geometry::{Rotation, Vector};
+use crate::geometry::{Pose, Rotation, Vector};
 use crate::observe::{Bearing, DriveMean};
-use crate::robot::{Model, Mount};
+use crate::robot::{BodyKind, Model, Mount};
 use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, TrackOutline, Wheel};
 use crate::terrain::Ground;
 
@@ -219,4 +219,42 @@ fn a_diagnosis_tells_when_the_stop_was_looked_at_and_where() {
     let place = [stance.position.x, stance.position.y];
     assert_eq!((found.position, found.chassis_angle), (place, 0.001));
     assert!(found.trials.is_empty() && !found.is_passing());
+}
+
+#[test]
+fn a_body_bears_on_ground_in_the_track_from_half_the_least_load_on() {
+    let stage = Stage::new();
+    let (criteria, weight) = (&stage.scenario.criteria, stage.weight());
+    let mut facts = stage.scene().facts(&stage.stance([0.5, 0.5]), None);
+    let least = criteria.intrusion_load * weight;
+    for (kind, found) in [
+        (BodyKind::Wheel, Mechanism::Straddled),
+        (BodyKind::Roller, Mechanism::Fouled),
+    ] {
+        for (share, bears) in [(0.49, false), (0.51, true)] {
+            for (body, contact) in facts.contacts.iter_mut().enumerate() {
+                (contact.body, contact.in_pocket, contact.kind) = (body, true, BodyKind::Wheel);
+            }
+            facts.contacts[1].kind = kind;
+            facts.contacts[1].normal_force = share * least;
+            let mechanism = Mechanism::of(&facts, criteria, weight);
+            assert_eq!(mechanism == Some(found), bears, "{share} of it, {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn the_moment_on_a_hinge_is_the_arms_weight_times_its_level_arm() {
+    let mut stage = Stage::new();
+    let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let model = Model::on(&scenario.robot, &stage.ground).expect("it can be built");
+    stage.model = model.as_one_body(&model.running_at_start(0.0));
+    let flippers = scenario.robot.flippers.expect("it has a pair");
+    let turn = 0.3;
+    let hinges = stage.scene().hinges(Pose::new(Vector::ZERO, turn));
+    let level = 0.5 * flippers.length * libm::cos(flippers.angle + turn);
+    let expected = 2.0 * flippers.mass * level / scenario.robot.mass;
+    assert_eq!(hinges.len(), 1);
+    assert!((hinges[0].weight / expected - 1.0).abs() < 1e-12);
 }

@@ -337,3 +337,6 @@ impl Loads {
             && self.contacts.iter().all(|l| l.fits(model, lanes))
     }
 }
+
+#[cfg(test)]
+mod tests;

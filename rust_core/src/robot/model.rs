@@ -9,9 +9,9 @@ use crate::scenario::{Robot, ScenarioError, Track};
 /// Everything about a robot that does not change during a run.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// [kg] Total mass.
+    /// [kg] Mass of all but chains and flippers; `total_mass` has these, too.
     pub mass: f64,
-    /// [m] Centre of mass in the chassis frame.
+    /// [m] Its centre in the chassis frame.
     pub center_of_mass: Vector,
     /// [kg m^2] Moment of inertia without the parts that turn with the drives.
     pub moment_of_inertia: f64,
