@@ -31,7 +31,7 @@ def check(seconds: float, say: Say, grounds: Iterable[str] = ()) -> None:
         if not grounds or place[1] in grounds
     }
     for place, scenario in chosen.items():  # what is allocated once
-        driven(str(place), scenario, min(seconds, 2.0), random.Random(0))
+        driven(str(place), scenario, min(seconds, 20.0), random.Random(0))
     before, begin = held(), time.monotonic()
     by_model: dict[str, Seen] = defaultdict(Seen)
     for (name, ground), scenario in chosen.items():
