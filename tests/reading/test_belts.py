@@ -168,3 +168,8 @@ def test_a_flipper_has_a_belt_round_two_drums(tmp_path: Path) -> None:
     assert (flippers.root_radius, flippers.tip_radius) == (0.1, 0.05)
     third = (0.15, -0.08, 0.05)
     refused(tmp_path, on_flippers(*drums, third), "flippers have two", "tank.sdf")
+
+
+def test_a_belt_of_a_flipper_that_does_not_run_round_its_pivot_is_refused(tmp_path: Path) -> None:
+    beside = on_flippers((0.1, 0.0, 0.1), (0.3, 0.0, 0.05))
+    refused(tmp_path, beside, "must have a belt from the pivot to the tip", "tank.sdf")

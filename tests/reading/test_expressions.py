@@ -88,6 +88,13 @@ def test_a_hostile_expression_is_refused_at_once(text: str) -> None:
     assert isinstance(caught.value, (*allowed, ValueError)), caught.value
 
 
+def test_an_expression_too_deep_for_the_parser_of_python_is_refused_for_its_depth() -> None:
+    """CPython's parser raises MemoryError from a few thousand rules deep."""
+    with pytest.raises(NotAllowed) as caught:
+        evaluate("(" * 199 + "-" * 1500 + "1" + ")" * 199, names())
+    assert caught.value.rule == "must be nested at most 100 deep"
+
+
 @pytest.fixture(scope="module")
 def standing() -> Iterator[StandingChild]:
     pytest.importorskip("xacrodoc")
@@ -187,6 +194,19 @@ def test_a_trusted_file_may_evaluate_anything(tmp_path: Path, standing: Standing
     with pytest.raises(c2d.ScenarioError, match="trusted=True allows it"):
         read(tmp_path, text, "cart.xacro")
     assert read(tmp_path, text, "cart.xacro", trusted=True).robot.mass == 12.0
+    assert standing.asked
+
+
+def test_even_a_trusted_file_opens_no_file_to_write(
+    tmp_path: Path, standing: StandingChild
+) -> None:
+    # Within a lambda: xacro itself looks for names that begin with __ outside of it alone.
+    call = "(lambda: xacro.load_yaml.__globals__['__builtins__']['open']('new.txt', 'w'))()"
+    text = f'{XACRO}\n<xacro:property name="p" value="${{{call}}}"/><link name="${{p}}"/></robot>'
+    with pytest.raises(c2d.ScenarioError, match=r"must only be read: 'new\.txt'") as caught:
+        read(tmp_path, text, "cart.xacro", trusted=True)
+    assert (caught.value.path, caught.value.rule) == ("cart.xacro:2", "must be xacro that expands")
+    assert not (tmp_path / "new.txt").exists()
     assert standing.asked
 
 

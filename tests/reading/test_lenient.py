@@ -404,6 +404,20 @@ def test_a_mesh_of_mjcf_that_is_only_seen_need_not_be_there(tmp_path: Path) -> N
     assert any("has no mass here, but its volume counts" in doubt for doubt in told)
 
 
+def test_a_mesh_that_alone_gives_a_body_its_mass_is_named_if_it_is_missing(tmp_path: Path) -> None:
+    """MuJoCo would say that the mass is too small, of a body that has a shape in the file."""
+    pytest.importorskip("mujoco")
+    wheel = """<inertial pos="0 0 0" mass="1" diaginertia="0.004 0.0078125 0.004"/>
+        <geom class="tread" size="0.125 0.03125"/>"""
+    text = (FILES / "cart.xml").read_text()
+    assert wheel in text
+    text = text.replace(wheel, '<geom type="mesh" mesh="m"/>', 1)
+    mesh = '<asset><mesh name="m" file="m.stl"/></asset><worldbody>'
+    with pytest.raises(c2d.ScenarioError, match="must be a regular file") as caught:
+        read(tmp_path, text.replace("<worldbody>", mesh), "cart.xml")
+    assert (caught.value.path, caught.value.value) == ("cart.xml:8: meshes[m]", "m.stl")
+
+
 @pytest.mark.parametrize("name", ["tractor", "marv_model", "sekirei2020", "marv"])
 def test_nothing_in_a_public_tree_that_cannot_carry_it_stops_the_reader(name: str) -> None:
     pytest.importorskip("xacrodoc")

@@ -98,6 +98,12 @@ def test_a_model_has_a_link_and_no_more_than_any_robot(
     refused(tmp_path, text, rule, missing="refuse")
 
 
+def test_an_sdf_model_without_a_link_is_refused_at_its_line(tmp_path: Path) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        read(tmp_path, '<sdf version="1.9">\n<model name="none"/></sdf>', "none.sdf")
+    assert (caught.value.path, caught.value.rule) == ("none.sdf:2", "must have a link")
+
+
 def test_a_file_that_is_too_large_is_not_parsed() -> None:
     with pytest.raises(c2d.ScenarioError, match=f"^large must have at most {LARGEST_MODEL} bytes"):
         parse_xml(b" " * (LARGEST_MODEL + 1), "large")

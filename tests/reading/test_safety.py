@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
+from crawler2d.reading import parsing
 from tests.reading.carts import FILES, WHEELS, XACRO, read, urdf
 
 pytestmark = pytest.mark.usefixtures("children_of_its_own")
@@ -170,6 +171,14 @@ def test_a_path_that_is_no_file_is_refused(path: object) -> None:
 def test_a_line_is_that_of_an_editor_whatever_ends_lines_within_it(tmp_path: Path) -> None:
     text = "<!-- a\rb\rc -->\n" + urdf(WHEELS).replace('<mass value="8"/>', '\n<mass value="x"/>')
     assert refused(tmp_path, text, "must be a finite number").path.startswith("cart.urdf:3:")
+
+
+def test_a_child_that_does_not_answer_in_time_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parsing, "_PATIENCE", 0.01)  # [s] Python does not start within.
+    error = refused(tmp_path, f"{XACRO}</robot>", r"must be parsed within 0\.01 s", "cart.xacro")
+    assert (error.path, error.value) == ("cart.xacro", "no answer")
 
 
 def test_xacro_that_takes_all_time_or_memory_is_ended(tmp_path: Path) -> None:
