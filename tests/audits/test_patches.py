@@ -111,6 +111,24 @@ def test_wheels_that_do_not_help_are_not_written(helped: c2d.Audit) -> None:
     assert change.label.startswith("confirmed: belts moved by a track plugin")
 
 
+def test_what_can_be_written_neither_on_wheels_nor_on_belts_is_refused_with_both_reasons(
+    helped: c2d.Audit,
+) -> None:
+    assert helped.repaired is not None
+    *others, wheels = helped.repairs
+    repairs = (*others, replace(wheels, robot=helped.robot))  # whose wheels the file has
+    repaired = helped.repaired._replace(repairs=repairs)
+    light = replace(helped.belt.robot, moment_of_inertia=0.01)  # less than that of its belts
+    with pytest.raises(c2d.ScenarioError) as caught:
+        replace(helped, repaired=repaired, belt=helped.belt._replace(robot=light)).patch()
+    assert caught.value.path == "repair"
+    assert caught.value.rule.startswith(
+        f"must be one that can be written to a file: {wheels.what}: robot.track must have other"
+        " wheels than the file, got"
+    )
+    assert "; belts: robot.moment_of_inertia must" in caught.value.rule
+
+
 def test_a_file_that_does_not_seize_is_not_changed(
     tmp_path: Path, capsys: Any, monkeypatch: Any
 ) -> None:

@@ -13,7 +13,18 @@ import pytest
 import crawler2d as c2d
 from crawler2d.patching.patch import _left, _summary, patch_file
 from crawler2d.writing.document import Document, spans_of
-from tests.reading.carts import FILES, ROBOTS, WHEELS, pair, quietly, urdf
+from tests.reading.carts import (
+    FILES,
+    LIMIT,
+    ROBOTS,
+    WHEELS,
+    link,
+    pair,
+    quietly,
+    read,
+    urdf,
+    wheel,
+)
 
 CARTS = ("cart.sdf", "cart.urdf", "cart.xml")
 
@@ -238,6 +249,22 @@ def test_what_cannot_be_changed_is_refused_by_name(tmp_path: Path) -> None:
     )
     with pytest.raises(c2d.ScenarioError, match="must be UTF-8"):
         patch_file(quietly(foreign), on_chassis(reading, 4))
+
+
+def test_a_chassis_whose_wheels_all_hang_on_flippers_gets_none_in_its_file(tmp_path: Path) -> None:
+    """The chassis stands on the wheels at the pivots of both pairs."""
+    arms = "".join(
+        link(f"{side}_{end}", f'type="revolute"><axis xyz="0 1 0"/>{LIMIT}', f"{x} {y} 0")
+        + wheel(f"{side}_{end}_root", "0 0 0", parent=f"{side}_{end}")
+        + wheel(f"{side}_{end}_tip", f"{x} 0 0", parent=f"{side}_{end}", radius="0.05")
+        for end, x in (("front", 0.2), ("rear", -0.2))
+        for side, y in (("left", 0.25), ("right", -0.25))
+    )
+    reading = read(tmp_path, urdf(arms))
+    with pytest.raises(c2d.ScenarioError) as caught:
+        patch_file(reading, on_chassis(reading, 3))
+    assert (caught.value.path, caught.value.value) == ("wheels of the chassis", "none")
+    assert caught.value.rule == "must have wheels of its own in the file, to be changed there"
 
 
 def test_a_patch_warns_of_nothing() -> None:

@@ -68,6 +68,14 @@ def test_a_name_that_sdf_reserves_is_refused_there_alone(name: str) -> None:
     assert 'name="a__b"' in dataclasses.replace(WHEELS, name="a__b").to_sdf()
 
 
+def test_a_reserved_name_does_not_stand_in_the_middle_of_its_rule() -> None:
+    odd = dataclasses.replace(WHEELS, name="a::b")
+    assert str(refused(odd.to_sdf)) == (
+        "robot.name must not be a name that SDF reserves (with :: in it, or between pairs of _),"
+        " got a::b"
+    )
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_text_is_also_written_to_a_path(name: str, tmp_path: Path) -> None:
     path = tmp_path / "robot"

@@ -81,7 +81,7 @@ def best_change(audit: AuditRecord) -> Change | None:
         change = _on_belts(audit, audit.belt.robot, belts)
     except ScenarioError as error:
         refused.append(f"belts: {error}")
-        rule = f"cannot be written to a file ({'; '.join(refused)})"
+        rule = f"must be one that can be written to a file: {'; '.join(refused)}"
         raise ScenarioError("repair", "none", rule) from None
     if refused:
         change = replace(change, summary=f"{change.summary}; no wheels, for {'; '.join(refused)}")

@@ -308,7 +308,7 @@ def refuse_unsupported(robot: dict[str, Any], carriers: Iterable[Carrier], targe
         raise ScenarioError("robot.name", name, "must have only characters that XML allows")
     if target.reserved and re.fullmatch(target.reserved, name):
         rule = (
-            f"must not be a name that {target.name} reserves, with :: in it or between pairs of _"
+            f"must not be a name that {target.name} reserves (with :: in it, or between pairs of _)"
         )
         raise ScenarioError("robot.name", name, rule)
 
