@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from tests.shared import ARRAYS, ROBOT, VARIANTS
+from tests.shared import ARRAYS, ROBOT, VARIANTS, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
 
@@ -148,6 +148,16 @@ def test_a_run_of_another_build_is_not_repeated_by_this_one(saved: Path) -> None
         with pytest.raises(c2d.ScenarioError, match=r"not of an earlier one, .*simulate\(run\."):
             call()
     assert again.to_html()
+
+
+def test_a_run_that_has_not_stopped_when_its_file_says_so_is_not_continued(saved: Path) -> None:
+    with np.load(saved) as entries:
+        arrays: dict[str, Any] = {name: entries[name] for name in entries.files}
+    stop = json.loads(str(arrays["diagnosis"])) | {"time": 0.1}
+    np.savez_compressed(saved, **arrays | {"diagnosis": np.array(json.dumps(stop))})
+    again = c2d.load(saved)
+    error = refused(lambda: again.what_if(track=c2d.BeltTrack()))
+    assert (error.path, error.rule) == ("run", "must have stopped")
 
 
 def change(path: Path, edit: Any) -> None:

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import crawler2d as c2d
 from crawler2d.envs import FlipperEnv, FlipperVectorEnv
 from crawler2d.parameters.fields import read_path
+from tests.shared import refused
 
 IDS = ("crawler2d/FlipperClimb-v0", "crawler2d/StepField-v0")
 VIEWS = ("proprioception", "privileged")
@@ -305,6 +306,20 @@ def test_a_wrong_argument_is_refused_before_anything_runs(
         with pytest.raises(c2d.ScenarioError) as failure:
             make(**options).reset()
         assert failure.value.path == path
+
+
+def test_a_range_is_refused_by_its_middle_at_once_and_else_when_what_is_drawn_breaks_a_rule() -> (
+    None
+):
+    friction = "terrain.friction"
+    for make in (FlipperEnv, lambda **given: FlipperVectorEnv(4, **given)):
+        below = {friction: c2d.uniform(-3.0, -1.0)}
+        error = refused(lambda make=make, below=below: make(scenario=WHEELED, randomize=below))
+        assert (error.path, float(str(error.value))) == (friction, -2.0)
+        env: Any = make(scenario=WHEELED, randomize={friction: c2d.uniform(-2.0, 3.0)})
+        error = refused(lambda env=env: env.reset(seed=1))
+        assert error.path == friction
+        assert float(str(error.value)) < 0.0
 
 
 @pytest.mark.parametrize(

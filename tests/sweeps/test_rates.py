@@ -191,6 +191,15 @@ def test_an_unknown_name_is_refused_with_the_nearest(
     assert caught.value.rule.endswith(("?)", "timed_out, stopped", "timed_out", "repeat", "time"))
 
 
+def test_a_data_set_that_has_lost_what_it_is_of_has_no_figure() -> None:
+    pytest.importorskip("matplotlib")
+    bare = rate(TABLE).mean("height", keep_attrs=False)
+    with pytest.raises(c2d.ScenarioError) as caught:
+        bare.plot()
+    assert (caught.value.path, caught.value.value) == ("plot", "none")
+    assert caught.value.rule.startswith("must be of a data set with a figure: use plot.scatter")
+
+
 def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]$"):

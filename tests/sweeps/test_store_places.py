@@ -1,5 +1,6 @@
 """Where a store may be: read where nothing can be written, written by one process, still there."""
 
+import os
 import shutil
 import signal
 import subprocess
@@ -110,6 +111,29 @@ def test_no_second_writer_gets_in_by_another_name(tmp_path: Path) -> None:
     assert read(other) == {}
     other.unlink()
     Store(path).close()
+
+
+def test_a_store_that_another_process_writes_is_refused_until_it_has_ended(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    command = [sys.executable, "-c", f"{OPEN}print('opened', flush=True); input()", str(path)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as writer:
+        assert writer.stdout is not None
+        assert writer.stdout.readline() == "opened\n"
+        before = _next_descriptor()
+        with pytest.raises(c2d.StoreError, match="is being written by another"):
+            Store(path)
+        assert _next_descriptor() == before  # what was refused is closed
+        writer.communicate("")
+    Store(path).close()
+
+
+def _next_descriptor() -> int:
+    """The number of the next file that is opened: the lowest one that is free."""
+    descriptor = os.open(os.devnull, os.O_RDONLY)
+    os.close(descriptor)
+    return descriptor
 
 
 def test_what_closes_the_file_lets_no_second_writer_in_for_long(tmp_path: Path) -> None:
