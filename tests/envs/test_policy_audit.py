@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 import crawler2d as c2d
 from crawler2d.envs import FlipperEnv, FlipperVectorEnv, audit_policy
-from crawler2d.envs.policy_audit import _lost
+from crawler2d.envs.policy_audit import _gain, _lost
+from crawler2d.sweeps.statistics import newcombe_paired
 
 FLIPPERS = c2d.robots.absolem().flippers
 START = FLIPPERS.angle if FLIPPERS else 0.0
@@ -85,6 +86,13 @@ def test_it_says_where_gains_are_lost() -> None:
     assert len(ax.patches) == is_lost
     with pytest.raises(c2d.ScenarioError, match="must have models and obstacles"):
         found.sel(model="belt").plot()
+
+
+def test_a_run_without_an_outcome_is_left_out_of_the_gain_with_its_pair() -> None:
+    ours = np.array(["cleared", "cleared", "diverged", "stalled"], dtype=object)
+    theirs = np.array(["seized", "cleared", "cleared", "diverged"], dtype=object)
+    assert _gain(ours, theirs) == newcombe_paired(both=1, first=1, second=0, neither=0)
+    assert np.isnan(_gain(ours[2:], theirs[2:])).all()
 
 
 def test_what_is_lost_has_the_interval_of_two_independent_differences() -> None:

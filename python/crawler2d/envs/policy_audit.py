@@ -19,6 +19,7 @@ from crawler2d.envs.episodes import Episodes
 from crawler2d.envs.task import Task, flipper_ends
 from crawler2d.errors import Crawler2dError, ScenarioError, raise_first
 from crawler2d.parameters.settings import Climb, Gait
+from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import Row
 from crawler2d.runs.progress import Progress, Reporter, reporter, thread_count
 from crawler2d.sweeps.axes import Axis
@@ -92,8 +93,8 @@ def audit_policy(
         With 95 % intervals, besides:
 
         - `rate`, `low`, `high`: rate of clearing, Wilson's interval;
-        - `gain`, `gain_low`, `gain_high`: the policy's rate minus the baseline's, Newcombe's
-          interval for paired data;
+        - `gain`, `gain_low`, `gain_high`: the policy's rate minus the baseline's, over the pairs
+          of runs that both have an outcome, with Newcombe's interval for paired data;
         - `lost`, `lost_low`, `lost_high`: the gain on the first model minus that on this one; the
           interval adds the squares of those of both gains, as if these were independent;
         - `ending`: how most of the runs end that do not clear, and how many do.
@@ -225,11 +226,11 @@ def _compared(driven: xarray.Dataset, compared: xarray.Dataset) -> FigureDataset
         combine_attrs="drop_conflicts",
     )
     rates = rates_of(table)
-    cleared = (table["outcome"] == "cleared").to_numpy()
-    cells = cleared.shape[1:3]
+    outcomes = table["outcome"].to_numpy()
+    cells = outcomes.shape[1:3]
     gains = np.empty((*cells, 3))
     for cell in np.ndindex(cells):
-        gains[cell] = _gain(*cleared[(slice(None), *cell)])
+        gains[cell] = _gain(*outcomes[(slice(None), *cell)])
     losses = np.array([[_lost(*pair) for pair in zip(gains[0], row, strict=True)] for row in gains])
     endings = [_ending(table.isel(driver=0, model=m, obstacle=o)) for m, o in np.ndindex(cells)]
     over = ("model", "obstacle")
@@ -245,7 +246,12 @@ def _compared(driven: xarray.Dataset, compared: xarray.Dataset) -> FigureDataset
     return found
 
 
-def _gain(ours: NDArray[np.bool_], theirs: NDArray[np.bool_]) -> Interval:
+def _gain(ours: NDArray[np.object_], theirs: NDArray[np.object_]) -> Interval:
+    """Compare two drivers by their outcomes, of the pairs in which both runs have one."""
+    ended = np.isin([ours, theirs], list(map(str, Outcome))).all(axis=0)
+    ours, theirs = ours[ended] == Outcome.CLEARED, theirs[ended] == Outcome.CLEARED
+    if not ended.any():
+        return Interval(math.nan, math.nan, math.nan)
     counts = [(ours & theirs), (ours & ~theirs), (~ours & theirs), ~(ours | theirs)]
     return newcombe_paired(*(int(each.sum()) for each in counts))
 
