@@ -30,6 +30,11 @@ impl Problem {
             inertia.action = self.system.tied(&inertia.row);
         }
         self.system.weigh(&self.masses, &self.inertias);
+        let of_contacts = self.contacts.iter().map(|c| &c.normal); // the tangent acts on the same
+        let of_bilaterals = self.bilaterals.iter().map(|b| &b.row);
+        let of_inertias = self.inertias.iter().map(|i| &i.row);
+        let rows = of_contacts.chain(of_bilaterals).chain(of_inertias);
+        self.system.note_touched(rows);
         let (system, rings) = (&self.system, &self.rings);
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
             contact.actions[0] = system.tied(&contact.normal);
@@ -123,6 +128,9 @@ impl Problem {
 
     /// [N s or N m s] The impulse of all constraints but motors, and of inertia along rows, on what is on the base.
     pub(super) fn impulse_on(&self, at: usize) -> f64 {
+        if !self.system.is_touched(at) {
+            return 0.0;
+        }
         let of_contacts = self.contacts.iter().flat_map(|c| {
             let [normal, friction] = c.impulses();
             [(&c.normal, normal), (&c.tangent, friction)]

@@ -168,6 +168,11 @@ impl Row {
         self.entries_from(BASE)
     }
 
+    /// Whether it acts on two bodies beside the base.
+    pub(super) fn is_on_two_beside_base(&self) -> bool {
+        usize::from(self.count) > BASE + 1
+    }
+
     /// Its lever of an unknown that is neither of the base nor of a link; 0 if it has none.
     pub(super) fn lever(&self, at: usize) -> f64 {
         let own = self.beside_base().filter(|(entry, _)| *entry == at);

@@ -11,6 +11,8 @@ use super::row::{BASE, Layout, Row, TURN};
 /// Bodies hinged to the base, at most.
 const JOINTS: usize = 2;
 const BODIES: usize = BASE + JOINTS;
+/// From so many unknowns on it is cheaper to clear what can have been written than all.
+const MANY: usize = 12;
 
 /// The linear system of the unknowns on the base.
 pub(super) struct System {
@@ -20,12 +22,16 @@ pub(super) struct System {
     count: usize,
     /// Row by row, each with the right-hand side at its end.
     rows: Vec<f64>,
-    /// Whether any row has other unknowns than its own.
+    /// Whether any row has other unknowns than its own, ...
     is_coupled: bool,
+    /// ... and whether that may be unknowns of two bodies beside the base.
+    spins_meet: bool,
     /// [1/kg, 1/kg, 1/(kg m^2), ...] One over the inertia of each unknown, 0 for those of rings: the weights of the rows.
     pub weights: Vec<f64>,
     /// [rad/s] Rate over the base of each that turns with it.
     held: Vec<Option<f64>>,
+    /// Whether anything but its motor acts on each.
+    touched: Vec<bool>,
 }
 
 impl System {
@@ -37,14 +43,29 @@ impl System {
             count,
             rows: vec![0.0; count * (count + 1)],
             is_coupled: false,
+            spins_meet: false,
             weights: vec![0.0; layout.link(0)],
             held: vec![None; layout.link(0)],
+            touched: vec![false; layout.link(0)],
         }
     }
 
     /// Has what a motor turns go with the base at a rate over it [rad/s], or lets go of it.
     pub(super) fn hold(&mut self, at: usize, rate: Option<f64>) {
         self.held[at] = rate;
+    }
+
+    /// Notes on which unknowns beside the base constraints act, which have these rows.
+    pub(super) fn note_touched<'a>(&mut self, rows: impl Iterator<Item = &'a Row>) {
+        self.touched.fill(false);
+        for (at, _) in rows.flat_map(Row::beside_base) {
+            self.touched[at] = true;
+        }
+    }
+
+    /// Whether one acts there.
+    pub(super) fn is_touched(&self, at: usize) -> bool {
+        self.touched[at]
     }
 
     /// A row with what is held as part of the base.
@@ -54,8 +75,7 @@ impl System {
 
     /// Starts from bodies on which nothing acts: their inertias [kg, kg, kg m^2, ...], and their velocities.
     pub(super) fn start(&mut self, masses: &[f64], free: &[f64]) {
-        self.rows.fill(0.0);
-        self.is_coupled = false;
+        self.clear();
         for (at, mass) in masses.iter().enumerate() {
             match self.held[at] {
                 None => {
@@ -69,6 +89,22 @@ impl System {
                 }
             }
         }
+    }
+
+    /// Clears all entries that can have been written: where many spin, few of them.
+    fn clear(&mut self) {
+        if self.spins_meet || self.count < MANY {
+            self.rows.fill(0.0);
+        } else {
+            let stride = self.count + 1;
+            let (whole, sparse) = self.rows.split_at_mut(self.bodies * stride);
+            whole.fill(0.0);
+            for (k, row) in sparse.chunks_exact_mut(stride).enumerate() {
+                row[..BODIES].fill(0.0);
+                (row[self.bodies + k], row[self.count]) = (0.0, 0.0);
+            }
+        }
+        (self.is_coupled, self.spins_meet) = (false, false);
     }
 
     /// Finds the weights of all unknowns from the inertias of bodies and along rows.
@@ -92,6 +128,7 @@ impl System {
     /// The entry of two unknowns, which may couple them.
     pub(super) fn coupling(&mut self, row: usize, column: usize) -> &mut f64 {
         self.is_coupled = true;
+        self.spins_meet |= row.min(column) >= BASE && row != column;
         self.entry(row, column)
     }
 
@@ -111,6 +148,7 @@ impl System {
             return;
         }
         self.is_coupled = true;
+        self.spins_meet |= action.is_on_two_beside_base();
         let stride = self.count + 1;
         let of_base = action.of_base();
         for (i, f) in force.entries() {
