@@ -60,6 +60,16 @@ def verdict(own: list[str], belt: list[str]) -> Verdict:
 CLEARED = ["cleared"] * SAMPLES
 
 
+@pytest.mark.parametrize(("clears", "less"), [(5, True), (28, False)])
+def test_it_clears_less_than_the_belt_where_the_intervals_are_apart(
+    clears: int, less: bool
+) -> None:
+    belt = ends(cleared=32, slipping=SAMPLES - 32)
+    found = verdict(ends(cleared=clears, slipping=SAMPLES - clears), belt)
+    assert found.word == "belt fails, too"
+    assert found.clears_less is less
+
+
 @pytest.mark.parametrize(
     ("seized", "word"),
     [(0, "does not seize"), (1, "not certain"), (4, "not certain"), (5, "seizes")],

@@ -251,6 +251,11 @@ class Verdict:
     friction: tuple[float, float]
     seized_at: Mapping[float, Proportion]
 
+    @property
+    def clears_less(self) -> bool:
+        """Whether it clears less often than the belt for certain: their intervals are apart."""
+        return self.cleared.high < self.belt_cleared.low
+
 
 def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
     """Judge an obstacle of a table with the models "model" and "belt"."""

@@ -213,6 +213,14 @@ def conclusion(audit: AuditRecord) -> list[str]:
             " of the seized runs the belt clears with the same draws)"
         )
         sentences.append(f"{text}: {', '.join(others)}.")
+    behind = [
+        f"{each.obstacle} ({percent(each.cleared.rate)}, belt {percent(each.belt_cleared.rate)})"
+        for each in audit.verdicts
+        if each.word != "seizes" and each.clears_less
+    ]
+    if behind:
+        text = "For other reasons than seizing it clears less often than the belt"
+        sentences.append(f"{text}: {', '.join(behind)}.")
     unsure = [each.obstacle for each in audit.verdicts if each.word == "not certain"]
     if unsure:
         sentences.append(f"Not certain, for want of runs: {', '.join(unsure)}.")

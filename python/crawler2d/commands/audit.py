@@ -65,7 +65,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--patch",
         type=Path,
         metavar="FILE",
-        help="write the model file with the best repair found; belts of URDF as .sdf",
+        help="write the model file with the best change of wheels found, confirmed or not, or else"
+        " with belts; belts of URDF as .sdf",
     )
     group = parser.add_argument_group("for continuous integration; see docs/guide/audit.md")
     group.add_argument(

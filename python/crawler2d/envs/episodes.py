@@ -133,7 +133,8 @@ class Episodes:
             raise ScenarioError("action", actions, "must be numbers") from None
         shape = (len(self._many), 1 + len(self._task.ends))
         if array.shape != shape:
-            raise ScenarioError("action", array.shape, f"must have the shape {shape}")
+            rule = f"must be {shape[1]} numbers for each of {shape[0]} robots"
+            raise ScenarioError("action", f"shape {array.shape}", rule)
         if not np.isfinite(array).all():
             raise ScenarioError("action", array[~np.isfinite(array)][0], "must be finite")
         clipped: NDArray[np.float64] = np.clip(array, -1.0, 1.0)

@@ -164,6 +164,8 @@ def simulate_many(
     read_choice(on_error, "on_error", ("raise", "record"))
     kept = (*check_recording(sample_interval, record), list(trial_names(trials)))
     count = thread_count(threads)
+    if not isinstance(scenarios, Iterable):
+        raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")
     batch = list(scenarios)
     checked = _validate(batch)
     if on_error == "raise":

@@ -181,7 +181,8 @@ def branch_time(run: Record, at: float | str) -> float:
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
             rule = (
-                f"must be a time: the run ended as {run.outcome}, not in a stop; see its `reason`"
+                'must be given as a time (else it is "stop"):'
+                f" the run ended as {run.outcome}, not in a stop; see its `reason`"
             )
             raise ScenarioError("at", at, rule)
         return run.diagnosis.time

@@ -25,7 +25,7 @@ from crawler2d.studies.campaign import (
     campaign,
     is_cleared,
 )
-from crawler2d.studies.tables import Models, paths_of, rate_table, read_models
+from crawler2d.studies.tables import Models, check_study, paths_of, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
@@ -75,7 +75,7 @@ def critical(
     Parameters
     ----------
     scenario : Scenario
-        What all runs fraction.
+        What all runs share.
     path : str
         Of a number, such as ``terrain.friction``.
     between : tuple of 2 floats
@@ -119,6 +119,7 @@ def critical(
     >>> abs(found["bracket_low"].item() - 0.5) < 0.02, found["monotone"].item()
     (True, True)
     """
+    check_study(scenario)
     low, high = (real_number(each, f"between[{k}]") for k, each in enumerate(_pair(between)))
     if not low < high:
         raise ScenarioError("between", (low, high), "must be two numbers, the smaller first")

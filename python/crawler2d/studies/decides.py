@@ -25,7 +25,7 @@ from crawler2d.studies.boundary import (
 )
 from crawler2d.studies.campaign import Campaign, RateSampling, Tally, campaign, counting
 from crawler2d.studies.sensitivity import COVERAGE, RUN_TO_RUN, Design, bounds, estimate, rate_of
-from crawler2d.studies.tables import Models, paths_of, read_models
+from crawler2d.studies.tables import Models, check_study, paths_of, read_models
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
@@ -311,7 +311,7 @@ def what_decides(
     >>> round(found["bracket_low"].sel(unknown="friction").item(), 2)
     0.7
     """
-    extra("xarray", "analysis")
+    check_study(scenario)
     extra("scipy.stats", "sensitivity")  # fail before the runs if it is missing
     counts = counting(outcome)
     samples = _power_of_two(how.get("samples", 256))

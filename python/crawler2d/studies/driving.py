@@ -12,10 +12,10 @@ from crawler2d.common.arrays import real_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_path
-from crawler2d.parameters.scenario import Scenario, check_scenario
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import Sampling, campaign
 from crawler2d.studies.steady import Halt, RunUp, drive, on_plane
-from crawler2d.studies.tables import Dims, Measure, Models, measure_table, read_models
+from crawler2d.studies.tables import Dims, Measure, Models, check_study, measure_table, read_models
 from crawler2d.variation.distributions import Ranges
 from crawler2d.variation.variability import of_contact, of_start
 
@@ -169,7 +169,7 @@ def _limiting_study(
     repeats: int,
 ) -> FigureDataset:
     """Drive every model as it is and with each change, and arrange the results."""
-    check_scenario(scenario)
+    check_study(scenario)
     given = None if speed is None else real_number(speed, "speed")
     if given is not None and not given > 0.0:
         raise ScenarioError("speed", given, "must be > 0 m/s")

@@ -14,7 +14,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.jams import on_belt
-from crawler2d.studies.tables import Models, read_models
+from crawler2d.studies.tables import Models, check_study, read_models
 from crawler2d.sweeps.axes import field_attributes
 
 if TYPE_CHECKING:
@@ -109,6 +109,7 @@ def jam_chart(
     >>> round(chart["belt_high"].max().item(), 2)
     0.75
     """
+    check_study(scenario)
     read_number_path(scenario, x, "x")
     most = real_number(most_friction, "most_friction")
     if not 0.0 < most <= 100.0:

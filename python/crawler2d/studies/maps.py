@@ -24,7 +24,7 @@ from crawler2d.studies.campaign import (
     counting,
     is_cleared,
 )
-from crawler2d.studies.tables import Models, paths_of, rate_table, read_models
+from crawler2d.studies.tables import Models, check_study, paths_of, rate_table, read_models
 from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.sweeps.rates import BAND
 
@@ -199,6 +199,7 @@ def seizure_map(
     >>> found["ending"].sel(angle=0.5).values.tolist()
     [['slipping', 'cleared']]
     """
+    check_study(scenario)
     counts, ends = counting(outcome), _ends(outcome)
     halvings = whole_number(refine, "refine", 0, 6)
     (path_x, coarse_x), (path_y, coarse_y) = _axis(scenario, x, "x"), _axis(scenario, y, "y")

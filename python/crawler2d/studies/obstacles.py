@@ -17,7 +17,14 @@ from crawler2d.parameters.terrain import Terrain
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.record import NO_RESULT
 from crawler2d.studies.campaign import Cell, RateSampling, Tally, campaign
-from crawler2d.studies.tables import Models, paths_of, rate_table, read_models, read_terrains
+from crawler2d.studies.tables import (
+    Models,
+    check_study,
+    paths_of,
+    rate_table,
+    read_models,
+    read_terrains,
+)
 from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
@@ -61,7 +68,7 @@ def max_obstacle(
         - `highest` [m]: the greatest height whose rate is at least one half; NaN if there is none;
         - `certain` [m]: the greatest whose interval lies above one half;
         - `gaps`: how many lower heights have a rate below one half;
-        - `limit`: how most runs end on the next height.
+        - `limit`: how most runs end on the next height; "none up to here" without one.
 
     Raises
     ------
@@ -79,6 +86,7 @@ def max_obstacle(
     >>> found["highest"].values.tolist()
     [0.06, 0.03]
     """
+    check_study(scenario)
     radius = scenario.robot.outline.front_radius
     given = [radius * k / 6.0 for k in range(1, 13)] if heights is None else heights
     return _find_greatest(scenario, "max_obstacle", ("terrain.height", given), models, how)
@@ -103,6 +111,7 @@ def max_slope(
     angles : sequence of float, optional
         [rad] Angles to try; None takes 5 to 60 degrees, 5 apart.
     """
+    check_study(scenario)
     given = [math.radians(5.0 * k) for k in range(1, 13)] if angles is None else angles
     return _find_greatest(scenario, "max_slope", ("terrain.angle", given), models, how)
 
@@ -126,6 +135,7 @@ def max_gap(
     widths : sequence of float, optional
         [m] Widths to try; None takes every tenth of the axle distance up to the whole.
     """
+    check_study(scenario)
     length = scenario.robot.outline.axle_distance
     given = [length * k / 10.0 for k in range(1, 11)] if widths is None else widths
     return _find_greatest(scenario, "max_gap", ("terrain.width", given), models, how)
@@ -139,8 +149,12 @@ def _find_greatest(
     how: RateSampling,
 ) -> FigureDataset:
     path, values = over
-    read_path(scenario, path)  # the terrain has it
     name = path.rpartition(".")[2]
+    try:
+        read_path(scenario, path)
+    except ScenarioError:
+        rule = f"must be a terrain with {'an' if name == 'angle' else 'a'} {name}"
+        raise ScenarioError("terrain", scenario.terrain, rule) from None
     tried = sorted(float(value) for value in values)
     if not tried:
         raise ScenarioError(f"{name}s", values, "must have at least one value")
@@ -239,6 +253,7 @@ def success(
     >>> found["rate"].sel(terrain="step").item(), found["ended_cleared"].values.tolist()
     (1.0, [[33, 0]])
     """
+    check_study(scenario)
     grounds = read_terrains(scenario, terrains)
     fields = read_models(scenario, models)
     how = {"vary": of_start() | of_contact() | of_field(), **how}

@@ -14,14 +14,22 @@ from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.scenario import Scenario, check_scenario
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
 from crawler2d.runs.dataset import build_attributes
 from crawler2d.runs.progress import Progress, reporter
 from crawler2d.runs.simulation import Simulation
 from crawler2d.studies.campaign import Cell, Sampling, Tally, campaign
 from crawler2d.studies.driving import FRICTION, UNCHANGED, Change
-from crawler2d.studies.tables import Dims, Measure, Models, measure_table, read_models, summary
+from crawler2d.studies.tables import (
+    Dims,
+    Measure,
+    Models,
+    check_study,
+    measure_table,
+    read_models,
+    summary,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,6 +95,7 @@ def ride(
     >>> bool(smooth < 0.02), bool(rough > 1.0)
     (True, True)
     """
+    check_study(scenario)
     measures: Mapping[str, tuple[str, str, Callable[[Row], float]]] = {
         "vibration": (
             "m/s^2",
@@ -173,6 +182,7 @@ def odometry(
     >>> 0.055 < found["rolling_radius"].sel(model="gears").item() < 0.064
     True
     """
+    check_study(scenario)
     changes: tuple[Change, ...] = (UNCHANGED, FRICTION)
     with campaign(scenario, how, repeats=repeats) as study:
         fields = read_models(scenario, models)
@@ -306,7 +316,7 @@ def real_time_factor(
     for name, value in others.items():
         rule = "must not be given: the time of this processor is measured, now, on one thread"
         raise ScenarioError(name, value, rule)
-    check_scenario(scenario)
+    check_study(scenario)
     span = real_number(duration, "duration")
     if not 0.0 < span <= 1000.0:
         raise ScenarioError("duration", span, "must be > 0 s and at most 1000 s")

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from crawler2d.common.arrays import real_number, whole_number
-from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, raise_first
-from crawler2d.parameters.scenario import Scenario, check_scenario
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.studies.campaign import Campaign, Sampling, Tally, campaign
 from crawler2d.studies.candidates import (
@@ -23,7 +22,7 @@ from crawler2d.studies.candidates import (
     ranked,
     search_table,
 )
-from crawler2d.studies.tables import Models, paths_of, read_terrains
+from crawler2d.studies.tables import Models, check_study, paths_of, read_terrains
 from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.sweep import variants
 from crawler2d.variation.draws import Variation
@@ -135,14 +134,13 @@ def search(
     >>> found.attrs["winner"], found["confirmed"].sel(candidate="3 of 60 mm").item()
     ('3 of 60 mm', True)
     """
-    extra("xarray", "analysis")  # fail before the runs if it is missing
+    check_study(scenario)
     goal = real_number(at_least, "at_least")
     if not 0.0 < goal <= 1.0:
         raise ScenarioError("at_least", goal, "must be > 0 and at most 1")
     if objective is not None and not callable(objective):
         raise ScenarioError("objective", objective, "must be a callable that takes a Scenario")
     fresh = whole_number(confirm, "confirm", 1, 10**6)
-    check_scenario(scenario)
     grounds = read_terrains(scenario, terrains)
     fields = variants(space, "space")
     swept = ["terrain", *paths_of(fields)]

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.sweeps.axes import Label, read_labels
 from crawler2d.sweeps.rates import quantile_band
@@ -37,6 +38,20 @@ __all__ = [
 
 Models = Mapping[Any, Variant] | Sequence[Variant]
 """By label, or objects that label themselves; see `compare`."""
+
+
+def check_study(scenario: object) -> None:
+    """Refuse anything but a scenario, and a lack of xarray, before anything runs.
+
+    Raises
+    ------
+    ScenarioError
+        If it is no `Scenario`.
+    ImportError
+        If xarray is missing; the message names the extra to install.
+    """
+    check_scenario(scenario)
+    extra("xarray", "analysis")
 
 
 def read_models(scenario: Scenario, models: Models | None) -> dict[Any, Mapping[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -121,7 +121,7 @@ def rate(
     (0.25, 0.5)
     """
     rates = rates_of(table, outcome, dim, confidence_level=confidence_level)
-    if _SAMPLE not in rates.dims and "distinct" in rates:
+    if not rates.attrs["unknown"] and "distinct" in rates:
         _warn_of_few(rates)
     return rates
 
@@ -226,7 +226,9 @@ def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
     return len(set(zip(*(each[valid].tolist() for each in steps), strict=True)))
 
 
-def _texts(outcomes: Iterable[Any]) -> list[str]:
+def _texts(outcomes: object) -> list[str]:
+    if not isinstance(outcomes, Iterable):
+        raise ScenarioError("table", outcomes, "must be what sweep returned, or outcomes in a list")
     names = list(Outcome)
     return [
         "" if outcome is None else read_choice(outcome, f"outcomes[{index}]", names)

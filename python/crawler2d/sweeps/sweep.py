@@ -13,7 +13,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import Parameters
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.branch import Trials
 from crawler2d.runs.progress import Progress
@@ -310,6 +310,7 @@ def compare(
     >>> found.rate.values.tolist()
     [1.0, 0.0]
     """
+    check_scenario(scenario)
     named = variants(models)
     if len(named) < 2:
         raise ScenarioError("models", models, "must hold at least two models")

@@ -1,0 +1,66 @@
+"""What every study refuses before anything runs."""
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+
+ROBOT: Any = c2d.robots.engineer(flippers=None)
+STUDIES: dict[str, Callable[[Any], Any]] = {
+    "compare": lambda scenario: c2d.compare(scenario, {"as it is": {}}),
+    "critical": lambda scenario: c2d.studies.critical(scenario, "terrain.friction", (0.3, 0.8)),
+    "jam_chart": c2d.studies.jam_chart,
+    "max_gap": c2d.studies.max_gap,
+    "max_obstacle": c2d.studies.max_obstacle,
+    "max_slope": c2d.studies.max_slope,
+    "odometry": c2d.studies.odometry,
+    "ride": c2d.studies.ride,
+    "seizure_map": lambda scenario: c2d.studies.seizure_map(
+        scenario, ("terrain.height", [0.1, 0.2]), ("terrain.friction", [0.3, 0.6])
+    ),
+    "success": c2d.studies.success,
+    "what_decides": c2d.studies.what_decides,
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("given", [ROBOT, None])
+def test_a_study_of_something_else_than_a_scenario_is_refused(name: str, given: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match="scenario must be a Scenario"):
+        STUDIES[name](given)
+
+
+@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"compare"}))
+def test_a_study_without_xarray_names_its_extra_before_anything_runs(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def missing(module: str) -> None:
+        raise ModuleNotFoundError(f"No module named {module!r}", name=module)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(ImportError, match=r"crawler2d\[analysis\]"):
+        STUDIES[name](c2d.Scenario(ROBOT, c2d.terrains.step(0.05)))
+
+
+@pytest.mark.parametrize(
+    ("study", "rule"),
+    [
+        (c2d.studies.max_obstacle, "must be a terrain with a height"),
+        (c2d.studies.max_slope, "must be a terrain with an angle"),
+        (c2d.studies.max_gap, "must be a terrain with a width"),
+    ],
+)
+def test_flat_ground_has_no_greatest_obstacle(study: Callable[[Any], Any], rule: str) -> None:
+    with pytest.raises(c2d.ScenarioError, match=f"terrain {rule}"):
+        study(c2d.Scenario(ROBOT, c2d.terrains.flat()))
+
+
+def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
+    scenario: Any = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
+    with pytest.raises(c2d.ScenarioError, match="scenarios must be several"):
+        c2d.simulate_many(scenario)
+    with pytest.raises(c2d.ScenarioError, match="table must be what sweep returned"):
+        c2d.rate(c2d.simulate(scenario))  # type: ignore[arg-type]
