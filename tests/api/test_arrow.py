@@ -86,5 +86,5 @@ def test_any_reader_of_streams_takes_a_table(jammed: c2d.Run) -> None:
 
 def test_without_pyarrow_the_error_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(ImportError, match=r"this needs pyarrow: pip install crawler2d\[files\]"):
+    with pytest.raises(ImportError, match=r"this needs pyarrow: pip install 'crawler2d\[files\]'"):
         Table({"x": [0.0]}).__arrow_c_stream__()

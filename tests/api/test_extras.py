@@ -50,7 +50,7 @@ def package(folder: Path, text: str) -> None:
 
 
 def test_a_package_that_is_not_there_names_its_extra() -> None:
-    with pytest.raises(ImportError, match=r"^this needs halved: pip install crawler2d\[half\]$"):
+    with pytest.raises(ImportError, match=r"^this needs halved: pip install 'crawler2d\[half\]'$"):
         extra("halved.core", "half")
 
 

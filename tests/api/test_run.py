@@ -378,9 +378,9 @@ def test_the_data_set_of_a_chain_has_its_shoes() -> None:
 def test_a_missing_package_names_its_extra(run: c2d.Run, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("xarray", "pandas", "matplotlib.pyplot"):
         monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[analysis\]'"):
         run.to_xarray()
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[analysis\]'"):
         run.contacts.to_pandas()
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[plot\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[plot\]'"):
         run.plot()

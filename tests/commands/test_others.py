@@ -143,5 +143,5 @@ def test_completion_names_its_extra(monkeypatch: pytest.MonkeyPatch, capsys: Cap
     monkeypatch.setitem(sys.modules, "shtab", None)
     assert main(["completion", "bash"]) == 2
     assert capsys.readouterr().err == (
-        "crawler2d completion: this needs shtab: pip install crawler2d[cli]\n"
+        "crawler2d completion: this needs shtab: pip install 'crawler2d[cli]'\n"
     )

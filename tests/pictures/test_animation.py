@@ -290,10 +290,10 @@ def test_a_missing_package_names_its_extra(
 ) -> None:
     monkeypatch.setenv("PATH", "")
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[animation\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[animation\]'"):
         short.animate(tmp_path / "run.mp4")
     monkeypatch.setitem(sys.modules, "PIL.Image", None)
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[animation\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[animation\]'"):
         short.animate(tmp_path / "run.gif")
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match="matplotlib"):

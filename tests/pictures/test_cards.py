@@ -105,7 +105,7 @@ assert "<svg" in c2d.Scenario(robot, c2d.terrains.stairs())._repr_html_()
 try:
     robot.plot()
 except ImportError as error:
-    assert "pip install crawler2d[plot]" in str(error), error
+    assert "pip install 'crawler2d[plot]'" in str(error), error
 else:
     raise AssertionError
 """

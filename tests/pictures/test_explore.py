@@ -149,11 +149,11 @@ def test_a_missing_package_names_its_extra(run: c2d.Run, monkeypatch: pytest.Mon
     monkeypatch.delitem(sys.modules, "crawler2d.pictures.replay", raising=False)
     monkeypatch.setitem(sys.modules, "anywidget", None)
     with pytest.raises(
-        ImportError, match=r"this needs anywidget: pip install crawler2d\[notebook\]"
+        ImportError, match=r"this needs anywidget: pip install 'crawler2d\[notebook\]'"
     ):
         run.widget()
     monkeypatch.setitem(sys.modules, "ipywidgets", None)
     with pytest.raises(
-        ImportError, match=r"this needs ipywidgets: pip install crawler2d\[notebook\]"
+        ImportError, match=r"this needs ipywidgets: pip install 'crawler2d\[notebook\]'"
     ):
         c2d.explore(BASE, height=(0.02, 0.15))

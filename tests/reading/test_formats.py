@@ -261,6 +261,16 @@ def test_a_round_mesh_is_a_wheel(tmp_path: Path) -> None:
     assert reading.robot.outline.front_radius == pytest.approx(0.08, rel=1e-6)  # float32 corners
 
 
+@pytest.mark.parametrize(("off", "line"), [(3.3e-5, True), (2e-4, False)])
+def test_wheels_rounded_to_four_decimals_stand_in_a_line(
+    tmp_path: Path, off: float, line: bool
+) -> None:
+    places = {"front": 0.31, "middle": 0.31 / 3.0 + off, "next": -0.31 / 3.0, "rear": -0.31}
+    reading = read(tmp_path, urdf("".join(pair(name, x) for name, x in places.items())))
+    assert isinstance(reading.robot.track, c2d.LineOfWheels) is line
+    assert any("evenly spaced but for 0.033 mm" in note for note in reading.notes) is line
+
+
 def test_a_reading_survives_a_pickle() -> None:
     again = pickle.loads(pickle.dumps(SDF))
     assert again.robot == SDF.robot

@@ -108,6 +108,6 @@ def test_a_mesh_that_is_there_needs_the_extra(
     monkeypatch.setenv("PYTHONPATH", path)
     assert read(tmp_path, with_meshes("m.stl")).robot.belly is None
     (tmp_path / "m.stl").write_bytes(BOXES["binary.stl"])
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[models\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[models\]'"):
         read(tmp_path, with_meshes("m.stl"))
     assert read(tmp_path, with_meshes("m.stl"), mesh="leave_out").robot.belly is None

@@ -202,7 +202,7 @@ def test_a_data_set_that_has_lost_what_it_is_of_has_no_figure() -> None:
 
 def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]$"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[analysis\]'$"):
         rate(["cleared"])
 
 

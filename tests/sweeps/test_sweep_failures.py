@@ -173,5 +173,5 @@ def test_ctrl_c_keeps_the_finished_runs() -> None:
 
 def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+    with pytest.raises(ImportError, match=r"pip install 'crawler2d\[analysis\]'"):
         quiet(BRIEF, {"terrain.height": [0.1]})

@@ -35,7 +35,7 @@ def extra(module: str, name: str) -> Any:
             return importlib.import_module(module)
     except Exception as error:
         if isinstance(error, ModuleNotFoundError) and error.name in (top, module):
-            message = f"this needs {top}: pip install crawler2d[{name}]"
+            message = f"this needs {top}: pip install 'crawler2d[{name}]'"
         else:
             message = (
                 f"{top} is installed, but its import failed: {type(error).__name__}: {error}"

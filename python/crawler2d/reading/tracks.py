@@ -31,7 +31,11 @@ __all__ = [
 ]
 
 FIT = 1e-5
-"""[m] Wheels this close to an evenly spaced line lie on it: files round to six decimals."""
+"""[m] Discs this close to a belt lie on it: programs round to six decimals."""
+
+_EVEN = 1.2e-4
+"""[m] Wheels this close to an evenly spaced line lie on it: people round to four decimals, which
+moves wheel and ends by 0.05 mm each."""
 
 BELT_TOLERANCE = 0.02
 """[-] How far boxes may reach out of the belt, relative to the larger radius: boxes that are drawn
@@ -169,7 +173,9 @@ def wheels_of(
         even = np.linspace(-0.5 * base.length, 0.5 * base.length, len(pairs))
         between = np.linspace(radii[0], radii[-1], len(pairs))
         off = np.abs([places[:, 0] - even, places[:, 1], radii - between]).max()
-        is_line = bool(off <= FIT)
+        is_line = bool(off <= _EVEN)
+        if is_line and off > FIT:
+            log.notes.append(f"{path}: evenly spaced but for {1e3 * off:.2g} mm, which is left out")
     angles = [base.tilt - run / pair.radius for pair in pairs]
     wheel, order = common_wheel(
         log, pairs, view, angles=angles, path=f"{path}.wheel", is_line=is_line
