@@ -1,5 +1,6 @@
 """Every rule of lint fires on what it is for, and is silent on the same robot without it."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -166,6 +167,14 @@ def test_of_links_that_weigh_nothing_it_is_a_note(tmp_path: Path) -> None:
     text = urdf(WHEELS, pair("middle", 0.0)).replace('<mass value="1"/>', light)
     found = of_text(tmp_path, text, "inertia")
     assert [each.severity for each in found] == ["note"]
+
+
+def test_wheels_without_mass(tmp_path: Path) -> None:
+    text = urdf(re.sub(r"<inertial>.*?</inertial>", "", WHEELS, flags=re.DOTALL))
+    (found,) = of_text(tmp_path, text, "massless")
+    assert found.severity == "error"
+    assert "4 wheels have no mass" in found.what
+    assert of_text(tmp_path, urdf(WHEELS), "massless") == []
 
 
 def test_placeholder_inertias(tmp_path: Path) -> None:

@@ -353,6 +353,22 @@ def _no_motor(reading: Reading) -> Iterator[_Break]:
         yield _Break(what, lines([joint.at for joint in idle]), "note")
 
 
+def _massless(reading: Reading) -> Iterator[_Break]:
+    """Find wheels that weigh nothing, with all that is fixed to them."""
+    tree = reading.tree
+    carried = {joint.parent for joint in tree.joints.values() if joint.kind == "fixed"}
+    found = [
+        link for link, _ in _wheel_links(reading) if link.mass == 0.0 and link.name not in carried
+    ]
+    if found:
+        names = list_names([link.name for link in found])
+        what = (
+            f"{len(found)} wheels have no mass ({names}): is an <inertial> missing? Here they weigh"
+            " nothing; engines leave such a link out, or give it a mass of their own"
+        )
+        yield _Break(what, lines([link.at for link in found]))
+
+
 def _balance(reading: Reading) -> Iterator[_Break]:
     """Find wheels that are out of balance: what turns with them is swung round the axle."""
     table = reading.wheels
@@ -468,6 +484,7 @@ RULES = (
         file=_impossible_inertia,
         stated=("robot.moment_of_inertia",),
     ),
+    Rule("massless", "error", "Every wheel has a mass.", file=_massless),
     Rule(
         "placeholder",
         "warning",
