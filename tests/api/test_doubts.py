@@ -63,6 +63,7 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
         6.0,
     ),
     "a goal out of reach": (Scenario(ROBOT, STEP, goal=50.0), "goal", 50.0),
+    "a goal that is passed": (Scenario(ROBOT, STEP, goal=-50.0), "goal", -50.0),
     "ground that is too long": (over(c2d.terrains.flat(length=50.0)), "duration", 15.0),
     "an approach out of reach": (
         Scenario(ROBOT, STEP, start=c2d.Start(approach=50.0)),
@@ -143,7 +144,7 @@ def test_what_is_usual_is_not_doubted(name: str) -> None:
         Scenario(ROBOT, STEP, goal=50.0, duration=0.5),
         Scenario(ROBOT, STEP, goal=50.0, drive=c2d.Drive(speed=0.0)),
         Scenario(ROBOT, STEP, goal=50.0, drive=c2d.Drive(speed=-0.4)),
-        Scenario(ROBOT, STEP, goal=-50.0),
+        Scenario(ROBOT, STEP, goal=-0.5),
         Scenario(ROBOT, STEP, goal=5.0),
         hold(math.pi),
         on(line(0.12)),

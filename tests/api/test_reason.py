@@ -61,7 +61,7 @@ def test_a_robot_tips_over_forwards_down_a_cliff() -> None:
 
 def test_every_run_that_does_not_clear_has_a_reason(tipped: c2d.Run) -> None:
     short = c2d.simulate(ROBOT, c2d.terrains.step(0.05), duration=1.0)
-    assert short.reason == "timed out after 1.00 s on its way, at 99 % of the commanded speed"
+    assert short.reason == "timed out after 1.00 s, still driving at 99 % of the commanded speed"
     end = c2d.terrains.from_points([(-3, 0), (0, 0), (1, 0)], goal=0.9, friction=0.9)
     fallen = c2d.simulate(ROBOT, end)
     assert fallen.outcome is c2d.Outcome.LEFT_TERRAIN

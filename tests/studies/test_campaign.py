@@ -99,7 +99,7 @@ def test_what_is_wrong_is_refused_by_name() -> None:
         with pytest.raises(c2d.ScenarioError) as caught:
             found_of(**how)
         assert caught.value.path == path
-    with pytest.raises(c2d.ScenarioError, match=r"terrain\.height must be a known field"):
+    with pytest.raises(c2d.ScenarioError, match="terrain must be a terrain with a height"):
         c2d.studies.max_obstacle(BASE.replace({"terrain": c2d.terrains.flat()}))
 
 

@@ -1,11 +1,13 @@
 """Which models get over which grounds, and how the others fail."""
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.studies.obstacles import _in_words, _Limits
 from tests.shared import ROBOT
 
 BASE = c2d.Scenario(ROBOT, c2d.terrains.flat())
@@ -77,3 +79,22 @@ def test_the_figure_has_a_bar_for_every_cell_and_says_its_rate(found: Any) -> No
     unknown = found_of(unknown={"terrain.friction": c2d.uniform(0.4, 1.0)}, samples=3)
     assert "5 to 95 %" in unknown.plot().get_title(loc="left")
     plt.close("all")
+
+
+@pytest.mark.parametrize(
+    ("limits", "text"),
+    [
+        ([(0.06, 0.06, 0, "none up to here")], "height up to 0.06 m, the greatest tried"),
+        (
+            [(0.05, math.nan, 1, "hung_up")],
+            "height up to 0.05 m, but not every lower one, then mostly",
+        ),
+        ([(math.nan, math.nan, 0, "seized")], "no height that was tried, then mostly seized"),
+        (
+            [(0.05, 0.05, 0, "seized"), (0.07, 0.07, 0, "seized")],
+            "height up to 0.05 to 0.07 m, then",
+        ),
+    ],
+)
+def test_the_summary_says_what_is_cleared_and_what_then(limits: list[Any], text: str) -> None:
+    assert _in_words([_Limits(*each) for each in limits], "height", "m").startswith(text)

@@ -52,7 +52,7 @@ def read_baseline(path: Path) -> Plain:
     Raises
     ------
     ScenarioError
-        If it is none, or of another version of the format.
+        If it is no baseline, or of another version of the format.
     OSError
         If it cannot be read.
     """

@@ -169,7 +169,7 @@ def read_obstacles(obstacles: object) -> dict[str, Terrain]:
     Raises
     ------
     ScenarioError
-        If it is none, or empty.
+        If it is no mapping, or empty.
     """
     if not isinstance(obstacles, Mapping) or not obstacles:
         raise ScenarioError("obstacles", obstacles, "must be a mapping from labels to terrains")

@@ -108,7 +108,7 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
         else:
             holds = words.holding_friction([p.friction for p in alike])
             deep = words.span([1e3 * p.depth for p in alike], ".1f")
-            text = f"{deep} mm deep, by their walls alone they hold {holds}"
+            text = f"{deep} mm deep, between their walls they hold {holds}"
         yield from _wrap(f"{carrier}: {what}, {text}")
 
 

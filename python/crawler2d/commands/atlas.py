@@ -64,7 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     parser.add_argument("folder", type=Path, help="a folder of repositories")
     parser.add_argument("--html", type=Path, default=_PAGE, help=f"the page (default: {_PAGE})")
-    samples = f"of what is not known of each robot (default: {_SAMPLES})"
+    samples = f"draws of the uncertain parameters of each robot (default: {_SAMPLES})"
     parser.add_argument("--samples", type=int, default=_SAMPLES, help=samples)
     parser.add_argument("--threads", type=int, help="default: all cores")
 

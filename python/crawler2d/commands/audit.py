@@ -47,8 +47,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="print plain data; progress goes to standard error"
     )
-    samples = f"most samples of the unknowns (default: {SAMPLES}, with --quick {QUICK}; fewer than"
-    samples += f" {least_samples()} cannot show that it does not seize)"
+    samples = f"at most so many draws of the unknowns (default: {SAMPLES}, with --quick {QUICK};"
+    samples += f" fewer than {least_samples()} cannot show that it does not seize)"
     parser.add_argument("--samples", type=int, help=samples)
     repeats = f"runs of each sample (default: {REPEATS})"
     parser.add_argument("--repeats", type=int, default=REPEATS, help=repeats)

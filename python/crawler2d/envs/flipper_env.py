@@ -45,8 +45,8 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
 
     An action holds the speed of the tracks, as a share of the scenario's `drive.speed`, and of
     those flippers that there are, the front ones first, a rate as a share of their `rate_limit` or
-    an angle as a share of half a turn: numbers from -1 to 1, shape (1 to 3,). What is beyond is
-    taken as the limit. The motors follow within their own limits.
+    an angle as a share of half a turn: numbers from -1 to 1, shape (1 to 3,). Larger ones
+    are clipped. The motors follow within their own limits.
 
     An observation holds pitch [rad], its rate [rad/s], the speed of the tracks [m/s], and of the
     flippers that there are the angles [rad] and the torques [N m], both sides together. A

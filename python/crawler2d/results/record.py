@@ -101,7 +101,7 @@ class Record:
         >>> import crawler2d as c2d
         >>> robot = c2d.robots.engineer(flippers=None)
         >>> print(c2d.simulate(robot, c2d.terrains.step(0.05), duration=1.0).reason)
-        timed out after 1.00 s on its way, at 99 % of the commanded speed
+        timed out after 1.00 s, still driving at 99 % of the commanded speed
         """
         if self.error is not None:
             return str(self.error)
@@ -115,7 +115,7 @@ class Record:
                 text = str(tip_over or f"tipped over {direction} {after}")
             case Outcome.TIMED_OUT:
                 percent = 100 * metrics["progress"]
-                text = f"timed out {after} on its way, at {percent:.0f} % of the commanded speed"
+                text = f"timed out {after}, still driving at {percent:.0f} % of the commanded speed"
             case Outcome.LEFT_TERRAIN:
                 text = (
                     f"left the terrain {after}, at x = {metrics['final_x']:.3f} m: an end axle was"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, NamedTuple, Unpack
 
 import numpy as np
 
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.figure_dataset import FigureDataset
 
 __all__ = ["max_gap", "max_obstacle", "max_slope", "success"]
+
+_NONE = "none up to here"
+"""The limit of what clears all that was tried."""
 
 
 @takes_keywords
@@ -70,6 +73,8 @@ def max_obstacle(
         - `gaps`: how many lower heights have a rate below one half;
         - `limit`: how most runs end on the next height; "none up to here" without one.
 
+        The attribute `summary` says it in words.
+
     Raises
     ------
     ScenarioError
@@ -85,6 +90,9 @@ def max_obstacle(
     ... )
     >>> found["highest"].values.tolist()
     [0.06, 0.03]
+    >>> print(found.attrs["summary"])
+    belt: height up to 0.06 m, the greatest tried
+    skids: height up to 0.03 m, then mostly stalled
     """
     check_study(scenario)
     radius = scenario.robot.outline.front_radius
@@ -178,7 +186,8 @@ def _find_greatest(
         for begin in range(0, len(tallies), count)
         for sample in range(len(tallies[begin]))
     ]
-    columns = zip(*(_limits(row, tried) for row in rows), strict=True)
+    limits = [_limits(row, tried) for row in rows]
+    columns = zip(*limits, strict=True)
     dims = tuple(str(dim) for dim in table["rate"].dims if dim != name)
     shape = [table.sizes[dim] for dim in dims]
     units = field_attributes([path]).get("units", "1")
@@ -188,16 +197,44 @@ def _find_greatest(
         "gaps": {"units": "1", "long_name": f"lower {name}s with a rate below 0.5"},
         "limit": {"long_name": "how most runs end on the next"},
     }
+    samples = len(limits) // len(fields)
+    lines = [
+        f"{label}: {_in_words(limits[k * samples : (k + 1) * samples], name, units)}"
+        for k, label in enumerate(fields)
+    ]
     return table.assign(
         {
             key: (dims, np.reshape(column, shape), attributes[key])
             for key, column in zip(attributes, columns, strict=True)
         }
-    )
+    ).assign_attrs(summary="\n".join(lines))
 
 
-def _limits(row: Sequence[Tally], values: Sequence[float]) -> tuple[float, float, int, str]:
-    """Return the greatest value that is cleared, that certainly is, gaps below, and the limit."""
+def _in_words(limits: Sequence[_Limits], name: str, units: str) -> str:
+    """Say what a model clears, over all samples of the unknowns."""
+    greatest = sorted({each.highest for each in limits if not math.isnan(each.highest)})
+    if not greatest:
+        text = f"no {name} that was tried"
+    else:
+        ends = dict.fromkeys((f"{greatest[0]:g}", f"{greatest[-1]:g}"))
+        text = f"{name} up to {' to '.join(ends)} {units}"
+    if any(each.gaps for each in limits):
+        text += ", but not every lower one"
+    ((limit, _),) = Counter(each.limit for each in limits).most_common(1)
+    after = "the greatest tried" if limit == _NONE else f"then mostly {limit.replace('_', ' ')}"
+    return f"{text}, {after}"
+
+
+class _Limits(NamedTuple):
+    """What one model clears, see `max_obstacle`."""
+
+    highest: float
+    certain: float
+    gaps: int
+    limit: str
+
+
+def _limits(row: Sequence[Tally], values: Sequence[float]) -> _Limits:
     intervals = [tally.interval for tally in row]
     cleared = [v for v, each in zip(values, intervals, strict=True) if each.rate >= 0.5]
     certain = [v for v, each in zip(values, intervals, strict=True) if each.low > 0.5]
@@ -205,7 +242,7 @@ def _limits(row: Sequence[Tally], values: Sequence[float]) -> tuple[float, float
     gaps = sum(value < highest for value in values) - sum(value < highest for value in cleared)
     beyond = [t for t, value in zip(row, values, strict=True) if not value <= highest]
     limit = beyond[0].commonest_failure if beyond else ""
-    return highest, max(certain, default=math.nan), gaps, limit or "none up to here"
+    return _Limits(highest, max(certain, default=math.nan), gaps, limit or _NONE)
 
 
 @takes_keywords
@@ -242,7 +279,7 @@ def success(
     Raises
     ------
     ScenarioError
-        If a terrain is none, or an argument breaks a rule.
+        If `terrains` has something else in it, or an argument breaks a rule.
 
     Examples
     --------

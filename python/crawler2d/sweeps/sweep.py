@@ -139,7 +139,7 @@ def sweep(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     StoreError
-        If the store is none, is damaged, is written by another process, or cannot grow. What it
+        If the file is no store, is damaged, is written by another process, or cannot grow. What it
         holds is kept, and `runs` of the error has what was simulated since.
     InternalError
         If the executor takes no more tasks, or one of its workers has another build of crawler2d,

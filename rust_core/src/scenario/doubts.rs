@@ -71,21 +71,26 @@ impl Scenario {
         self.terrain
             .add_doubts("terrain", self.robot.length(), &mut doubts);
         self.add_doubts_of_drive(to_goal, &mut doubts);
-        self.add_doubts_of_goal(end, &mut doubts);
+        self.add_doubts_of_goal(to_goal, end, &mut doubts);
         let most = (30.0, "m/s^2");
         doubts.at_most("gravity", self.gravity, most, "more than on any planet");
         self.add_doubts_of_softness(&mut doubts);
         doubts.0
     }
 
-    /// Doubts a goal that no robot clears: it must be all past it while both end axles are over the ground.
-    fn add_doubts_of_goal(&self, end: f64, doubts: &mut Doubts) {
+    /// Doubts a goal that no robot clears, as it must be all past it while both end axles are over the ground, and one that
+    /// it is past from the start.
+    fn add_doubts_of_goal(&self, to_goal: f64, end: f64, doubts: &mut Doubts) {
         let outline = &self.robot.outline;
         let last = end - outline.axle_distance() - outline.rear_radius();
         if let Some(goal) = self.goal.filter(|goal| *goal > last) {
             let reason = format!(
                 "cannot be cleared: beyond {last:.3} m the robot leaves the ground, which ends at {end:.3} m"
             );
+            doubts.add("goal", goal, reason);
+        }
+        if let Some(goal) = self.goal.filter(|_| to_goal <= 0.0) {
+            let reason = "is behind the robot at its start, which clears without a step";
             doubts.add("goal", goal, reason);
         }
     }
