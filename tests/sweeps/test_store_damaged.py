@@ -103,7 +103,7 @@ DAMAGES: list[Callable[[Path, random.Random], None]] = [
 ]
 
 
-@pytest.mark.parametrize("repeats", [8, pytest.param(250, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("repeats", [8, pytest.param(2500, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_damaged_store_is_refused_or_read_as_it_was(
     store: Path,
