@@ -9,7 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.patching.patch import patch_file
 from crawler2d.reading.loading import _scale_lengths
-from tests.reading.carts import FILES, ROBOTS, quietly
+from tests.reading.carts import FILES, ROBOTS, pair, quietly, read, urdf
 
 
 @pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "absolem.sdf", "marv.sdf"])
@@ -113,3 +113,8 @@ def test_a_scale_that_is_none_is_refused(scale: object) -> None:
 def test_mjcf_is_not_scale_lengths() -> None:
     with pytest.raises(c2d.ScenarioError, match="must be 1 for MJCF"):
         quietly(FILES / "cart.xml", scale=0.1)
+
+
+def test_a_file_in_millimetres_is_refused_with_the_scale_that_corrects_it(tmp_path: Path) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"scale=0\.001 would correct that"):
+        read(tmp_path, urdf(pair("front", 200.0), pair("rear", -200.0)))

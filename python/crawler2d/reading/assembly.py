@@ -42,6 +42,7 @@ from crawler2d.reading.wheels import Runner, RunningGear
 __all__ = ["Assembly", "Silhouette", "assemble", "silhouettes"]
 
 _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorter.
+_LONGEST = 100.0  # [m] Axle distance that a robot can have.
 _SHOWN = 4  # names of links in a doubt
 _LEAST_MOVING = 0.001  # [kg] The least that a robot can have.
 _MOVING_FRACTION = 0.01  # of the mass, for a surface that moves without mass in its file
@@ -437,9 +438,10 @@ def _outline_of(log: ReadLog, base: Base, bent: list[Pair]) -> TrackOutline:
     whole = length + outline.rear_radius + outline.front_radius
     if whole > _LARGEST:
         power = math.ceil(math.log10(whole / _LARGEST))
-        reason = (
-            f"is usually at most {_LARGEST:g} m with the wheels: is the file in metres?"
-            f" scale={10.0**-power:g} would correct that"
-        )
-        log.doubt("robot.outline.axle_distance", length, reason)
+        hint = f"is the file in metres? scale={10.0**-power:g} would correct that"
+        path = "robot.outline.axle_distance"
+        if length > _LONGEST:
+            raise ScenarioError(path, length, f"must be <= {_LONGEST:g} m: {hint}")
+        reason = f"is usually at most {_LARGEST:g} m with the wheels: {hint}"
+        log.doubt(path, length, reason)
     return outline
