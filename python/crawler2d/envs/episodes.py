@@ -133,7 +133,8 @@ class Episodes:
             raise ScenarioError("action", actions, "must be numbers") from None
         shape = (len(self._many), 1 + len(self._task.ends))
         if array.shape != shape:
-            rule = f"must be {shape[1]} numbers for each of {shape[0]} robots"
+            each = f" for each of {shape[0]} robots" if shape[0] > 1 else ""
+            rule = f"must be {shape[1]} numbers{each}"
             raise ScenarioError("action", f"shape {array.shape}", rule)
         if not np.isfinite(array).all():
             raise ScenarioError("action", array[~np.isfinite(array)][0], "must be finite")
