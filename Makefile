@@ -37,7 +37,7 @@ CARGO_TEST := cargo test --release --package crawler2d-core --package crawler2d-
 UNIT_TESTS := --tests --config profile.release.package.crawler2d-core.codegen-units=16
 test-rust: | tools
 	$(CARGO_TEST) --test '*'
-	$(CARGO_TEST) --doc
+	MAKEFLAGS= $(CARGO_TEST) --doc
 	$(CARGO_TEST) $(UNIT_TESTS)
 # In the order of `testpaths`: sorted by their number of tests, files of few long ones would come last, on one core.
 test-python: $(VENV)/.built
