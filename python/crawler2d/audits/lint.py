@@ -364,7 +364,7 @@ def _massless(reading: Reading) -> Iterator[_Break]:
         names = list_names([link.name for link in found])
         what = (
             f"{len(found)} wheels have no mass ({names}): is an <inertial> missing? Here they weigh"
-            " nothing; engines leave such a link out, or give it a mass of their own"
+            " nothing"
         )
         yield _Break(what, lines([link.at for link in found]))
 

@@ -219,7 +219,7 @@ def conclusion(audit: AuditRecord) -> list[str]:
         if each.word != "seizes" and each.clears_less
     ]
     if behind:
-        text = "For other reasons than seizing it clears less often than the belt"
+        text = "It clears less often than the belt where it was not found to seize"
         sentences.append(f"{text}: {', '.join(behind)}.")
     unsure = [each.obstacle for each in audit.verdicts if each.word == "not certain"]
     if unsure:
