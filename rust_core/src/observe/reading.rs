@@ -35,6 +35,23 @@ impl Reading {
     }
 }
 
+#[cfg(test)]
+impl Reading {
+    /// That of a robot at rest.
+    pub(super) fn at_rest(time: f64, position: Vector) -> Self {
+        Self {
+            time,
+            position,
+            velocity: Vector::ZERO,
+            chassis_angle: 0.0,
+            angular_velocity: 0.0,
+            commanded_speed: 0.0,
+            track_speed: 0.0,
+            track_position: 0.0,
+        }
+    }
+}
+
 /// Sums over the checks of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Shaking {

@@ -7,16 +7,7 @@ use super::*;
 fn signals(steps: &[([f64; 2], f64, [f64; 2])]) -> Signals {
     let mut signals = Signals::default();
     for (k, (place, force, point)) in steps.iter().enumerate() {
-        let now = Reading {
-            time: 0.25 * (k + 1) as f64,
-            position: Vector::from(*place),
-            velocity: Vector::ZERO,
-            chassis_angle: 0.0,
-            angular_velocity: 0.0,
-            commanded_speed: 0.0,
-            track_speed: 0.0,
-            track_position: 0.0,
-        };
+        let now = Reading::at_rest(0.25 * (k + 1) as f64, Vector::from(*place));
         let contact = Contact {
             normal_force: *force,
             ..Contact::new(0, (0, -1), (Vector::from(*point), Vector::Y), 0.0)

@@ -69,16 +69,7 @@ impl Watched {
         let model = Model::on(&scenario.robot, &ground).expect("it can be built");
         Self {
             monitor: Monitor::new(scenario, &ground, &model),
-            now: Reading {
-                time: 0.0,
-                position: Vector::new(-1.0, RADIUS),
-                velocity: Vector::ZERO,
-                chassis_angle: 0.0,
-                angular_velocity: 0.0,
-                commanded_speed: 0.0,
-                track_speed: 0.0,
-                track_position: 0.0,
-            },
+            now: Reading::at_rest(0.0, Vector::new(-1.0, RADIUS)),
             steps: 0,
             command: scenario.drive.speed,
             loaded: Vec::new(),

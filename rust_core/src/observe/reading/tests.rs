@@ -8,14 +8,9 @@ use crate::geometry::Vector;
 
 fn reading(time: f64, vertical_speed: f64, angular_velocity: f64) -> Reading {
     Reading {
-        time,
-        position: Vector::ZERO,
         velocity: Vector::new(0.3, vertical_speed),
-        chassis_angle: 0.0,
         angular_velocity,
-        commanded_speed: 0.0,
-        track_speed: 0.0,
-        track_position: 0.0,
+        ..Reading::at_rest(time, Vector::ZERO)
     }
 }
 
