@@ -22,8 +22,10 @@ pub(crate) struct Simulation {
     /// What it was asked to do; held by the thread that advances: of two at once, one would count the other's steps as
     /// its own.
     turn: Turns<Log>,
-    /// Its steps take so long that Ctrl-C must not have to wait for one.
+    /// Its steps take so long that Ctrl-C must not have to wait for one, ...
     is_slow: AtomicBool,
+    /// ... or any may: thrown against the ground, a robot of many parts has thousands of contacts to solve for.
+    has_many_parts: bool,
     /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
     outcome: Mutex<Option<Outcome>>,
 }
@@ -194,11 +196,12 @@ impl Simulation {
 impl Simulation {
     fn of(simulation: crawler2d_core::Simulation, log: Log) -> Self {
         /// Number of points of the ground and of parts of the robot from which a step may take long.
-        const MANY: (usize, usize) = (10_000, 200);
+        const MANY: (usize, usize) = (10_000, 100);
 
         let (points, parts) = simulation.size();
         Self {
-            is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
+            is_slow: AtomicBool::new(points > MANY.0),
+            has_many_parts: parts > MANY.1,
             inner: Arc::new(Turns::new(Some(simulation))),
             turn: Turns::new(log),
             outcome: Mutex::new(None),
@@ -233,7 +236,7 @@ impl Simulation {
     /// Takes steps up to the time `end` [s]; Ctrl-C is answered meanwhile.
     fn advance_to(&self, py: Python<'_>, end: f64) -> PyResult<()> {
         let mut time = self.with(py, |simulation| Ok(simulation.time()))?;
-        while time < end && !self.is_slow.load(Ordering::Relaxed) {
+        while time < end && !self.has_many_parts && !self.is_slow.load(Ordering::Relaxed) {
             time = self.with(py, |simulation| self.steps_between_looks(simulation, end))?;
             py.check_signals()?;
         }

@@ -10,6 +10,7 @@ from tests.shared import SOAK
 
 SCENES = """
 import signal, threading, time
+from dataclasses import replace
 import numpy as np
 import crawler2d as c2d
 
@@ -27,6 +28,26 @@ chain = c2d.Scenario(engineer.with_track(c2d.SegmentalTrack(shoe_count=300)), ro
 field = c2d.Scenario(
     engineer, c2d.terrains.random_stepfield(1, posts=1000, edge_radius=0.001), duration=100.0
 )
+gear = c2d.GearWheel(grouser_count=7, grouser_height=4e-4, tip_thickness=4e-4, base_thickness=6e-4)
+gears = c2d.Scenario(
+    replace(
+        engineer.with_track(c2d.LineOfWheels(200, wheel=gear)),
+        drivetrain=replace(engineer.drivetrain, torque_sharing="wheel"),
+    ),
+    c2d.terrains.ramp(0.76, length=0.1),
+    solver=c2d.Solver(time_step=2.5e-4),
+    duration=100.0,
+)
+
+thrown = c2d.Simulation(gears)
+thrown.command(push=-1e6)
+thrown.advance(0.0125)  # it is at the edge, with thousands of contacts from now on
+snapshot = thrown.snapshot()
+
+def throw():
+    sim = c2d.Simulation.from_snapshot(snapshot)
+    for duration in (1e-6, 0.02):  # quick at first
+        sim.advance(duration)
 """
 
 DELAYS = (0.02, 0.1, 0.3) if SOAK else (0.02, 0.1)  # [s]
@@ -38,6 +59,7 @@ CALLS = {
     "trials": "c2d.simulate(chain, duration=1000.0, trials='all')",
     "advance": "sim.advance(100.0)",
     "advance a chain": "of_chain.advance(100.0)",
+    "advance what is thrown": "throw()",
     "build": "c2d.Simulation(wide)",
     "validate": "_core.canonical(text)",
     "geometry": "_core.geometry(text)",

@@ -30,11 +30,6 @@ impl Problem {
             inertia.action = self.system.tied(&inertia.row);
         }
         self.system.weigh(&self.masses, &self.inertias);
-        let of_contacts = self.contacts.iter().map(|c| &c.normal); // the tangent acts on the same
-        let of_bilaterals = self.bilaterals.iter().map(|b| &b.row);
-        let of_inertias = self.inertias.iter().map(|i| &i.row);
-        let rows = of_contacts.chain(of_bilaterals).chain(of_inertias);
-        self.system.note_touched(rows);
         let (system, rings) = (&self.system, &self.rings);
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
             contact.actions[0] = system.tied(&contact.normal);
@@ -124,23 +119,26 @@ impl Problem {
         if self.rings.is_empty() {
             self.solve_system(Impulses::Given);
         }
+        self.note_loads();
     }
 
-    /// [N s or N m s] The impulse of all constraints but motors, and of inertia along rows, on what is on the base.
-    pub(super) fn impulse_on(&self, at: usize) -> f64 {
-        if !self.system.is_touched(at) {
-            return 0.0;
-        }
+    /// Adds up what all constraints but motors, and inertia along rows, do to each body beside the base: once for all motors,
+    /// which may be hundreds.
+    pub(super) fn note_loads(&mut self) {
+        self.loads.fill(0.0);
         let of_contacts = self.contacts.iter().flat_map(|c| {
             let [normal, friction] = c.impulses();
             [(&c.normal, normal), (&c.tangent, friction)]
         });
         let of_bilaterals = self.bilaterals.iter().map(|b| (&b.row, b.impulse));
-        let acting = self.inertias.iter().filter(|i| i.row.lever(at) != 0.0);
-        let of_inertias = acting.map(|i| (&i.row, i.impulse(&self.unknowns)));
+        let of_inertias = self.inertias.iter();
+        let of_inertias = of_inertias.map(|i| (&i.row, i.impulse(&self.unknowns)));
         let all = of_contacts.chain(of_bilaterals).chain(of_inertias);
-        let loaded = all.filter(|(_, impulse)| *impulse != 0.0);
-        loaded.map(|(row, impulse)| row.lever(at) * impulse).sum()
+        for (row, impulse) in all.filter(|(_, impulse)| *impulse != 0.0) {
+            for (at, lever) in row.beside_base() {
+                self.loads[at] += lever * impulse;
+            }
+        }
     }
 }
 

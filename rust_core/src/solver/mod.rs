@@ -66,6 +66,8 @@ pub(crate) struct Problem {
     pub unknowns: Vec<f64>,
     /// The work done.
     pub effort: Effort,
+    /// [N s or N m s] What all constraints but motors have done to each body beside the base, and inertia along rows.
+    loads: Vec<f64>,
     system: System,
     /// The change to the last solution of the linear system.
     change: Vec<f64>,
@@ -101,6 +103,7 @@ impl Problem {
             free: nothing.clone(),
             unknowns: nothing.clone(),
             effort: Effort::default(),
+            loads: nothing.clone(),
             system: System::new(layout),
             change: nothing,
             layout,

@@ -233,7 +233,7 @@ impl Problem {
             Driven::Body(at) => {
                 // It has made the change of momentum that nothing else has.
                 let change = self.masses[at] * (self.unknowns[at] - self.free[at]);
-                (change - self.impulse_on(at)) / motor.lever
+                (change - self.loads[at]) / motor.lever
             }
             Driven::Ring(k) => self.rings[k].drive_impulse(&self.unknowns),
         }
@@ -258,6 +258,7 @@ impl Problem {
 
     /// Releases motors beyond their limit, and lets those past their speed hold again; returns whether any changed.
     pub(super) fn switch_motors(&mut self) -> bool {
+        self.note_loads();
         let mut switched = false;
         for k in 0..self.motors.len() {
             let next = self.next_of(&self.motors[k]);

@@ -200,6 +200,7 @@ impl Problem {
             contact.set_impulses(impulses);
         }
         self.follow_bilaterals();
+        self.note_loads();
     }
 
     /// Calls `each` with the conditions of the present states and their values, with a share of all relaxations.

@@ -173,12 +173,6 @@ impl Row {
         usize::from(self.count) > BASE + 1
     }
 
-    /// Its lever of an unknown that is neither of the base nor of a link; 0 if it has none.
-    pub(super) fn lever(&self, at: usize) -> f64 {
-        let own = self.beside_base().filter(|(entry, _)| *entry == at);
-        own.map(|(_, lever)| lever).sum()
-    }
-
     fn entries_from(&self, first: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
         let count = usize::from(self.count).min(WIDTH);
         (first..count).map(|i| (usize::from(self.at[i]), self.levers[i]))

@@ -30,8 +30,6 @@ pub(super) struct System {
     pub weights: Vec<f64>,
     /// [rad/s] Rate over the base of each that turns with it.
     held: Vec<Option<f64>>,
-    /// Whether anything but its motor acts on each.
-    touched: Vec<bool>,
 }
 
 impl System {
@@ -46,26 +44,12 @@ impl System {
             spins_meet: false,
             weights: vec![0.0; layout.link(0)],
             held: vec![None; layout.link(0)],
-            touched: vec![false; layout.link(0)],
         }
     }
 
     /// Has what a motor turns go with the base at a rate over it [rad/s], or lets go of it.
     pub(super) fn hold(&mut self, at: usize, rate: Option<f64>) {
         self.held[at] = rate;
-    }
-
-    /// Notes on which unknowns beside the base constraints act, which have these rows.
-    pub(super) fn note_touched<'a>(&mut self, rows: impl Iterator<Item = &'a Row>) {
-        self.touched.fill(false);
-        for (at, _) in rows.flat_map(Row::beside_base) {
-            self.touched[at] = true;
-        }
-    }
-
-    /// Whether one acts there.
-    pub(super) fn is_touched(&self, at: usize) -> bool {
-        self.touched[at]
     }
 
     /// A row with what is held as part of the base.

@@ -155,3 +155,34 @@ fn a_proportional_controller_of_no_speed_runs_a_drive_down_like_a_damper() {
     println!("{found:.9} m/s of {began:.6}, closed form {expected:.9}");
     assert_relative_eq!(found, expected, max_relative = 1e-6);
 }
+
+#[test]
+fn motors_with_a_curve_give_no_more_in_a_step_than_at_rest() {
+    let torque = 4.0;
+    let most = 2.0 * torque / BELT;
+    // Arms beside a chain have as much again.
+    let one_force = models().into_iter().filter(|(_, s)| !is_on_chain(s));
+    for (name, mut scenario) in one_force {
+        scenario.robot.drivetrain.max_torque = torque;
+        scenario.robot.drivetrain.torque_curve = Some(vec![[0.0, torque], [1.0, 0.0]]);
+        scenario.terrain = step(0.1, 0.8);
+        scenario.drive.speed = 0.5;
+        let mut simulation = Simulation::new(&checked(&scenario));
+        let (mut found, mut backwards): (f64, f64) = (0.0, 0.0);
+        while simulation.time() < 4.0 {
+            simulation.step().expect("the state stays finite");
+            found = found.max(simulation.drive_forces().map(f64::abs).sum());
+            let speeds = (0..simulation.drives()).map(|k| -simulation.drive_speed(k));
+            backwards = speeds.fold(backwards, f64::max);
+        }
+        println!(
+            "{name}: {:.4} of the force at rest, {backwards:.4} m/s back",
+            found / most
+        );
+        // Within a step the line goes on below a speed of 0.
+        assert!(
+            found < (1.001 + backwards) * most,
+            "{name}: {found} N of {most}"
+        );
+    }
+}
