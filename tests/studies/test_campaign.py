@@ -171,6 +171,26 @@ def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other(
     plt.close("all")
 
 
+def test_rates_over_many_pairs_of_numbers_are_a_map_with_what_is_open_hatched() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    heights, frictions = np.linspace(0.04, 0.16, 7), [0.3, 0.9]
+    over = {"terrain.height": heights, "terrain.friction": frictions}
+    found = c2d.rate(c2d.sweep(BASE, over, repeats=4, progress=False))
+    found["rate"][0, 0], found["low"][0, 0], found["high"][0, 0] = 0.4, 0.1, 0.8
+    ax = found.plot()
+    cells, hatched = ax.collections
+    assert (ax.get_ylabel(), ax.get_xlabel()) == ("height [mm]", "friction")
+    drawn: Any = cells.get_array()
+    np.testing.assert_array_equal(drawn.reshape(7, 2), found["rate"])
+    is_open = (found["low"] < 0.5) & (found["high"] > 0.5)
+    assert is_open[0, 0]
+    assert len(hatched.get_paths()) == is_open.sum()
+    # Of fewer lines each can be told from the others.
+    assert len(found.isel(height=slice(0, 6)).plot().get_lines()) == 6
+    plt.close("all")
+
+
 def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 

@@ -48,6 +48,9 @@ _BAR = 0.36
 _ASIDE = 3.5, 6.0
 """[point] From one line's interval to the next one's at the same place, and the same of bands."""
 
+_LINES = 6
+"""So many lines can be told apart; where there are more, a map is drawn if it can be."""
+
 _LARGEST, _LEAST = 8.0, 3.5
 """[point] Size of the first line's markers; those of later lines are smaller, down to the least."""
 
@@ -271,12 +274,16 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw rates over the last dimension of numbers, one line for each of the others.
 
     Bars are intervals; thick ones are the bands of the rates over the unknowns. Those of several
-    lines stand side by side about the value that was tried, which has a tick.
+    lines stand side by side about the value that was tried, which has a tick. Many lines over two
+    dimensions of numbers are a map instead.
     """
     rates = data["rate"]
     banded = "band_low" in data
     shown = data["band_median"] if banded else rates
-    along = _along(shown)
+    numbers = _numbers(shown)
+    along = numbers[-1]
+    if len(numbers) == 2 and shown.size > _LINES * shown.sizes[along] and shown.squeeze().ndim == 2:
+        return _plot_rate_map(data.squeeze(), numbers, ax)
     ax = axes_or_new(ax, (8.0, 5.0))
     factor, label = readable(shown[along])
     x = factor * shown[along].to_numpy().astype(float)
@@ -305,11 +312,30 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     return ax
 
 
-def _along(shown: xarray.DataArray) -> str:
+def _numbers(shown: xarray.DataArray) -> list[str]:
     numeric = [str(d) for d in shown.dims if d in shown.coords and shown[d].dtype.kind in "iuf"]
     if not numeric:
         raise ScenarioError("plot", "labels only", "must have a dimension of numbers")
-    return numeric[-1]
+    return numeric
+
+
+def _plot_rate_map(data: xarray.Dataset, dims: Sequence[str], ax: Axes | None) -> Axes:
+    """Draw rates over two dimensions of numbers: hatched where it is not certain which is more."""
+    banded = "band_low" in data
+    names = ("band_median", "band_low", "band_high") if banded else ("rate", "low", "high")
+    rates, low, high = (data[name].transpose(*dims).to_numpy() for name in names)
+    (scale_y, label_y), (scale_x, label_x) = (readable(data[dim]) for dim in dims)
+    at = scale_x * data[dims[1]].to_numpy(), scale_y * data[dims[0]].to_numpy()
+    ax = axes_or_new(ax, (8.0, 6.0))
+    scale: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 1.0, "shading": "nearest"}
+    drawn = ax.pcolormesh(*at, np.ma.masked_invalid(rates), **scale)
+    unsure = np.ma.masked_array(rates, ~((low < 0.5) & (high > 0.5)))
+    ax.pcolor(*at, unsure, hatch="////", edgecolor=BLACK, linewidth=0.0, **scale)
+    ax.figure.colorbar(drawn, ax=ax, label=str(data["rate"].attrs.get("long_name", "rate")))
+    ax.set(xlabel=label_x, ylabel=label_y)
+    what = "bands" if banded else "intervals"
+    _entitle(data, ax, populations(data.attrs, banded=banded), f"hatched: {what} include a half")
+    return ax
 
 
 def _lines(shown: xarray.DataArray, along: str) -> Iterator[tuple[str, dict[str, Any]]]:
