@@ -34,6 +34,14 @@ def test_trials_are_those_of_the_diagnosis_and_what_if_makes_one_of_them(seized:
         assert same(seized.what_if(name), trial)
 
 
+def test_a_trial_prints_what_was_changed_and_how_it_ended(seized: c2d.Run) -> None:
+    trials = {trial.name: trial for trial in seized.trials()}
+    assert str(trials["unchanged"]) == "Trial(unchanged: jammed)"
+    free = trials["closed track"]
+    assert str(free) == f"Trial(closed track: free after {free.time:.1f} s, then cleared)"
+    assert str(trials["belt, from the start"]) == "Trial(belt, from the start: tipped over)"
+
+
 def test_the_run_of_a_trial_shows_what_it_says(seized: c2d.Run) -> None:
     for trial in seized.trials():
         run = trial.run

@@ -15,6 +15,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.__main__ import main
+from crawler2d.audits.text import plain_of
 from crawler2d.commands import audit as command
 from tests.audits.seizing import instant_audit, seizing_file
 from tests.shared import NO_DASK
@@ -59,6 +60,20 @@ def test_lint_takes_no_runs_and_its_errors_are_the_exit_status(
     assert "error, size" in out
     assert status == 1
     assert not (repository / "out").exists()
+
+
+def test_lint_as_json_is_what_an_audit_has_without_its_runs(
+    repository: Path, capsys: Any, of_file: c2d.Audit
+) -> None:
+    status, out, err = run(capsys, "--lint", "--json", "models/one.urdf")
+    assert repository.is_dir()
+    assert status == 0
+    found = json.loads(out)
+    whole = plain_of(of_file)
+    assert [key for key in whole if key in found] == list(found)
+    assert {"robot", "sources", "lint", "pockets"} <= found.keys()
+    assert "verdicts" not in found
+    assert err.startswith("one: 4 round wheels in a line")
 
 
 def test_a_file_that_cannot_be_read_is_an_error_in_the_reports_of_all(
@@ -148,7 +163,7 @@ def test_with_json_the_baseline_is_told_beside_it(quick: Path, capsys: Any) -> N
         ["a.sdf", "b.sdf", "--json"],
         ["a.sdf", "b.sdf", "--html", "page.html"],
         ["a.sdf", "b.sdf", "--patch", "c.sdf"],
-        ["a.sdf", "--lint", "--json"],
+        ["a.sdf", "--lint", "--html", "page.html"],
         ["a.sdf", "--update-baseline"],
         ["a.sdf", "--baseline", "none.json"],
     ],
@@ -181,6 +196,7 @@ def yaml(name: str) -> Any:
 ON_ONE_STEP = f"""{NO_DASK}
 import crawler2d as c2d
 from crawler2d.__main__ import main
+from crawler2d.audits.text import plain_of
 from crawler2d.audits import audit, page
 page.chart_section = lambda *_: ""
 audit.standard_obstacles = lambda *_: {{"step of 75 mm": c2d.terrains.step(0.075)}}

@@ -162,30 +162,35 @@ def _wrap(text: str, indent: int = 2) -> list[str]:
     )
 
 
-def plain_of(audit: AuditRecord) -> dict[str, Any]:
+def plain_of(found: AuditRecord | LintResult) -> dict[str, Any]:
     """Return lint, pockets, verdicts and repairs; what is infinite or unknown is None."""
-    read = audit.reading
-    plain: dict[str, Any] = _plain(
-        {
-            "robot": audit.robot,
-            "file": None if read is None else read.tree.file,
-            "engine": None if read is None else read.engine,
-            "friction": None if read is None else read.friction,
-            "sources": None if read is None else dict(read.sources),
-            "vary": audit.table.attrs["vary"],
-            "unknown": audit.table.attrs["unknown"],
-            "runs": words.run_count(audit.table),
-            "belt": audit.belt.reason,
-            "lint": audit.lint,
-            "pockets": audit.pockets,
-            "obstacles": audit.obstacles,
-            "verdicts": audit.verdicts,
-            "assumed": [{**_fields(each), "holds": each.holds} for each in audit.assumed],
-            "repairs": audit.repairs,
-            "seizes": audit.seizes,
-        }
-    )
+    read = found.reading
+    of_model = {
+        "robot": found.robot,
+        "file": None if read is None else read.tree.file,
+        "engine": None if read is None else read.engine,
+        "friction": None if read is None else read.friction,
+        "sources": None if read is None else dict(read.sources),
+        "lint": found.lint,
+        "pockets": found.pockets,
+    }
+    of_runs = {} if isinstance(found, LintResult) else _of_runs(found)
+    plain: dict[str, Any] = _plain(of_model | of_runs)
     return plain
+
+
+def _of_runs(audit: AuditRecord) -> dict[str, Any]:
+    return {
+        "vary": audit.table.attrs["vary"],
+        "unknown": audit.table.attrs["unknown"],
+        "runs": words.run_count(audit.table),
+        "belt": audit.belt.reason,
+        "obstacles": audit.obstacles,
+        "verdicts": audit.verdicts,
+        "assumed": [{**_fields(each), "holds": each.holds} for each in audit.assumed],
+        "repairs": audit.repairs,
+        "seizes": audit.seizes,
+    }
 
 
 def _plain(value: Any) -> Any:

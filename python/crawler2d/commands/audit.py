@@ -165,8 +165,9 @@ def _check_options(options: argparse.Namespace) -> None:
     given = [name for name, value in ones.items() if value]
     if given and len(options.file) > 1:
         raise ScenarioError(given[0], f"{len(options.file)} files", "takes one file")
-    if given and options.lint:
-        raise ScenarioError(given[0], "--lint", "needs runs")
+    for name in given:
+        if options.lint and name != "--json":
+            raise ScenarioError(name, "--lint", "needs runs")
     if options.update_baseline and options.baseline is None:
         raise ScenarioError("--update-baseline", "none", "needs --baseline FILE, where to write")
     for name in ("html", "patch"):
@@ -191,6 +192,8 @@ def _audit_file(file: Path, options: argparse.Namespace, live: LivePrinter) -> A
     if options.lint:
         alone = lint_only(file, **_reading(options))
         live.print(alone.in_words)
+        if options.json:
+            print(json.dumps(plain_of(alone), indent=2, allow_nan=False))
         return alone
     found = audit(
         file,

@@ -91,6 +91,12 @@ class Trial(TrialResult, Generic[R]):
 
     simulate: Callable[[], R] = field(repr=False)
 
+    def __repr__(self) -> str:
+        """Say what was changed and how it ended; a run has a dozen of them."""
+        end = "jammed" if self.jammed else str(self.outcome).replace("_", " ")
+        how = f"free after {self.time:.1f} s, then {end}" if self.freed else end
+        return f"Trial({self.name}: {how})"
+
     @classmethod
     def of(cls, result: TrialResult, simulate: Callable[[], R]) -> Trial[R]:
         """Add a function that simulates the run."""
