@@ -3,7 +3,8 @@
 
 use std::collections::HashSet;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use crawler2d_core::{
     Cancel, Doubt, Error, FlipperCommand, LimitError, ValidScenario, check_rounding,
@@ -152,6 +153,50 @@ pub(crate) fn run_interruptible<T: Send + 'static>(
         }
     })?;
     result.map_err(to_python)
+}
+
+/// Ctrl-C in calls of the core on the thread of Python: without a thread of their own, short ones take half the time.
+pub(crate) struct Looks {
+    /// What the core asks between any two steps.
+    pub cancel: Cancel,
+    raised: Arc<Mutex<Option<PyErr>>>,
+}
+
+impl Looks {
+    pub(crate) fn new() -> Self {
+        /// Time between two checks.
+        const PAUSE: Duration = Duration::from_millis(20);
+
+        let raised = Arc::new(Mutex::new(None));
+        let found = Arc::clone(&raised);
+        let last = Mutex::new(Instant::now());
+        let cancel = Cancel::by(move || {
+            let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+            if last.elapsed() < PAUSE {
+                return false;
+            }
+            *last = Instant::now();
+            #[allow(clippy::redundant_closure_for_method_calls)]
+            // the closure's lifetime is not general enough
+            let raised = Python::attach(|py| py.check_signals()).err();
+            let is_raised = raised.is_some();
+            *found.lock().unwrap_or_else(PoisonError::into_inner) = raised;
+            is_raised
+        });
+        Self { cancel, raised }
+    }
+
+    /// The result of such a call, or what a signal has raised in it.
+    pub(crate) fn answered<T>(self, result: PyResult<T>) -> PyResult<T> {
+        let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
+        raised.take().map_or(result, Err)
+    }
+}
+
+/// Whether a step may take long, by the number of points of the ground and of parts of the robot: thrown against the
+/// ground, a robot of many parts has thousands of contacts to solve for.
+pub(crate) fn may_be_slow((points, parts): (usize, usize)) -> bool {
+    points > 10_000 || parts > 100
 }
 
 /// Builds what a text describes, in a thread of its own if that may take long.

@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{ByHand, ContactTable, Error, Log, Outcome, ValidScenario};
+use crawler2d_core::{ByHand, Cancel, ContactTable, Error, Log, Outcome, ValidScenario};
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-use crate::calls::{build_interruptible, run_interruptible};
+use crate::calls::{Looks, build_interruptible, may_be_slow, run_interruptible};
 use crate::turns::{Turn, Turns};
 use crate::{calls, convert};
 
@@ -24,8 +24,8 @@ pub(crate) struct Simulation {
     turn: Turns<Log>,
     /// Its steps take so long that Ctrl-C must not have to wait for one, ...
     is_slow: AtomicBool,
-    /// ... or any may: thrown against the ground, a robot of many parts has thousands of contacts to solve for.
-    has_many_parts: bool,
+    /// ... or may come to.
+    may_be_slow: bool,
     /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
     outcome: Mutex<Option<Outcome>>,
 }
@@ -42,8 +42,6 @@ impl Contacts {
     }
 }
 
-/// Time between two checks for Ctrl-C.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 /// A step that takes longer is too slow to let Ctrl-C wait for it.
 const SLOW: Duration = Duration::from_millis(20);
 
@@ -195,13 +193,9 @@ impl Simulation {
 
 impl Simulation {
     fn of(simulation: crawler2d_core::Simulation, log: Log) -> Self {
-        /// Number of points of the ground and of parts of the robot from which a step may take long.
-        const MANY: (usize, usize) = (10_000, 100);
-
-        let (points, parts) = simulation.size();
         Self {
-            is_slow: AtomicBool::new(points > MANY.0),
-            has_many_parts: parts > MANY.1,
+            is_slow: AtomicBool::new(false),
+            may_be_slow: may_be_slow(simulation.size()),
             inner: Arc::new(Turns::new(Some(simulation))),
             turn: Turns::new(log),
             outcome: Mutex::new(None),
@@ -235,47 +229,23 @@ impl Simulation {
 
     /// Takes steps up to the time `end` [s]; Ctrl-C is answered meanwhile.
     fn advance_to(&self, py: Python<'_>, end: f64) -> PyResult<()> {
-        let mut time = self.with(py, |simulation| Ok(simulation.time()))?;
-        while time < end && !self.has_many_parts && !self.is_slow.load(Ordering::Relaxed) {
-            time = self.with(py, |simulation| self.steps_between_looks(simulation, end))?;
-            py.check_signals()?;
-        }
-        if time >= end {
-            return Ok(());
+        if !self.may_be_slow && !self.is_slow.load(Ordering::Relaxed) {
+            let looks = Looks::new();
+            let cancel = looks.cancel.clone();
+            let steps = self.with(py, |simulation| take_steps(simulation, end, SLOW, &cancel));
+            if looks.answered(steps)? <= SLOW {
+                return Ok(());
+            }
         }
         let inner = Arc::clone(&self.inner);
         let slowest = run_interruptible(py, move |cancel| {
             call(&inner, |simulation| {
-                let mut slowest = Duration::ZERO;
-                while simulation.time() < end {
-                    let begin = Instant::now();
-                    simulation.step_until(end)?;
-                    slowest = slowest.max(begin.elapsed());
-                    if cancel.is_asked() {
-                        break;
-                    }
-                }
-                Ok(slowest)
+                take_steps(simulation, end, Duration::MAX, cancel)
             })
         })?;
         // Other load on the machine may have made it look slow.
         self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
         Ok(())
-    }
-
-    /// Takes steps up to the time `end` [s], and no more than fit between two checks for Ctrl-C; returns the time.
-    fn steps_between_looks(
-        &self,
-        simulation: &mut crawler2d_core::Simulation,
-        end: f64,
-    ) -> Result<f64, Error> {
-        let begin = Instant::now();
-        while simulation.time() < end && begin.elapsed() < BETWEEN_LOOKS {
-            simulation.step_until(end)?;
-        }
-        self.is_slow
-            .store(begin.elapsed() > BETWEEN_LOOKS + SLOW, Ordering::Relaxed);
-        Ok(simulation.time())
     }
 
     /// Calls the core detached from the interpreter, one thread at a time.
@@ -286,6 +256,25 @@ impl Simulation {
     ) -> PyResult<T> {
         self.inner.with(py, |inner| changed(inner, change))
     }
+}
+
+/// Takes steps up to the time `end` [s], or until one takes longer than `most`; returns how long the slowest took.
+fn take_steps(
+    simulation: &mut crawler2d_core::Simulation,
+    end: f64,
+    most: Duration,
+    cancel: &Cancel,
+) -> Result<Duration, Error> {
+    let mut slowest = Duration::ZERO;
+    let mut begin = Instant::now();
+    while simulation.time() < end && slowest <= most {
+        cancel.check()?;
+        simulation.step_until(end)?;
+        let now = Instant::now();
+        slowest = slowest.max(now - begin);
+        begin = now;
+    }
+    Ok(slowest)
 }
 
 /// Calls the core with the simulation once it is this thread's turn, which Python does not know.

@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyA
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::calls::{self, run_interruptible};
+use crate::calls::{self, Looks, may_be_slow, run_interruptible};
 use crate::classes::PreparedScenario;
 use crate::convert;
 use crate::turns::Turns;
@@ -78,6 +78,17 @@ impl Worlds {
         duration: f64,
         threads: usize,
     ) -> PyResult<()> {
+        if let [one] = which[..]
+            && !self
+                .0
+                .with(py, |worlds| Ok(may_be_slow(worlds.size(one))))?
+        {
+            let looks = Looks::new();
+            let cancel = looks.cancel.clone();
+            let advance =
+                |worlds: &mut crawler2d_core::Worlds| worlds.advance(&which, duration, 1, &cancel);
+            return looks.answered(self.0.with(py, advance));
+        }
         let inner = Arc::clone(&self.0);
         run_interruptible(py, move |cancel| {
             let worlds = inner.wait()?;

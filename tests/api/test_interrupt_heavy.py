@@ -60,6 +60,8 @@ CALLS = {
     "advance": "sim.advance(100.0)",
     "advance a chain": "of_chain.advance(100.0)",
     "advance what is thrown": "throw()",
+    "advance one without a thread": "alone.advance(1e4)",
+    "advance one of many": "among.advance(1e4)",
     "build": "c2d.Simulation(wide)",
     "validate": "_core.canonical(text)",
     "geometry": "_core.geometry(text)",
@@ -74,6 +76,8 @@ from crawler2d import _core
 
 text = wide.to_json()
 sim, of_chain = c2d.Simulation(dense), c2d.Simulation(chain)
+quick = c2d.Scenario(engineer, c2d.terrains.step(0.1))
+alone, among = c2d.Simulation(quick), c2d.Simulations([quick])
 asked = 0.0
 
 def interrupt(delay):

@@ -9,22 +9,38 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::error::Error;
 
 /// Shared by caller and computation; once asked, the computation ends with [`Error::Interrupted`].
-#[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+#[derive(Clone, Default)]
+pub struct Cancel {
+    asked: Arc<AtomicBool>,
+    /// What the computation calls before it looks.
+    look: Option<Arc<dyn Fn() -> bool + Send + Sync>>,
+}
 
 impl Cancel {
+    /// One for a computation on the caller's own thread, which asks by itself: it ends once `look` says so. That is called
+    /// between any two steps.
+    pub fn by(look: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self {
+            look: Some(Arc::new(look)),
+            ..Self::default()
+        }
+    }
+
     /// Asks to end.
     pub fn ask(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.asked.store(true, Ordering::Relaxed);
     }
 
     /// Whether it was asked to end.
     pub fn is_asked(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.asked.load(Ordering::Relaxed) || self.look.as_ref().is_some_and(|look| look())
     }
 
     /// Returns an error if it was asked to end.
-    pub(crate) fn check(&self) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn check(&self) -> Result<(), Error> {
         if self.is_asked() {
             return Err(Error::Interrupted);
         }

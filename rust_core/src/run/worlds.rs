@@ -145,6 +145,11 @@ impl Worlds {
         self.worlds.iter().flat_map(of).collect()
     }
 
+    /// Number of points of the ground of a world, and of parts of its robot.
+    pub fn size(&self, index: usize) -> (usize, usize) {
+        lock(&self.worlds[index]).simulation.size()
+    }
+
     /// The scenario of a world.
     pub fn scenario(&self, index: usize) -> ValidScenario {
         lock(&self.worlds[index]).scenario.clone()
