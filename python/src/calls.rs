@@ -3,7 +3,6 @@
 
 use std::collections::HashSet;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crawler2d_core::{
@@ -155,42 +154,13 @@ pub(crate) fn run_interruptible<T: Send + 'static>(
     result.map_err(to_python)
 }
 
-/// Ctrl-C in calls of the core on the thread of Python: without a thread of their own, short ones take half the time.
-pub(crate) struct Looks {
-    /// What the core asks between any two steps.
-    pub cancel: Cancel,
-    raised: Arc<Mutex<Option<PyErr>>>,
-}
+/// Ends a call of the core on the thread of Python when it is time to look for Ctrl-C: short ones take half the time without
+/// a thread of their own.
+pub(crate) fn until_a_look() -> Cancel {
+    /// Time between two looks.
+    const PAUSE: Duration = Duration::from_millis(20);
 
-impl Looks {
-    pub(crate) fn new() -> Self {
-        /// Time between two checks.
-        const PAUSE: Duration = Duration::from_millis(20);
-
-        let raised = Arc::new(Mutex::new(None));
-        let found = Arc::clone(&raised);
-        let last = Mutex::new(Instant::now());
-        let cancel = Cancel::by(move || {
-            let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
-            if last.elapsed() < PAUSE {
-                return false;
-            }
-            *last = Instant::now();
-            #[allow(clippy::redundant_closure_for_method_calls)]
-            // the closure's lifetime is not general enough
-            let raised = Python::attach(|py| py.check_signals()).err();
-            let is_raised = raised.is_some();
-            *found.lock().unwrap_or_else(PoisonError::into_inner) = raised;
-            is_raised
-        });
-        Self { cancel, raised }
-    }
-
-    /// The result of such a call, or what a signal has raised in it.
-    pub(crate) fn answered<T>(self, result: PyResult<T>) -> PyResult<T> {
-        let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
-        raised.take().map_or(result, Err)
-    }
+    Cancel::at(Instant::now() + PAUSE)
 }
 
 /// Whether a step may take long, by the number of points of the ground and of parts of the robot: thrown against the

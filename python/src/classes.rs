@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-use crate::calls::{Looks, build_interruptible, may_be_slow, run_interruptible};
+use crate::calls::{build_interruptible, may_be_slow, run_interruptible, until_a_look};
 use crate::turns::{Turn, Turns};
 use crate::{calls, convert};
 
@@ -229,19 +229,20 @@ impl Simulation {
 
     /// Takes steps up to the time `end` [s]; Ctrl-C is answered meanwhile.
     fn advance_to(&self, py: Python<'_>, end: f64) -> PyResult<()> {
-        if !self.may_be_slow && !self.is_slow.load(Ordering::Relaxed) {
-            let looks = Looks::new();
-            let cancel = looks.cancel.clone();
-            let steps = self.with(py, |simulation| take_steps(simulation, end, SLOW, &cancel));
-            if looks.answered(steps)? <= SLOW {
+        while !self.may_be_slow && !self.is_slow.load(Ordering::Relaxed) {
+            let (time, slowest) = self.with(py, |simulation| {
+                let slowest = take_steps(simulation, end, &until_a_look())?;
+                Ok((simulation.time(), slowest))
+            })?;
+            if time >= end {
                 return Ok(());
             }
+            py.check_signals()?;
+            self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
         }
         let inner = Arc::clone(&self.inner);
         let slowest = run_interruptible(py, move |cancel| {
-            call(&inner, |simulation| {
-                take_steps(simulation, end, Duration::MAX, cancel)
-            })
+            call(&inner, |simulation| take_steps(simulation, end, cancel))
         })?;
         // Other load on the machine may have made it look slow.
         self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
@@ -258,17 +259,15 @@ impl Simulation {
     }
 }
 
-/// Takes steps up to the time `end` [s], or until one takes longer than `most`; returns how long the slowest took.
+/// Takes steps up to the time `end` [s], or until `cancel` is asked; returns how long the slowest took.
 fn take_steps(
     simulation: &mut crawler2d_core::Simulation,
     end: f64,
-    most: Duration,
     cancel: &Cancel,
 ) -> Result<Duration, Error> {
     let mut slowest = Duration::ZERO;
     let mut begin = Instant::now();
-    while simulation.time() < end && slowest <= most {
-        cancel.check()?;
+    while simulation.time() < end && !cancel.is_asked() {
         simulation.step_until(end)?;
         let now = Instant::now();
         slowest = slowest.max(now - begin);

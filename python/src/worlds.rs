@@ -8,14 +8,18 @@ use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyA
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::calls::{self, Looks, may_be_slow, run_interruptible};
+use crate::calls::{self, may_be_slow, run_interruptible, until_a_look};
 use crate::classes::PreparedScenario;
 use crate::convert;
 use crate::turns::Turns;
 
 /// Simulations side by side; any thread may use them, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
-pub(crate) struct Worlds(Arc<Turns<crawler2d_core::Worlds>>);
+pub(crate) struct Worlds {
+    inner: Arc<Turns<crawler2d_core::Worlds>>,
+    /// Held by the thread that changes them.
+    turn: Turns<()>,
+}
 
 #[pymethods]
 impl Worlds {
@@ -23,7 +27,10 @@ impl Worlds {
     fn new(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<Self> {
         let scenarios = checked(&scenarios);
         let worlds = run_interruptible(py, move |_| Ok(crawler2d_core::Worlds::new(scenarios)))?;
-        Ok(Self(Arc::new(Turns::new(worlds))))
+        Ok(Self {
+            inner: Arc::new(Turns::new(worlds)),
+            turn: Turns::new(()),
+        })
     }
 
     /// Sets some out anew, with other scenarios if some are given.
@@ -33,8 +40,9 @@ impl Worlds {
         which: Vec<usize>,
         scenarios: Option<Vec<PyRef<'_, PreparedScenario>>>,
     ) -> PyResult<()> {
+        let _turn = self.turn.take(py)?;
         let mut scenarios = scenarios.map(|given| checked(&given).into_iter());
-        self.0.with(py, |worlds| {
+        self.inner.with(py, |worlds| {
             for index in which {
                 let next = scenarios.as_mut().and_then(Iterator::next);
                 worlds.reset(index, next);
@@ -51,8 +59,9 @@ impl Worlds {
         angles: PyReadonlyArray2<'_, f64>,
         rates: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
+        let _turn = self.turn.take(py)?;
         let (speeds, angles, rates) = (speeds.to_vec()?, angles.to_vec()?, rates.to_vec()?);
-        self.0.with(py, |worlds| {
+        self.inner.with(py, |worlds| {
             let of = |index: usize| {
                 let given = |column: &[f64], k: usize| Some(column[k]).filter(|x| !x.is_nan());
                 let flippers = [0, 1].map(|end| {
@@ -78,18 +87,24 @@ impl Worlds {
         duration: f64,
         threads: usize,
     ) -> PyResult<()> {
+        let _turn = self.turn.take(py)?;
         if let [one] = which[..]
             && !self
-                .0
+                .inner
                 .with(py, |worlds| Ok(may_be_slow(worlds.size(one))))?
         {
-            let looks = Looks::new();
-            let cancel = looks.cancel.clone();
-            let advance =
-                |worlds: &mut crawler2d_core::Worlds| worlds.advance(&which, duration, 1, &cancel);
-            return looks.answered(self.0.with(py, advance));
+            let end = self
+                .inner
+                .with(py, |worlds| Ok(worlds.set_out(one, duration)))?;
+            while !self
+                .inner
+                .with(py, |worlds| Ok(worlds.go_on(one, end, &until_a_look())))?
+            {
+                py.check_signals()?;
+            }
+            return Ok(());
         }
-        let inner = Arc::clone(&self.0);
+        let inner = Arc::clone(&self.inner);
         run_interruptible(py, move |cancel| {
             let worlds = inner.wait()?;
             worlds.advance(&which, duration, threads, cancel)
@@ -98,7 +113,7 @@ impl Worlds {
 
     /// The state of each as columns.
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let states = self.0.with(py, |worlds| Ok(worlds.states()))?;
+        let states = self.inner.with(py, |worlds| Ok(worlds.states()))?;
         columns(py, &states)
     }
 
@@ -109,7 +124,7 @@ impl Worlds {
         offsets: Vec<f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (count, flat) = self
-            .0
+            .inner
             .with(py, |worlds| Ok((worlds.count(), worlds.heights(&offsets))))?;
         rows(py, (count, offsets.len()), flat)
     }
@@ -124,7 +139,7 @@ impl Worlds {
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, "full", &trials)?;
         let (log, scenario) = self
-            .0
+            .inner
             .with(py, |worlds| Ok((worlds.log(index), worlds.scenario(index))))?;
         let run = run_interruptible(py, move |cancel| {
             log.replay(scenario.scenario(), record, cancel)
@@ -134,13 +149,13 @@ impl Worlds {
 
     /// The scenario of one.
     fn scenario(&self, py: Python<'_>, index: usize) -> PyResult<PreparedScenario> {
-        let checked = self.0.with(py, |worlds| Ok(worlds.scenario(index)))?;
+        let checked = self.inner.with(py, |worlds| Ok(worlds.scenario(index)))?;
         Ok(PreparedScenario { checked })
     }
 
     /// A snapshot of one.
     fn snapshot(&self, py: Python<'_>, index: usize) -> PyResult<Vec<u8>> {
-        self.0.with(py, |worlds| worlds.snapshot(index))
+        self.inner.with(py, |worlds| worlds.snapshot(index))
     }
 }
 

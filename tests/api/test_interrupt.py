@@ -5,8 +5,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from typing import Any
 
+import numpy as np
 import pytest
+
+import crawler2d as c2d
 
 Say = Callable[[str], None]
 
@@ -181,3 +185,24 @@ def test_environments_answer_ctrl_c_and_can_begin_anew(say: Say) -> None:
     say(f"4096 environments answered Ctrl-C after {1000 * latency:.0f} ms")
     assert latency < SLACK
     assert said == ["True"]
+
+
+@pytest.mark.parametrize("begun", [c2d.Simulation, lambda one: c2d.Simulations([one])])
+def test_the_handler_of_a_signal_may_look_at_what_it_interrupts(begun: Callable[..., Any]) -> None:
+    robot = c2d.robots.engineer(flippers=None)
+    scenario = c2d.Scenario(robot, c2d.terrains.flat(), solver=c2d.Solver(time_step=1e-3))
+    running = begun(scenario)
+    seen: list[float] = []
+
+    def look(*_: Any) -> None:
+        seen.append(float(np.max(running.state().time)))
+
+    before = signal.signal(signal.SIGALRM, look)
+    signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)
+    try:
+        while not seen:
+            running.advance(20.0)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert 0.0 < seen[0] <= np.max(running.state().time)

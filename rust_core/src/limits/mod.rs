@@ -5,23 +5,23 @@ pub(crate) mod memory;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use crate::error::Error;
 
 /// Shared by caller and computation; once asked, the computation ends with [`Error::Interrupted`].
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Cancel {
     asked: Arc<AtomicBool>,
-    /// What the computation calls before it looks.
-    look: Option<Arc<dyn Fn() -> bool + Send + Sync>>,
+    /// When it asks by itself.
+    deadline: Option<Instant>,
 }
 
 impl Cancel {
-    /// One for a computation on the caller's own thread, which asks by itself: it ends once `look` says so. That is called
-    /// between any two steps.
-    pub fn by(look: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+    /// One that asks by itself at an instant.
+    pub fn at(deadline: Instant) -> Self {
         Self {
-            look: Some(Arc::new(look)),
+            deadline: Some(deadline),
             ..Self::default()
         }
     }
@@ -33,14 +33,11 @@ impl Cancel {
 
     /// Whether it was asked to end.
     pub fn is_asked(&self) -> bool {
-        self.asked.load(Ordering::Relaxed) || self.look.as_ref().is_some_and(|look| look())
+        self.asked.load(Ordering::Relaxed) || self.deadline.is_some_and(|at| Instant::now() >= at)
     }
 
     /// Returns an error if it was asked to end.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`].
-    pub fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         if self.is_asked() {
             return Err(Error::Interrupted);
         }

@@ -106,7 +106,11 @@ impl Worlds {
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(place) = places.get(next.fetch_add(1, Ordering::Relaxed)) {
-                lock(&self.worlds[*place]).advance(duration, cancel)?;
+                let mut world = lock(&self.worlds[*place]);
+                let end = world.set_out(duration);
+                if !world.go_on(end, cancel) {
+                    return Err(Error::Interrupted);
+                }
             }
             Ok(())
         };
@@ -123,6 +127,16 @@ impl Worlds {
                 all.and(one.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
             })
         })
+    }
+
+    /// Has one set out for a duration \[s\]; returns the time at which it is to be at the end.
+    pub fn set_out(&self, place: usize, duration: f64) -> f64 {
+        lock(&self.worlds[place]).set_out(duration)
+    }
+
+    /// Has it go on to that time \[s\], or until `cancel` is asked; returns whether it will come no further.
+    pub fn go_on(&self, place: usize, end: f64, cancel: &Cancel) -> bool {
+        lock(&self.worlds[place]).go_on(end, cancel)
     }
 
     /// What is seen of each.
@@ -184,14 +198,21 @@ impl World {
         }
     }
 
-    /// Advances it, unless it cannot go on.
-    fn advance(&mut self, duration: f64, cancel: &Cancel) -> Result<(), Error> {
+    /// Notes an advance by a duration [s]; returns the time at its end.
+    fn set_out(&mut self, duration: f64) -> f64 {
+        let end = self.simulation.time() + duration;
+        if self.error.is_none() {
+            self.log.note_steps(end);
+        }
+        end
+    }
+
+    /// Takes steps up to a time [s], unless it cannot go on, or until `cancel` is asked; returns whether that is all.
+    fn go_on(&mut self, end: f64, cancel: &Cancel) -> bool {
         if self.error.is_some() {
-            return Ok(());
+            return true;
         }
         let simulation = &mut self.simulation;
-        let end = simulation.time() + duration;
-        self.log.note_steps(end);
         let all = || {
             while simulation.time() < end {
                 cancel.check()?;
@@ -202,13 +223,11 @@ impl World {
         let result = caught(all);
         self.log.has_reached(self.simulation.time());
         match result {
-            Err(Error::Interrupted) => Err(Error::Interrupted),
-            Err(error) => {
-                self.error = Some(error);
-                Ok(())
-            }
-            Ok(()) => Ok(()),
+            Err(Error::Interrupted) => return false,
+            Err(error) => self.error = Some(error),
+            Ok(()) => {}
         }
+        true
     }
 
     fn state(&self) -> WorldState {
