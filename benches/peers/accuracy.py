@@ -340,8 +340,8 @@ def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, An
     cases = {name: (load_engine(name), scene, setting) for name, setting in settings.items()}
     times = wall_times(cases, repeats)
     rows = []
-    for each, search in found.items():
-        row = {"scene": name, "engine": each, **search}
+    for each, result in found.items():
+        row = {"scene": name, "engine": each, **result}
         if each in times:
             row["per_second"] = times[each] / scene.duration
             row["setting"] = str(settings[each])

@@ -82,7 +82,7 @@ impl HullContact {
         let center = |arc: &Arc| pose.transform_point(arc.disc.center);
         let (mut low, mut high) = (Vector::INFINITY, Vector::NEG_INFINITY);
         for arc in &self.arcs {
-            let reach = Vector::splat(arc.disc.radius + prediction);
+            let reach = Vector::splat(arc.disc.radius + prediction.max(SHALLOW.value()));
             low = low.min(center(arc) - reach);
             high = high.max(center(arc) + reach);
         }
@@ -99,7 +99,7 @@ impl HullContact {
         for arc in &self.arcs {
             lane.touches_of_disc(&region, center(arc), arc.disc.radius, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
-                let is_real = touch.distance >= -SHALLOW.value()
+                let is_real = touch.distance >= -SHALLOW.value().min(prediction)
                     || lane.contains(center(arc) - touch.normal * arc.disc.radius);
                 let on_face = is_real && matches!(touch.on, On::Face(_));
                 let yields = || arc.disc.radius == 0.0 && tip_yields(lane, &arc.tip(pose), &touch);

@@ -15,6 +15,7 @@ use features::{Face, corners_of};
 use index::Index;
 use roof::{Chord, SAME_FACE};
 
+use super::hull::SHALLOW;
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::{Profile, facet_along};
 
@@ -105,7 +106,8 @@ impl Lane {
     }
 
     /// Finds everything in a region that a disc bears on with a gap below `prediction`; a corner of a part is a disc of
-    /// radius 0. Ground more than `depth` [m] above the centre did not get there by sinking in.
+    /// radius 0. Ground more than `depth` [m] above the centre did not get there by sinking in; soft contacts are looked for
+    /// down to `SHALLOW`.
     pub(super) fn touches_of_disc(
         &self,
         within: &Region,
@@ -114,7 +116,7 @@ impl Lane {
         (prediction, depth): (f64, f64),
         mut add: impl FnMut(Touch),
     ) {
-        let reach = radius + prediction;
+        let reach = radius + prediction.max(depth.min(SHALLOW.value()));
         let mut region = self
             .index
             .narrow(within, center.x - reach, center.x + reach);

@@ -112,9 +112,10 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
                 let x = draw.between(-0.05, 0.55);
                 let top = profile.height_under_disc(x, radius).max(-0.1);
                 let center = Vector::new(x, top + draw.between(-1e-3, 1.2 * prediction));
-                let reach = (prediction, draw.between(0.0, prediction));
+                let depth = draw.between(0.0, prediction.max(SHALLOW.value()));
+                let (reach, far) = ((prediction, depth), radius + prediction.max(depth));
                 let mut touches = Vec::new();
-                let ends = [-1.0, 1.0].map(|side| center.x + side * (radius + prediction));
+                let ends = [-1.0, 1.0].map(|side| center.x + side * far);
                 let region = lane.region(ends[0], ends[1]);
                 lane.touches_of_disc(&region, center, radius, reach, |t| touches.push(t));
                 let slow = touches_one_by_one(&lane, center, radius, reach);
@@ -125,7 +126,7 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
                         let face = &lane.faces[i];
                         let along = (center - face.begin).dot(face.along);
                         let nearest = face.begin + face.along * along.clamp(0.0, face.length);
-                        (nearest - center).length() < radius + prediction
+                        (nearest - center).length() < far
                     }
                 };
                 touches.retain(reaches);
@@ -141,6 +142,23 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
         }
     }
     println!("seed {SEED}: {poses} poses, {found} touches");
+}
+
+#[test]
+fn a_corner_that_is_pressed_into_a_wall_stays_found() {
+    let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.07], [1.0, 0.07]];
+    let (_, lane) = rounded(&points, 0.0);
+    // How far grousers of a chain look ahead at rest; 2 kN press one in by more.
+    let prediction = 2e-4;
+    for depth in [1e-5, 1.9e-4, 2.1e-4, 9e-4] {
+        let corner = Vector::new(depth, 0.06);
+        let mut depths = Vec::new();
+        let reach = (prediction, SHALLOW.value());
+        lane.touches_of_disc(&lane.region(-0.1, 0.1), corner, 0.0, reach, |touch| {
+            depths.push(-touch.distance);
+        });
+        assert_eq!(depths, [depth]);
+    }
 }
 
 #[test]
