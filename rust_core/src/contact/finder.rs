@@ -7,8 +7,8 @@
 
 use super::Contact;
 use super::gear::GearContact;
-use super::hull::{HullContact, SHALLOW};
-use super::lane::Lane;
+use super::hull::HullContact;
+use super::lane::{Lane, SHALLOW};
 use super::redundant::{thin_out, without_redundant};
 use super::reference::ReferenceContact;
 use crate::geometry::{Disc, Grouser, Pose};

@@ -9,14 +9,10 @@
 use std::f64::consts::{PI, TAU};
 
 use super::Contact;
-use super::lane::{Corner, Lane, On, Region, Stretch, Touch};
+use super::lane::{Corner, Lane, On, Region, SHALLOW, Stretch, Touch};
 use super::redundant::{NEARLY_PARALLEL, Tip, thin_out, tip_yields};
 use crate::geometry::{Disc, Envelope, Pose, Vector, cross, direction};
 use crate::robot::{Part, Shape};
-use crate::units::Metres;
-
-/// [m] Ground deeper inside than this did not get there by sinking in.
-pub(super) const SHALLOW: Metres = Metres(1e-3);
 
 /// A part that is the hull of discs or of points.
 pub(super) struct HullContact {

@@ -15,13 +15,15 @@ use features::{Face, corners_of};
 use index::Index;
 use roof::{Chord, SAME_FACE};
 
-use super::hull::SHALLOW;
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::{Profile, facet_along};
 
 use crate::units::Metres;
 pub(super) use features::{Corner, On, ROUNDING, Touch};
 pub(super) use index::{Region, Stretch};
+
+/// [m] Ground deeper inside than this did not get there by sinking in.
+pub(super) const SHALLOW: Metres = Metres(1e-3);
 
 /// Corners at either end of finely divided ground that are searched for one that bears.
 const NEAR_END: usize = 16;
