@@ -71,7 +71,8 @@ class Plane:
     ) -> pymunk.Body:
         """Add a body."""
         body = pymunk.Body(mass, inertia)
-        body.position = tuple(map(float, place))
+        x, y = map(float, place)
+        body.position = (x, y)
         body.angle = angle
         self.space.add(body)
         return body
