@@ -1,0 +1,69 @@
+"""Pages for all: what axe finds of the rules of WCAG 2.2 AA, and that the keyboard reaches every control."""
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page
+
+import crawler2d as c2d
+from crawler2d.commands.demo import demo_page, demo_runs
+from tests.audits.seizing import QUIET, SEIZING, STEP
+from tests.browser.seen import DRAWN, Open
+
+RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
+STEPS = 200
+"""Times that Tab is pressed, at most."""
+
+
+@pytest.fixture(scope="module")
+def pages() -> dict[str, str]:
+    runs = demo_runs()
+    found = c2d.audit(SEIZING, STEP, unknown={}, repeats=10, **QUIET)
+    return {"replay": runs[0].to_html(), "demo": demo_page(runs), "audit": found.to_html()}
+
+
+def violations(page: Page) -> list[str]:
+    """Run axe on a page with everything in it open."""
+    page.eval_on_selector_all("details", "all => all.forEach(each => each.open = true)")
+    page.evaluate(DRAWN)
+    found = Axe().run(page, options=RULES).response["violations"]
+    return [
+        f"{rule['id']}: {node['html'][:120]}: {node.get('failureSummary', '')}"
+        for rule in found
+        for node in rule["nodes"]
+    ]
+
+
+def reached(page: Page) -> list[str]:
+    """Press Tab until the focus has gone round; return what had it, in that order."""
+    found = []
+    for _ in range(STEPS):
+        page.keyboard.press("Tab")
+        here = page.evaluate(
+            """() => document.activeElement === document.body ? ""
+            : (document.activeElement.id || document.activeElement.outerHTML.slice(0, 100))"""
+        )
+        if not here:
+            return found
+        found.append(here)
+    raise AssertionError(f"the focus has not gone round after {STEPS} steps")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["replay", "demo", "audit"])
+def test_axe_finds_nothing(open_page: Open, pages: dict[str, str], name: str, scheme: str) -> None:
+    page = open_page(pages[name], color_scheme=scheme)
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("name", ["replay", "demo", "audit"])
+def test_the_keyboard_reaches_every_control(
+    open_page: Open, pages: dict[str, str], name: str
+) -> None:
+    page = open_page(pages[name])
+    controls = page.eval_on_selector_all(
+        "button, input, select, a[href], summary",
+        """all => all.filter(each => each.checkVisibility() && !each.disabled)
+        .map(each => each.id || each.outerHTML.slice(0, 100))""",
+    )
+    assert controls
+    assert set(controls) <= set(reached(page))
