@@ -46,6 +46,21 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
     "a barrier in centimetres": (over(c2d.terrains.barrier(5.0, 0.05)), "terrain.height", 5.0),
     "stairs in centimetres": (over(c2d.terrains.stairs(rise=18.0)), "terrain.rise", 18.0),
     "a trench in centimetres": (over(c2d.terrains.gap(8.0)), "terrain.width", 8.0),
+    "friction in percent": (over(c2d.terrains.step(0.05, friction=90.0)), "terrain.friction", 90.0),
+    "friction of one lane": (
+        over(c2d.terrains.lanes(c2d.terrains.step(0.03), c2d.terrains.step(0.03, friction=9.0))),
+        "terrain.right.friction",
+        9.0,
+    ),
+    "friction of one segment": (
+        over(
+            c2d.terrains.from_points(
+                [(-9.0, 0.0), (0.5, 0.0), (9.0, 0.0)], goal=1.0, segment_friction=[0.9, 90.0]
+            )
+        ),
+        "terrain.segment_friction[1]",
+        90.0,
+    ),
     "a pipe in centimetres": (over(c2d.terrains.half_round(5.0)), "terrain.radius", 5.0),
     "one lane of two": (over(LANES), "terrain.right.height", 5.0),
     "huge wheels": (on(line(0.5)), "robot.track.wheel_radius", 0.5),
@@ -243,6 +258,15 @@ def test_what_only_reads_and_writes_tells_no_doubt() -> None:
         ROBOT.with_track(line(0.5)).wheels()
 
     assert not doubts(read_and_write)
+
+
+def test_a_robot_too_large_for_the_ground_is_said_to_be_doubtful() -> None:
+    rule = r"terrain must reach under .* \(robot\.track\.wheel_radius = 90 is usually at most 0\.18"
+    with pytest.raises(c2d.ScenarioError, match=rule):
+        on(line(90.0)).validate()
+    points = c2d.terrains.from_points([(-9.0, 0.0), (0.0, 0.0), (9.0, 0.0)], goal=1.0)
+    with pytest.raises(c2d.ScenarioError, match=r"to -9\.0000 m, got x from -9 to 9 m$"):
+        replace(over(points), start=c2d.Start(approach=9.0)).validate()
 
 
 def test_a_doubt_that_is_made_an_error_comes_before_the_run() -> None:

@@ -67,8 +67,8 @@ EXTREMES = {
     "no friction": c2d.Scenario(
         c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05, friction=0.0)
     ),
-    "friction of five": c2d.Scenario(
-        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05, friction=5.0)
+    "friction of three": c2d.Scenario(
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05, friction=3.0)
     ),
     "on its nose": c2d.Scenario(
         c2d.robots.engineer(flippers=None), c2d.terrains.flat(), start=c2d.Start(angle=-1.5)

@@ -1,4 +1,4 @@
-"""Pages for all: what axe finds of the rules of WCAG 2.2 AA, and that the keyboard reaches every control."""
+"""Pages keep the rules of WCAG 2.2 AA that axe can see, and the keyboard reaches every control."""
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -35,7 +35,7 @@ def violations(page: Page) -> list[str]:
 
 def reached(page: Page) -> list[str]:
     """Press Tab until the focus has gone round; return what had it, in that order."""
-    found = []
+    found: list[str] = []
     for _ in range(STEPS):
         page.keyboard.press("Tab")
         here = page.evaluate(

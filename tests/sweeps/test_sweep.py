@@ -194,6 +194,7 @@ def test_a_sweep_over_nothing_repeats_the_one_scenario() -> None:
     assert refusal(BASE, {}, vary=vary).path == "cell[repeat=0].drive.speed"
 
 
+@pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 def test_the_largest_friction_is_swept_with_its_own_draws() -> None:
     slippery = BRIEF.replace({"terrain.friction": 100.0})
     found = quiet(slippery, {"drive.speed": [0.4, 1.39]}, repeats=40)["drawn_friction"]

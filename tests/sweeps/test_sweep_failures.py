@@ -83,6 +83,7 @@ def test_a_wrong_argument_is_refused_by_name(argument: str, value: Any, path: st
     assert refusal(BASE, {"terrain.height": [0.1]}, **{argument: value}).path == path
 
 
+@pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 def test_a_draw_that_breaks_a_rule_leaves_the_other_draws_alone() -> None:
     slippery = BRIEF.replace({"terrain.friction": 100.0})
     plain, found = quiet(BRIEF, {}, repeats=20), quiet(slippery, {}, repeats=20)

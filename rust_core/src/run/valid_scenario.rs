@@ -149,7 +149,8 @@ impl ValidScenario {
             (None, Some(twin)) if twin.ground.has_lanes_of(&ground) => Arc::clone(&twin.model),
             _ => Arc::new(Model::on(robot, &ground)?),
         };
-        let position = start_position(&scenario, &model, &ground)?;
+        let position =
+            start_position(&scenario, &model, &ground).map_err(|e| scenario.explained(e))?;
         let [rear, _] = end_discs(&robot.outline);
         let axle = position.x + turned_by(scenario.start.angle)(rear.center).x;
         let to_goal = ground.goal_of(&scenario) + rear.radius - axle;

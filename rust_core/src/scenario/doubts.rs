@@ -5,7 +5,10 @@
 use std::f64::consts::{PI, TAU};
 
 use super::fields::joined;
-use super::{CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, Terrain, Track};
+use super::{
+    CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, ScenarioError, Terrain,
+    Track,
+};
 
 /// Obstacles larger than this many robot lengths are doubtful; so is a goal this many times farther than a run gets.
 const FAR: f64 = 3.0;
@@ -14,6 +17,8 @@ const SUNK: f64 = 1e-3;
 /// [kg/m^3] Densities that no robot comes near.
 const AIR: f64 = 1.2;
 const GOLD: f64 = 19_300.0;
+/// Friction that no ground has: rubber on dry concrete has about 1.
+const MOST_FRICTION: f64 = 3.0;
 
 /// A doubt about a field; the scenario is accepted all the same.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +81,17 @@ impl Scenario {
         doubts.at_most("gravity", self.gravity, most, "more than on any planet");
         self.add_doubts_of_softness(&mut doubts);
         doubts.0
+    }
+
+    /// An error about where the robot starts, with the first doubt about the robot itself, which is the likely reason.
+    pub(crate) fn explained(&self, mut error: ScenarioError) -> ScenarioError {
+        let mut doubts = Doubts::default();
+        self.robot.add_doubts(&mut doubts);
+        if let Some(doubt) = doubts.0.first() {
+            let why = format!(" ({} = {} {})", doubt.path, doubt.value, doubt.reason);
+            error.rule.push_str(&why);
+        }
+        error
     }
 
     /// Doubts a goal that no robot clears, as it must be all past it while both end axles are over the ground, and one that
@@ -257,8 +273,29 @@ fn add_doubts_of_wheels(
 }
 
 impl Terrain {
-    /// Doubts obstacles that no robot of that length [m] could drive over.
+    /// Doubts friction that no ground has, and obstacles that no robot of that length [m] could drive over.
     fn add_doubts(&self, path: &str, length: f64, doubts: &mut Doubts) {
+        let mut friction = |name: &str, coefficient: f64| {
+            if coefficient > MOST_FRICTION {
+                let reason = format!(
+                    "is usually at most {MOST_FRICTION}, three times that of rubber on dry concrete"
+                );
+                doubts.add(joined(path, name), coefficient, reason);
+            }
+        };
+        if let Some(coefficient) = self.friction() {
+            friction("friction", coefficient);
+        }
+        if let Self::Points {
+            segment_friction: Some(of_segments),
+            ..
+        } = self
+        {
+            let mut segments = of_segments.iter().enumerate();
+            if let Some((i, most)) = segments.find(|(_, own)| **own > MOST_FRICTION) {
+                friction(&format!("segment_friction[{i}]"), *most);
+            }
+        }
         let mut size = |name: &str, value: f64| {
             let what = "three times the robot's length";
             doubts.at_most(joined(path, name), value, (FAR * length, "m"), what);

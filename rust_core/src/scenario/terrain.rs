@@ -264,6 +264,24 @@ impl Terrain {
         }
     }
 
+    /// The friction of its surface; lanes have one each.
+    pub(crate) fn friction(&self) -> Option<f64> {
+        let friction = match self {
+            Self::Flat { friction, .. } | Self::HalfRound { friction, .. } => friction,
+            Self::Step { surface, .. }
+            | Self::Ramp { surface, .. }
+            | Self::Barrier { surface, .. }
+            | Self::Ridge { surface, .. }
+            | Self::Gap { surface, .. }
+            | Self::Stairs { surface, .. }
+            | Self::DiagonalBarrier { surface, .. }
+            | Self::RandomStepfield(Stepfield { surface, .. })
+            | Self::Points { surface, .. } => &surface.friction,
+            Self::Lanes { .. } => return None,
+        };
+        Some(friction.coefficient)
+    }
+
     /// Multiplies the friction of all its lanes.
     pub(crate) fn scale_friction(&mut self, factor: f64) {
         match self {
