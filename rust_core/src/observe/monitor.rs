@@ -105,7 +105,10 @@ impl Monitor {
             self.observed.ended = self.ended(now, dt);
         }
         if now.time >= self.next_look() {
-            self.observed.looks += 1;
+            // The first step may be longer than the time between two: those within it are left out.
+            while now.time >= self.next_look() {
+                self.observed.looks += 1;
+            }
             self.observed.shaking.look(now);
             self.look_inside(now, running);
             self.look(now, command, window);
@@ -295,8 +298,7 @@ impl Monitor {
 
     /// [s] Duration of the longest stop from which the robot freed itself, 0 if there was none.
     pub(crate) fn time_to_free(&self) -> f64 {
-        let stops = self.observed.progress.stops.iter();
-        stops.fold(0.0, |longest, stop| longest.max(stop.end - stop.start))
+        self.observed.progress.time_to_free
     }
 
     /// The most loaded intrusion into the track.

@@ -124,6 +124,8 @@ pub(super) struct Progress {
     pub stop_since: Option<f64>,
     /// Stops that have ended.
     pub stops: Vec<Event>,
+    /// [s] Duration of the longest stop that ended because the robot moved on, 0 if there was none.
+    pub time_to_free: f64,
     /// Share of the commanded distance covered in the last window; 1 before the first window is over.
     pub share: f64,
 }
@@ -160,6 +162,7 @@ impl Default for Progress {
             falters: false,
             stop_since: None,
             stops: Vec::new(),
+            time_to_free: 0.0,
             share: 1.0,
         }
     }
@@ -178,6 +181,7 @@ impl Progress {
             && !(self.best_advance + self.best_angle).is_nan()
             && self.commanded.is_finite()
             && self.share.is_finite()
+            && self.time_to_free.is_finite()
             && self.stop_since.is_none_or(f64::is_finite)
             && self.stops.iter().all(|stop| stop.fits(parts, lanes))
     }
@@ -214,6 +218,7 @@ impl Progress {
             angle: self.best_angle,
             commanded: self.commanded,
         };
+        let is_anew = self.history.is_empty();
         self.history.push_back(here);
         // For slow commands the window may be longer than any run, and is then never complete.
         let span = (window / every).ceil() as usize;
@@ -227,14 +232,20 @@ impl Progress {
         let half = self.history.len() > span / 2;
         let recently = half.then(|| &self.history[self.history.len() - 1 - span / 2]);
         let stopped = commanded && whole && self.share < least;
-        self.falters =
-            stopped || (commanded && recently.is_some_and(|then| here.share_since(then) < least));
-        match (stopped, self.stop_since) {
-            (true, None) => self.stop_since = Some(time - window),
-            (false, Some(_)) => return self.stop_since.take(),
-            _ => {}
+        if stopped && self.stop_since.is_none() {
+            // What came before the end of the last stop belongs to that.
+            let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.end);
+            self.stop_since = Some(last.max(time - window));
         }
-        None
+        // A slower command has a longer window: until that is whole, nothing has changed.
+        let moves_on = whole && !stopped;
+        let ended = self.stop_since.take_if(|_| is_anew || moves_on);
+        if let Some(start) = ended.filter(|_| moves_on) {
+            self.time_to_free = self.time_to_free.max(time - start);
+        }
+        self.falters = self.stop_since.is_some()
+            || (commanded && recently.is_some_and(|then| here.share_since(then) < least));
+        ended
     }
 
     /// [m] Greatest advance since the last change of direction.

@@ -17,6 +17,8 @@ struct Way {
     command: f64,
     /// [m/s] Set-point of the drivetrain.
     set_point: f64,
+    /// [s] Length of the window.
+    window: f64,
 }
 
 impl Way {
@@ -26,6 +28,7 @@ impl Way {
             time: 0.0,
             command,
             set_point: command,
+            window: SPAN as f64,
         }
     }
 
@@ -45,7 +48,10 @@ impl Way {
         let is_commanded = self.command != 0.0;
         let progress = &mut self.progress;
         progress.advance(&now, self.command, LENGTH, 1.0);
-        progress.look(self.time, is_commanded, (SPAN as f64, 1.0), LEAST)
+        let ended = progress.look(self.time, is_commanded, (self.window, 1.0), LEAST);
+        let stop = |start| Event::stop(start, self.time, None);
+        progress.stops.extend(ended.map(stop));
+        ended
     }
 
     fn at(&mut self, x: f64) -> Option<f64> {
@@ -160,12 +166,46 @@ fn a_drivetrain_that_asks_for_no_way_yet_lets_nothing_stop() {
 }
 
 #[test]
-fn a_command_that_ends_frees_from_a_stop() {
+fn a_command_that_ends_or_turns_round_ends_a_stop_but_frees_nobody() {
+    for command in [0.0, -1.0] {
+        let mut way = Way::new(1.0);
+        way.stands(3.0, SPAN + 1);
+        way.command = command;
+        assert_eq!(way.at(3.0), Some(1.0));
+        assert!(!way.progress.falters());
+        assert_eq!(way.progress.time_to_free, 0.0, "it has not moved");
+        way.command = 1.0;
+        way.stands(3.0, SPAN + 1);
+        way.goes(4.0, 6.0, 2);
+        assert_eq!(way.progress.time_to_free, SPAN as f64 + 1.0);
+    }
+}
+
+/// A slower command has a longer window, which is not whole at first.
+#[test]
+fn a_stop_goes_on_when_the_command_gets_slower() {
     let mut way = Way::new(1.0);
     way.stands(3.0, SPAN + 1);
-    way.command = 0.0;
+    way.window *= 2.0;
+    for _ in 0..2 * SPAN {
+        assert_eq!(way.at(3.0), None);
+        assert_eq!(way.progress.stop_since, Some(1.0));
+        assert!(way.progress.falters(), "it is still a stop");
+    }
+    way.goes(3.0, 13.0, 5);
+    assert_eq!(way.progress.stop_since, None);
+}
+
+/// The last jump counts for a window, the first no longer.
+#[test]
+fn a_stop_between_two_jumps_begins_when_the_one_before_it_ended() {
+    let mut way = Way::new(1.0);
+    way.stands(0.0, SPAN + 1);
+    way.stands(1.5, SPAN - 2);
     assert_eq!(way.at(3.0), Some(1.0));
-    assert!(!way.progress.falters());
+    let ended = way.time;
+    way.stands(3.0, 2);
+    assert_eq!(way.progress.stop_since, Some(ended));
 }
 
 #[test]

@@ -90,7 +90,31 @@ fn a_pause_parts_a_stop_in_two_that_do_not_overlap() {
             assert!((found - expected).abs() < ABOUT, "{times:?}");
         }
         assert_eq!(times.len(), 2);
+        assert_eq!(robot.monitor.time_to_free(), 0.0, "it has not moved");
     }
+}
+
+/// As in another engine, whose steps all have one length.
+#[test]
+fn a_stop_is_seen_as_soon_if_steps_are_longer_than_the_time_between_two_looks() {
+    let mut robot = Watched::with(|_| {});
+    while robot.monitor.stop_since().is_none() {
+        robot.now.time += 3.0 * LOOK.value();
+        robot.now.commanded_speed = robot.command;
+        let mut from = robot.now.time - 3.0 * LOOK.value();
+        let end = robot.now.time;
+        while from < end {
+            let look = robot.monitor.next_look();
+            robot.now.time = if look > from { look.min(end) } else { end };
+            let drives = robot.drives.iter().copied();
+            let (now, command) = ((&robot.now, 0.0), robot.command);
+            robot
+                .monitor
+                .observe(now, command, &[], drives, &robot.running);
+            from = robot.now.time;
+        }
+    }
+    assert!(robot.now.time < 1.1, "{} s", robot.now.time);
 }
 
 #[test]
