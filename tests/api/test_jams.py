@@ -1,7 +1,9 @@
 """All jams of a layout, and the chart of where it can jam."""
 
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
@@ -30,6 +32,23 @@ def test_the_stop_of_a_run_is_a_jam_with_the_loads_of_its_diagnosis() -> None:
     assert "40 N" in str(run.diagnosis)
     assert jam.depth == pytest.approx(0.021, abs=5e-4)
     assert "21 mm of ground between wheels 1 and 2" in str(jam)
+
+
+def test_what_is_stable_does_not_depend_on_where_the_ground_lies() -> None:
+    robot = WHEELS.with_track(c2d.LineOfWheels(3, wheel_radius=0.05)).without_rotors()
+    robot = replace(robot, center_of_mass=(0.0, 0.02))
+    draw = np.random.default_rng(0)
+    ends = np.cumsum(draw.uniform(0.03, 0.15, 8))
+    x = np.array([-3.0, 0.0, *ends, ends[-1] + 0.05, ends[-1] + 4.0])
+    y = np.array([0.0, 0.0, *draw.uniform(0.0, 0.1, 8), 0.0, 0.0])
+    found = []
+    for shift in (0.0, 0.1, 0.13, 0.29, 0.37, 0.5):
+        points = np.column_stack([x + shift, y])
+        ground = c2d.terrains.from_points(points, goal=ends[-1] + 3.0 + shift, friction=0.7)
+        jams = c2d.jams(robot, ground)
+        found.append([(round(jam.position[0] - shift, 5), jam.stable) for jam in jams])
+    assert len(found[0]) == 10
+    assert all(each == found[0] for each in found), found
 
 
 def test_friction_is_taken_from_the_call() -> None:

@@ -45,7 +45,7 @@ pub fn find_jams(scenario: &ValidScenario, cancel: &Cancel) -> Result<Vec<FoundJ
         let robot = Simulation::driven_at(scenario, jam.position, jam.angle);
         Ok(FoundJam {
             intrusion: deepest(&robot),
-            stable: stays(robot, &jam, cancel)?,
+            stable: stays(robot.pressed(&jam), &jam, cancel)?,
             jam,
         })
     });

@@ -19,7 +19,7 @@ const NOTHING: Metres = Metres(1e-8);
 const ROUNDS: usize = 200;
 
 /// A displacement of the centre of mass [m], and a turn about it times half the robot's length [m].
-type Displacement = [f64; 3];
+pub(super) type Displacement = [f64; 3];
 
 impl Simulation {
     /// The same robot at rest in the nearest pose in which no ground is inside it; a turn counts as far as it moves the
@@ -115,7 +115,7 @@ impl Simulation {
     }
 
     /// Moves the robot as one body.
-    fn displace(&mut self, way: Displacement) {
+    pub(super) fn displace(&mut self, way: Displacement) {
         let turn = way[2] / self.half_length();
         self.state.center += Vector::new(way[0], way[1]);
         self.state.angle += turn;
@@ -125,13 +125,13 @@ impl Simulation {
     }
 
     /// [m] Half the distance between the end axles.
-    fn half_length(&self) -> f64 {
+    pub(super) fn half_length(&self) -> f64 {
         0.5 * self.scenario.robot.outline.axle_distance()
     }
 }
 
 /// The point nearest to the origin that is beyond all walls, `along . x >= bound`: Hildreth's method.
-fn nearest_beyond(walls: &[(Displacement, f64)]) -> Displacement {
+pub(super) fn nearest_beyond(walls: &[(Displacement, f64)]) -> Displacement {
     const SWEEPS: usize = 2000;
 
     let mut point = [0.0; 3];

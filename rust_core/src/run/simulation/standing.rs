@@ -1,9 +1,12 @@
 //! A robot put in a pose with its drives running.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::clear::{Displacement, nearest_beyond};
 use super::{LastStep, Simulation};
-use crate::geometry::Vector;
+use crate::geometry::{Vector, cross};
+use crate::jams::Jam;
 use crate::run::ValidScenario;
 
 impl Simulation {
@@ -24,5 +27,25 @@ impl Simulation {
         robot.last = LastStep::none(&robot.state);
         (robot.set_point, robot.last.set_point) = (speed, speed);
         robot
+    }
+
+    /// The same in a jam, pressed onto its contacts as deep as they carry it at rest. If they only touched, rounding would
+    /// decide which of them carries first, and some robots can slip out of a jam as well as stay.
+    pub(in crate::run) fn pressed(mut self, jam: &Jam) -> Self {
+        let omega = TAU * self.scenario.solver.contact_frequency;
+        let deepest = self.scenario.gravity / (omega * omega);
+        let (center, half) = (self.state.center, self.half_length());
+        let walls: Vec<(Displacement, f64)> = jam
+            .contacts
+            .iter()
+            .map(|contact| {
+                let into = -contact.normal;
+                let lever = cross(contact.point - center, into) / half;
+                ([into.x, into.y, lever], deepest * contact.load)
+            })
+            .collect();
+        self.displace(nearest_beyond(&walls));
+        self.last = LastStep::none(&self.state);
+        self
     }
 }
