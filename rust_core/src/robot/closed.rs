@@ -54,12 +54,18 @@ impl Model {
         }
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
+        // A chain has all of the force by itself: what belts on arms beside it have is not the track's.
+        let sharers = if self.chains.is_empty() {
+            self.motors
+        } else {
+            self.chains.len()
+        };
         Ok(Self {
             parts: Self::in_order(parts, belly),
             drives: tracks,
             motors: tracks,
             drive_masses: vec![mass / tracks as f64; tracks],
-            motor: self.motor.shared(self.motors, tracks),
+            motor: self.motor.shared(sharers, tracks),
             pushes_chassis: false,
             ..whole
         })

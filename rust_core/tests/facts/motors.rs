@@ -1,7 +1,9 @@
 //! Motors whose force depends on their speed: torque curves, and controllers.
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Pi, Scenario, Simulation};
+use crawler2d_core::{
+    ClosedSurface, ClosedTrack, Ends, Model, Pi, Scenario, Simulation, Track, Wheel,
+};
 
 use crate::basics::models;
 use crate::common::*;
@@ -184,5 +186,23 @@ fn motors_with_a_curve_give_no_more_in_a_step_than_at_rest() {
             found < (1.001 + backwards) * most,
             "{name}: {found} N of {most}"
         );
+    }
+}
+
+/// Flippers on a chain have motors of their own, because a chain can share none with a belt.
+#[test]
+fn a_closed_track_has_the_force_of_the_motors_of_the_track_that_it_closes() {
+    for open in [line(4), circumferential(24, Wheel::Round), segmental(None)] {
+        for mut scenario in [engineer_on(open.clone()), with_flippers(Ends::Both, open)] {
+            let robot = &mut scenario.robot;
+            robot.track = Track::Closed(ClosedTrack {
+                of: Box::new(robot.track.clone()),
+                surface: ClosedSurface::Own,
+            });
+            let model = Model::new(robot).expect("it can be built");
+            let expected = 2.0 * robot.drivetrain.max_torque / BELT;
+            assert_eq!(model.motors, 1);
+            assert_relative_eq!(model.motor.force, expected, max_relative = 1e-12);
+        }
     }
 }
