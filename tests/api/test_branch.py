@@ -58,6 +58,13 @@ def test_a_branch_counts_from_the_end_of_the_step_at_its_instant(seized: c2d.Run
     assert seized.trunk is None
 
 
+@pytest.mark.parametrize("at", [0.3, 0.6, 2.0])  # by whole steps a rounding off a sample
+def test_a_branch_that_begins_with_a_sample_has_it_once(at: float) -> None:
+    run = c2d.simulate(SEIZING.replace({"solver.time_step": 1e-3}))
+    branch = run.branch(at=at, duration=0.5, sample_interval=0.1)
+    assert branch.time == pytest.approx(at + 0.1 * np.arange(6), abs=1e-9)
+
+
 def test_a_stop_is_the_instant_of_the_diagnosis(seized: c2d.Run) -> None:
     assert seized.diagnosis is not None
     branch = seized.branch(duration=0.1)

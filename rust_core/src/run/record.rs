@@ -218,7 +218,8 @@ impl<'a> Recorder<'a> {
             contact_rows: Rows::new(budget, ContactTable::bytes(columns)),
             state: simulation.now().state.clone(),
         };
-        recorder.taken = (recorder.until / recorder.every).floor() as u64;
+        // A beginning that is off its multiple by rounding is that sample.
+        recorder.taken = ((recorder.until + SAME_TIME.value()) / recorder.every).floor() as u64;
         recorder.sample(simulation, simulation.time())?;
         Ok(recorder)
     }
