@@ -284,9 +284,12 @@ impl Intrusion {
         if part.lane != self.lane || !of_track {
             return false;
         }
-        let (place, length) = lanes[self.lane].place_on(contact.facet, contact.point);
-        let margin = BEARS.value() / length;
-        let near = |(start, end): &(f64, f64)| (start - margin..=end + margin).contains(&place);
-        self.stretches.iter().any(near)
+        let lane = &lanes[self.lane];
+        let place = lane.place_on(contact.facet, contact.point);
+        let here = lane.point_at(place);
+        let is_near = |end: f64| (lane.point_at(end) - here).length() <= BEARS.value();
+        self.stretches.iter().any(|(start, end)| {
+            (*start..=*end).contains(&place) || is_near(*start) || is_near(*end)
+        })
     }
 }

@@ -386,13 +386,19 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
 const AT_VERTEX: Metres = Metres(1e-7);
 
 impl Profile {
-    /// Position along the profile of a point on a facet, as the index of the facet plus a fraction of it, and the
-    /// length [m] of the facet.
-    pub(crate) fn place_on(&self, facet: usize, point: Vector) -> (f64, f64) {
+    /// Position along the profile of a point on a facet, as the index of the facet plus a fraction of it.
+    pub(crate) fn place_on(&self, facet: usize, point: Vector) -> f64 {
         let (a, b) = (self.points[facet], self.points[facet + 1]);
         let (chord, length) = (b - a, (b - a).length());
         let fraction = (point - a).dot(chord) / (length * length);
-        (facet as f64 + fraction.clamp(0.0, 1.0), length)
+        facet as f64 + fraction.clamp(0.0, 1.0)
+    }
+
+    /// The point at such a position.
+    pub(crate) fn point_at(&self, place: f64) -> Vector {
+        let facet = (place as usize).min(self.points.len() - 2);
+        let (a, b) = (self.points[facet], self.points[facet + 1]);
+        a + (b - a) * (place - facet as f64)
     }
 
     /// The same for a fraction of a straight piece of facets.
@@ -403,7 +409,6 @@ impl Profile {
         let (begin, end) = (self.points[facets.start], self.points[facets.end]);
         let point = begin + (end - begin) * fraction;
         self.place_on(facet_along(&self.points, facets, fraction), point)
-            .0
     }
 
     /// The edge that a point on a facet touches, or -1 on a face.

@@ -117,11 +117,7 @@ fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
 
 /// [m] Range of x of the profile in a piece.
 fn extent(intrusion: &Intrusion, profile: &Profile) -> (f64, f64) {
-    let x = |place: f64| {
-        let facet = (place as usize).min(profile.points.len() - 2);
-        let (a, b) = (profile.points[facet], profile.points[facet + 1]);
-        a.x + (b.x - a.x) * (place - facet as f64)
-    };
+    let x = |place: f64| profile.point_at(place).x;
     let ends = intrusion
         .stretches
         .iter()
@@ -158,6 +154,53 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
         (post.edges.as_slice(), post.bodies),
         ([1, 2].as_slice(), [1, 0])
     );
+}
+
+/// Facets of a rounded edge are a tenth of a millimetre long, those beside it are centimetres.
+#[test]
+fn a_contact_bears_within_half_a_millimetre_whatever_the_lengths_of_facets() {
+    let terrain = Terrain::Barrier {
+        height: 0.03,
+        thickness: 0.02,
+        surface: Surface::rounded(0.005, 0.9),
+    };
+    let ground = Ground::new(&terrain, 0.2).expect("a ground");
+    let profile = &ground.lanes[0];
+    let model = model(tracks().remove(0));
+    let [rear, front] = [1, 2].map(|edge| profile.edges[edge].span.map(|i| i as usize));
+    let on_rear = Intrusion {
+        lane: 0,
+        mount: Mount::Chassis,
+        side: Side::Both,
+        edges: vec![1],
+        edge: 1,
+        bodies: [1, 0],
+        depth: 0.01,
+        root_depth: 0.01,
+        x: 0.0,
+        y: 0.03,
+        area: 1e-4,
+        stretches: vec![(rear[0] as f64, rear[1] as f64)],
+    };
+    let bears = |facet: usize, point: Vector| {
+        let contact = Contact::new(0, (facet, -1), (point, Vector::Y), 0.0);
+        on_rear.bears(&ground.lanes, &model.parts, &contact)
+    };
+    // On the level top, and on the vertical face before it.
+    let (top, foot) = (profile.points[rear[1]], profile.points[rear[0]]);
+    for (off, expected) in [(4e-4, true), (6e-4, false)] {
+        let [ahead, below] = [top + off * Vector::X, foot - off * Vector::Y];
+        assert_eq!(bears(rear[1], ahead), expected, "{off} m ahead");
+        assert_eq!(bears(rear[0] - 1, below), expected, "{off} m below");
+    }
+    // A centimetre away, on the arc at the other end of the top.
+    assert!(!bears(front[0], profile.points[front[0]]));
+    let on_front = Intrusion {
+        stretches: vec![(front[0] as f64 + 1.5, front[1] as f64)],
+        ..on_rear
+    };
+    let end = Contact::new(0, (rear[1] - 1, 0), (top, Vector::Y), 0.0);
+    assert!(!on_front.bears(&ground.lanes, &model.parts, &end));
 }
 
 /// A model in a pose above a ground, with the judges of both its belts.
