@@ -83,3 +83,13 @@ def test_after_ctrl_c_the_page_has_what_was_done(
     page.unlink()
     assert main(["atlas", str(forest), "--html", str(page)]) == 130
     assert capsys.readouterr().err == "crawler2d atlas: interrupted: no page was written\n"
+
+
+@pytest.mark.parametrize("option", ["samples", "threads"])
+def test_a_bad_number_is_refused_once_not_for_every_robot(
+    forest: Path, tmp_path: Path, option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "atlas.html"
+    assert main(["atlas", str(forest), "--html", str(page), f"--{option}", "0"]) == 2
+    assert f"{option} must be a whole number from 1" in capsys.readouterr().err
+    assert not page.exists()

@@ -551,3 +551,28 @@ def test_too_few_runs_to_show_that_it_does_not_seize_are_said_to_be(found: c2d.A
     assert wilson(0, least).high < 0.10 <= wilson(0, least - 1).high
     assert found.table["outcome"].size < 2 * least  # of the model and its belt
     assert f'"does not seize" takes {least} or more' in str(found)
+
+
+@pytest.mark.parametrize("argument", ["vary", "unknown"])
+def test_a_field_that_a_later_obstacle_lacks_is_refused_before_any_run(argument: str) -> None:
+    obstacles: Any = {"step": c2d.terrains.step(0.03), "gap": c2d.terrains.gap(0.1)}
+    given: Any = {"unknown": {}, argument: {"terrain.height": c2d.scaled(0.9, 1.1)}}
+    made: list[int] = []
+    with pytest.raises(c2d.ScenarioError, match=r"terrain=gap\].terrain.height must be a known"):
+        c2d.audit(SEIZING, obstacles, progress=lambda done, _: made.append(done), **given)
+    assert not made
+
+
+@pytest.mark.parametrize("most", [0.2996, 4e-4])
+def test_a_slow_robot_is_not_driven_faster_than_it_can(most: float) -> None:
+    slow = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_speed=most))
+    speed = scenario_of(slow, c2d.terrains.step(0.03), None, None).drive.speed
+    assert most - 0.001 < speed <= most
+    assert speed > 0.0
+
+
+def test_an_audit_without_any_result_has_a_page() -> None:
+    refused: Any = {"terrain.friction": c2d.uniform(-2.0, -1.0)}
+    found = c2d.audit(SEIZING, STEP, vary=refused, unknown={}, repeats=1, repair=False, **QUIET)
+    assert words.missing_results(found).startswith("2 of 2 runs have no result")
+    assert "It seized in no run" in found.to_html()

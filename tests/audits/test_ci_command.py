@@ -166,6 +166,7 @@ def test_with_json_the_baseline_is_told_beside_it(quick: Path, capsys: Any) -> N
         ["a.sdf", "--lint", "--html", "page.html"],
         ["a.sdf", "--update-baseline"],
         ["a.sdf", "--baseline", "none.json"],
+        ["a.sdf", "--baseline", "none/a.json", "--update-baseline"],
     ],
 )
 def test_options_that_do_not_go_together_are_refused_before_any_run(

@@ -128,7 +128,7 @@ def test_with_json_nothing_else_is_on_the_standard_output(made: Path, capsys: An
 
 
 @pytest.mark.usefixtures("made")
-@pytest.mark.parametrize("option", ["--html", "--patch"])
+@pytest.mark.parametrize("option", ["--html", "--patch", "--junit", "--sarif"])
 @pytest.mark.parametrize("place", [".", "no folder/file"])
 def test_what_cannot_be_written_is_refused_before_the_audit(
     capsys: Any, option: str, place: str

@@ -216,7 +216,8 @@ def scenario_of(
     if drive is None:
         speed = _FROUDE * math.sqrt(_GRAVITY * outline.axle_distance)
         gait = None if robot.flippers is None else Climb()
-        drive = Drive(speed=round(min(speed, robot.drivetrain.max_speed), 3), gait=gait)
+        most = robot.drivetrain.max_speed
+        drive = Drive(speed=min(round(min(speed, most), 3) or most, most), gait=gait)
     length = outline.axle_distance + outline.front_radius + outline.rear_radius
     if duration is None:
         duration = round(max(_LENGTHS * length / max(abs(drive.speed), 1e-3), 1.0), 1)

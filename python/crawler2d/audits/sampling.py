@@ -184,7 +184,7 @@ def check_assumptions(
     Parameters
     ----------
     assumed : mapping of str to Ranges
-        As from `assumptions`.
+        As from `assumptions_of`.
     runs : Runs
         Those of the verdict; what they draw is drawn here, too.
     robot : Robot

@@ -17,11 +17,13 @@ from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.drawings import draw_robot
 from crawler2d.commands.files import OUT
+from crawler2d.common.arrays import whole_number
 from crawler2d.common.files import write_text
 from crawler2d.drawings.svg import escape
 from crawler2d.errors import Crawler2dError, ScenarioError, ScenarioWarning
 from crawler2d.pictures.page import fill_page, read_part
 from crawler2d.reading.reading import Reading, read_robot
+from crawler2d.runs.progress import thread_count
 
 __all__ = ["Entry", "add_arguments", "main_files", "run"]
 
@@ -74,6 +76,8 @@ def run(options: argparse.Namespace) -> int:
     folder: Path = options.folder
     if not folder.is_dir():
         raise ScenarioError("FOLDER", str(folder), "must be a folder")
+    whole_number(options.samples, "samples", 1, 10**5)
+    thread_count(options.threads)
     entries: list[Entry] = []
     try:
         files = list(main_files(folder))

@@ -25,7 +25,7 @@ from crawler2d.audits.record import READING, as_options
 from crawler2d.audits.runs import LivePrinter
 from crawler2d.audits.text import LintResult, lint_only, plain_of
 from crawler2d.audits.verdicts import least_samples
-from crawler2d.commands.files import OUT
+from crawler2d.commands.files import OUT, check_place
 from crawler2d.common.files import write_text
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.engines import ENGINES
@@ -170,10 +170,10 @@ def _check_options(options: argparse.Namespace) -> None:
             raise ScenarioError(name, "--lint", "needs runs")
     if options.update_baseline and options.baseline is None:
         raise ScenarioError("--update-baseline", "none", "needs --baseline FILE, where to write")
-    for name in ("html", "patch"):
-        path: Path | None = getattr(options, name)
-        if path is not None and (path.is_dir() or not path.parent.is_dir()):
-            raise ScenarioError(name, str(path), "must be a file in a folder that exists")
+    for name in ("html", "patch", "junit", "sarif"):
+        check_place(f"--{name}", getattr(options, name))
+    if options.update_baseline:
+        check_place("--baseline", options.baseline)
 
 
 def _read_baseline(options: argparse.Namespace) -> dict[str, Any] | None:

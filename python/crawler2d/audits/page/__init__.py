@@ -129,7 +129,7 @@ def _closest(audit: AuditRecord) -> list[Replay]:
     It fails where the belt clears, if any does, and of those it took the longest for its speed.
     """
     found = []
-    for verdict in audit.verdicts:
+    for verdict in audit.verdicts if "time" in audit.table else ():
         own, belt = (ObstacleRuns(audit.table, model, verdict.obstacle) for model in (OWN, BELT))
         alone = ~own.cleared & belt.cleared
         lengths = np.abs(own.speeds) * own.column("time")
