@@ -58,6 +58,25 @@ def test_flat_ground_has_no_greatest_obstacle(study: Callable[[Any], Any], rule:
         study(c2d.Scenario(ROBOT, c2d.terrains.flat()))
 
 
+@pytest.mark.parametrize("given", [0.05, "0.05", [], ["low"], [None]])
+def test_values_that_are_no_numbers_are_refused_by_name(given: Any) -> None:
+    base = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
+    cases: list[tuple[str, Callable[[], Any]]] = [
+        ("heights", lambda: c2d.studies.max_obstacle(base, heights=given)),
+        ("values", lambda: c2d.studies.jam_chart(base, values=given)),
+        (
+            "x[1]",
+            lambda: c2d.studies.seizure_map(
+                base, ("terrain.height", given), ("terrain.friction", [0.3, 0.6])
+            ),
+        ),
+    ]
+    for path, study in cases:
+        with pytest.raises(c2d.ScenarioError) as caught:
+            study()
+        assert caught.value.path.removesuffix("[0]") == path
+
+
 def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
     scenario: Any = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
     with pytest.raises(c2d.ScenarioError, match="scenarios must be several"):

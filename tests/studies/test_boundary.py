@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.studies.boundary import Crossing, Line
 from tests.shared import ROBOT
 
 SLOPE = c2d.Scenario(ROBOT, c2d.terrains.ramp(math.atan(0.5)))
@@ -73,3 +74,48 @@ def test_what_is_wrong_is_refused_by_name() -> None:
         with pytest.raises(c2d.ScenarioError) as caught:
             c2d.studies.critical(SLOPE, *given, **how)
         assert caught.value.path == path
+
+
+def test_a_model_that_breaks_a_rule_is_refused_before_any_run() -> None:
+    made: list[int] = []
+    models: dict[str, Any] = {"as it is": {}, "weightless": {"robot.mass": -1.0}}
+    how = {**STEADY, "models": models, "progress": lambda done, _: made.append(done)}
+    with pytest.raises(c2d.ScenarioError, match=r"model=weightless, .*robot.mass must be"):
+        c2d.studies.critical(SLOPE, "terrain.friction", (0.3, 0.8), points=3, **how)
+    assert set(made) <= {0}
+
+
+def test_halving_ends_where_there_is_no_number_between() -> None:
+    once = c2d.Until(least=1, most=1)
+    found = friction_of(tolerance=1e-18, until=once)
+    low, high = found["bracket_low"].item(), found["bracket_high"].item()
+    assert 0.5 * (low + high) in (low, high)
+
+
+class Rates(Line):
+    """A line whose rates are given; values that are added have no result."""
+
+    def __init__(self, rates: dict[float, float]) -> None:
+        nothing: Any = None
+        super().__init__(nothing, ("", ""), nothing)
+        self._rates: dict[float, float] = {}
+        self._take(rates)
+
+    def _take(self, rates: dict[float, float]) -> None:
+        self._rates |= rates
+        tallies: Any = {value: [None] for value in rates}
+        self.tallies |= tallies
+
+    def add(self, values: Any) -> None:
+        self._take(dict.fromkeys(values, math.nan))
+
+    def rates(self, sample: int = 0) -> dict[float, float]:
+        assert sample == 0
+        return dict(sorted(self._rates.items()))
+
+
+def test_a_value_without_a_result_is_no_rate_below_one_half() -> None:
+    assert Rates({0.0: 1.0, 1.0: math.nan, 2.0: 1.0}).crossing() == Crossing()
+    line = Rates({0.0: 0.0, 1.0: math.nan, 2.0: 1.0})
+    line.narrow(0.5)
+    assert line.crossing()[:3] == (0.0, 2.0, True)

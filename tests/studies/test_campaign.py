@@ -1,12 +1,15 @@
 """Studies repeat each cell until its rate is known, and say what they did."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.studies.campaign import Tally
+from crawler2d.studies.obstacles import _limits
 from crawler2d.sweeps.store import stored_rows
 from tests.shared import ROBOT
 
@@ -206,3 +209,15 @@ def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     with pytest.raises(c2d.ScenarioError, match="must have a dimension of numbers"):
         c2d.rate(table.isel(height=0, drop=True)).plot()
     plt.close("all")
+
+
+def test_an_obstacle_without_a_result_is_the_limit_of_those_before_it() -> None:
+    def tally(outcome: str, error: object = None) -> Tally:
+        row: Any = SimpleNamespace(outcome=outcome, error=error)
+        nowhere: Any = None
+        return Tally(nowhere, c2d.Until(), rows=[row] * 5)
+
+    diverged = tally("diverged", c2d.errors.SimulationDiverged("the state became non-finite"))
+    found = _limits([tally("cleared"), diverged], [0.1, 0.2])
+    assert (found.highest, found.limit) == (0.1, "diverged")
+    assert _limits([tally("cleared")] * 2, [0.1, 0.2]).limit == "none up to here"

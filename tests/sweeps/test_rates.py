@@ -215,3 +215,13 @@ def test_many_runs_with_few_poses_are_doubted_with_the_reason(varied: str, where
     table = xr.Dataset({"outcome": ("repeat", ["cleared"] * 20), **poses}, attrs={"vary": varied})
     with pytest.warns(c2d.ScenarioWarning, match=f"in every cell: where {where}, rates say"):
         rate(table)
+
+
+def test_a_cell_without_a_result_has_no_band_and_gives_no_warning(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    found = rate(TABLE.rename(height="sample").expand_dims(model=2))
+    assert found["band_median"].item(0) == pytest.approx(5 / 12)
+    nothing = rate(TABLE.rename(height="sample").isel(sample=[2]))
+    assert nothing["band_median"].isnull().all()
+    assert not recwarn.list

@@ -26,7 +26,7 @@ from crawler2d.studies.campaign import (
     is_cleared,
 )
 from crawler2d.studies.tables import Models, check_study, paths_of, rate_table, read_models
-from crawler2d.sweeps.axes import field_attributes
+from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
@@ -129,14 +129,16 @@ def critical(
     count = whole_number(points, "points", 2, 1000)
     read_number_path(scenario, path, "path")
     fields = read_models(scenario, models)
-    name = path.rpartition(".")[2].replace("[", "_").replace("]", "")
+    name = short_names([path])[path]
     with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
         lines: list[Line] = []
         for label, own in fields.items():
-            at = partial(_with_value, scenario.replace(own), path)
-            lines.append(Line(study, (f"model={label}", name), at))
-            lines[-1].add(np.linspace(low, high, count).tolist())
-            lines[-1].narrow(width)
+            at, names = partial(_with_value, scenario.replace(own), path), (f"model={label}", name)
+            check_ends(study, at, (low, high), names)
+            lines.append(Line(study, names, at))
+        for line in lines:
+            line.add(np.linspace(low, high, count).tolist())
+            line.narrow(width)
         values = sorted({value for line in lines for value in line.tallies})
         samples = lines[0].samples
         # Not every value is tried of every model.
@@ -218,7 +220,7 @@ class Line:
                 for each in crossings
                 if each.bracket_high - each.bracket_low > width
             }
-            if not wide:
+            if wide <= self.tallies.keys():  # no number is between, or there without a result
                 return
             self.add(sorted(wide))
 
@@ -227,8 +229,9 @@ class Line:
         return {value: self.tallies[value][sample].interval.rate for value in sorted(self.tallies)}
 
     def crossing(self, sample: int = 0) -> Crossing:
-        """Find where the rate passes one half."""
-        above = [(value, rate >= 0.5) for value, rate in self.rates(sample).items()]
+        """Find where the rate passes one half; values without a result are passed over."""
+        rates = self.rates(sample).items()
+        above = [(value, rate >= 0.5) for value, rate in rates if not math.isnan(rate)]
         changes = [
             (low, high, rises) for (low, was), (high, rises) in pairwise(above) if was != rises
         ]
@@ -340,11 +343,16 @@ def range_of(unknowns: Variation, path: str, cell: Scenario) -> Range:
     return Range(cell, ends)
 
 
-def check_ends(study: Campaign, over: Range, names: tuple[str, str]) -> None:
-    """Refuse an end of a range that breaks a rule, before anything is simulated."""
+def check_ends(
+    study: Campaign,
+    at: Callable[[float], Scenario],
+    ends: tuple[float, float],
+    names: tuple[str, str],
+) -> None:
+    """Refuse an end of a line that breaks a rule, before anything is simulated."""
     model, name = names
-    for value in over.first if over.is_line else ():
-        worlds = study.planner.worlds(over.at(value), (model, f"{name}={value:g}"))
+    for value in ends:
+        worlds = study.planner.worlds(at(value), (model, f"{name}={value:g}"))
         raise_first(world.checked for world in worlds)
 
 

@@ -331,7 +331,8 @@ def what_decides(
             for path, name in design.factors.items()
         }
         for (label, name), along in ranges.items():
-            check_ends(study, along, (f"model={label}", name))
+            if along.is_line:
+                check_ends(study, along.at, along.first, (f"model={label}", name))
         results = []
         for label, cell in cells.items():
             matrices = design.run(cell, str(label))

@@ -14,8 +14,8 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.jams import on_belt
-from crawler2d.studies.tables import Models, check_study, read_models
-from crawler2d.sweeps.axes import field_attributes
+from crawler2d.studies.tables import Models, check_study, read_models, read_numbers
+from crawler2d.sweeps.axes import field_attributes, short_names
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -132,8 +132,8 @@ def _values(scenario: Scenario, x: str, values: Sequence[float] | None) -> list[
             raise ScenarioError("values", values, f"must be given for {x}")
         most = 2.0 * scenario.robot.outline.front_radius
         return [most * (k + 1) / _HEIGHTS for k in range(_HEIGHTS)]
-    given = [real_number(value, f"values[{k}]") for k, value in enumerate(values)]
-    if not given or sorted(set(given)) != given:
+    given = read_numbers(values, "values")
+    if sorted(set(given)) != given:
         raise ScenarioError("values", tuple(given), "must be one number or more, rising")
     return given
 
@@ -152,7 +152,7 @@ def _dataset(
 ) -> FigureDataset:
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
-    name = x.rpartition(".")[2].replace("[", "_").replace("]", "")
+    name = short_names([x])[x]
     columns = {
         "low": _padded(own, lambda cell: cell["low"]),
         "high": _padded(own, lambda cell: cell["high"]),

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.arrays import whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
@@ -24,7 +23,14 @@ from crawler2d.studies.campaign import (
     counting,
     is_cleared,
 )
-from crawler2d.studies.tables import Models, check_study, paths_of, rate_table, read_models
+from crawler2d.studies.tables import (
+    Models,
+    check_study,
+    paths_of,
+    rate_table,
+    read_models,
+    read_numbers,
+)
 from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.sweeps.rates import BAND
 
@@ -234,9 +240,7 @@ def seizure_map(
             names[path_y]: (values_y, field_attributes([path_y])),
             names[path_x]: (values_x, field_attributes([path_x])),
         }
-        with warnings.catch_warnings():  # a cell that was not simulated has no band
-            warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
-            table = rate_table(study, "seizure_map", grid.tallies, dims)
+        table = rate_table(study, "seizure_map", grid.tallies, dims)
     table["rate"].attrs["long_name"] = f"rate of {outcome}"
     return _with_ends(table, grid, tuple(dims), ends).assign_attrs(outcome=outcome)
 
@@ -288,9 +292,7 @@ def _axis(scenario: Scenario, given: object, place: str) -> tuple[str, list[floa
         raise ScenarioError(place, given, "must be a pair of a path and its values")
     path, listed = given
     read_number_path(scenario, path, f"{place}[0]")
-    is_listed = isinstance(listed, (Sequence, np.ndarray)) and not isinstance(listed, str)
-    numbers = enumerate(listed if is_listed else ())
-    values = [real_number(value, f"{place}[1][{k}]") for k, value in numbers]
+    values = read_numbers(listed, f"{place}[1]")
     if len(values) < 2 or not (np.diff(values) > 0.0).all():
         raise ScenarioError(f"{place}[1]", listed, "must be at least two numbers, ascending")
     return path, values

@@ -23,6 +23,7 @@ from crawler2d.studies.tables import (
     paths_of,
     rate_table,
     read_models,
+    read_numbers,
     read_terrains,
 )
 from crawler2d.sweeps.axes import field_attributes
@@ -163,9 +164,7 @@ def _find_greatest(
     except ScenarioError:
         rule = f"must be a terrain with {'an' if name == 'angle' else 'a'} {name}"
         raise ScenarioError("terrain", scenario.terrain, rule) from None
-    tried = sorted(float(value) for value in values)
-    if not tried:
-        raise ScenarioError(f"{name}s", values, "must have at least one value")
+    tried = sorted(set(read_numbers(values, f"{name}s")))
     fields = read_models(scenario, models)
     with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
         cells = [
@@ -241,8 +240,8 @@ def _limits(row: Sequence[Tally], values: Sequence[float]) -> _Limits:
     highest = max(cleared, default=math.nan)
     gaps = sum(value < highest for value in values) - sum(value < highest for value in cleared)
     beyond = [t for t, value in zip(row, values, strict=True) if not value <= highest]
-    limit = beyond[0].commonest_failure if beyond else ""
-    return _Limits(highest, max(certain, default=math.nan), gaps, limit or _NONE)
+    limit = (beyond[0].commonest_failure or beyond[0].commonest_outcome) if beyond else _NONE
+    return _Limits(highest, max(certain, default=math.nan), gaps, limit)
 
 
 @takes_keywords

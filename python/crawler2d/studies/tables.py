@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario, check_scenario
@@ -28,10 +29,12 @@ __all__ = [
     "Dims",
     "Measure",
     "Models",
+    "check_study",
     "measure_table",
     "paths_of",
     "rate_table",
     "read_models",
+    "read_numbers",
     "read_terrains",
     "summary",
 ]
@@ -72,6 +75,20 @@ def read_terrains(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
             path = f"terrains[{label!r}]" if isinstance(terrains, Mapping) else "terrains"
             raise ScenarioError(path, terrain, "must be a terrain")
     return by_label
+
+
+def read_numbers(values: object, place: str) -> list[float]:
+    """Return the numbers of an argument that takes one or more.
+
+    Raises
+    ------
+    ScenarioError
+        If it is something else.
+    """
+    listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else []
+    if not listed:
+        raise ScenarioError(place, values, "must be one number or more, in a list")
+    return [real_number(value, f"{place}[{k}]") for k, value in enumerate(listed)]
 
 
 def paths_of(fields: Mapping[Any, Mapping[str, Any]]) -> list[str]:

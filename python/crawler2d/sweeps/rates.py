@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import warnings
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -201,7 +202,9 @@ def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str
 
 def quantile_band(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
     """Return the band of rates over the samples of the unknowns, without that dimension."""
-    band = rates.quantile(list(BAND.values()), _SAMPLE, skipna=True)
+    with warnings.catch_warnings():  # of runs without a result there is no band
+        warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
+        band = rates.quantile(list(BAND.values()), _SAMPLE, skipna=True)
     parts = {name: band.sel(quantile=part, drop=True) for name, part in BAND.items()}
     spoken = {name: {"units": "1", "long_name": _LONG_NAMES[name]} for name in parts}
     return {name: part.assign_attrs(spoken[name]) for name, part in parts.items()}
