@@ -5,6 +5,8 @@ import pickle
 import random
 import zipfile
 from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.common.files import write_text
 from tests.shared import ARRAYS, ROBOT, VARIANTS, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
@@ -298,3 +301,12 @@ def test_what_cannot_be_written_is_named_by_its_own_path(stopped: c2d.Run, tmp_p
     with pytest.raises(IsADirectoryError):
         stopped.save(tmp_path)
     assert not list(tmp_path.iterdir())
+
+
+def test_threads_that_write_to_one_path_leave_one_of_their_files_whole(tmp_path: Path) -> None:
+    texts = [letter * 100_000 for letter in "abcdefgh"]
+    with ThreadPoolExecutor(8) as pool:
+        for _ in range(10):
+            list(pool.map(partial(write_text, tmp_path / "page.html"), texts))
+            assert (tmp_path / "page.html").read_text() in texts
+    assert [each.name for each in tmp_path.iterdir()] == ["page.html"]

@@ -3,6 +3,7 @@
 import math
 import pickle
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -197,3 +198,20 @@ def test_a_robot_that_is_told_to_stop_is_not_tried_for_ever(seized: c2d.Run) -> 
     drive = c2d.Drive(speed=0.4, schedule=((float(seized.time[-1]) + 0.05, 0.0),))
     paused = c2d.simulate(SEIZING.replace({"drive": drive}), trials="all")
     assert paused.outcome in ("seized", "slipping", "timed_out")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"track": c2d.BeltTrack()},
+        {"friction": 0.5},
+        {"max_torque": 50.0},
+        {"belly": None},
+        {"drive": c2d.Drive(speed=0.1)},
+        {"push": (10.0, 1.0)},
+    ],
+)
+def test_a_named_trial_with_a_change_is_refused(seized: c2d.Run, change: Any) -> None:
+    error = refused(lambda: seized.what_if("torque x 2", **change))
+    assert error.path == next(iter(change))
+    assert error.rule == "must be left out where a trial is named"

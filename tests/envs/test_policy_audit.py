@@ -5,11 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from numpy.typing import NDArray
 
 import crawler2d as c2d
 from crawler2d.envs import FlipperEnv, FlipperVectorEnv, audit_policy
 from crawler2d.envs.policy_audit import _gain, _lost
+from crawler2d.pictures.policies import plot_policy
 from crawler2d.sweeps.statistics import newcombe_paired
 
 FLIPPERS = c2d.robots.absolem().flippers
@@ -86,6 +88,21 @@ def test_it_says_where_gains_are_lost() -> None:
     assert len(ax.patches) == is_lost
     with pytest.raises(c2d.ScenarioError, match="must have models and obstacles"):
         found.sel(model="belt").plot()
+
+
+def test_where_nothing_is_gained_the_picture_shows_nothing_lost() -> None:
+    cell = ("driver", "model", "obstacle")
+    columns: Any = {
+        "rate": (cell, [[[0.5], [0.0]], [[0.5], [1.0]]]),
+        "gain": (cell[1:], [[0.0], [-1.0]]),
+        "gain_low": (cell[1:], [[-0.2], [-1.0]]),
+        "lost_low": (cell[1:], [[0.0], [0.6]]),
+        "ending": (cell[1:], [[""], ["seized: 10 of 10"]]),
+    }
+    coords = {"driver": ["policy", "baseline"], "model": ["a", "b"], "obstacle": ["step"]}
+    data = xr.Dataset(columns, {**coords, "repeat": range(10)})
+    assert not plot_policy(data, None).patches
+    assert len(plot_policy(data.assign(gain_low=data["gain_low"] + 1.0), None).patches) == 1
 
 
 def test_a_run_without_an_outcome_is_left_out_of_the_gain_with_its_pair() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
@@ -36,7 +37,8 @@ def part_of(path: str | os.PathLike[str]) -> Iterator[Path]:
     if place.exists() and not place.is_file():
         number = errno.EISDIR if place.is_dir() else errno.EINVAL
         raise OSError(number, os.strerror(number), os.fspath(path))
-    part = place.with_name(f".{place.stem}.{os.getpid()}.part{Path(path).suffix}")
+    writer = f"{os.getpid()}-{threading.get_ident()}"
+    part = place.with_name(f".{place.stem}.{writer}.part{Path(path).suffix}")
     try:
         yield part
         part.replace(place)

@@ -39,6 +39,7 @@ def plot_policy(data: xarray.Dataset, ax: Axes | None) -> Axes:
     )
     rates = data["rate"].transpose("driver", "model", "obstacle").to_numpy()
     ax.imshow(rates[0], cmap=colors, vmin=0.0, vmax=1.6, aspect="auto")  # text stays readable
+    gained = data["gain_low"].transpose("model", "obstacle").to_numpy()[0] > 0.0
     patch = extra("matplotlib.patches", "plot").Rectangle
     for row, model in enumerate(models):
         for column, obstacle in enumerate(obstacles):
@@ -48,7 +49,7 @@ def plot_policy(data: xarray.Dataset, ax: Axes | None) -> Axes:
             ax.text(column, row - 0.15, f"{ours:.0%} ({theirs:.0%})", weight="bold", **about)
             ending = cell["ending"].item()
             ax.text(column, row + 0.22, ending, fontsize="x-small", parse_math=False, **about)
-            if cell["lost_low"] > 0.0:
+            if gained[column] and cell["lost_low"] > 0.0:
                 place = (column - 0.47, row - 0.46)
                 frame: Any = {"fill": False, "edgecolor": RED, "linewidth": _LOST}
                 ax.add_patch(patch(place, 0.94, 0.92, **frame))

@@ -257,8 +257,8 @@ class Run(ShownRun):
         Raises
         ------
         ScenarioError
-            If the run did not end in a stop, or is a branch itself; if the name is unknown or has
-            nothing to change on the robot; if a change breaks a rule.
+            If the run did not end in a stop, or is a branch itself; if the name is unknown, has
+            nothing to change on the robot, or is given with a change; if a change breaks a rule.
 
         Examples
         --------
@@ -269,19 +269,17 @@ class Run(ShownRun):
         (False, True)
         """
         time = branch_time(self, "stop")
+        changes: Any = {"track": track, "friction": friction, "max_torque": max_torque}
+        changes |= {"belly": belly, "drive": drive}
         if name is not None:
+            for field, value in {**changes, "push": push}.items():
+                is_left_out = isinstance(value, str) if field == "belly" else value is None
+                if not is_left_out:
+                    raise ScenarioError(field, value, "must be left out where a trial is named")
             result = trial_at(self, time, name)
             self._add_to_diagnosis(result)
             return Trial.of(result, partial(self._run_of_trial, time, result))
-        variant = branch_scenario(
-            self,
-            track=track,
-            friction=friction,
-            max_torque=max_torque,
-            belly=belly,
-            drive=drive,
-            duration=None,
-        )
+        variant = branch_scenario(self, **changes, duration=None)
         result, start = try_variant(self, time, variant, read_push(push))
         variant = variant.replace({"duration": result.duration})
         return Trial.of(result, partial(self._branch_as, variant, time, push, start=start))
