@@ -289,6 +289,8 @@ def test_a_baseline_is_a_line_for_each_thing(made: Made, tmp_path: Path) -> None
         ('{"baseline": 1}', "baseline"),
         ('{"baseline": 2, "models": {}}', "baseline"),
         ('{"baseline": 1, "models": []}', "baseline"),
+        ('{"baseline": 1, "models": {"a.sdf": {"lint": []}}}', "baseline"),
+        ('{"baseline": 1, "models": {"a.sdf": null}}', "baseline"),
     ],
 )
 def test_a_file_that_is_no_baseline_is_refused(tmp_path: Path, text: str, path: str) -> None:
