@@ -73,8 +73,8 @@ def test_regions_of_three_fields_have_no_figure() -> None:
     ("over", "options", "message"),
     [
         ({}, {}, r"over must be a mapping of 1 to 4 fields"),
-        ({"terrain.height": (0.1, 0.1)}, {}, r"over\['terrain.height'\] must be its least value"),
-        ({"terrain.height": 0.1}, {}, r"over\['terrain.height'\] must be its least and its"),
+        ({"terrain.height": (0.1, 0.1)}, {}, r"over\['terrain.height'\] must be two numbers"),
+        ({"terrain.height": 0.1}, {}, r"over\['terrain.height'\] must be two numbers"),
         ({"terrain.width": (0.1, 0.2)}, {}, r"terrain.width must be a known field"),
         ({"robot.mass": (10.0, 20.0)}, {}, r"over must move the centre of mass"),
         ({"robot.outline.axle_distance": (0.3, 0.4)}, {}, r"over must move the centre of mass"),

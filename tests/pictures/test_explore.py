@@ -126,7 +126,7 @@ ARMS = BASE.replace({"robot": c2d.robots.engineer()})
         (BASE, {"terrain.hight": (0.02, 0.15)}, "terrain.hight"),
         (BASE, {"height": (0.15, 0.02)}, "terrain.height"),
         (BASE, {"height": 0.15}, "terrain.height"),
-        (BASE, {"height": (0.02, "0.15")}, "terrain.height"),
+        (BASE, {"height": (0.02, "0.15")}, "terrain.height[1]"),
         (BASE, {"height": (0.02, float("nan"))}, "terrain.height"),
     ],
 )

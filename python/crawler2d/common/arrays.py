@@ -21,6 +21,7 @@ __all__ = [
     "Table",
     "freeze_array",
     "read_bool",
+    "read_range",
     "read_rows",
     "read_scalar",
     "real_number",
@@ -161,6 +162,23 @@ def whole_number(value: Any, path: str, least: int, most: int) -> int:
     if type(number) is not int or not least <= number <= most:
         raise ScenarioError(path, value, f"must be a whole number from {least} to {most}")
     return number
+
+
+def read_range(value: Any, path: str) -> tuple[float, float]:
+    """Read two numbers, the lower first.
+
+    Raises
+    ------
+    ScenarioError
+        If it is something else.
+    """
+    rule = "must be two numbers, the lower first"
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise ScenarioError(path, value, rule)
+    low, high = (real_number(each, f"{path}[{k}]") for k, each in enumerate(value))
+    if not low < high:
+        raise ScenarioError(path, value, rule)
+    return low, high
 
 
 def read_bool(value: object, path: str) -> bool:

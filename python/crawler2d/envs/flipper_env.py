@@ -23,10 +23,21 @@ if TYPE_CHECKING:
 
     from crawler2d.runs.simulations import States
 
-__all__ = ["METADATA", "FlipperEnv", "TakesMadeKeywords", "check_render_mode", "spaces_of"]
+__all__ = [
+    "METADATA",
+    "FlipperEnv",
+    "TakesMadeKeywords",
+    "check_render_mode",
+    "spaces_of",
+    "task_of",
+]
 
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}
 """Of both environments; `render_fps` is that of the default `dt`."""
+
+
+_OF_ITSELF = ("num_envs", "render_mode", "autoreset_mode", "threads")
+"""Arguments of an environment that are none of its task."""
 
 
 class TakesMadeKeywords(TakesKeywords):
@@ -133,17 +144,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         given = {name: value for name, value in locals().items() if name != "self"}
         EzPickle.__init__(self, **given)
         self.render_mode = check_render_mode(render_mode)
-        self.task = Task.read(
-            scenario,
-            terrain=terrain,
-            randomize=randomize,
-            dt=dt,
-            observe=observe,
-            flipper_command=flipper_command,
-            end_when_stopped=end_when_stopped,
-            shock_weight=shock_weight,
-            effort_weight=effort_weight,
-        )
+        self.task = task_of(given)
         self.observation_space, self.action_space = spaces_of(self.task)
         self._episodes: Episodes | None = None
         self._ended, self._supply = False, Supply(self.task, 1)
@@ -240,6 +241,11 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         if self._episodes is None:
             raise gymnasium.error.ResetNeeded("there is no episode yet: call reset()")
         return self._episodes
+
+
+def task_of(given: Mapping[str, Any]) -> Task:
+    """Read the task among the arguments of an environment."""
+    return Task.read(**{name: value for name, value in given.items() if name not in _OF_ITSELF})
 
 
 def spaces_of(task: Task) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:

@@ -18,9 +18,10 @@ from crawler2d.envs.flipper_env import (
     TakesMadeKeywords,
     check_render_mode,
     spaces_of,
+    task_of,
 )
 from crawler2d.envs.supply import Supply
-from crawler2d.envs.task import FlipperCommand, Observe, Task
+from crawler2d.envs.task import FlipperCommand, Observe
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
@@ -96,17 +97,7 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         EzPickle.__init__(self, **given)
         self.render_mode = check_render_mode(render_mode)
         self.num_envs = whole_number(num_envs, "num_envs", 1, _MOST)
-        self.task = Task.read(
-            scenario,
-            terrain=terrain,
-            randomize=randomize,
-            dt=dt,
-            observe=observe,
-            flipper_command=flipper_command,
-            end_when_stopped=end_when_stopped,
-            shock_weight=shock_weight,
-            effort_weight=effort_weight,
-        )
+        self.task = task_of(given)
         self.metadata = METADATA | {"autoreset_mode": _read_mode(autoreset_mode)}
         spaces = spaces_of(self.task)
         self.single_observation_space, self.single_action_space = spaces

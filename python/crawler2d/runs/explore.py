@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import read_range
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import suggestion
 from crawler2d.common.units import unit_of
@@ -65,7 +65,7 @@ def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
     if not ranges:
         raise ScenarioError("ranges", None, "must have at least one, such as height=(0.02, 0.15)")
     paths = {_path(scenario, name): bounds for name, bounds in ranges.items()}
-    return Explorer(scenario, {path: _bounds(path, each) for path, each in paths.items()})
+    return Explorer(scenario, {path: read_range(each, path) for path, each in paths.items()})
 
 
 def _path(scenario: Scenario, name: str) -> str:
@@ -80,15 +80,6 @@ def _path(scenario: Scenario, name: str) -> str:
     if type(read_path(scenario, found[0])) not in (int, float):
         raise ScenarioError(found[0], read_path(scenario, found[0]), "must be a number to vary")
     return found[0]
-
-
-def _bounds(path: str, bounds: Any) -> tuple[float, float]:
-    if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
-        raise ScenarioError(path, bounds, "must have a range (lowest, highest)")
-    low, high = (real_number(each, path) for each in bounds)
-    if not low < high:
-        raise ScenarioError(path, bounds, "must have a range (lowest, highest), the lower first")
-    return low, high
 
 
 class Explorer:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.arrays import read_range, real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.fields import is_whole, read_number_path, read_path
@@ -120,9 +120,7 @@ def critical(
     (True, True)
     """
     check_study(scenario)
-    low, high = (real_number(each, f"between[{k}]") for k, each in enumerate(_pair(between)))
-    if not low < high:
-        raise ScenarioError("between", (low, high), "must be two numbers, the smaller first")
+    low, high = read_range(between, "between")
     width = (high - low) / 100.0 if tolerance is None else real_number(tolerance, "tolerance")
     if not width > 0.0:
         raise ScenarioError("tolerance", width, "must be > 0")
@@ -256,12 +254,6 @@ def _with_crossings(table: FigureDataset, lines: Sequence[Line]) -> FigureDatase
             for name, values in columns.items()
         }
     )
-
-
-def _pair(between: object) -> tuple[object, object]:
-    if isinstance(between, (tuple, list)) and len(between) == 2:
-        return between[0], between[1]
-    raise ScenarioError("between", between, "must be two numbers, the smaller first")
 
 
 _TAIL = 0.01

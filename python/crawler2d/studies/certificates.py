@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.arrays import read_range, real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
@@ -241,13 +241,7 @@ def _read(
     ranges = []
     for name, pair in over.items():
         read_number_path(scenario, name, "over")
-        path = f"over[{name!r}]"
-        if not isinstance(pair, (tuple, list)) or len(pair) != 2:
-            raise ScenarioError(path, pair, "must be its least and its greatest value")
-        low, high = (real_number(value, path) for value in pair)
-        if not low < high:
-            raise ScenarioError(path, pair, "must be its least value, then a greater one")
-        ranges.append((low, high))
+        ranges.append(read_range(pair, f"over[{name!r}]"))
     return list(over), np.array(ranges)
 
 

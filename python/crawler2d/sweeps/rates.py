@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import read_choice, takes_keywords
 from crawler2d.errors import ScenarioError, warn
 from crawler2d.results.outcome import Outcome
-from crawler2d.sweeps.statistics import clustered
+from crawler2d.sweeps.statistics import clustered, read_level
 
 if TYPE_CHECKING:
     import xarray
@@ -137,9 +136,7 @@ def rates_of(
     """Estimate rates, see `rate`, without a warning."""
     xr = extra("xarray", "analysis")
     wanted = read_choice(outcome, "outcome", [*Outcome, _STOPPED])
-    level = real_number(confidence_level, "confidence_level")
-    if not 0.0 < level < 1.0:
-        raise ScenarioError("confidence_level", level, "must be between 0 and 1")
+    level = read_level(confidence_level, "confidence_level")
     counted = [str(each) for each in Outcome if each.is_stop] if wanted == _STOPPED else [wanted]
     if isinstance(table, xr.Dataset):
         runs = table

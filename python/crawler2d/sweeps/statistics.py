@@ -385,9 +385,9 @@ def read_counts(successes: int, count: int) -> tuple[int, int]:
     return whole_number(successes, "successes", 0, count), count
 
 
-def read_level(confidence: float) -> float:
-    """Check a confidence level."""
-    level = real_number(confidence, "confidence")
+def read_level(confidence: float, name: str = "confidence") -> float:
+    """Check a confidence level; `name` is that of the argument."""
+    level = real_number(confidence, name)
     if not 0.0 < level < 1.0:
-        raise ScenarioError("confidence", confidence, "must be between 0 and 1")
+        raise ScenarioError(name, confidence, "must be between 0 and 1")
     return level
