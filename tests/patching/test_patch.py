@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import _left, _summary, patch_file
+from crawler2d.patching.patch import _left, _summary, add_label, patch_file
 from crawler2d.writing.document import Document, spans_of
 from tests.reading.carts import (
     FILES,
@@ -291,3 +291,8 @@ def test_lengths_have_no_digits_of_rounding_and_inertias_every_bit() -> None:
         document = Document('<radius v="0.1"/>')
         document.multiply(document.root, [3.0], "v", is_exact=is_exact)
         assert document.text == f'<radius v="{expected}"/>'
+
+
+@pytest.mark.parametrize("label", ["a--b", "on a---b", "-----", "--"])
+def test_a_label_with_any_number_of_hyphens_leaves_the_file_well_formed(label: str) -> None:
+    assert ElementTree.fromstring(add_label("<robot/>", label)).tag == "robot"

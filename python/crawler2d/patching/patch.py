@@ -117,13 +117,13 @@ def add_label(text: str, label: str) -> str:
 
     Examples
     --------
-    >>> add_label("<?xml version='1.0'?>\n<robot/>", "five -- not four")
-    "<?xml version='1.0'?>\n<!-- five - - not four -->\n<robot/>"
+    >>> add_label("<?xml version='1.0'?>\n<robot/>", "five -- not four, on a---b")
+    "<?xml version='1.0'?>\n<!-- five - - not four, on a- - -b -->\n<robot/>"
     """
     declaration = re.match(r"\s*<\?xml.*?\?>\s*", text, re.DOTALL)
     end = declaration.end() if declaration else 0
     line = "\r\n" if "\r\n" in text else "\n"
-    return f"{text[:end]}<!-- {label.replace('--', '- -')} -->{line}{text[end:]}"
+    return f"{text[:end]}<!-- {re.sub('-(?=-)', '- ', label)} -->{line}{text[end:]}"
 
 
 def _edit(document: Document, changes: list[Change], tree: Tree) -> None:
