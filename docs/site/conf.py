@@ -102,6 +102,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "crawler2d"
 html_static_path = [str(HERE / "static")]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_show_sourcelink = False
 html_copy_source = False
 # Pages that have no others below them.
