@@ -178,7 +178,8 @@ def test_the_wheel_scrolls_the_page_until_a_picture_is_clicked(
 def test_headings_are_in_order(open_page: Open, repaired: str) -> None:
     page = open_page(repaired)
     levels = page.eval_on_selector_all("h1, h2, h3", "all => all.map(each => each.localName)")
-    assert levels == ["h1", *["h2"] * 5]
+    assert len(levels) > 5
+    assert levels == ["h1", *["h2"] * (len(levels) - 1)]
 
 
 def test_hostile_names_are_shown_and_do_nothing(open_page: Open, hostile: str) -> None:
