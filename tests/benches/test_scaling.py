@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from benches.scaling import plot, report, scenes
+from benches.scaling import measure, plot, report, scenes
 from benches.scaling.report import curves
 from benches.scaling.scenes import Point
 from benches.shared.measuring import write_parts
@@ -126,6 +126,13 @@ def test_slopes_are_exponents() -> None:
     ]
     (curve,) = curves(rows, "f")
     assert (curve.slope, curve.last_slope) == pytest.approx((1.5, 1.5))
+
+
+def test_threads_are_timed_by_what_other_processes_can_import() -> None:
+    """They import no `__main__` of a package."""
+    for job in (measure.run, measure.threads):
+        assert job.__module__ == "benches.scaling.measure"
+    assert [row["threads"] for row in measure.threads(2, 1, 1)][:1] == [1]
 
 
 def test_figures_are_light(tmp_path: Path) -> None:
