@@ -1,6 +1,6 @@
-// Names what folds the list of pages, which the theme leaves without a word for those who hear the page.
+// Labels the toggles of the list of pages for screen readers: the theme gives them no text.
 document.addEventListener("DOMContentLoaded", () => {
-  for (const fold of document.querySelectorAll("summary:has(.toctree-toggle)")) {
-    fold.setAttribute("aria-label", "pages below this one");
+  for (const toggle of document.querySelectorAll("summary:has(.toctree-toggle)")) {
+    toggle.setAttribute("aria-label", "pages below this one");
   }
 });
