@@ -36,18 +36,17 @@ impl Touch {
             let swing = self.swing(slip, state, model, (mount, &moved));
             let [opens, slides] = self.meeting.gains(swing).map(|gain| 0.5 * h * gain);
             (solved.normal.offset, solved.tangent.offset) = (opens, slides);
-            self.overrun = self.overrun(&moved);
+            self.rolled = self.rolled(&moved);
         }
     }
 
-    /// [m] How far the ground has fallen away below an arc that has rolled past the end of its face.
-    fn overrun(&self, moved: &Moved) -> f64 {
+    /// [m] How far an arc has rolled on its face since the middle of the step.
+    fn rolled(&self, moved: &Moved) -> f64 {
         let Meeting::Arc(radius) = self.meeting else {
             return 0.0;
         };
         let [_, along] = self.along(moved.way);
-        let way = along - radius * moved.of_part.sin();
-        self.face.below(radius, way)
+        along - radius * moved.of_part.sin()
     }
 
     /// Whether it pressed in the first solve or touches now.

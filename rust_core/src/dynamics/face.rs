@@ -5,73 +5,74 @@
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
-use std::f64::consts::FRAC_PI_2;
-
+use super::Dynamics;
+use super::meeting::Meeting;
 use crate::contact::Contact;
-use crate::geometry::{Vector, cross, right_of};
+use crate::geometry::{Vector, right_of};
 use crate::terrain::Profile;
 
-/// What is left of a face on either side of a point, backwards and forwards along the tangent.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
-    /// [m] The way to its end.
-    left: [f64; 2],
-    /// [rad] The angle by which the ground turns down there; 0 where it turns up.
-    bend: [f64; 2],
-}
-
-impl Default for Face {
-    /// One without an end.
-    fn default() -> Self {
-        Self {
-            left: [f64::INFINITY; 2],
-            bend: [0.0; 2],
-        }
+impl Dynamics {
+    /// [m] How far the ground is, at the end of the step with these contacts, below an arc that has rolled past the end of
+    /// its face.
+    pub(crate) fn overrun(&self, contacts: &[Contact], lanes: &[Profile]) -> f64 {
+        let touches = self.touches.iter().zip(contacts);
+        let gaps = touches.filter_map(|(touch, contact)| match touch.meeting {
+            Meeting::Arc(far) if touch.rolled != 0.0 => {
+                let radius = far - 0.5 * contact.distance;
+                let lane = &lanes[self.model.parts[contact.part].lane];
+                Some(gap_below(contact, lane, radius, touch.rolled))
+            }
+            _ => None,
+        });
+        gaps.fold(0.0, f64::max)
     }
 }
 
-impl Face {
-    /// The one that a contact on no edge is on.
-    pub(super) fn of(contact: &Contact, lane: &Profile) -> Self {
-        let (points, facet) = (&lane.points, contact.facet);
-        let along = right_of(contact.normal);
-        let way = |point: Vector| (point - contact.point).dot(along);
-        let way_of = |from: usize, to: usize| points[to] - points[from];
-        let direction = way_of(facet, facet + 1);
-        let down = |next: Vector, sign: f64| {
-            (sign * libm::atan2(cross(direction, next), direction.dot(next))).max(0.0)
-        };
-        Self {
-            left: [-way(points[facet]), way(points[facet + 1])],
-            bend: [
-                if facet > 0 {
-                    down(way_of(facet - 1, facet), 1.0)
-                } else {
-                    0.0
-                },
-                if facet + 2 < points.len() {
-                    down(way_of(facet + 1, facet + 2), -1.0)
-                } else {
-                    0.0
-                },
-            ],
+/// [m] The gap below an arc that has rolled by `way` [m] along the tangent, at the height of the face that its contact
+/// is on.
+fn gap_below(contact: &Contact, lane: &Profile, radius: f64, way: f64) -> f64 {
+    let bends = lane.bends();
+    let face = bends.partition_point(|&bend| bend as usize <= contact.facet) - 1;
+    // Bends and faces are counted from this face on, in the direction of the way.
+    let bend = |k: usize| {
+        let i = if way > 0.0 { face + k } else { face + 1 - k };
+        lane.points[bends[i] as usize]
+    };
+    let count = if way > 0.0 {
+        bends.len() - 1 - face
+    } else {
+        face + 1
+    };
+    let along = right_of(contact.normal);
+    let foot = contact.point - contact.normal * (0.5 * contact.distance);
+    let center = foot + contact.normal * radius + along * way;
+    let ahead = |k: usize| (bend(k) - center).dot(along) * way.signum();
+    let below = (0..count).find(|&k| ahead(k + 1) > 0.0);
+    let below = below.unwrap_or(count - 1);
+    let gap = |k: usize| distance(center, [bend(k), bend(k + 1)]) - radius;
+    // Ground that is no higher than the face, and is farther away along it, has a larger gap.
+    let reach = |gap: f64| (gap.max(0.0) * (2.0 * radius + gap)).sqrt();
+    let mut least = gap(below);
+    for k in (0..below).rev() {
+        if -ahead(k + 1) > reach(least) {
+            break;
         }
+        least = least.min(gap(k));
     }
+    for k in below + 1..count {
+        if ahead(k) > reach(least) {
+            break;
+        }
+        least = least.min(gap(k));
+    }
+    least
+}
 
-    /// [m] The gap below an arc that has rolled by `way` [m] at the height of the face.
-    pub(super) fn below(&self, radius: f64, way: f64) -> f64 {
-        let end = usize::from(way > 0.0);
-        let (past, bend) = (way.abs() - self.left[end], self.bend[end]);
-        if past <= 0.0 {
-            return 0.0;
-        }
-        // Over the corner, or over the next face.
-        if past < radius * libm::tan(bend.min(FRAC_PI_2)) {
-            libm::hypot(past, radius) - radius
-        } else {
-            past * bend.sin() - radius * (1.0 - bend.cos())
-        }
-    }
+/// [m] From a point to the segment between two others.
+fn distance(point: Vector, [a, b]: [Vector; 2]) -> f64 {
+    let (side, to_point) = (b - a, point - a);
+    let share = to_point.dot(side) / side.dot(side);
+    (to_point - side * share.clamp(0.0, 1.0)).length()
 }
 
 #[cfg(test)]
@@ -83,8 +84,9 @@ mod tests {
 
     const RADIUS: f64 = 0.05;
 
-    /// On a level face after one that falls by 0.2 rad, 3 mm before one that falls by `bend` [rad].
-    fn before_a_corner(bend: f64) -> Face {
+    /// [m] The gap below an arc that has rolled by `way` on a level face after one that falls by 0.2 rad, from 3 mm before
+    /// one that falls by `bend` [rad].
+    fn below(bend: f64, way: f64) -> f64 {
         let slope = |angle: f64| Vector::new(angle.cos(), angle.sin());
         let middle = Vector::new(0.1, 0.0);
         let points = [-slope(-0.2), Vector::ZERO, middle, middle + slope(-bend)];
@@ -92,21 +94,20 @@ mod tests {
         let lane = Profile::new("terrain", &points, Surface::sharp(0.5), true).expect("a profile");
         let point = middle - Vector::new(0.003, 0.0);
         let contact = Contact::new(0, (1, -1), (point, Vector::Y), 0.0);
-        Face::of(&contact, &lane)
+        gap_below(&contact, &lane, RADIUS, way)
     }
 
     #[test]
     fn a_wheel_on_its_face_is_on_the_ground() {
-        let face = before_a_corner(0.7);
         for way in [-0.09, 0.0, 0.0029] {
-            assert!(face.below(RADIUS, way) <= 0.0);
+            assert_relative_eq!(below(0.7, way), 0.0, epsilon = 1e-15);
         }
     }
 
     #[test]
     fn past_its_end_the_ground_is_a_corner_and_then_the_next_face() {
         let (bend, past) = (0.1_f64, [0.001, 0.02]);
-        let [corner, slope] = past.map(|past| before_a_corner(bend).below(RADIUS, 0.003 + past));
+        let [corner, slope] = past.map(|past| below(bend, 0.003 + past));
         assert_relative_eq!(
             corner,
             (0.001_f64.powi(2) + RADIUS * RADIUS).sqrt() - RADIUS,
@@ -117,9 +118,22 @@ mod tests {
         assert_relative_eq!(slope, center.dot(normal) - RADIUS, max_relative = 1e-9);
     }
 
+    /// An arc that left one fine piece behind would hang over the next that falls.
+    #[test]
+    fn ground_in_fine_pieces_is_straight() {
+        let points: Vec<[f64; 2]> = (0..=2000)
+            .map(|i| [1e-4 * f64::from(i), 1e-7 * f64::from(i % 2)])
+            .collect();
+        let lane = Profile::new("terrain", &points, Surface::sharp(0.5), true).expect("a profile");
+        for way in [-0.02, 0.02] {
+            let contact = Contact::new(0, (1001, -1), (Vector::new(0.1, 0.0), Vector::Y), 0.0);
+            assert!(gap_below(&contact, &lane, RADIUS, way) < 2e-7);
+        }
+    }
+
     #[test]
     fn ground_that_rises_does_not_fall_away() {
-        assert!(before_a_corner(-0.3).below(RADIUS, 0.02) <= 0.0);
-        assert!(before_a_corner(0.7).below(RADIUS, -0.2) <= 0.0);
+        assert!(below(-0.3, 0.02) <= 0.0);
+        assert!(below(0.7, -0.2) <= 0.0);
     }
 }

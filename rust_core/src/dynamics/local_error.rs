@@ -17,9 +17,9 @@ const OF_SHOES: f64 = 0.1;
 
 impl Dynamics {
     /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest of any point of the robot, whose
-    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; how deep
-    /// a tip dips into the ground; and how far the ground is below an arc that has rolled past the end of its face.
-    pub(crate) fn local_error(&self, before: &State, after: &State, h: f64, reach: f64) -> f64 {
+    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; and how deep
+    /// a tip dips into the ground.
+    pub(crate) fn local_error(&self, [before, after]: [&State; 2], h: f64, reach: f64) -> f64 {
         let moved = &self.moved;
         let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;
         let off_twist = |ends: [Twist; 2], middle: Twist| Twist {
@@ -52,7 +52,7 @@ impl Dynamics {
             most = most.max(OF_SHOES * (off.velocity.length() + half_pitch * off.turn.abs()));
         }
         let contacts = self.touches.iter().zip(&self.problem.contacts);
-        let dips = contacts.map(|(touch, solved)| touch.dip(solved).max(touch.overrun));
+        let dips = contacts.map(|(touch, solved)| touch.dip(solved));
         dips.fold(h * most, f64::max)
     }
 }

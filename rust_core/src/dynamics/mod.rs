@@ -40,10 +40,8 @@ use arm::Arm;
 pub use arm::FlipperCommand;
 use build::built;
 use chain::Chain;
-use face::Face;
 use forces::Forces;
 use identity::{Identity, Numbered};
-use meeting::Meeting;
 use softness::Softness;
 use touch::{Start, Touch};
 
@@ -52,7 +50,7 @@ use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
 use crate::solver::{Effort, Problem};
-use crate::terrain::{GroundFriction, Profile};
+use crate::terrain::GroundFriction;
 
 use crate::units::Seconds;
 pub use chains::ChainReading;
@@ -204,15 +202,6 @@ impl Dynamics {
             problem.contacts.push(solved);
         }
         self.rest_on_guides(state, half, travel);
-    }
-
-    /// Tells the prepared step where the faces end on which arcs roll.
-    pub(crate) fn bound_faces(&mut self, contacts: &[Contact], lanes: &[Profile]) {
-        let touches = self.touches.iter_mut().zip(contacts);
-        for (touch, contact) in touches.filter(|(t, _)| matches!(t.meeting, Meeting::Arc(_))) {
-            let lane = self.model.parts[contact.part].lane;
-            touch.face = Face::of(contact, &lanes[lane]);
-        }
     }
 
     /// Advances the state by the prepared step of `h` [s], in which something may strike the ground; fails with the time [s]

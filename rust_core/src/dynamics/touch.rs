@@ -2,7 +2,6 @@
 //!
 //! The equations: docs/physics.md, "Softness".
 
-use super::face::Face;
 use super::levers::{Levers, Place};
 use super::meeting::Meeting;
 use super::softness::Softness;
@@ -75,10 +74,8 @@ pub(super) struct Touch {
     pub meeting: Meeting,
     /// Its point in the middle of the step.
     pub middle: Place,
-    /// The face on which an arc rolls, if it is on one.
-    pub face: Face,
-    /// [m] How far the ground has fallen away below an arc that has left its face within the step.
-    pub overrun: f64,
+    /// [m] How far an arc has rolled on its face since the middle of the step.
+    pub rolled: f64,
     /// Whether it closes in a step in which something strikes the ground.
     pub strikes: bool,
     /// Index among the shoe's rests.

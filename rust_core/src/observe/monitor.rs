@@ -149,11 +149,13 @@ impl Monitor {
         if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor {
             return Some(Outcome::LeftTerrain);
         }
-        let level = (now.chassis_angle - self.ground.angle_at(now.position.x)).abs()
-            < self.criteria.clear_angle;
+        let is_level = || {
+            let angle = now.chassis_angle - self.ground.angle_at(now.position.x);
+            angle.abs() < self.criteria.clear_angle
+        };
         let beyond = self.beyond(rear);
         let before = std::mem::replace(&mut self.observed.beyond, beyond);
-        if beyond > 0.0 && level {
+        if beyond > 0.0 && is_level() {
             // It has passed the goal within the step.
             let over = beyond / (beyond - before.min(0.0));
             let since = *self.observed.goal_since.get_or_insert(now.time - over * dt);

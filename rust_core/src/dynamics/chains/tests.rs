@@ -63,7 +63,7 @@ fn a_chain_that_whirls_in_the_air_keeps_momentum_and_energy_to_second_order() {
             assert!((now.0 - before.0).length() < 1e-12 * before.0.length());
             turned = turned.max((now.1 / before.1 - 1.0).abs());
             energy = energy.max((now.2 / before.2 - 1.0).abs());
-            estimate = estimate.max(dynamics.local_error(&last, &state, h, 0.0));
+            estimate = estimate.max(dynamics.local_error([&last, &state], h, 0.0));
         }
         losses.push([turned, energy, estimate]);
     }

@@ -118,8 +118,12 @@ impl Simulation {
         if !attempt.state.is_finite() {
             return f64::INFINITY;
         }
-        self.dynamics
-            .local_error(&self.state, &attempt.state, attempt.length, self.reach)
+        let states = [&self.state, &attempt.state];
+        let error = self
+            .dynamics
+            .local_error(states, attempt.length, self.reach);
+        let overrun = (self.dynamics).overrun(&attempt.contacts, &self.ground.lanes);
+        error.max(overrun)
     }
 
     /// Attempts a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the
@@ -225,7 +229,6 @@ impl Simulation {
         let push = self.commands.push.at(self.time + half);
         self.dynamics.outer_force = Vector::new(push, 0.0);
         self.dynamics.prepare(&self.state, contacts, (h, travel));
-        self.dynamics.bound_faces(contacts, &self.ground.lanes);
         travel
     }
 
