@@ -33,9 +33,8 @@ _SMALL = c2d.CircumferentialWheels(24, wheel_radius=0.016)
 _TIP_THICKNESS = 1e-3
 
 # [s] 4 m at 0.4 m/s, including the acceleration; over the step and beyond.
-_DURATIONS = {FLAT: 11.0, STEP: 6.0}
-# [s] On ground in pieces, where each step may be expensive.
-_SHORT = 2.0
+# Long enough on ground in pieces that what a new simulation has to fetch into the caches counts little.
+_DURATIONS = {FLAT: 11.0, STEP: 6.0, CUT: 11.0, BLOCKS: 6.0}
 
 # [m] Extent of the ground in pieces.
 _GROUND = (-1.0, 5.0)
@@ -104,16 +103,16 @@ def _pieces() -> Iterator[Point]:
         "belt": c2d.BeltTrack(),
     }
     for name, track in tracks.items():
-        whole = _on(track, c2d.terrains.from_points([(x, 0.0) for x in _GROUND], goal=0.0))
+        whole = _on(track, c2d.terrains.from_points([(x, 0.0) for x in _GROUND], goal=0.0), CUT)
         yield Point("points", CUT, name, 1, whole)
         for count in PIECES:
-            yield Point("points", CUT, name, count, _on(track, flat(count, JITTER)))
-        level = _on(track, flat(PIECES[-1], 0.0))
+            yield Point("points", CUT, name, count, _on(track, flat(count, JITTER), CUT))
+        level = _on(track, flat(PIECES[-1], 0.0), CUT)
         yield Point("points", CUT, f"{name}, {LEVEL}", PIECES[-1], level)
     for name, track in tracks.items():
         # Ten pieces are too few for the blocks.
         for count in PIECES[1:]:
-            yield Point("points", BLOCKS, name, count, _on(track, blocks(count)))
+            yield Point("points", BLOCKS, name, count, _on(track, blocks(count), BLOCKS))
 
 
 def _accuracies() -> Iterator[Point]:
@@ -168,9 +167,9 @@ def _ground(x: NDArray[np.float64], y: NDArray[np.float64], jitter: float, seed:
 
 def _over(track: Track, panel: str) -> Scenario:
     terrain = c2d.terrains.flat() if panel == FLAT else c2d.terrains.step(0.05)
-    return _on(track, terrain, _DURATIONS[panel])
+    return _on(track, terrain, panel)
 
 
-def _on(track: Track, terrain: Lane, duration: float = _SHORT) -> Scenario:
+def _on(track: Track, terrain: Lane, panel: str) -> Scenario:
     robot = study_robot(track=track)
-    return Scenario(robot, terrain, duration=duration)
+    return Scenario(robot, terrain, duration=_DURATIONS[panel])
