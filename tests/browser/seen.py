@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Frame, Page
 
 # The pixels of a copy: a canvas that is read itself is drawn by other means from then on.
@@ -17,6 +18,8 @@ CHECKSUM = f"canvas => ({PIXELS})(canvas).reduce((sum, p) => (Math.imul(sum, 31)
 # Two frames later everything asked for is drawn.
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
+RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
+
 Open = Callable[..., Page]
 
 
@@ -28,3 +31,15 @@ def checksum(page: Page | Frame, canvas: str = "#scene") -> int:
 def clock(page: Page | Frame) -> float:
     page.evaluate(DRAWN)
     return float(page.inner_text("#clock").split(" / ")[0])
+
+
+def violations(page: Page) -> list[str]:
+    """Run axe on a page with everything in it open."""
+    page.eval_on_selector_all("details", "all => all.forEach(each => each.open = true)")
+    page.evaluate(DRAWN)
+    found = Axe().run(page, options=RULES).response["violations"]
+    return [
+        f"{rule['id']}: {node['html'][:120]}: {node.get('failureSummary', '')}"
+        for rule in found
+        for node in rule["nodes"]
+    ]

@@ -1,15 +1,13 @@
 """Pages keep the rules of WCAG 2.2 AA that axe can see, and the keyboard reaches every control."""
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page
 
 import crawler2d as c2d
 from crawler2d.commands.demo import demo_page, demo_runs
 from tests.audits.seizing import QUIET, SEIZING, STEP
-from tests.browser.seen import DRAWN, Open
+from tests.browser.seen import Open, violations
 
-RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
 STEPS = 200
 """Times that Tab is pressed, at most."""
 
@@ -19,18 +17,6 @@ def pages() -> dict[str, str]:
     runs = demo_runs()
     found = c2d.audit(SEIZING, STEP, unknown={}, repeats=10, **QUIET)
     return {"replay": runs[0].to_html(), "demo": demo_page(runs), "audit": found.to_html()}
-
-
-def violations(page: Page) -> list[str]:
-    """Run axe on a page with everything in it open."""
-    page.eval_on_selector_all("details", "all => all.forEach(each => each.open = true)")
-    page.evaluate(DRAWN)
-    found = Axe().run(page, options=RULES).response["violations"]
-    return [
-        f"{rule['id']}: {node['html'][:120]}: {node.get('failureSummary', '')}"
-        for rule in found
-        for node in rule["nodes"]
-    ]
 
 
 def reached(page: Page) -> list[str]:
