@@ -186,7 +186,9 @@ test-wheel: wheel ## the wheel in a fresh environment without a compiler
 	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check --only-binary :all: "$$(ls dist/*.whl)[models,plot,analysis,sensitivity]" ipykernel nbclient
 	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin python $(CURDIR)/tests/fresh_wheel.py
 	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check uv
-	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin UV_CACHE_DIR=cache uvx --quiet --from "$$(ls $(CURDIR)/dist/*.whl)" crawler2d demo
+	@# What uv installs starts by a script of the shell; and by itself uv takes no interpreter of a virtual environment.
+	ln -sf "$$(command -v realpath)" "$$(command -v dirname)" $(VENV)/fresh/bin/
+	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin UV_CACHE_DIR=cache uvx --quiet --python "$$(bin/python -c 'import sys; print(sys._base_executable)')" --from "$$(ls $(CURDIR)/dist/*.whl)" crawler2d demo
 
 tools:
 	@if [ -z "$(PYTHON)" ]; then \
