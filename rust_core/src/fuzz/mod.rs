@@ -76,4 +76,38 @@ mod tests {
     fn every_kept_scenario_steps_to_numbers() {
         replay("run", run);
     }
+
+    /// Changes the shared scenarios, and what came of them; counts those that are accepted.
+    fn accepted_of(seeds: std::ops::Range<u32>) -> u32 {
+        let mut texts = TEXTS.map(|text| text.as_bytes().to_vec());
+        let mut accepted = 0;
+        for seed in seeds {
+            let place = seed as usize % TEXTS.len();
+            let text = mutated(&texts[place], seed).expect("it is JSON");
+            if scenario::accepted(&text).is_some() {
+                accepted += 1;
+                texts[place] = text;
+            }
+            // Changes upon changes lead far, but most of them to the same places.
+            if seed.is_multiple_of(97) {
+                texts[place] = TEXTS[place].as_bytes().to_vec();
+            }
+        }
+        accepted
+    }
+
+    #[test]
+    fn changed_scenarios_survive_or_are_refused() {
+        let is_soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
+        let (threads, each) = if is_soak { (2, 2_500_000) } else { (1, 3_000) };
+        let accepted: u32 = std::thread::scope(|scope| {
+            let run = |i| scope.spawn(move || accepted_of(i * each..(i + 1) * each));
+            let all: Vec<_> = (0..threads).map(run).collect();
+            all.into_iter()
+                .map(|one| one.join().expect("no rule is broken"))
+                .sum()
+        });
+        println!("{accepted} accepted of {}", threads * each);
+        assert!(accepted > threads * each / 20);
+    }
 }
