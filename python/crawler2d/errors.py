@@ -110,7 +110,7 @@ class ScenarioError(Crawler2dError, ValueError):
 
 
 class ArgumentError(ScenarioError, TypeError):
-    """A function or class was called with a keyword that it does not take.
+    """A function or class was called with an unknown keyword, or without one that is needed.
 
     The rule lists those that it takes, and suggests the nearest.
 

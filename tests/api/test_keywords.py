@@ -1,4 +1,4 @@
-"""Keywords that do not exist: refused at once, with the nearest that does."""
+"""Keywords that do not exist or are left out: refused at once, with those that do exist."""
 
 import inspect
 import pickle
@@ -71,6 +71,30 @@ def test_a_misspelt_keyword_is_answered_with_the_nearest(function: Callable[...,
 def test_the_radius_of_a_wheel_is_found_by_half_its_name() -> None:
     with pytest.raises(ArgumentError, match=r"\(did you mean wheel_radius\?\)"):
         c2d.LineOfWheels(4, radius=0.06)  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "place", "names"),
+    [
+        (c2d.Drive, (0.8,), "argument 1 of Drive", "speed, schedule, gait"),
+        (c2d.LineOfWheels, (4, 0.06), "argument 2 of LineOfWheels", "wheel_radius, wheel"),
+        (c2d.robots.engineer, (None,), "argument 1 of engineer", "flippers, track"),
+        (c2d.Robot.simple, (20.0, 0.4), "argument 2 of Robot.simple", "axle_distance, radius"),
+    ],
+    ids=["class", "second", "function", "classmethod"],
+)
+def test_an_argument_that_needs_a_keyword_is_answered_with_the_keywords(
+    function: Callable[..., Any], arguments: tuple[Any, ...], place: str, names: str
+) -> None:
+    with pytest.raises(ArgumentError, match=rf"must be given by keyword, got .*{names}") as caught:
+        function(*arguments)
+    assert caught.value.path == place
+
+
+def test_an_argument_too_many_for_which_there_is_no_keyword_is_left_to_python() -> None:
+    belt: Callable[..., Any] = c2d.BeltTrack
+    with pytest.raises(TypeError, match="takes 1 positional argument but 2 were given"):
+        belt(0.06)
 
 
 @pytest.mark.parametrize(

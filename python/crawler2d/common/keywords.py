@@ -1,4 +1,4 @@
-"""Refusal of unknown keywords, with a suggestion of the nearest known one."""
+"""Refusal of unknown keywords, with a suggestion of the nearest, and of arguments without one."""
 
 from __future__ import annotations
 
@@ -122,15 +122,32 @@ def refuse_unknown(
             raise ArgumentError(name, value, f"must be a known keyword: {listed}{hint}")
 
 
+def _refuse_nameless(called: str, given: Sequence[object], function: FunctionType) -> None:
+    """Refuse an argument without a keyword where one is needed, with the keywords that there are.
+
+    What takes no further keywords either is left to Python's own error.
+    """
+    code = function.__code__
+    most = code.co_argcount
+    if len(given) <= most or code.co_flags & inspect.CO_VARARGS:
+        return
+    bound = code.co_varnames[:1] in (("self",), ("cls",))
+    if known := (_keyword_names(function) or ())[most - bound :]:
+        rule = f"must be given by keyword: {called} takes {', '.join(known)}"
+        raise ArgumentError(f"argument {most + 1 - bound} of {called}", given[most], rule)
+
+
 def takes_keywords(function: Callable[P, R]) -> Callable[P, R]:
     """Let a function refuse unknown keywords with the nearest known name."""
     known = _keyword_names(cast("FunctionType", function))
     if known is None:
         return function
-    name, refuse = function.__qualname__, refuse_unknown
+    name, refuse, refuse_nameless = function.__qualname__, refuse_unknown, _refuse_nameless
+    inner = cast("FunctionType", function)
 
     def call(*args: P.args, **keywords: P.kwargs) -> R:
         refuse(name, keywords, known)
+        refuse_nameless(name, args, inner)
         return function(*args, **keywords)
 
     # With the globals of the function: by them doctest finds the module of the examples.
@@ -143,11 +160,13 @@ class TakesKeywords:
 
     __slots__ = ()
 
-    def __new__(cls, *_: Any, **keywords: Any) -> Self:
+    def __new__(cls, *arguments: Any, **keywords: Any) -> Self:
         """Check the keywords; `__init__` takes them."""
+        made_by = cast("FunctionType", cls.__init__)
         if keywords:
-            known = _keyword_names(cast("FunctionType", cls.__init__)) or ()
-            refuse_unknown(cls.__name__, keywords, known)
+            refuse_unknown(cls.__name__, keywords, _keyword_names(made_by) or ())
+        if arguments:
+            _refuse_nameless(cls.__name__, (cls, *arguments), made_by)
         return object.__new__(cls)
 
 
@@ -156,7 +175,7 @@ def _keyword_names(function: FunctionType) -> tuple[str, ...] | None:
     code = function.__code__
     named = code.co_argcount + code.co_kwonlyargcount
     names = code.co_varnames[code.co_posonlyargcount : named]
-    names = tuple(name for name in names if name != "self")
+    names = tuple(name for name in names if name not in ("self", "cls"))
     if not code.co_flags & inspect.CO_VARKEYWORDS:
         return names
     rest = code.co_varnames[named + bool(code.co_flags & inspect.CO_VARARGS)]
