@@ -135,7 +135,9 @@ def test_what_cannot_be_varied_is_refused(base: c2d.Scenario, ranges: Any, path:
 
 
 def test_a_misspelt_name_is_answered_with_the_nearest_path() -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"did you mean terrain\.height\?"):
+    with pytest.raises(
+        c2d.ScenarioError, match=r"got \(0\.02, 0\.15\) \(did you mean terrain\.height\?\)"
+    ):
         c2d.explore(BASE, hight=(0.02, 0.15))
 
 

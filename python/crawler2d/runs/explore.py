@@ -64,19 +64,20 @@ def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
     scenario = check_scenario(scenario)
     if not ranges:
         raise ScenarioError("ranges", None, "must have at least one, such as height=(0.02, 0.15)")
-    paths = {_path(scenario, name): bounds for name, bounds in ranges.items()}
+    paths = {_path(scenario, name, bounds): bounds for name, bounds in ranges.items()}
     return Explorer(scenario, {path: read_range(each, path) for path, each in paths.items()})
 
 
-def _path(scenario: Scenario, name: str) -> str:
-    """Find the path of a number by its last part."""
+def _path(scenario: Scenario, name: str, given: object) -> str:
+    """Find the path of a number by its last part; errors show what was given for it."""
     known = list(known_paths(scenario))
     found = [name] if "." in name else [p for p in known if p.rpartition(".")[2] == name]
     if not found:
         hint = suggestion(name, [], known)
-        raise ScenarioError(name, None, f"must be the name of a number of the scenario{hint}")
+        raise ScenarioError(name, given, f"must be the name of a number of the scenario{hint}")
     if len(found) > 1:
-        raise ScenarioError(name, None, f"must be one of them, by its path: {', '.join(found)}")
+        rule = f"must be given by the path of one of them: {', '.join(found)}"
+        raise ScenarioError(name, given, rule)
     if type(read_path(scenario, found[0])) not in (int, float):
         raise ScenarioError(found[0], read_path(scenario, found[0]), "must be a number to vary")
     return found[0]
