@@ -327,10 +327,20 @@ def test_a_table_has_columns_rows_and_a_short_repr(run: c2d.Run) -> None:
     assert bool(table)
     assert not Table({"x": []})
     assert repr(run.edges) == "Table(2 rows: id, lane, x, y, angle, radius)"
-    with pytest.raises(KeyError):
-        table["height"]
+    assert "height" not in table
     with pytest.raises(ValueError, match="read-only"):
         table["x"][0] = 0.0
+
+
+def test_a_misspelt_column_or_metric_is_answered_with_the_nearest(run: c2d.Run) -> None:
+    with pytest.raises(KeyError, match=r"tiem \(did you mean time\?\)"):
+        run.contacts["tiem"]
+    with pytest.raises(KeyError, match=r"time_to_claer \(did you mean time_to_clear\?\)"):
+        run.metrics["time_to_claer"]
+    assert run.contacts.get("tiem") is None
+    assert run.metrics.get("time_to_claer") is None
+    with pytest.raises(KeyError, match=r"^0$"):
+        run.contacts[0]  # type: ignore[index]
 
 
 def test_a_table_shows_its_first_rows_in_a_notebook() -> None:

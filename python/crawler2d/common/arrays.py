@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from crawler2d.common.extras import extra
+from crawler2d.common.keywords import suggestion
 from crawler2d.common.units import RENAMED_METRICS
 from crawler2d.errors import ScenarioError
 
@@ -56,6 +57,11 @@ def _owned_by_core(owner: object) -> bool:
     return False
 
 
+def _unknown(name: object, known: Iterable[str]) -> KeyError:
+    """Make the error for a name that is not there, with the nearest that is."""
+    return KeyError(f"{name}{suggestion(name, known)}" if isinstance(name, str) else name)
+
+
 class Metrics(dict[str, float]):
     """A read-only dict of figures by name.
 
@@ -71,10 +77,10 @@ class Metrics(dict[str, float]):
     __slots__ = ()
 
     def __missing__(self, name: str) -> float:
-        """Look up the former name of a metric, with a warning."""
+        """Look up the former name of a metric, with a warning, or suggest the nearest name."""
         now = RENAMED_METRICS.get(name)
         if now is None or now not in self:
-            raise KeyError(name)
+            raise _unknown(name, self)
         warnings.warn(
             f"the metric {name!r} is called {now!r} now", DeprecationWarning, stacklevel=2
         )
@@ -84,10 +90,8 @@ class Metrics(dict[str, float]):
 
         def get(self, name: str, default: Any = None, /) -> Any:
             """Look up a metric, also by a former name."""
-            try:
-                return self[name]
-            except KeyError:
-                return default
+            known = name in self or RENAMED_METRICS.get(name) in self
+            return self[name] if known else default
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
         """Raise, and say why."""
@@ -318,8 +322,11 @@ class Table(Mapping[str, "NDArray[Any]"]):
         return self._frozen
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Return one column, shape (n,)."""
-        return self._columns[name]
+        """Return one column, shape (n,); the error for an unknown name suggests the nearest."""
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise _unknown(name, self._columns) from None
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names of the columns."""
