@@ -47,6 +47,13 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
         assert found[name].attrs == {"units": "1", "long_name": long_name}
 
 
+def test_rates_keep_the_scenario_and_the_build_of_their_runs() -> None:
+    origin = {"scenario": "{}", "build_version": "0.1.0", "build_build_id": "ab"}
+    found = rate(TABLE.assign_attrs(origin, reference="belt"))
+    assert {name: found.attrs[name] for name in origin} == origin
+    assert "reference" not in found.attrs
+
+
 def test_any_outcome_can_be_counted() -> None:
     assert rate(TABLE, "seized")["rate"].values[:2].tolist() == [1 / 4, 0.0]
     assert rate(TABLE, c2d.Outcome.TIPPED_OVER)["rate"].sel(height=0.1) == pytest.approx(1 / 3)

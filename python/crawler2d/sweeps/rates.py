@@ -95,6 +95,7 @@ def rate(
         band includes the scatter of few repeats: each of its rates has its own interval.
 
         The attributes `varied` and `unknown` name the populations; a rate without them says little.
+        `scenario` and those that begin with `build_` are the table's.
 
     Raises
     ------
@@ -184,8 +185,14 @@ def rates_of(
             "interval": "Wilson",
             "varied": runs.attrs.get("vary", ""),
             "unknown": runs.attrs.get("unknown", ""),
+            **{name: value for name, value in runs.attrs.items() if _says_origin(str(name))},
         },
     )
+
+
+def _says_origin(attribute: str) -> bool:
+    """Whether an attribute of a table says what its runs came from: scenario and build."""
+    return attribute == "scenario" or attribute.startswith("build_")
 
 
 def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str], list[str]]:
