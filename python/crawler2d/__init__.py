@@ -194,8 +194,9 @@ if not TYPE_CHECKING:  # mypy would accept any name
 
 
 def __dir__() -> list[str]:
-    """List all public names, imported or not."""
-    return sorted({*globals(), *__all__})
+    """List all public names, imported or not, for completion."""
+    own = (name for name in globals() if name.startswith("__"))
+    return sorted({*own, *__all__, *_LAZY, "errors"})
 
 
 if build_info()["profile"] == "debug":

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from types import ModuleType
 
 import pytest
 
@@ -45,6 +46,19 @@ assert callable(crawler2d.compare)
 assert callable(crawler2d.sweep)
 assert callable(crawler2d.robots.engineer)
 """
+
+
+@pytest.mark.parametrize(
+    "module",
+    [c2d.terrains, c2d.robots, c2d.samples, c2d.unknowns, c2d.variability, c2d.studies, c2d.envs],
+    ids=lambda module: module.__name__,
+)
+def test_completion_offers_what_is_public_and_nothing_else(module: ModuleType) -> None:
+    assert dir(module) == sorted(module.__all__)
+
+
+def test_completion_of_the_package_offers_its_errors_and_environments_too() -> None:
+    assert {each for each in dir(c2d) if each[0] != "_"} == {*c2d.__all__, "envs", "errors"}
 
 
 def python(program: str, **environment: str) -> str:

@@ -29,6 +29,12 @@ from crawler2d.envs.policy_audit import audit_policy
 
 __all__ = ["FlipperEnv", "FlipperVectorEnv", "audit_policy"]
 
+
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)
+
+
 _IDS = {"FlipperClimb-v0": "flipper_climb", "StepField-v0": "step_field"}
 """Names of the scenarios, by id."""
 

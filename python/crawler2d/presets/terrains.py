@@ -48,6 +48,12 @@ __all__ = [
     "stepfield_with_barrier",
 ]
 
+
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)
+
+
 flat = Flat
 step = Step
 ramp = Ramp

@@ -33,6 +33,12 @@ __all__ = [
     "of_robot",
 ]
 
+
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)
+
+
 Range = tuple[Distribution, str]
 
 # [s] In which its rated torque brings a bare rotor up to no-load speed. Gears do not change it, and

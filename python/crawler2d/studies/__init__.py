@@ -51,3 +51,8 @@ __all__ = [
     "success",
     "what_decides",
 ]
+
+
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)

@@ -22,6 +22,11 @@ from crawler2d.variation.distributions import Ranges, scaled, shifted, uniform_i
 __all__ = ["of_contact", "of_field", "of_start"]
 
 
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)
+
+
 def of_start() -> Ranges:
     """Vary where the robot meets the obstacle: its approach, and the phase of its track.
 

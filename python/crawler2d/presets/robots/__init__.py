@@ -9,3 +9,8 @@ from crawler2d.presets.robots.engineer import engineer
 from crawler2d.presets.robots.gazebo import absolem, gz_tracked_vehicle, marv
 
 __all__ = ["absolem", "engineer", "gz_tracked_vehicle", "marv"]
+
+
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)

@@ -12,6 +12,12 @@ from crawler2d.common.keywords import read_choice
 
 __all__ = ["names", "path"]
 
+
+def __dir__() -> list[str]:
+    """List what is public, for completion."""
+    return sorted(__all__)
+
+
 _NAMES = ("rover.sdf", "rover.urdf", "rover.xml")
 
 
