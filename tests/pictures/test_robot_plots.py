@@ -155,6 +155,15 @@ def test_the_height_of_an_obstacle_can_be_read(terrain: Any, told: str | None) -
     assert heights == ([] if told is None else [told])
 
 
+@pytest.mark.parametrize("level", [0.3, -0.3])
+def test_the_height_at_the_right_end_of_a_view_is_inside_of_it(level: float) -> None:
+    slope = c2d.terrains.from_points([(-2.0, 0.0), (0.0, 0.0), (3.0, level)], goal=0.5)
+    ax = c2d.Scenario(ROBOT, slope).plot()
+    ax.figure.canvas.draw()
+    (label,) = (each for each in ax.texts if each.get_text().endswith(" m"))
+    assert label.get_window_extent().x1 < ax.get_window_extent().x1
+
+
 def test_both_are_drawn_into_the_axes_they_are_given() -> None:
     _, (one, other) = plt.subplots(1, 2)
     assert ROBOT.plot(one) is one

@@ -49,6 +49,8 @@ _THIN: Any = {"color": _COLOR, "linestyle": "-", "linewidth": 0.4, "zorder": 1.8
 _ARROW = {"color": _COLOR, "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 7}
 # [point] From a line to its label.
 _OFFSET = 3.0
+# [-] Of a view: its end, where a label beside or over a line would not fit.
+_LABEL = 0.06
 
 
 class Canvas:
@@ -272,11 +274,15 @@ def draw_height(ax: Axes, x: float, levels: tuple[float, float]) -> None:
     start, end = levels
     ax.annotate("", (x, start), (x, end), arrowprops={**_ARROW, "arrowstyle": "<|-|>"})
     rises = end > start
+    left, right = ax.get_xlim()
+    # At the right end of the view a label on the right, or half of it, would be outside.
+    is_last = x > right - _LABEL * (right - left)
+    beside = -_OFFSET if is_last else 0.0 if rises else _OFFSET
     ax.annotate(
         f"{abs(end - start):.3g} m",
         (x, end if rises else 0.5 * (start + end)),
-        xytext=(0.0, _OFFSET) if rises else (_OFFSET, 0.0),
-        ha="center" if rises else "left",
+        xytext=(beside, _OFFSET if rises else 0.0),
+        ha="right" if is_last else "center" if rises else "left",
         va="bottom" if rises else "center",
         **_TEXT,
     )
