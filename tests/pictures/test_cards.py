@@ -55,6 +55,24 @@ def test_a_card_has_the_figures_that_matter_with_their_units() -> None:
     assert scenario["goal"] == "x = 0 m"
 
 
+@pytest.mark.parametrize(
+    ("by_segment", "shown"),
+    [
+        (None, "0.9"),
+        ([0.4, 0.4, 0.4], "0.4"),
+        ([0.9, 0.2, 0.9], "0.2 and 0.9"),
+        ([0.9, 0.2, 0.5], "0.2 to 0.9"),
+    ],
+)
+def test_the_friction_of_a_card_is_that_of_the_segments(
+    by_segment: list[float] | None, shown: str
+) -> None:
+    points = [(-2.0, 0.0), (0.0, 0.0), (0.0, 0.05), (2.0, 0.05)]
+    ground = c2d.terrains.from_points(points, goal=0.0, segment_friction=by_segment)
+    cells = [cell.text for cell in parsed(c2d.Scenario(ROBOT, ground)).iter("td")]
+    assert shown in cells
+
+
 @pytest.mark.parametrize("robot", [ROBOT, TRAPEZOID])
 def test_the_drawing_of_a_card_has_the_outline_of_the_belt(robot: c2d.Robot) -> None:
     (drawing,) = parsed(robot).iter("{http://www.w3.org/2000/svg}svg")

@@ -191,7 +191,7 @@ def scenario_card(text: str, title: str, terrain: str) -> str:
     lanes = [lane for lane in map(ground.get, ("left", "right")) if lane] or [ground]
     rows = [
         ("terrain", terrain),
-        ("friction", _listed({lane["friction"] for lane in lanes})),
+        ("friction", _friction_of(lanes)),
         ("speed", f"{scenario['drive']['speed']:.4g} m/s"),
         *([("gait", gait["kind"])] if gait else []),
         ("goal", f"x = {scene.goal:.4g} m"),
@@ -199,6 +199,13 @@ def scenario_card(text: str, title: str, terrain: str) -> str:
         ("mass", f"{scenario['robot']['mass']:.4g} kg"),
     ]
     return _card(title, sheet, rows)
+
+
+def _friction_of(lanes: list[dict[str, Any]]) -> str:
+    """Say which coefficients the ground has; of more than two the least and the greatest."""
+    segments = [lane.get("segment_friction") or [lane["friction"]] for lane in lanes]
+    values = {value for each in segments for value in each}
+    return _listed(values) if len(values) <= 2 else f"{min(values):.4g} to {max(values):.4g}"
 
 
 def _card(title: str, sheet: Sheet, rows: list[tuple[str, str]]) -> str:
