@@ -33,7 +33,7 @@ _SMALL = c2d.CircumferentialWheels(24, wheel_radius=0.016)
 _TIP_THICKNESS = 1e-3
 
 # [s] 4 m at 0.4 m/s, including the acceleration; over the step and beyond.
-# Long enough on ground in pieces that what a new simulation has to fetch into the caches counts little.
+# Long enough on ground in pieces that what a new simulation fetches into the caches counts little.
 _DURATIONS = {FLAT: 11.0, STEP: 6.0, CUT: 11.0, BLOCKS: 6.0}
 
 # [m] Extent of the ground in pieces.
