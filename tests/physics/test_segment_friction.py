@@ -107,3 +107,37 @@ def test_rapier_holds_one_friction_for_a_lane() -> None:
     with pytest.raises(c2d.ScenarioError, match="one friction each") as refused:
         scenario.validate()
     assert refused.value.path == "terrain.segment_friction"
+
+
+WET = c2d.terrains.from_points(STEP, goal=0.0, segment_friction=[0.9, 0.2, 0.8])
+
+
+def test_a_friction_that_is_set_is_that_of_all_segments() -> None:
+    scenario = Scenario(ROBOT.with_track(c2d.BeltTrack()), WET)
+    dry = scenario.replace({"terrain.friction": 0.7})
+    assert dry.terrain == c2d.terrains.from_points(STEP, goal=0.0, friction=0.7)
+    over = {"terrain.friction": [0.1, 0.7]}
+    swept = c2d.sweep(scenario, over, vary={}, repeats=1, progress=False)
+    slips, dries = swept["drive_work"].values.ravel()
+    assert dries == c2d.simulate(dry).metrics["drive_work"]
+    assert slips != dries
+
+
+def test_segments_and_a_friction_may_be_set_together() -> None:
+    fields = {"terrain.friction": 0.7, "terrain.segment_friction": [0.1, 0.2, 0.3]}
+    terrain = Scenario(ROBOT, WET).replace(fields).terrain
+    assert isinstance(terrain, Points)
+    assert (terrain.friction, terrain.segment_friction) == (0.7, (0.1, 0.2, 0.3))
+
+
+@pytest.mark.parametrize("is_lane", [False, True])
+def test_a_drawn_friction_is_drawn_for_every_segment(is_lane: bool) -> None:
+    ground = c2d.terrains.lanes(left=WET, right=WET) if is_lane else WET
+    vary = {"terrain.friction": c2d.scaled(0.5, 0.5)}
+    scenario = Scenario(ROBOT.with_track(c2d.BeltTrack()), ground)
+    over = {"drive.speed": [0.4]}
+    drawn = c2d.sweep(scenario, over, vary=vary, repeats=1, progress=False)
+    half = c2d.terrains.from_points(STEP, goal=0.0, segment_friction=[0.45, 0.1, 0.4])
+    halves = c2d.terrains.lanes(left=half, right=half) if is_lane else half
+    by_hand = c2d.simulate(scenario.replace({"terrain": halves, "drive.speed": 0.4}))
+    assert drawn["drive_work"].item() == by_hand.metrics["drive_work"]

@@ -64,6 +64,8 @@ class Parameters(TakesKeywords):
     """Where a scenario usually holds objects of this class, for errors."""
     exclusive: ClassVar[tuple[str, ...]] = ()
     """Fields of which only one may be set: replacing one by path clears the others."""
+    overridden_by: ClassVar[dict[str, str]] = {}
+    """Fields without effect while another is set, with that one, which replacing them clears."""
     omitted_defaults: ClassVar[tuple[str, ...]] = ()
     """Fields that JSON omits at their defaults, because older files do not have them."""
     property_fields: ClassVar[tuple[str, ...]] = ()
@@ -269,8 +271,8 @@ _PART = re.compile(r"([^\[\]]*)((?:\[(?:0|-?[1-9][0-9]*)\])*)")
 def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str] = ()) -> P:
     """Copy a parameter object, with the field or element at a path replaced.
 
-    Fields that exclude it are set to None, except those at the paths `given`: the validator refuses
-    both together.
+    Fields that exclude or override it are set to None, except those at the paths `given`: the
+    validator refuses two that exclude each other.
 
     Raises
     ------
@@ -320,10 +322,13 @@ def json_pointer(path: str) -> str:
 
 
 def excluded(parameters: Parameters, path: str) -> list[str]:
-    """List the paths of the fields that exclude the one at a path."""
+    """List the paths of the fields that exclude the one at a path, or override it now."""
     parent, _, name = path.rpartition(".")
-    names = type(_holder(parameters, parent)).exclusive
+    holder = _holder(parameters, parent)
+    names, override = type(holder).exclusive, type(holder).overridden_by.get(name)
     others = [other for other in names if other != name] if name in names else []
+    if override and getattr(holder, override) is not None:
+        others.append(override)
     return [f"{path.removesuffix(name)}{other}" for other in others]
 
 

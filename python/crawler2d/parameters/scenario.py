@@ -72,7 +72,7 @@ class Scenario(ScenarioBase):
         fields : mapping of str to object
             New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Elements
             have an index: ``{"terrain.points[3][1]": 0.06}``. Of two fields that exclude each
-            other, setting one clears the other.
+            other, setting one clears the other; ``"terrain.friction"`` is that of all segments.
 
         Returns
         -------

@@ -311,7 +311,8 @@ class Points(GroundWithEdges, kind="points"):
         [-] Coulomb friction between robot and ground.
     segment_friction : array_like, shape (n - 1,), optional
         [-] Of each segment between two points, in place of `friction`; at a corner the larger of
-        two. Not in rapier.
+        two. Not in rapier. To replace or sweep ``"terrain.friction"`` leaves these out; draws of it
+        are draws of each segment.
 
     Raises
     ------
@@ -328,6 +329,7 @@ class Points(GroundWithEdges, kind="points"):
     (0.9, 0.2, 0.9)
     """
 
+    overridden_by: ClassVar[dict[str, str]] = {"friction": "segment_friction"}
     omitted_defaults: ClassVar[tuple[str, ...]] = ("segment_friction",)
 
     points: tuple[tuple[float, float], ...]

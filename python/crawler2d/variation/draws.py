@@ -195,8 +195,18 @@ def _has_path(cell: Scenario, path: str) -> bool:
 
 
 def _fields(cell: Scenario, path: str) -> list[str]:
-    """List the fields that a path stands for: of lanes, the friction is that of every lane."""
-    if path == _FRICTION and isinstance(cell.terrain, Lanes):
+    """List the fields that a path stands for: the friction is that of all lanes and segments."""
+    if path != _FRICTION:
+        return expand_path(cell, path)
+    lanes = ["terrain"]
+    if isinstance(cell.terrain, Lanes):
         sides = ("left", "right") if cell.terrain.middle is None else ("left", "right", "middle")
-        return [f"terrain.{side}.friction" for side in sides]
-    return expand_path(cell, path)
+        lanes = [f"terrain.{side}" for side in sides]
+    return [field for lane in lanes for field in _frictions(cell, lane)]
+
+
+def _frictions(cell: Scenario, lane: str) -> list[str]:
+    segments = getattr(read_path(cell, lane), "segment_friction", None)
+    if segments is None:
+        return [f"{lane}.friction"]
+    return [f"{lane}.segment_friction[{i}]" for i in range(len(segments))]
