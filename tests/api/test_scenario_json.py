@@ -154,6 +154,12 @@ def test_a_numpy_scalar_is_a_plain_number(scenario: Scenario, number: Any, plain
     assert Scenario.from_json(variant.to_json()) == variant
 
 
+def test_a_whole_number_beyond_float64_is_the_nearest(scenario: Scenario) -> None:
+    variant = scenario.replace({"robot.moment_of_inertia": 2**53 + 1})
+    assert repr(variant.robot.moment_of_inertia) == repr(2.0**53)
+    assert Scenario.from_json(variant.to_json()) == variant
+
+
 @pytest.mark.parametrize(
     ("path", "value"),
     [

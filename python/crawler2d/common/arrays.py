@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -119,12 +120,12 @@ def read_scalar(value: Any, *, whole: bool) -> Any:
     value : object
         Anything; what is not a number is returned unchanged, for the validator to reject.
     whole : bool
-        Whether the field takes whole numbers; if not, they become floats where that is exact.
+        Whether the field takes whole numbers; if not, they become floats, as when JSON is read.
 
     Returns
     -------
     object
-        An equal Python object; -0.0 becomes 0.0.
+        The Python number; -0.0 becomes 0.0.
     """
     if isinstance(value, np.generic) or (type(value) is np.ndarray and value.ndim == 0):
         value = value.item()
@@ -135,8 +136,9 @@ def read_scalar(value: Any, *, whole: bool) -> Any:
         return float(value) + 0.0
     if isinstance(value, int) and not isinstance(value, bool):
         value = int(value)
-        if not whole and abs(value) <= _EXACT:
-            value = float(value)
+        if not whole:
+            with contextlib.suppress(OverflowError):
+                value = float(value)
     return value
 
 
