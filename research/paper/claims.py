@@ -388,7 +388,7 @@ def claims_text(claims: Sequence[Claim]) -> str:
     rows = [
         (str(number), claim.text, f"**{claim.verdict}**") for number, claim in enumerate(claims, 1)
     ]
-    return markdown_table(("", "claim", "verdict"), rows)
+    return markdown_table(("no.", "claim", "verdict"), rows)
 
 
 def checks_text(claims: Sequence[Claim]) -> str:
