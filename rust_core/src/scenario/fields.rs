@@ -145,8 +145,17 @@ impl<'a> Fields<'a> {
             self.known.push(name);
         }
         let map = self.map;
-        map.get(name)
-            .ok_or_else(|| ScenarioError::new(self.path(name), "nothing", "must be given"))
+        map.get(name).ok_or_else(|| self.missing(name))
+    }
+
+    fn missing(&self, name: &str) -> ScenarioError {
+        let keys = self.map.keys().map(String::as_str);
+        let unread = keys.filter(|key| !self.known.contains(key));
+        let rule = match nearest(name, unread) {
+            Some(key) => format!("must be given (is {key} a misspelling of it?)"),
+            None => "must be given".to_owned(),
+        };
+        self.error(name, "nothing", rule)
     }
 
     /// Whether the object has a field, which need not be known.
@@ -176,7 +185,11 @@ impl<'a> Fields<'a> {
         let value = self.value(name)?;
         let whole = value.as_u64().and_then(|n| u32::try_from(n).ok());
         whole.filter(|n| (low..=high).contains(n)).ok_or_else(|| {
-            let rule = format!("must be an integer from {low} to {high}");
+            let rule = if low == high {
+                format!("must be {low}")
+            } else {
+                format!("must be an integer from {low} to {high}")
+            };
             self.error(name, value, rule)
         })
     }
@@ -371,17 +384,19 @@ fn in_range(path: &str, value: &Value, range: Range) -> Checked<f64> {
 /// "must be one of ...", with the nearest name if there is one.
 pub(crate) fn one_of(given: Option<&str>, names: &[&str]) -> String {
     let list = names.join(", ");
-    let nearest = given.and_then(|g| {
-        names
-            .iter()
-            .map(|n| (edit_distance(g, n), *n))
-            .filter(|(d, n)| *d <= n.len().max(3) / 3)
-            .min()
-    });
-    match nearest {
-        Some((_, name)) => format!("must be one of {list} (did you mean {name}?)"),
+    match given.and_then(|given| nearest(given, names.iter().copied())) {
+        Some(name) => format!("must be one of {list} (did you mean {name}?)"),
         None => format!("must be one of {list}"),
     }
+}
+
+/// The name that is most like another, if one is like it.
+fn nearest<'a>(other: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    names
+        .map(|name| (edit_distance(other, name), name))
+        .filter(|(distance, name)| *distance <= name.len().max(3) / 3)
+        .min()
+        .map(|(_, name)| name)
 }
 
 /// Levenshtein distance, ignoring case; names are short.
