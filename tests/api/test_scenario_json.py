@@ -271,10 +271,10 @@ def test_deep_nesting_is_refused(begin: str, end: str, depth: int) -> None:
 
 def test_a_field_that_is_missing_is_looked_for_among_those_given(scenario: Scenario) -> None:
     text = scenario.to_json()
-    for given, rule in [
+    for key, rule in [
         ('"hieght":', "must be given (is hieght a misspelling of it?)"),
         ('"tall":', "must be given"),
     ]:
         with pytest.raises(c2d.ScenarioError) as caught:
-            Scenario.from_json(text.replace('"height":', given))
+            Scenario.from_json(text.replace('"height":', key))
         assert (caught.value.path, caught.value.rule) == ("terrain.height", rule)

@@ -196,3 +196,14 @@ def test_a_run_of_one_sample_is_drawn() -> None:
     with np.errstate(all="raise"):
         assert run.plot().get_lines()
         assert len(run.plot_history()) == 3
+
+
+@pytest.mark.parametrize("time", [float("nan"), float("inf"), "end", [], [[1.0]], True])
+def test_an_instant_is_a_finite_number(run: c2d.Run, time: Any) -> None:
+    for show in (run.plot, run.to_html, run.widget):
+        with pytest.raises(c2d.ScenarioError, match=r"^time must be a number of seconds"):
+            show(time=time)
+
+
+def test_an_instant_after_the_end_shows_the_end(run: c2d.Run) -> None:
+    assert run.to_html(time=1e6) == run.to_html(time=run.time[-1])

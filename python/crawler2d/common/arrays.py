@@ -23,6 +23,7 @@ __all__ = [
     "Table",
     "freeze_array",
     "read_bool",
+    "read_instants",
     "read_range",
     "read_rows",
     "read_scalar",
@@ -185,6 +186,21 @@ def read_range(value: Any, path: str) -> tuple[float, float]:
     if not low < high:
         raise ScenarioError(path, value, rule)
     return low, high
+
+
+def read_instants(value: Any, path: str) -> NDArray[np.float64]:
+    """Read one instant or several, shape (n,), in seconds.
+
+    Raises
+    ------
+    ScenarioError
+        If it is something else.
+    """
+    instants = np.atleast_1d(np.asarray(value))
+    is_real = instants.dtype.kind in "iuf" and instants.ndim == 1 and instants.size > 0
+    if not is_real or not np.isfinite(instants).all():
+        raise ScenarioError(path, value, "must be a number of seconds, or several")
+    return instants.astype(np.float64)
 
 
 def read_bool(value: object, path: str) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.arrays import read_instants
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import check_axes, set_title
 from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, look_of
@@ -48,7 +49,7 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
     the envelopes of its wheels, and the ground and edges inside these; and, if it is the end of the
     run, where the trials ended that freed the robot. See `Run.plot` for the parameters.
     """
-    times = _drawing_times(run) if time is None else np.atleast_1d(np.asarray(time, dtype=float))
+    times = _drawing_times(run) if time is None else read_instants(time, "time")
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
     scene, shown = scene_of(run), int(samples[-1])
     left, right, bottom, top = scene.extent()

@@ -57,7 +57,7 @@ class ShownRun(Record):
         ax : Axes, optional
             Where to draw; None makes a figure.
         time : array_like, shape (k,), optional
-            [s] When to draw the robot; None draws it about every robot length.
+            [s] When to draw the robot, at the end if later; None draws it about every robot length.
         trials : bool
             Whether to draw where the trials ended that freed the robot, if its stop is drawn.
 
@@ -68,6 +68,8 @@ class ShownRun(Record):
 
         Raises
         ------
+        ScenarioError
+            If `time` is no number, or not finite.
         ImportError
             If matplotlib is missing; the message names the extra to install.
         AttributeError
@@ -208,6 +210,8 @@ class ShownRun(Record):
 
         Raises
         ------
+        ScenarioError
+            If `time` is no number, or not finite.
         OSError
             If the file cannot be written.
         AttributeError
@@ -282,6 +286,8 @@ class ShownRun(Record):
 
         Raises
         ------
+        ScenarioError
+            If `time` is no number, or not finite.
         ImportError
             If anywidget is missing; the message names the extra to install.
         AttributeError

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.arrays import read_instants
 from crawler2d.common.bodies import BodyKind
 from crawler2d.drawings.scene import relative
 from crawler2d.pictures.scenes import ghosts, scene_of, usual_force, usual_speed
@@ -62,11 +63,12 @@ def recording(run: Record, time: float | None = None, *, most: int = MOST_FRAMES
     if time is None:
         stops = run.events["end"][run.events["kind"] == "stop"]
         time = float(run.time[-1] if (stops == run.time[-1]).any() else run.time[0])
+    instant = read_instants(time, "time")[0]
     scene = scene_of(run)
     return {
         "samples": count,
         "every": every,
-        "first": int(np.abs(run.time[kept] - time).argmin()),
+        "first": int(np.abs(run.time[kept] - instant).argmin()),
         "extent": [_number(value) for value in scene.extent()],
         "frames": _frames(run, kept),
         "contacts": _contacts(run, kept),
