@@ -161,7 +161,7 @@ class ScenarioWarning(UserWarning):
 
 
 class SimulationDiverged(Crawler2dError, RuntimeError):
-    """The state became non-finite; the run has no result.
+    """The state became non-finite, or faster than light; the run has no result.
 
     Parameters
     ----------

@@ -9,9 +9,9 @@ use crate::scenario::ScenarioError;
 /// The environment variable that sets the limit of memory, in GiB.
 pub const MEMORY_VARIABLE: &str = "CRAWLER2D_MEMORY";
 
-/// The state of a run became non-finite; everything after `step` would be meaningless.
+/// The state of a run became non-finite, or faster than light; everything after `step` would be meaningless.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("the state of {body} became non-finite in step {step}")]
+#[error("the state of {body} became non-finite, or faster than light, in step {step}")]
 pub struct SimulationError {
     /// The step, counted from 1.
     pub step: u64,

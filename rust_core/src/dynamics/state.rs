@@ -73,8 +73,10 @@ pub(crate) struct Shoe {
 
 impl Shoe {
     fn is_finite(&self) -> bool {
-        let velocity = self.twist.velocity.is_finite() && self.twist.turn.is_finite();
-        velocity && self.center.is_finite() && self.angle.is_finite()
+        is_speed(self.twist.velocity)
+            && self.twist.turn.is_finite()
+            && self.center.is_finite()
+            && self.angle.is_finite()
     }
 
     /// Unit vector along its travel.
@@ -325,8 +327,9 @@ impl State {
             })
     }
 
+    /// Whether it has numbers that mean something: none is infinite, and no speed above that of light.
     pub(crate) fn is_finite(&self) -> bool {
-        let body = self.center.is_finite() && self.velocity.is_finite();
+        let body = self.center.is_finite() && is_speed(self.velocity);
         let turn = self.angle.is_finite() && self.angular_velocity.is_finite();
         body && turn
             && self
@@ -340,6 +343,11 @@ impl State {
                 .iter()
                 .all(|f| f.angle.is_finite() && f.rate.is_finite())
     }
+}
+
+/// Whether it is below the speed of light [m/s], which solves that have failed soon pass.
+fn is_speed(velocity: Vector) -> bool {
+    velocity.length() < 3e8
 }
 
 /// The shoes of a robot at rest with its chassis frame at `pose`.

@@ -282,3 +282,12 @@ fn a_state_that_is_no_number_is_seen_after_a_step_on_contacts_too() {
         }
     }
 }
+
+#[test]
+fn nothing_moves_faster_than_light() {
+    let (_, mut state) = setup(|_| {});
+    for (speed, is_slower) in [(2e8, true), (-2e8, true), (4e8, false), (-1e60, false)] {
+        state.velocity.y = speed;
+        assert_eq!(state.is_finite(), is_slower);
+    }
+}
