@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines coverage coverage-python coverage-rust docs explorer format build fuzz map mutants notebooks notices paper paper-chart picture soak supply test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser test-explorer check bench bench-agreement bench-accuracy bench-engine bench-envs bench-map bench-models bench-peers bench-scaling compare-engines coverage coverage-python coverage-rust docs explorer film format build fuzz map mutants notebooks notices paper paper-chart soak supply test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -153,8 +153,8 @@ paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; an hour o
 paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Table 2, a quarter of an hour; Ctrl-C loses nothing
 	$(BIN)/python -m research chart $(ARGS)
 
-picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
-	$(BIN)/python docs/readme_picture.py
+film: $(VENV)/.built ## make docs/readme-light.gif and docs/readme-dark.gif: the example of the README
+	$(BIN)/python docs/readme_film.py
 
 soak: $(VENV)/.built test-debug ## the long tests, and those of a debug build, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO_TEST) -- --include-ignored

@@ -55,6 +55,9 @@ def main(arguments: list[str]) -> int:
         return status
     offer(ROOT / "studies", SITE / "studies")
     shutil.copyfile(HERE / "start.html", SITE / "index.html")
+    # Sphinx takes no notice of what `<picture>` shows.
+    for film in (ROOT / "docs").glob("*.gif"):
+        shutil.copyfile(film, SITE / "docs" / film.name)
     faults = faults_in(SITE)
     pages = len(list(SITE.rglob("*.html")))
     print("\n".join(faults) or f"{pages} pages, no broken link: {SITE / 'index.html'}")
