@@ -80,6 +80,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::draw::Draw;
     use crate::scenario::Surface;
 
     const RADIUS: f64 = 0.05;
@@ -128,6 +129,51 @@ mod tests {
         for way in [-0.02, 0.02] {
             let contact = Contact::new(0, (1001, -1), (Vector::new(0.1, 0.0), Vector::Y), 0.0);
             assert!(gap_below(&contact, &lane, RADIUS, way) < 2e-7);
+        }
+    }
+
+    /// Ground of short faces that is nowhere higher than the middle one.
+    fn falling(draw: &mut Draw) -> Profile {
+        let mut points = vec![[-1e-3, 0.0], [1e-3, 0.0]];
+        for side in [-1.0, 1.0] {
+            let (mut x, mut y): (f64, f64) = (1e-3, 0.0);
+            for _ in 0..30 {
+                x += 2e-3 + 4e-3 * draw.between(0.0, 1.0);
+                y = (y - 1e-3 + 1.5e-3 * draw.between(0.0, 1.0)).min(0.0);
+                points.push([side * x, y]);
+            }
+        }
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Profile::new("terrain", &points, Surface::sharp(0.5), true).expect("a profile")
+    }
+
+    #[test]
+    fn no_face_is_nearer_than_the_one_that_is_found() {
+        let mut draw = Draw(1);
+        for _ in 0..300 {
+            let lane = falling(&mut draw);
+            let middle = lane
+                .points
+                .iter()
+                .position(|point| point.x > 0.0)
+                .expect("it is there")
+                - 1;
+            let contact = Contact::new(0, (middle, -1), (Vector::ZERO, Vector::Y), 0.0);
+            let way = 0.06 * (draw.between(0.0, 1.0) - 0.5);
+            let center = Vector::new(way, RADIUS);
+            let faces = if way > 0.0 {
+                middle..lane.points.len() - 1
+            } else {
+                0..middle + 1
+            };
+            let gaps =
+                faces.map(|i| distance(center, [lane.points[i], lane.points[i + 1]]) - RADIUS);
+            let least = gaps.fold(f64::INFINITY, f64::min);
+            assert_relative_eq!(
+                gap_below(&contact, &lane, RADIUS, way),
+                least,
+                epsilon = 1e-12
+            );
         }
     }
 

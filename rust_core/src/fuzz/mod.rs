@@ -36,6 +36,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::draw::cases;
 
     /// Calls a target with each case that is kept for it.
     fn replay(name: &str, target: fn(&[u8])) {
@@ -98,8 +99,7 @@ mod tests {
 
     #[test]
     fn changed_scenarios_survive_or_are_refused() {
-        let is_soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
-        let (threads, each) = if is_soak { (2, 2_500_000) } else { (1, 3_000) };
+        let (threads, each) = (2, cases(1_500, 2_500_000) as u32);
         let accepted: u32 = std::thread::scope(|scope| {
             let run = |i| scope.spawn(move || accepted_of(i * each..(i + 1) * each));
             let all: Vec<_> = (0..threads).map(run).collect();
@@ -107,7 +107,6 @@ mod tests {
                 .map(|one| one.join().expect("no rule is broken"))
                 .sum()
         });
-        println!("{accepted} accepted of {}", threads * each);
-        assert!(accepted > threads * each / 20);
+        assert!(accepted > threads * each / 20, "{accepted}");
     }
 }
