@@ -38,7 +38,7 @@ _TYPES = {float: "number", int: "integer", str: "string", bool: "boolean", type(
 _BELOW = -1e300
 """Below the range of every number."""
 _REALS = re.compile(r"must be (>=?) (\S+).* and <= (\S+)")
-_WHOLES = re.compile(r"must be an integer from (\d+) to (\d+)")
+_WHOLES = re.compile(r"must be (?:an integer from (\d+) to )?(\d+)$")
 _ROW = re.compile(r"(\w+)((?:\[\d+\])*)")
 
 
@@ -256,7 +256,7 @@ def _refusal(cls: type[Parameters], values: Json) -> tuple[str, list[int], str] 
 def _range(rule: str) -> tuple[Json | None, float]:
     """Turn a rule about one number into its range, and a number in it; None if it is another."""
     if match := _WHOLES.match(rule):
-        low, high = int(match[1]), int(match[2])
+        low, high = int(match[1] or match[2]), int(match[2])
         return {"minimum": low, "maximum": high}, low
     if match := _REALS.match(rule):
         end, most = float(match[2]), float(match[3])
