@@ -46,6 +46,12 @@ def test_only_the_solver_is_the_others_own(check: CrossCheck[c2d.Run]) -> None:
     assert np.array_equal(back.other.position, check.run.position)
 
 
+@pytest.mark.parametrize("solver", [{"restitution": 0.5}, {"contact_frequency": 500.0}])
+def test_a_setting_that_the_other_engine_does_not_hold_is_refused(solver: dict[str, Any]) -> None:
+    run = c2d.simulate(STEADY.replace({"solver": c2d.Solver(**solver)}))
+    assert refused(lambda: run.cross_check(announce=False)).path == f"solver.{next(iter(solver))}"
+
+
 def test_each_stop_is_an_equilibrium_up_to_some_friction(
     check: CrossCheck[c2d.Run],
 ) -> None:

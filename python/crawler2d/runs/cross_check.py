@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from crawler2d import _core
 from crawler2d.common.arrays import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
-from crawler2d.parameters.settings import Solver
 from crawler2d.parameters.track import (
     CircumferentialWheels,
     ForceTrack,
@@ -291,8 +290,9 @@ def _announce(engine: str, likely: float, most: float) -> None:
 
 def _in_the_other_engine(scenario: Scenario) -> Scenario:
     """Give the scenario to the other engine, at its own default accuracy."""
-    other = Solver(engine="rapier") if scenario.solver.engine == "own" else Solver()
-    return scenario.replace({"solver": other})
+    engine: Literal["own", "rapier"] = "rapier" if scenario.solver.engine == "own" else "own"
+    solver = replace(scenario.solver, engine=engine, accuracy=None, time_step=None)
+    return scenario.replace({"solver": solver})
 
 
 def _balance(run: Record) -> Balance | None:
