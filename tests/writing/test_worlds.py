@@ -17,6 +17,7 @@ from tests.shared import refused, with_flippers
 
 WHEELS = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
 RAMP = c2d.terrains.ramp(0.3)
+WET = c2d.terrains.from_points([(-3, 0), (0, 0), (3, 0)], goal=1.0, segment_friction=[0.9, 0.2])
 TERRAINS: dict[str, Any] = {
     "flat": c2d.terrains.flat(),
     "step": c2d.terrains.step(0.05, friction=0.6),
@@ -154,6 +155,8 @@ def test_the_robot_stands_where_a_scenario_starts_it(tmp_path: Path) -> None:
         ("world", RAMP, "path"),
         ("world.sdf", 0.1, "terrain"),
         ("world.sdf", c2d.terrains.step(-0.1), "terrain.height"),
+        ("world.sdf", WET, "terrain.segment_friction"),
+        ("world.xml", c2d.terrains.lanes(RAMP, WET), "terrain.right.segment_friction"),
     ],
 )
 def test_a_world_that_cannot_be_written_is_refused(

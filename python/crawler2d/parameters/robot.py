@@ -409,8 +409,8 @@ class Robot(Parameters, path="robot"):
         Raises
         ------
         ScenarioError
-            If the suffix is another one, the terrain breaks a rule, or the format cannot hold the
-            robot.
+            If the suffix is another one, the terrain breaks a rule or has segments of unlike
+            friction, or the format cannot hold the robot.
 
         Examples
         --------

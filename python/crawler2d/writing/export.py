@@ -191,6 +191,7 @@ def export_world(
     lanes = list(zip(geometry["lanes"], geometry["frictions"], strict=True))
     widths = track_width, chassis_width
     model = _build_model(alone, name, max(geometry["frictions"]), widths)
+    _refuse_segments(json.loads(text)["terrain"])
     left, right, _, _ = scene.extent()
     length = right - left
     ends = (left - _BEHIND * length, max(right, scene.goal) + _BEYOND * length)
@@ -269,6 +270,16 @@ def _save(root: XML, comment: str, path: str | os.PathLike[str] | None) -> Model
     if path is not None:
         write_text(path, text)
     return text
+
+
+def _refuse_segments(terrain: dict[str, Any]) -> None:
+    """Refuse segments of unlike friction: a piece of the ground has one for all of its faces."""
+    lanes = {f"terrain.{side}": terrain.get(side) for side in ("left", "right", "middle")}
+    for path, lane in {"terrain": terrain, **lanes}.items():
+        frictions = (lane or {}).get("segment_friction") or ()
+        if len(set(frictions)) > 1:
+            rule = "must be equal: a piece of the ground has one friction in a model file"
+            raise ScenarioError(f"{path}.segment_friction", frictions, rule)
 
 
 def _ground_of(
