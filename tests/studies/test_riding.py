@@ -87,6 +87,20 @@ def test_the_part_of_the_error_that_is_sliding_goes_away_with_friction() -> None
     assert after == pytest.approx(0.5 * before, rel=0.1)  # the ways are not quite equal
 
 
+@pytest.mark.parametrize("is_lane", [False, True])
+def test_the_friction_of_every_segment_is_doubled(is_lane: bool) -> None:
+    def ground(*frictions: float) -> Any:
+        points = [(-2.0, 0.0), (0.1, 0.0), (4.0, 0.0)]
+        one = c2d.terrains.from_points(points, goal=0.5, segment_friction=frictions)
+        return c2d.terrains.lanes(one, one) if is_lane else one
+
+    base = FLAT.replace({"terrain": ground(0.004, 0.008)})
+    found = c2d.studies.odometry(base, vary={}, **HOW).squeeze("model").isel(repeat=0)
+    doubled = c2d.simulate(base.replace({"terrain": ground(0.008, 0.016)}))
+    distance = found["track_distance"].sel(change="friction x 2").item()
+    assert distance == doubled.metrics["track_distance"]
+
+
 def test_wheels_of_several_radii_have_no_single_rolling_radius() -> None:
     mixed = c2d.HybridWheels(PLACEMENTS)
     found = c2d.studies.odometry(FLAT, models={"mixed": mixed}, **HOW)

@@ -17,6 +17,7 @@ from crawler2d.studies.campaign import Sampling, campaign
 from crawler2d.studies.steady import Halt, RunUp, drive, on_plane
 from crawler2d.studies.tables import Dims, Measure, Models, check_study, measure_table, read_models
 from crawler2d.variation.distributions import Ranges
+from crawler2d.variation.draws import fields_at
 from crawler2d.variation.variability import of_contact, of_start
 
 if TYPE_CHECKING:
@@ -69,7 +70,8 @@ class Change:
 
     def of(self, scenario: Scenario) -> Scenario:
         """Double these numbers of a scenario."""
-        return scenario.replace({p: _FACTOR * read_path(scenario, p) for p in self.paths})
+        fields = [field for path in self.paths for field in fields_at(scenario, path)]
+        return scenario.replace({each: _FACTOR * read_path(scenario, each) for each in fields})
 
 
 UNCHANGED = Change("unchanged")

@@ -19,7 +19,7 @@ from crawler2d.variation.variability import of_contact, of_start
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Draws", "Variation", "uniform_numbers"]
+__all__ = ["Draws", "Variation", "fields_at", "uniform_numbers"]
 
 _FRICTION = "terrain.friction"
 
@@ -166,7 +166,7 @@ class Variation:
         for path, distribution in self.distributions.items():
             if path in self.optional and not _has_path(cell, path):
                 continue
-            for field in _fields(cell, path):
+            for field in fields_at(cell, path):
                 nominal = read_path(cell, field)
                 if own is not None:
                     nominal = own.get(field, nominal)
@@ -187,14 +187,14 @@ class Variation:
 @functools.lru_cache(maxsize=256)  # asked for every sample; a path that is missing is slow to check
 def _has_path(cell: Scenario, path: str) -> bool:
     try:
-        for field in _fields(cell, path):
+        for field in fields_at(cell, path):
             read_path(cell, field)
     except ScenarioError:
         return False
     return True
 
 
-def _fields(cell: Scenario, path: str) -> list[str]:
+def fields_at(cell: Scenario, path: str) -> list[str]:
     """List the fields that a path stands for: the friction is that of all lanes and segments."""
     if path != _FRICTION:
         return expand_path(cell, path)
