@@ -151,6 +151,14 @@ def test_a_push_rises_evenly_to_its_force() -> None:
     assert pushed.velocity[-1, 0] == pytest.approx(impulse[-1] / ROBOT.mass, abs=1e-9)
 
 
+def test_a_belt_in_place_of_wheels_with_motors_of_their_own_has_one() -> None:
+    run = c2d.simulate(SEIZING.replace({"robot.drivetrain.torque_sharing": "wheel"}))
+    (trial,) = (each for each in run.trials() if each.name == "belt")
+    changed = run.what_if(track=c2d.BeltTrack())
+    assert changed.run.scenario.robot.drivetrain.torque_sharing == "track"
+    assert (changed.freed, changed.position) == (trial.freed, trial.position)
+
+
 def test_a_braked_robot_holds_a_push_up_to_its_friction() -> None:
     stands = c2d.Scenario(ROBOT, c2d.terrains.flat(friction=0.5), drive=c2d.Drive(speed=0.0))
     strong = stands.replace({"robot.drivetrain.max_torque": 100.0})

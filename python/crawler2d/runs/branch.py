@@ -213,11 +213,12 @@ def branch_scenario(
     duration: float | None,
 ) -> Scenario:
     """Change the given fields of a run's scenario; our own dynamics move every branch."""
+    robot = run.scenario.robot
     if track == "closed":
-        own = run.scenario.robot.track
+        own = robot.track
         track = own if isinstance(own, ClosedTrack) else ClosedTrack(own)
     changes = {
-        "robot.track": track,
+        "robot": None if track is None else robot.with_track(track),
         "terrain.friction": friction,
         "robot.drivetrain.max_torque": max_torque,
         "drive": drive,
