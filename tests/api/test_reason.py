@@ -49,6 +49,14 @@ def test_what_holds_a_robot_that_tips_over_is_tried(tipped: c2d.Run) -> None:
     assert c2d.simulate(moved, c2d.terrains.step(0.11)).outcome is c2d.Outcome.CLEARED
 
 
+def test_a_slower_robot_moves_its_flippers_at_the_same_places() -> None:
+    """Flippers that are lowered beyond the edge come too late at any speed."""
+    late = c2d.Drive(speed=0.4, gait=c2d.Hold(1.5, [(3.0, 0.3)]))
+    run = c2d.simulate(c2d.robots.engineer(), c2d.terrains.step(0.1), drive=late, duration=5e4)
+    ends = dict(run.tip_over().tried)  # the longest duration is 1e5 s
+    assert ends["half the speed"] is ends["a tenth of the speed"] is c2d.Outcome.TIPPED_OVER
+
+
 def test_a_robot_tips_over_forwards_down_a_cliff() -> None:
     cliff = c2d.terrains.from_points([(-3, 0), (1, 0), (1, -3), (9, -3)], goal=8, friction=0.9)
     run = c2d.simulate(ROBOT, cliff)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Hold
 from crawler2d.results.diagnosis import in_words
 from crawler2d.results.outcome import Outcome
 
@@ -16,6 +17,8 @@ __all__ = ["TipOver", "find_tip_over"]
 
 _SLOWER = {"half the speed": 0.5, "a tenth of the speed": 0.1}
 """[-] Fractions of the commanded speed."""
+_LONGEST = 1e5
+"""[s] Longest duration of a scenario."""
 _SHIFTS = (0.02, 0.05, 0.1, 0.2)
 """[-] Shifts of the centre of mass as fractions of the axle distance."""
 
@@ -109,17 +112,23 @@ def _try_changes(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, 
 
 
 def _slower(scenario: Scenario, fraction: float) -> Scenario:
-    """Drive the same way in more time."""
+    """Drive the same way in more time: flippers, too, are moved at the same places."""
     drive = scenario.drive
     changes: dict[str, Any] = {
         "drive.speed": fraction * drive.speed,
-        "duration": scenario.duration / fraction,
+        "duration": min(scenario.duration / fraction, _LONGEST),
     }
     if drive.schedule is not None:
-        changes["drive.schedule"] = [
-            (t / fraction, fraction * speed) for t, speed in drive.schedule
-        ]
+        slowed = [(t, fraction * speed) for t, speed in drive.schedule]
+        changes["drive.schedule"] = _stretched(slowed, fraction)
+    if isinstance(drive.gait, Hold) and drive.gait.schedule is not None:
+        changes["drive.gait.schedule"] = _stretched(drive.gait.schedule, fraction)
     return scenario.replace(changes)
+
+
+def _stretched(schedule: Sequence[tuple[float, float]], fraction: float) -> Any:
+    """Move the times of a schedule apart; None if all are later than a run can last."""
+    return [(t / fraction, to) for t, to in schedule if t / fraction <= _LONGEST] or None
 
 
 def _outcome(scenario: Scenario) -> Outcome:
