@@ -43,6 +43,58 @@ def test_a_line_and_a_curve_exclude_each_other() -> None:
     assert refusal(robot).path == "robot.drivetrain.no_load_speed"
 
 
+CURVED = c2d.Scenario(driven(torque_curve=((0.0, 6.0), (2.0, 0.0))), c2d.terrains.step(0.05))
+"""With a curve that is the line of `FALLING`."""
+FALLING = c2d.Scenario(driven(no_load_speed=2.0), c2d.terrains.step(0.05))
+
+
+def test_a_torque_that_is_replaced_scales_its_curve() -> None:
+    torque, curve = "robot.drivetrain.max_torque", "robot.drivetrain.torque_curve"
+    assert CURVED.replace({torque: 6.0}) == CURVED
+    doubled = CURVED.replace({torque: 12.0}).robot.drivetrain
+    assert doubled.torque_curve == ((0.0, 12.0), (2.0, 0.0))
+    given = ((0.0, 9.0), (1.0, 3.0))
+    for fields in ({torque: 9.0, curve: given}, {curve: given, torque: 9.0}):
+        assert CURVED.replace(fields).robot.drivetrain.torque_curve == given
+    robot = driven(max_torque=8.0, torque_curve=((0.0, 8.0), (1.0, 4.0)))
+    other = CURVED.replace({"robot": robot, torque: 4.0}).robot.drivetrain
+    assert other.torque_curve == ((0.0, 4.0), (1.0, 2.0))
+
+
+@pytest.mark.parametrize("drawn", [c2d.scaled(0.2, 1.0), c2d.uniform(1.5, 6.0)])
+def test_a_torque_that_is_drawn_scales_its_curve(drawn: Any) -> None:
+    def work(base: c2d.Scenario, **how: Any) -> np.ndarray:
+        how = {"samples": 2, "repeats": 2, "progress": False, **how}
+        values: np.ndarray = c2d.sweep(base, {}, **how)["drive_work"].to_numpy()
+        return values
+
+    vary = {"robot.drivetrain.max_torque": drawn}
+    assert work(CURVED, vary=vary) == pytest.approx(work(FALLING, vary=vary), rel=1e-6)
+    assert work(CURVED, unknown=vary) == pytest.approx(work(FALLING, unknown=vary), rel=1e-6)
+
+
+def test_a_line_that_is_drawn_takes_the_place_of_a_curve() -> None:
+    vary: dict[str, Any] = {
+        "robot.drivetrain.max_torque": c2d.scaled(0.5, 1.0),
+        "robot.drivetrain.no_load_speed": c2d.uniform(1.0, 2.0),
+    }
+    of_curve, of_line = (
+        c2d.sweep(base, {}, vary=vary, repeats=2, progress=False)["identity"].values
+        for base in (CURVED, FALLING)
+    )
+    assert (of_curve == of_line).all()
+
+
+def test_what_limits_a_motor_with_a_curve_is_found() -> None:
+    found = []
+    for base in (CURVED, FALLING):
+        slope = base.replace({"terrain": c2d.terrains.ramp(0.5)})
+        table = c2d.studies.max_speed(slope, repeats=1, vary={}, progress=False)
+        found.append((table["speed_with"].values, table["limit"].item()))
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-6)
+    assert found[0][1] == found[1][1] == "torque"
+
+
 def test_texts_leave_out_what_motors_do_not_have() -> None:
     scenario = c2d.Scenario(ENGINEER, c2d.terrains.flat())
     assert "rotor_inertia" not in scenario.to_json()

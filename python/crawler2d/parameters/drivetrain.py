@@ -78,7 +78,8 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
     torque_curve : array_like, shape (n, 2), optional
         In place of that line: 1 to 1000 increasing track speeds [m/s], from 0, and the torques
         [N m] of one sprocket there, which start with `max_torque` and do not rise; straight between
-        them, and the last beyond. Against its motion a motor has the torque that it has at rest.
+        them, and the last beyond. Against its motion a motor has the torque that it has at rest. To
+        replace, sweep or draw ``"robot.drivetrain.max_torque"`` scales all of them.
     controller : PI, optional
         How motors correct the speed of their sprocket. None: they hold the commanded speed as long
         as their torque suffices.
@@ -122,6 +123,7 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
     """
 
     exclusive: ClassVar[tuple[str, ...]] = ("no_load_speed", "torque_curve")
+    proportional: ClassVar[dict[str, str]] = {"max_torque": "torque_curve"}
     omitted_defaults: ClassVar[tuple[str, ...]] = (
         "rotor_inertia",
         "no_load_speed",

@@ -66,6 +66,8 @@ class Parameters(TakesKeywords):
     """Fields of which only one may be set: replacing one by path clears the others."""
     overridden_by: ClassVar[dict[str, str]] = {}
     """Fields without effect while another is set, with that one, which replacing them clears."""
+    proportional: ClassVar[dict[str, str]] = {}
+    """Fields with the rows whose second column is in proportion, which replacing them scales."""
     omitted_defaults: ClassVar[tuple[str, ...]] = ()
     """Fields that JSON omits at their defaults, because older files do not have them."""
     property_fields: ClassVar[tuple[str, ...]] = ()
@@ -271,8 +273,8 @@ _PART = re.compile(r"([^\[\]]*)((?:\[(?:0|-?[1-9][0-9]*)\])*)")
 def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str] = ()) -> P:
     """Copy a parameter object, with the field or element at a path replaced.
 
-    Fields that exclude or override it are set to None, except those at the paths `given`: the
-    validator refuses two that exclude each other.
+    Fields that exclude or override it are set to None, and those in proportion to it are scaled,
+    except those at the paths `given`: the validator refuses two that exclude each other.
 
     Raises
     ------
@@ -286,6 +288,11 @@ def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str]
     for other in excluded(copy, path):
         if value is not None and other not in given:
             copy = _replace_at(copy, other, None)
+    columns = {each.partition("[")[0] for each in given}
+    for other, number in in_proportion(parameters, path).items():
+        if other.partition("[")[0] not in columns:
+            factor = read_path(copy, path) / read_path(parameters, path)
+            copy = _replace_at(copy, other, factor * number)
     return copy
 
 
@@ -330,6 +337,25 @@ def excluded(parameters: Parameters, path: str) -> list[str]:
     if override and getattr(holder, override) is not None:
         others.append(override)
     return [f"{path.removesuffix(name)}{other}" for other in others]
+
+
+def in_proportion(parameters: Parameters, path: str) -> dict[str, float]:
+    """Return the numbers that are in proportion to the one at a path, by path; none if that is 0.
+
+    Examples
+    --------
+    >>> from crawler2d.parameters.drivetrain import Drivetrain
+    >>> limits = {"max_speed": 1.0, "max_acceleration": 1.0, "max_deceleration": 1.0}
+    >>> motor = Drivetrain(**limits, max_torque=6.0, torque_curve=[(0.0, 6.0), (1.0, 2.0)])
+    >>> in_proportion(motor, "max_torque")
+    {'torque_curve[0][1]': 6.0, 'torque_curve[1][1]': 2.0}
+    """
+    parent, _, name = path.rpartition(".")
+    holder = _holder(parameters, parent)
+    column = type(holder).proportional.get(name)
+    rows = getattr(holder, column) if column and getattr(holder, name) else None
+    before = path.removesuffix(name)
+    return {f"{before}{column}[{i}][1]": row[1] for i, row in enumerate(rows or ())}
 
 
 def is_whole(parameters: Parameters, path: str) -> bool:

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.fields import expand_path, is_whole, json_pointer, read_path
+from crawler2d.parameters.fields import (
+    excluded,
+    expand_path,
+    in_proportion,
+    is_whole,
+    json_pointer,
+    read_path,
+)
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
 from crawler2d.variation.distributions import Distribution, Levels, Ranges, read_distribution
@@ -181,6 +188,12 @@ class Variation:
                     nominal = float(nominal)  # a whole number may be too long for NumPy
                 values[field] = distribution.values(numbers[path], nominal)
                 shown.setdefault(path, values[field])
+        cleared = {other for field in values for other in excluded(cell, field)}
+        for field in list(values):
+            for other, number in in_proportion(cell, field).items():
+                if other.partition("[")[0] not in cleared:
+                    values[other] = values[field] / read_path(cell, field) * number
+                    whole[other] = False
         return Draws(values, shown, whole)
 
 
