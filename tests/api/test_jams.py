@@ -59,6 +59,14 @@ def test_friction_is_taken_from_the_call() -> None:
         c2d.jams(WHEELS, STEP, friction=0.0)
 
 
+def test_other_fields_of_the_scenario_are_taken_from_the_call() -> None:
+    bar, back = c2d.terrains.barrier(0.1, 0.2), c2d.Drive(speed=-0.4)
+    found = c2d.jams(WHEELS, bar, drive=back)
+    assert caught(found)
+    assert found == c2d.jams(c2d.Scenario(WHEELS, bar, drive=back))
+    assert found != c2d.jams(WHEELS, bar)
+
+
 def test_a_belt_is_held_where_it_slips_before_a_wall() -> None:
     low = c2d.jams(WHEELS, c2d.terrains.step(0.1), friction=0.4)
     assert any(jam.belt_holds for jam in low)

@@ -42,7 +42,7 @@ def keywords(function: Callable[..., Any]) -> list[str]:
 OTHERS = {
     # They hand on what they do not know.
     *("simulate", "terrains.from_points", "terrains.knife_edge", "terrains.stepfield_with_barrier"),
-    *("terrains.from_csv", "explore"),
+    *("terrains.from_csv", "explore", "jams"),
     "studies.real_time_factor",  # which says itself why it does not take what other studies take
     *("Run", "Diagnosis", "Reading", "Audit"),  # results, which nobody makes
 }

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d.common.bodies import BodyKind, Disc, end_discs
-from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.track import BeltTrack, ClosedTrack
 from crawler2d.runs.batch import complete
 
@@ -110,7 +109,6 @@ def _in_words(contact: JamContact) -> str:
     return f"{kind} {contact.body} on {place} with {contact.normal_force:.0f} N"
 
 
-@takes_keywords
 def jams(
     scenario: Scenario | Robot,
     terrain: Terrain | None = None,
