@@ -111,6 +111,16 @@ def test_motors_that_no_file_holds_are_in_its_comment() -> None:
     assert left_out(curve.to_urdf()) == ["drivetrain.torque_curve"]
 
 
+def test_the_rotor_of_a_belt_is_in_the_comment_of_wheels_on_flippers() -> None:
+    """Wheels of the chassis share the rotor, those of flippers have none."""
+    arms = c2d.robots.engineer().flippers
+    assert arms is not None
+    arms = dataclasses.replace(arms, track=c2d.LineOfWheels(3))
+    belted = c2d.robots.engineer(flippers=arms, track=c2d.BeltTrack())
+    assert left_out(belted.to_mjcf()) == ["drivetrain.rotor_inertia"]
+    assert left_out(belted.with_track(c2d.LineOfWheels(3)).to_mjcf()) == []
+
+
 def with_motors(robot: c2d.Robot, **motors: Any) -> c2d.Robot:
     drivetrain = dataclasses.replace(robot.drivetrain, **motors)
     return dataclasses.replace(robot, drivetrain=drivetrain)

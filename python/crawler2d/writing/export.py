@@ -245,13 +245,14 @@ def _build_model(
 
 def _left_out(robot: dict[str, Any], tree: Tree, target: Format) -> list[str]:
     """Return what the file cannot represent of the motors, such as rotors of belts."""
-    has_motors = target.has_rotors and any(joint.is_unlimited for joint in tree.joints.values())
+    motors = [joint for joint in tree.joints.values() if joint.is_unlimited]
+    has_motors = target.has_rotors and bool(motors)
     drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
     given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
     given |= {f"flippers.{name}": value for name, value in flippers.items()}
     given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
     is_held = {
-        "drivetrain.rotor_inertia": has_motors,
+        "drivetrain.rotor_inertia": has_motors and any(joint.armature for joint in motors),
         "drivetrain.no_load_speed": False,
         "drivetrain.torque_curve": False,
         "drivetrain.controller": has_motors,
