@@ -74,6 +74,23 @@ def test_a_belt_is_held_where_it_slips_before_a_wall() -> None:
     assert any(jam.stable and jam.between is None for jam in belt)
 
 
+def test_a_belt_runs_round_wheels_on_flippers_too() -> None:
+    arms = c2d.Flippers(
+        length=0.34,
+        root_radius=0.064,
+        tip_radius=0.037,
+        mass=0.775,
+        torque_limit=30.0,
+        track=c2d.LineOfWheels(2, wheel_radius=0.06),
+    )
+    robot = c2d.robots.engineer(flippers=arms, track=c2d.BeltTrack())
+    held = caught(c2d.jams(robot, c2d.terrains.knife_edge(0.05), friction=0.6))
+    assert [(jam.between, jam.belt_holds) for jam in held] == [((1, 2), False)]
+    base = c2d.Scenario(robot, c2d.terrains.knife_edge(0.05))
+    chart = studies.jam_chart(base, values=[0.05])
+    assert chart["belt_high"].max() < chart["high"].max()
+
+
 @pytest.mark.parametrize(
     "track",
     [

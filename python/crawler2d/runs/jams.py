@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from types import NoneType
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
@@ -173,9 +174,11 @@ def jams(
 
 
 def on_belt(scenario: Scenario) -> Scenario:
-    """Put a smooth belt round the bodies of a robot's track, unless that is a belt."""
-    track = scenario.robot.track
-    if isinstance(track, (BeltTrack, ClosedTrack)):
+    """Put a smooth belt round the bodies of a robot's tracks, unless all of them are belts."""
+    track, arms = scenario.robot.track, scenario.robot.flippers
+    of_arms = None if arms is None else arms.track  # None is the robot's; a closed one closes it
+    is_belt = isinstance(track, BeltTrack) and isinstance(of_arms, (BeltTrack, NoneType))
+    if is_belt or isinstance(track, ClosedTrack):
         return scenario
     closed = ClosedTrack(track, surface="smooth")
     return scenario.replace({"robot": scenario.robot.with_track(closed)})
