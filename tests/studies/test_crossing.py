@@ -53,6 +53,17 @@ def test_every_run_over_a_field_has_a_field_of_its_own() -> None:
     assert "terrain.seed" in found.attrs["vary"]
 
 
+def test_nothing_given_to_vary_is_the_same_as_none() -> None:
+    field: Any = {"field": GROUNDS["field"]}
+    few = c2d.Until(least=2, most=2)
+    crossed = c2d.studies.success(BASE, terrains=field, vary=None, until=few, progress=False)
+    assert "terrain.seed" in crossed.attrs["vary"]
+    how: Any = {"first": 2, "confirm": 2, "progress": False}
+    lines = [c2d.LineOfWheels(4), c2d.LineOfWheels(5)]
+    searched = c2d.studies.search(BASE, lines, terrains=field, vary=None, **how)
+    assert "terrain.seed" in searched.attrs["vary"]
+
+
 def test_the_scenarios_own_ground_is_taken_if_none_is_given() -> None:
     found = found_of(terrains=None)
     assert found["terrain"].values.tolist() == ["flat"]

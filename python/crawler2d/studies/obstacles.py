@@ -292,7 +292,8 @@ def success(
     check_study(scenario)
     grounds = read_terrains(scenario, terrains)
     fields = read_models(scenario, models)
-    how = {"vary": of_start() | of_contact() | of_field(), **how}
+    if how.get("vary") is None:
+        how = {**how, "vary": of_start() | of_contact() | of_field()}
     with campaign(scenario, how, ["terrain", *paths_of(fields)]) as study:
         cells = [
             Cell((f"model={label}", f"terrain={name}"), scenario.replace({"terrain": each, **own}))

@@ -144,8 +144,8 @@ def search(
     grounds = read_terrains(scenario, terrains)
     fields = variants(space, "space")
     swept = ["terrain", *paths_of(fields)]
-    if any(hasattr(ground, "seed") for ground in grounds.values()):
-        how = {"vary": of_start() | of_contact() | of_field(), **how}
+    if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
+        how = {**how, "vary": of_start() | of_contact() | of_field()}
     with campaign(scenario, how, swept, repeats=whole_number(first, "first", 1, 10**6)) as study:
         candidates, refusals = _candidates(study, fields, grounds, objective)
         study.settings += len(candidates) * len(grounds)
