@@ -130,6 +130,19 @@ def test_segments_and_a_friction_may_be_set_together() -> None:
     assert (terrain.friction, terrain.segment_friction) == (0.7, (0.1, 0.2, 0.3))
 
 
+@pytest.mark.parametrize("whole", ["terrain.friction", "terrain.segment_friction[*]"])
+def test_a_segment_with_draws_of_its_own_has_these(whole: str) -> None:
+    one = {"terrain.segment_friction[1]": c2d.uniform(0.0, 0.1)}
+    every = {whole: c2d.scaled(0.5, 0.5)}
+    scenario = Scenario(ROBOT.with_track(c2d.BeltTrack()), WET)
+    for vary in (one | every, every | one):
+        drawn = c2d.sweep(scenario, {}, vary=vary, repeats=1, progress=False)
+        terrain = Scenario.from_json(drawn["scenario"].item()).terrain
+        assert isinstance(terrain, Points)
+        own = drawn["drawn_segment_friction_1"].item()
+        assert terrain.segment_friction == (0.45, own, 0.4)
+
+
 @pytest.mark.parametrize("is_lane", [False, True])
 def test_a_drawn_friction_is_drawn_for_every_segment(is_lane: bool) -> None:
     ground = c2d.terrains.lanes(left=WET, right=WET) if is_lane else WET

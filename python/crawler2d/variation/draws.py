@@ -174,6 +174,8 @@ class Variation:
             if path in self.optional and not _has_path(cell, path):
                 continue
             for field in fields_at(cell, path):
+                if field != path and field in self.distributions:
+                    continue  # which has draws of its own
                 nominal = read_path(cell, field)
                 if own is not None:
                     nominal = own.get(field, nominal)
