@@ -11,18 +11,30 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.track import Track
 from tests.shared import GEAR, PLACEMENTS, POINTS, ROBOT, refusal
 
 OUTLINE = ROBOT.outline
 
 
-def test_a_robot_with_a_servo_a_wheel_gets_a_motor_a_belt() -> None:
+@pytest.mark.parametrize(
+    "track",
+    [
+        c2d.BeltTrack(),
+        c2d.GrouserBeltTrack(),
+        c2d.SegmentalTrack(),
+        c2d.ForceTrack(),
+        c2d.ClosedTrack(c2d.BeltTrack()),
+    ],
+)
+def test_a_robot_with_a_servo_a_wheel_gets_a_motor_a_belt(track: Track) -> None:
     servos = replace(ROBOT.drivetrain, torque_sharing="wheel")
     wheeled = replace(ROBOT, track=c2d.LineOfWheels(4), drivetrain=servos)
-    belted = wheeled.with_track(c2d.BeltTrack())
+    belted = wheeled.with_track(track)
     belted.wheels()  # breaks no rule
     assert belted.drivetrain.torque_sharing == "track"
-    assert wheeled.with_track(c2d.LineOfWheels(5)).drivetrain.torque_sharing == "wheel"
+    for others in (c2d.LineOfWheels(5), c2d.ClosedTrack(c2d.LineOfWheels(5))):
+        assert wheeled.with_track(others).drivetrain.torque_sharing == "wheel"
 
 
 # Counts and sizes

@@ -18,7 +18,14 @@ from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.outline import TrackOutline
 from crawler2d.parameters.settings import Drive, ScenarioBase, Solver
 from crawler2d.parameters.terrain import Points, Terrain
-from crawler2d.parameters.track import BeltTrack, Track
+from crawler2d.parameters.track import (
+    BeltTrack,
+    CircumferentialWheels,
+    ClosedTrack,
+    HybridWheels,
+    LineOfWheels,
+    Track,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,8 +105,8 @@ class Robot(Parameters, path="robot"):
         Returns
         -------
         Robot
-            A copy. Nothing else changes, except that a `BeltTrack`, which has one drive per side,
-            sets ``torque_sharing="track"``.
+            A copy. Nothing else changes, except that a model without driven wheels, such as a
+            `BeltTrack`, which has one drive per side, sets ``torque_sharing="track"``.
 
         Examples
         --------
@@ -111,7 +118,9 @@ class Robot(Parameters, path="robot"):
         >>> robot.with_track(c2d.BeltTrack()).drivetrain.torque_sharing
         'track'
         """
-        if isinstance(track, BeltTrack) and self.drivetrain.torque_sharing == "wheel":
+        bodies = track.of if isinstance(track, ClosedTrack) else track
+        has_wheels = isinstance(bodies, (LineOfWheels, CircumferentialWheels, HybridWheels))
+        if not has_wheels and self.drivetrain.torque_sharing == "wheel":
             drive = replace(self.drivetrain, torque_sharing="track")
             return replace(self, track=track, drivetrain=drive)
         return replace(self, track=track)
