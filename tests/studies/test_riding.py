@@ -101,6 +101,19 @@ def test_the_friction_of_every_segment_is_doubled(is_lane: bool) -> None:
     assert distance == doubled.metrics["track_distance"]
 
 
+@pytest.mark.parametrize("part", ["friction", "segment_friction[*]", "segment_friction[0]"])
+def test_the_friction_that_is_drawn_is_doubled(part: str) -> None:
+    points = [(-2.0, 0.0), (0.1, 0.0), (4.0, 0.0)]
+    ground = c2d.terrains.from_points(points, goal=0.5, segment_friction=[0.9, 0.004])
+    drawn = {f"terrain.{part}": c2d.uniform(0.004, 0.004)}
+    base = FLAT.replace({"terrain": ground})
+    for given in ({"vary": drawn}, {"vary": {}, "unknown": drawn, "samples": 1}):
+        found = c2d.studies.odometry(base, **given, **HOW).squeeze("model").isel(repeat=0)
+        doubled = c2d.simulate(base.replace({"terrain.segment_friction": [0.008, 0.008]}))
+        distance = found["track_distance"].sel(change="friction x 2").item()
+        assert distance == doubled.metrics["track_distance"]
+
+
 def test_wheels_of_several_radii_have_no_single_rolling_radius() -> None:
     mixed = c2d.HybridWheels(PLACEMENTS)
     found = c2d.studies.odometry(FLAT, models={"mixed": mixed}, **HOW)

@@ -71,10 +71,10 @@ def scaled_draws(planner: Planner, factors: Mapping[str, float]) -> Planner:
 
 def _scale(variation: Variation, factors: Mapping[str, float]) -> Variation:
     scaled = {
-        path: _ScaledDraws(each, factors[path])
+        path: _ScaledDraws(each, factors[first])
         for path, each in variation.distributions.items()
         # Levels are relative to the field's own value, which has the factor already.
-        if path in factors and not isinstance(each, Levels)
+        if (first := path.replace("[*]", "[0]")) in factors and not isinstance(each, Levels)
     }
     return replace(variation, distributions={**variation.distributions, **scaled})
 

@@ -63,15 +63,17 @@ class Change:
         """Such as "torque x 2"."""
         return f"{self.name} x {_FACTOR:g}" if self.paths else self.name
 
-    @property
-    def factors(self) -> Mapping[str, float]:
-        """[-] By path, for `Cell`."""
-        return dict.fromkeys(self.paths, _FACTOR)
+    def factors(self, scenario: Scenario) -> Mapping[str, float]:
+        """[-] By path, for `Cell`: of these numbers, and of the fields that they stand for."""
+        return dict.fromkeys([*self.paths, *self._fields(scenario)], _FACTOR)
 
     def of(self, scenario: Scenario) -> Scenario:
         """Double these numbers of a scenario."""
-        fields = [field for path in self.paths for field in fields_at(scenario, path)]
+        fields = self._fields(scenario)
         return scenario.replace({each: _FACTOR * read_path(scenario, each) for each in fields})
+
+    def _fields(self, scenario: Scenario) -> list[str]:
+        return [field for path in self.paths for field in fields_at(scenario, path)]
 
 
 UNCHANGED = Change("unchanged")
@@ -184,7 +186,7 @@ def _limiting_study(
             RunUp(
                 (f"model={label}", f"change={change.label}"),
                 change.of(on_plane(scenario.replace(own), given)),
-                change.factors,
+                change.factors(scenario),
             )
             for label, own in fields.items()
             for change in changes

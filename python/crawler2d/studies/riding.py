@@ -190,7 +190,7 @@ def odometry(
             Cell(
                 (f"model={label}", f"change={change.label}"),
                 change.of(scenario.replace(own)),
-                change.factors,
+                change.factors(scenario.replace(own)),
             )
             for label, own in fields.items()
             for change in changes
