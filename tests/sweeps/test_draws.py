@@ -371,6 +371,21 @@ def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> No
         draw(lanes, vary)
 
 
+@pytest.mark.parametrize("is_first", [False, True])
+@pytest.mark.parametrize("others", [{}, {"robot.drivetrain.no_load_speed": uniform(1.0, 1.0)}])
+def test_a_default_draw_is_dropped_by_what_else_is_drawn(
+    is_first: bool, others: dict[str, Any]
+) -> None:
+    base = Scenario(ROBOT, c2d.terrains.flat(), drive=c2d.Drive(speed=0.4))
+    slow = {"robot.drivetrain.max_speed": uniform(0.4, 0.4), **others}
+    usual = c2d.variability.of_contact()
+    vary = slow | usual if is_first else usual | slow
+    found = c2d.sweep(base, {}, vary=vary, repeats=6, progress=False)
+    assert found["drawn_speed"].max() == 0.4
+    assert found["drawn_speed"].min() < 0.4
+    assert len(set(found["drawn_friction"].values.tolist())) == 6
+
+
 @pytest.mark.parametrize("distribution", [uniform(1.0, 9.0), scaled(1.0, 2.0)])
 def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None:
     for name, path in [

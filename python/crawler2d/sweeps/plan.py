@@ -253,20 +253,22 @@ def _drop_invalid(
     Returns the values by path; `runs` is changed.
     """
     shown = {path: values.copy() for path, values in drawn.shown.items()}
-    is_optional = [path in optional for path in drawn.values]
-    if not any(is_optional):
+    is_optional = np.array([path in optional for path in drawn.values], dtype=bool)
+    if not is_optional.any():
         return shown
     fields, rows = drawn.fields, drawn.rows
     for repeat, run in enumerate(runs):
         if not isinstance(run, ScenarioError):
             continue
         held = [world.own.get(path, read_path(world.cell, path)) for path in drawn.values]
-        row = np.array(held, dtype=float)
+        row = np.where(is_optional, np.array(held, dtype=float), rows[repeat])
         for column, path in enumerate(drawn.values):
+            if not is_optional[column]:
+                continue
             trial = row.copy()
             trial[column] = rows[repeat, column]
             (checked,) = whole.varied(fields, trial[None, :])
-            if isinstance(checked, _core.Passed) or not is_optional[column]:
+            if isinstance(checked, _core.Passed):
                 row = trial
             elif path in shown:
                 shown[path][repeat] = row[column]
