@@ -144,7 +144,7 @@ class Run(ShownRun):
         belly : array_like, optional
             [m] Another belly, as `Robot` has it; None takes it off, "built" leaves it as it is.
         drive : Drive, optional
-            Another command.
+            Another command. The times of its schedules count from the start of this run.
         push : tuple of two floats, optional
             [N], [s] A horizontal force at the centre of mass, above 0 towards +x, and the time in
             which it rises from 0, evenly; then it stays.
