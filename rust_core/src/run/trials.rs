@@ -410,8 +410,8 @@ fn variant_of(scenario: &Scenario, change: Change) -> Option<Scenario> {
             (*sharing == TorqueSharing::Wheel).then_some(())?;
             *sharing = TorqueSharing::Track;
         }
-        Change::TwiceTheTorque => robot.drivetrain.max_torque *= 2.0,
-        Change::TenTimesTheTorque => robot.drivetrain.max_torque *= 10.0,
+        Change::TwiceTheTorque => robot.drivetrain.scale_torque(2.0),
+        Change::TenTimesTheTorque => robot.drivetrain.scale_torque(10.0),
         Change::TwiceTheFriction => {
             variant.terrain.scale_friction(2.0);
             if let Track::Force(force) = &mut robot.track {

@@ -70,6 +70,14 @@ impl Drivetrain {
         2.0 * self.max_torque / outline.belt_radius()
     }
 
+    /// Multiplies the torque that the motors have at any speed.
+    pub(crate) fn scale_torque(&mut self, factor: f64) {
+        self.max_torque *= factor;
+        for [_, torque] in self.torque_curve.iter_mut().flatten() {
+            *torque *= factor;
+        }
+    }
+
     fn check(&self, f: &Fields) -> Checked<()> {
         if self.self_locking && self.controller.is_some() {
             let rule = "must be false with a controller: the load never reaches the motor, so there is no error to correct";

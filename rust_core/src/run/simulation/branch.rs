@@ -121,9 +121,10 @@ impl Simulation {
     }
 }
 
-/// Whether two robots differ in their torque limit and a missing belly at most.
+/// Whether two robots differ in the torque of their motors and a missing belly at most.
 fn has_the_same_parts(one: &Robot, other: &Robot) -> bool {
     let mut like = one.clone();
     like.drivetrain.max_torque = other.drivetrain.max_torque;
+    (like.drivetrain.torque_curve).clone_from(&other.drivetrain.torque_curve);
     like == *other || like.without_belly().is_some_and(|bare| bare == *other)
 }

@@ -230,3 +230,28 @@ fn skids_that_nothing_pushes_hold_the_friction_of_their_weight() {
     );
     assert!((found.high / found.low - 1.1).abs() < 1e-9);
 }
+
+#[test]
+fn a_line_of_torques_and_its_curve_have_the_same_trials() {
+    let [line, curve] = [false, true].map(|is_curve| {
+        let mut scenario = engineer();
+        scenario.terrain = Terrain::Step {
+            height: 0.1,
+            surface: Surface::sharp(0.9),
+        };
+        let motor = &mut scenario.robot.drivetrain;
+        motor.max_torque = 0.7;
+        if is_curve {
+            motor.torque_curve = Some(vec![[0.0, motor.max_torque], [2.0, 0.0]]);
+        } else {
+            motor.no_load_speed = Some(2.0);
+        }
+        let wanted = Wanted::of([Change::TwiceTheTorque, Change::TenTimesTheTorque]);
+        let trials = why(&scenario, wanted).trials;
+        let of_torque = trials.iter().filter(|trial| trial.name.contains("torque"));
+        let ends = of_torque.map(|trial| (trial.name, trial.outcome));
+        ends.collect::<Vec<_>>()
+    });
+    assert_eq!(line.len(), 2);
+    assert_eq!(curve, line);
+}
