@@ -52,6 +52,11 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
         "terrain.right.friction",
         9.0,
     ),
+    "a polyline with its goal behind the robot": (
+        over(c2d.terrains.from_points([(-9.0, 0.0), (9.0, 0.0)], goal=-2.0)),
+        "terrain.goal",
+        -2.0,
+    ),
     "friction of one segment": (
         over(
             c2d.terrains.from_points(

@@ -105,9 +105,14 @@ impl Scenario {
             );
             doubts.add("goal", goal, reason);
         }
-        if let Some(goal) = self.goal.filter(|_| to_goal <= 0.0) {
+        let given = match (self.goal, &self.terrain) {
+            (Some(goal), _) => Some(("goal", goal)),
+            (None, Terrain::Points { goal, .. }) => Some(("terrain.goal", *goal)),
+            _ => None,
+        };
+        if let Some((path, goal)) = given.filter(|_| to_goal <= 0.0) {
             let reason = "is behind the robot at its start, which clears without a step";
-            doubts.add("goal", goal, reason);
+            doubts.add(path, goal, reason);
         }
     }
 
