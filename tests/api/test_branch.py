@@ -186,7 +186,7 @@ def test_an_unchanged_command_goes_on_where_it_is() -> None:
 
 
 def test_schedules_of_another_command_count_from_the_start_of_the_run(seized: c2d.Run) -> None:
-    stopping = c2d.Drive(speed=0.4, schedule=[(1.5, 0.0)])
+    stopping = c2d.Drive(speed=0.4, schedule=((1.5, 0.0),))
     branch = seized.branch(at=1.0, drive=stopping, duration=1.0)
     whole = c2d.simulate(SEIZING.replace({"drive": stopping, "duration": 2.0}))
     assert branch.position[-1] == pytest.approx(whole.position[-1], abs=1e-9)

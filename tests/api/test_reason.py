@@ -51,7 +51,7 @@ def test_what_holds_a_robot_that_tips_over_is_tried(tipped: c2d.Run) -> None:
 
 def test_a_slower_robot_moves_its_flippers_at_the_same_places() -> None:
     """Flippers that are lowered beyond the edge come too late at any speed."""
-    late = c2d.Drive(speed=0.4, gait=c2d.Hold(1.5, [(3.0, 0.3)]))
+    late = c2d.Drive(speed=0.4, gait=c2d.Hold(1.5, ((3.0, 0.3),)))
     run = c2d.simulate(c2d.robots.engineer(), c2d.terrains.step(0.1), drive=late, duration=5e4)
     ends = dict(run.tip_over().tried)  # the longest duration is 1e5 s
     assert ends["half the speed"] is ends["a tenth of the speed"] is c2d.Outcome.TIPPED_OVER
