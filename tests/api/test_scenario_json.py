@@ -274,6 +274,7 @@ def test_a_field_that_is_missing_is_looked_for_among_those_given(scenario: Scena
     for key, rule in [
         ('"hieght":', "must be given (is hieght a misspelling of it?)"),
         ('"tall":', "must be given"),
+        (f'"{"height" * 100_000}":', "must be given"),
     ]:
         with pytest.raises(c2d.ScenarioError) as caught:
             Scenario.from_json(text.replace('"height":', key))
