@@ -288,11 +288,10 @@ def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str]
     for other in excluded(copy, path):
         if value is not None and other not in given:
             copy = _replace_at(copy, other, None)
-    columns = {each.partition("[")[0] for each in given}
-    for other, number in in_proportion(parameters, path).items():
-        if other.partition("[")[0] not in columns:
+    for column, rows in in_proportion(parameters, path).items():
+        if column not in {each.partition("[")[0] for each in given}:
             factor = read_path(copy, path) / read_path(parameters, path)
-            copy = _replace_at(copy, other, factor * number)
+            copy = _replace_at(copy, column, [(first, factor * second) for first, second in rows])
     return copy
 
 
@@ -339,8 +338,8 @@ def excluded(parameters: Parameters, path: str) -> list[str]:
     return [f"{path.removesuffix(name)}{other}" for other in others]
 
 
-def in_proportion(parameters: Parameters, path: str) -> dict[str, float]:
-    """Return the numbers that are in proportion to the one at a path, by path; none if that is 0.
+def in_proportion(parameters: Parameters, path: str) -> dict[str, tuple[tuple[float, float], ...]]:
+    """Return the rows in proportion to the number at a path, by their path; none if that is 0.
 
     Examples
     --------
@@ -348,14 +347,13 @@ def in_proportion(parameters: Parameters, path: str) -> dict[str, float]:
     >>> limits = {"max_speed": 1.0, "max_acceleration": 1.0, "max_deceleration": 1.0}
     >>> motor = Drivetrain(**limits, max_torque=6.0, torque_curve=[(0.0, 6.0), (1.0, 2.0)])
     >>> in_proportion(motor, "max_torque")
-    {'torque_curve[0][1]': 6.0, 'torque_curve[1][1]': 2.0}
+    {'torque_curve': ((0.0, 6.0), (1.0, 2.0))}
     """
     parent, _, name = path.rpartition(".")
     holder = _holder(parameters, parent)
     column = type(holder).proportional.get(name)
     rows = getattr(holder, column) if column and getattr(holder, name) else None
-    before = path.removesuffix(name)
-    return {f"{before}{column}[{i}][1]": row[1] for i, row in enumerate(rows or ())}
+    return {f"{path.removesuffix(name)}{column}": rows} if rows else {}
 
 
 def is_whole(parameters: Parameters, path: str) -> bool:

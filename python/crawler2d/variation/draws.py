@@ -192,10 +192,11 @@ class Variation:
                 shown.setdefault(path, values[field])
         cleared = {other for field in values for other in excluded(cell, field)}
         for field in list(values):
-            for other, number in in_proportion(cell, field).items():
-                if other.partition("[")[0] not in cleared:
-                    values[other] = values[field] / read_path(cell, field) * number
-                    whole[other] = False
+            for column, rows in in_proportion(cell, field).items():
+                factors = values[field] / read_path(cell, field)
+                for i, (_, number) in enumerate(() if column in cleared else rows):
+                    values[f"{column}[{i}][1]"] = factors * number
+                    whole[f"{column}[{i}][1]"] = False
         return Draws(values, shown, whole)
 
 
