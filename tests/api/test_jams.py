@@ -9,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d import studies
 from crawler2d.runs.jams import Jam
+from tests.shared import with_flippers
 
 ENGINEER = c2d.robots.engineer(flippers=None)
 WHEELS = ENGINEER.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
@@ -75,15 +76,8 @@ def test_a_belt_is_held_where_it_slips_before_a_wall() -> None:
 
 
 def test_a_belt_runs_round_wheels_on_flippers_too() -> None:
-    arms = c2d.Flippers(
-        length=0.34,
-        root_radius=0.064,
-        tip_radius=0.037,
-        mass=0.775,
-        torque_limit=30.0,
-        track=c2d.LineOfWheels(2, wheel_radius=0.06),
-    )
-    robot = c2d.robots.engineer(flippers=arms, track=c2d.BeltTrack())
+    arms = c2d.LineOfWheels(2, wheel_radius=0.06)
+    robot = with_flippers(c2d.BeltTrack(), arms, ends="front")
     held = caught(c2d.jams(robot, c2d.terrains.knife_edge(0.05), friction=0.6))
     assert [(jam.between, jam.belt_holds) for jam in held] == [((1, 2), False)]
     base = c2d.Scenario(robot, c2d.terrains.knife_edge(0.05))

@@ -12,7 +12,7 @@ from crawler2d.audits.record import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.parameters.robot import Robot
-from crawler2d.parameters.track import CircumferentialWheels, HybridWheels, LineOfWheels
+from crawler2d.parameters.track import WheeledTrack
 from crawler2d.results.record import NO_RESULT
 from crawler2d.variation.distributions import (
     Distribution,
@@ -262,8 +262,9 @@ def _has_wheels_for_tracks(robot: Robot) -> bool:
     """Whether wheels stand where a track would run, on the chassis or on flippers."""
     arms = robot.flippers
     tracks = [robot.track, *([] if arms is None else [arms.track or robot.track])]
-    wheeled = (CircumferentialWheels, HybridWheels, LineOfWheels)
-    return any(isinstance(each, wheeled) and getattr(each, "as_track", True) for each in tracks)
+    return any(
+        isinstance(each, WheeledTrack) and getattr(each, "as_track", True) for each in tracks
+    )
 
 
 def _seizing(verdict: Verdict) -> str:

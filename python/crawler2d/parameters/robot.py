@@ -18,14 +18,7 @@ from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.outline import TrackOutline
 from crawler2d.parameters.settings import Drive, ScenarioBase, Solver
 from crawler2d.parameters.terrain import Points, Terrain
-from crawler2d.parameters.track import (
-    BeltTrack,
-    CircumferentialWheels,
-    ClosedTrack,
-    HybridWheels,
-    LineOfWheels,
-    Track,
-)
+from crawler2d.parameters.track import BeltTrack, ClosedTrack, Track, WheeledTrack
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,8 +112,7 @@ class Robot(Parameters, path="robot"):
         'track'
         """
         bodies = track.of if isinstance(track, ClosedTrack) else track
-        has_wheels = isinstance(bodies, (LineOfWheels, CircumferentialWheels, HybridWheels))
-        if not has_wheels and self.drivetrain.torque_sharing == "wheel":
+        if not isinstance(bodies, WheeledTrack) and self.drivetrain.torque_sharing == "wheel":
             drive = replace(self.drivetrain, torque_sharing="track")
             return replace(self, track=track, drivetrain=drive)
         return replace(self, track=track)

@@ -24,6 +24,7 @@ __all__ = [
     "SegmentalTrack",
     "Track",
     "Wheel",
+    "WheeledTrack",
 ]
 
 
@@ -331,15 +332,10 @@ class ForceTrack(Parameters, kind="force", path="robot.track"):
         return f"{carrying} pushed by a force"
 
 
-OpenTrack = (
-    LineOfWheels
-    | CircumferentialWheels
-    | HybridWheels
-    | BeltTrack
-    | GrouserBeltTrack
-    | SegmentalTrack
-    | ForceTrack
-)
+WheeledTrack = LineOfWheels | CircumferentialWheels | HybridWheels
+"""Any track model of driven wheels."""
+
+OpenTrack = WheeledTrack | BeltTrack | GrouserBeltTrack | SegmentalTrack | ForceTrack
 """Any track model that can be closed."""
 
 

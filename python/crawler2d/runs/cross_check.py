@@ -15,11 +15,11 @@ from crawler2d.common.arrays import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import (
-    CircumferentialWheels,
     ForceTrack,
     GearWheel,
     HybridWheels,
     LineOfWheels,
+    WheeledTrack,
 )
 from crawler2d.results.diagnosis import body_name
 from crawler2d.results.findings import Balance
@@ -119,7 +119,7 @@ def _models_like(robot: Robot) -> tuple[str, ...]:
     track = robot.track
     if isinstance(track, ForceTrack):
         return ("force on skids", "force on wheels")
-    if not isinstance(track, (LineOfWheels, CircumferentialWheels, HybridWheels)):
+    if not isinstance(track, WheeledTrack):
         return ()
     is_geared = isinstance(track.wheel, GearWheel)
     if isinstance(track, LineOfWheels):
