@@ -420,12 +420,6 @@ impl Simulation {
         let next = entries.into_iter().flatten().filter_map(next);
         let limits = &self.scenario.robot.drivetrain;
         let ramp = ramp_time(self.set_point, self.commands.speed, limits);
-        // A remainder that is only rounding is no ramp.
-        let ramp = if ramp > SAME_TIME.value() {
-            ramp
-        } else {
-            f64::INFINITY
-        };
         let risen = Some(self.commands.push.end()).filter(|end| *end > self.time);
         next.chain(risen).fold(self.time + ramp, f64::min)
     }

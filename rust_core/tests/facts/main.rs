@@ -35,6 +35,7 @@ mod motors;
 mod rapier;
 mod rapier_oracles;
 mod repeat;
+mod representation;
 mod robustness;
 mod rotor;
 mod segmental;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::FlipperCommand;
+use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
 
 /// What the robot is to do.
@@ -164,17 +165,27 @@ impl Hold {
     }
 }
 
-/// [m/s] The set-point after `dt` [s]; its magnitude rises and falls at the drivetrain's rates.
+/// [m/s] The set-point after `dt` [s]; its magnitude rises and falls at the drivetrain's rates. A stand that it misses by
+/// rounding is a stand: one that is left would take all of the next step.
 pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) -> f64 {
     let (target, rate) = ramp(now, command, limits);
-    now + (target - now).clamp(-rate * dt, rate * dt)
+    let way = target - now;
+    if way.abs() <= rate * (dt + SAME_TIME.value()) {
+        target
+    } else {
+        now + (rate * dt).copysign(way)
+    }
 }
 
 /// [s] How long the set-point changes at the same rate; infinite if it has its command.
 pub(crate) fn ramp_time(now: f64, command: f64, limits: &Drivetrain) -> f64 {
     let (target, rate) = ramp(now, command, limits);
-    let way = (target - now).abs();
-    if way > 0.0 { way / rate } else { f64::INFINITY }
+    let time = (target - now).abs() / rate;
+    if time > SAME_TIME.value() {
+        time
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// [m/s] Where the set-point goes, and [m/s^2] its rate.
@@ -282,6 +293,17 @@ mod drive_tests {
     fn reversing_brakes_to_a_stand_first() {
         assert!((set_point(0.1, -0.4, &LIMITS, 0.1) - 0.0).abs() < 1e-15);
         assert!((set_point(0.0, -0.4, &LIMITS, 0.1) + 0.02).abs() < 1e-15);
+    }
+
+    #[test]
+    #[allow(clippy::float_cmp)] // a stand is exact
+    fn no_rounding_is_left_of_a_speed_that_is_reversed() {
+        for k in 1..1000 {
+            let (now, time) = (1e-3 * f64::from(k), 0.37 * f64::from(k));
+            // A step ends at an instant, so that its length is rounded.
+            let dt = time + ramp_time(now, -0.4, &LIMITS) - time;
+            assert_eq!(set_point(now, -0.4, &LIMITS, dt), 0.0, "from {now} m/s");
+        }
     }
 
     #[test]
