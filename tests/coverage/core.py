@@ -25,7 +25,7 @@ BUILT = Path(os.environ.get("CARGO_TARGET_DIR", "target")).resolve() / "coverage
 BUILD = {
     "CARGO_TARGET_DIR": str(BUILT),
     "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "16",
-    "RUSTFLAGS": "-C instrument-coverage",
+    "RUSTC_WORKSPACE_WRAPPER": str(Path(__file__).with_name("rustc.sh")),
     "LLVM_PROFILE_FILE": os.devnull,
 }
 
@@ -37,7 +37,8 @@ def main(filters: list[str]) -> int:
     hits: Hits = defaultdict(dict)
     for test in tests():
         raw = BUILT / f"{test.name}.profraw"
-        counting = os.environ | {"LLVM_PROFILE_FILE": str(raw)}
+        # Threads would wait for each other's counters.
+        counting = os.environ | {"LLVM_PROFILE_FILE": str(raw), "RUST_TEST_THREADS": "1"}
         subprocess.run([test, *filters], check=True, cwd=CORE.parent, env=counting)
         for file, lines in counted(test, raw).items():
             for line, count in lines.items():

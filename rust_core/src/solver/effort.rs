@@ -34,3 +34,30 @@ impl Effort {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sum_counts_all_work() {
+        let one = Effort {
+            steps: 2,
+            repeated_steps: 3,
+            solves: 5,
+            rounds: 7,
+            paths: 11,
+            unresolved: 13,
+        };
+        let both = Effort {
+            steps: 4,
+            repeated_steps: 6,
+            solves: 10,
+            rounds: 14,
+            paths: 22,
+            unresolved: 26,
+        };
+        assert_eq!(one.plus(one), both);
+        assert_eq!(both.plus(Effort::default()), both);
+    }
+}

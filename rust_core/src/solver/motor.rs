@@ -268,3 +268,53 @@ impl Problem {
         switched
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::float_cmp)] // limits and impulses are handed on
+
+    use super::*;
+
+    fn behind_lock(hold: Hold) -> Motor {
+        let mut motor = Motor::new(Driven::Body(3), 0.1, true).behind_lock();
+        motor.hold = hold;
+        motor
+    }
+
+    #[test]
+    fn behind_a_lock_a_motor_gives_its_limit_only_the_way_that_it_turns() {
+        for (hold, target, expected) in [
+            (Hold::Pushes, 0.5, Hold::Pushes),
+            (Hold::Pushes, 0.0, Hold::Holds),
+            (Hold::Pushes, -0.5, Hold::Holds),
+            (Hold::Brakes, -0.5, Hold::Brakes),
+            (Hold::Brakes, 0.0, Hold::Holds),
+            (Hold::Brakes, 0.5, Hold::Holds),
+            (Hold::Locked, 0.0, Hold::Locked),
+        ] {
+            let mut motor = behind_lock(hold);
+            motor.aim(target, 1.0);
+            assert_eq!(motor.hold, expected, "{hold:?} at {target} m/s");
+            let mut free = Motor {
+                locks: false,
+                ..behind_lock(hold)
+            };
+            free.aim(target, 1.0);
+            assert_eq!(free.hold, hold);
+        }
+    }
+
+    #[test]
+    fn a_lock_bears_what_the_motor_cannot_give() {
+        let mut motor = behind_lock(Hold::Holds);
+        motor.aim(0.0, 2.0);
+        for (impulse, of_motor) in [(-5.0, -2.0), (-1.0, -1.0), (1.5, 1.5), (7.0, 2.0)] {
+            assert_eq!(motor.without_lock(impulse), of_motor);
+        }
+        // At its limit the motor gives all of it, and without a lock always.
+        motor.hold = Hold::Pushes;
+        assert_eq!(motor.without_lock(7.0), 7.0);
+        (motor.hold, motor.locks) = (Hold::Holds, false);
+        assert_eq!(motor.without_lock(7.0), 7.0);
+    }
+}

@@ -1,6 +1,7 @@
 //! The path to a solution.
 
 use super::*;
+use crate::draw::Draw;
 
 /// A belt that drives off on two contacts, with its motor at its limit; solved.
 fn driving_off() -> Problem {
@@ -50,6 +51,37 @@ fn the_path_from_wrong_states_leads_to_what_right_ones_give() {
             assert!((pivoted - before).abs() < AGREEMENT.value());
         }
     }
+}
+
+/// Relaxed by as much as the worst condition asks for, a law holds in any state, and its impulses there stay what they were.
+#[test]
+fn a_relaxed_law_holds_in_any_state_with_the_same_impulses() {
+    let mut draw = Draw(21);
+    let mut violated = 0;
+    for _ in 0..2000 {
+        let mut problem = drawn(&mut draw);
+        problem.tie();
+        problem.center();
+        let unknowns: Vec<f64> = (problem.unknowns.iter())
+            .map(|_| draw.between(-1.0, 1.0))
+            .collect();
+        for contact in &mut problem.contacts {
+            let grips = [Grip::Open, Grip::Sticks, Grip::Forwards, Grip::Backwards];
+            contact.grip = grips[draw.below(4)];
+            let least = contact.violation(&unknowns);
+            violated += u32::from(least > 0.0);
+            let before = contact.held(&unknowns, 0.0);
+            contact.relax(&unknowns, least);
+            let scale = 1e-12 * (contact.dampers[0].stiffness + contact.dampers[1].stiffness);
+            contact.conditions(&unknowns, 1.0, |next, value| {
+                assert!(value >= -scale, "{:?} to {next:?}: {value}", contact.grip);
+            });
+            for (now, before) in contact.held(&unknowns, 1.0).into_iter().zip(before) {
+                assert!((now - before).abs() <= scale, "{:?}", contact.grip);
+            }
+        }
+    }
+    assert!(violated > 3000, "{violated} states violate a law");
 }
 
 /// Two motors behind locks, and a contact that sticks, solved from the states of other velocities.
