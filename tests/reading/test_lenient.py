@@ -1,6 +1,7 @@
 """What cannot carry the robot does not stop the reader; what can is refused or doubted aloud."""
 
 import re
+import time
 from pathlib import Path
 from typing import Any
 
@@ -284,6 +285,92 @@ def test_a_nested_model_is_part_of_the_robot(tmp_path: Path) -> None:
     links = reading.tree.by_name
     assert links["mast::hull"].pose.place == pytest.approx([0.0, 0.0, 0.5])
     assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.7])
+
+
+MAST = """<model name="mast" {how}><pose relative_to="hull">0.1 0 0.5 0 0 {yaw}</pose>
+  <link name="foot"><inertial><mass>1</mass></inertial></link>
+  <link name="top"><pose>0.3 0 0.2 0 0 0</pose><inertial><mass>1</mass></inertial></link>
+  <joint name="up" type="fixed"><parent>{parent}</parent><child>{child}</child></joint></model>
+  <joint name="m" type="fixed"><parent>hull</parent><child>mast{end}</child></joint>"""
+
+
+def mast(how: str = "", *, yaw: float = 0.0, end: str = "", is_on_top: bool = False) -> str:
+    """A model of two links on the hull, held by its foot or its top."""
+    held, other = ("top", "foot") if is_on_top else ("foot", "top")
+    return MAST.format(how=how, yaw=yaw, parent=held, child=other, end=end)
+
+
+def test_a_placement_frame_is_where_its_model_is_placed(tmp_path: Path) -> None:
+    links = read(tmp_path, in_model(mast('placement_frame="top"')), "tank.sdf").tree.by_name
+    assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.5])
+    assert links["mast::foot"].pose.place == pytest.approx([-0.2, 0.0, 0.3])
+    turned = in_model(mast('placement_frame="top"', yaw=np.pi / 2.0))
+    links = read(tmp_path, turned, "tank.sdf").tree.by_name
+    assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.5])
+    assert links["mast::foot"].pose.place == pytest.approx([0.1, -0.3, 0.3])
+
+
+def test_a_placement_frame_may_be_that_of_a_model_inside(tmp_path: Path) -> None:
+    """Both models are placed by frames of their own, and the inner one by the outer's link."""
+    inner = """<model name="lamp" placement_frame="bulb">
+      <pose relative_to="top">0 0 0.1 0 0 0</pose>
+      <link name="bulb"><pose>0 0 0.7 0 0 0</pose><inertial><mass>1</mass></inertial></link></model>
+      <joint name="l" type="fixed"><parent>top</parent><child>lamp</child></joint></model>"""
+    outer = mast('placement_frame="lamp"').replace("</model>", inner, 1)
+    links = read(tmp_path, in_model(outer), "tank.sdf").tree.by_name
+    assert links["mast::lamp::bulb"].pose.place == pytest.approx([0.1, 0.0, 0.5 + 0.7])
+    assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.5 + 0.6])
+
+
+def test_models_in_models_that_are_all_placed_by_the_innermost_link_take_no_time(
+    tmp_path: Path,
+) -> None:
+    """Each is placed at the origin of the next, and its link once, not twice as often each time."""
+    count = 30
+    names = [f"m{number}" for number in range(count)]
+    inner = '<link name="z"><pose>0 0 1 0 0 0</pose><inertial><mass>1</mass></inertial></link>'
+    for depth, name in reversed(list(enumerate(names))):
+        link = "::".join([*names[depth + 1 :], "z"])
+        inner = f'<model name="{name}" placement_frame="{link}">{inner}</model>'
+    end = "::".join([*names, "z"])
+    fixed = f'<joint name="f" type="fixed"><parent>hull</parent><child>{end}</child></joint>'
+    begin = time.monotonic()
+    links = read(tmp_path, in_model(inner + fixed), "tank.sdf").tree.by_name
+    assert time.monotonic() - begin < 5.0
+    assert links[end].pose.place == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_a_placement_frame_that_is_missing_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, in_model(mast('placement_frame="tip"')), "must name a link", "tank.sdf")
+
+
+@pytest.mark.parametrize("end", ["", "::foot", "::__model__"])
+def test_the_name_of_a_model_is_that_of_its_frame(tmp_path: Path, end: str) -> None:
+    part = """<link name="b"><pose relative_to="mast">0 0 0.25 0 0 0</pose><inertial><mass>1</mass>
+      </inertial></link><joint name="w" type="fixed"><parent>roof</parent><child>b</child></joint>
+      <frame name="roof" attached_to="mast"/>"""
+    tree = read(tmp_path, in_model(mast(end=end) + part), "tank.sdf").tree
+    assert tree.by_name["b"].pose.place == pytest.approx([0.1, 0.0, 0.75])
+    assert tree.joints["b"].parent == "mast::foot"
+    assert tree.joints["mast::foot"].parent == "hull"
+
+
+def test_a_model_is_held_by_its_canonical_link(tmp_path: Path) -> None:
+    text = in_model(mast('canonical_link="top"', is_on_top=True))
+    joints = read(tmp_path, text, "tank.sdf").tree.joints
+    assert (joints["mast::top"].parent, joints["mast::foot"].parent) == ("hull", "mast::top")
+
+
+def test_a_frame_may_be_attached_to_a_joint(tmp_path: Path) -> None:
+    """It moves with the child of the joint."""
+    part = """<link name="a"><pose>0 0 1 0 0 0</pose><inertial><mass>1</mass></inertial></link>
+      <joint name="up" type="fixed"><pose>0 0 0.5 0 0 0</pose><parent>hull</parent><child>a</child>
+      </joint><frame name="tip" attached_to="up"/><link name="b"><pose relative_to="tip"/><inertial>
+      <mass>1</mass></inertial></link>
+      <joint name="w" type="fixed"><parent>tip</parent><child>b</child></joint>"""
+    tree = read(tmp_path, in_model(part), "tank.sdf").tree
+    assert tree.joints["b"].parent == "a"
+    assert tree.by_name["b"].pose.place == pytest.approx([0.0, 0.0, 1.5])
 
 
 @pytest.mark.parametrize("end", ["roof", "__model__", "hull"])

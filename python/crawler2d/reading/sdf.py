@@ -45,6 +45,7 @@ from crawler2d.reading.parts import (
 __all__ = ["MODEL", "read_sdf"]
 
 MODEL = "__model__"
+SCOPE = "::"
 _USUAL_MASS = 1.0  # [kg] of a link, where a file says nothing
 _USUAL_DENSITY = 1000.0  # [kg/m^3] Where masses are to be computed: that of water.
 _DYNAMICS = {"stiffness": "spring_stiffness", "damping": "damping", "friction": "friction"}
@@ -55,12 +56,14 @@ _LONGEST_CHAIN = 100  # Frames, each of which is attached to the next.
 class _Frames:
     """Poses by name in the frame of the model, computed on demand.
 
-    Names in a nested model are preceded by its scope, such as ``arm::``.
+    Names in a nested model are preceded by its scope, such as ``arm::``. The pose of a model may be
+    that of another of its frames, by which it is placed.
     """
 
     doubts: list[Doubt]
     given: dict[str, tuple[Pose, str, Element]] = field(default_factory=dict)
     known: dict[str, Pose] = field(default_factory=lambda: {MODEL: Pose()})
+    placed: dict[str, str] = field(default_factory=dict)
 
     def add(self, name: str, element: Element, usual: str, scope: str) -> None:
         """Add a frame, given in the one that it names, or else in the usual one."""
@@ -85,7 +88,11 @@ class _Frames:
             chain[name] = None
             _, name, asked = self.given[name]
         for name in reversed(chain):
-            pose, within, _ = self.given[name]
+            pose, within, element = self.given[name]
+            if placed := self.placed.pop(name, ""):  # once, however deep models are nested
+                inside = _Frames(self.doubts, self.given, {name: Pose()}, self.placed)
+                pose = pose.then(Pose().seen_from(inside.of(placed, element)))
+                self.given[name] = pose, within, element
             self.known[name] = self.known[within].then(pose)
         return self.known[name]
 
@@ -241,8 +248,10 @@ class _Model:
             reason = "is left out: it is in another file; its mass is missing here"
             self.doubts.append((include.at, name, reason))
         for inner in model.all("model"):
-            within = f"{scope}{inner.attribute('name')}::"
+            within = f"{scope}{inner.attribute('name')}{SCOPE}"
             self.frames.add(within + MODEL, inner, scope + MODEL, scope)
+            if placed := inner.attributes.get("placement_frame", ""):
+                self.frames.placed[within + MODEL] = within + placed
             yield from self.nested(inner, within)
 
     def parts(self, tag: str) -> list[_Part]:
@@ -275,6 +284,9 @@ class _Model:
             self.frames.add(name, part.element, held, part.scope)
         for part in self.parts("frame"):
             self.frames.add(part.name, part.element, part.attached_to, part.scope)
+        for each in self.models[1:]:  # the name of a model is also that of its frame
+            name, own = each.scope[: -len(SCOPE)], each.scope + MODEL
+            self.frames.given.setdefault(name, (Pose(), own, each.element))
         parent_of = {child: parent for _, parent, child, _ in ends if child in order}
         links = [self.link(self.links[name]) for name in order]
         carriers = collision_ancestors(links, parent_of)
@@ -310,7 +322,7 @@ class _Model:
         return ends
 
     def carrier(self, name: str) -> str:
-        """Return the link that a frame or a nested model is attached to; or else the name."""
+        """Return the link that a frame, joint or nested model is attached to; or else the name."""
         for _ in range(_LONGEST_CHAIN):  # what is longer is a circle, and ends at no link
             if name not in self.attached:
                 break
@@ -319,16 +331,22 @@ class _Model:
 
     @cached_property
     def attached(self) -> dict[str, str]:
-        """What frames and models are attached to: models to their first link."""
-        names = {
-            each.scope + MODEL: each.scope + link.attribute("name")
-            for each in self.models
-            for link in reversed(list(each.element.all("link")))
+        """What frames, joints and models are attached to: models to one link, usually the first."""
+        names = {}
+        for each in self.models:
+            inner = [*each.element.all("link"), *each.element.all("model")]
+            first = inner[0].attribute("name") if inner else ""
+            names[each.scope + MODEL] = each.scope + (
+                each.element.attributes.get("canonical_link", "") or first
+            )
+        names |= {
+            each.scope[: -len(SCOPE)]: each.scope + MODEL for each in self.models if each.scope
         }
-        names |= {each.scope[:-2]: each.scope + MODEL for each in self.models if each.scope}
         for part in self.parts("frame"):
             names.setdefault(part.name, part.attached_to)
-        return names
+        for part in self.parts("joint"):
+            names.setdefault(part.name, part.scope + part.element.needed("child").text)
+        return {name: held for name, held in names.items() if name not in self.links}
 
     def link(self, part: _Part) -> Link:
         link, name = part.element, part.name
