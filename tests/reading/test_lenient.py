@@ -418,6 +418,44 @@ def test_mass_and_inertia_are_worked_out_where_the_file_asks_for_it(
     assert link.center == pytest.approx([0.0, 0.0, 0.5])
 
 
+CUBE = """<collision name="{name}"><pose>{x} 0 0.5 0 0 0</pose>{more}<geometry><box>
+  <size>0.1 0.1 0.1</size></box></geometry></collision>"""
+
+
+def auto(inertial: str, *cubes: str) -> str:
+    """A vehicle with a link whose mass is to be worked out."""
+    return in_model(f"""<link name="b"><inertial auto="true">{inertial}</inertial>{"".join(cubes)}
+      </link><joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>""")
+
+
+def test_a_collision_has_its_own_density(tmp_path: Path) -> None:
+    """A litre of 3 kg and one of 1 kg: the density of the link is that of the other."""
+    heavy = CUBE.format(name="h", x=0.2, more="<density>3000</density>")
+    text = auto("<density>1000</density>", heavy, CUBE.format(name="l", x=-0.2, more=""))
+    found = read(tmp_path, text, "tank.sdf").tree.by_name["b"]
+    assert found.mass == pytest.approx(4.0)
+    assert found.center == pytest.approx([0.1, 0.0, 0.5])
+    assert found.inertia[0, 0] == pytest.approx(4.0 * 0.01 / 6.0)
+    assert found.inertia[1, 1] == pytest.approx(4.0 * 0.01 / 6.0 + 3.0 * 0.01 + 1.0 * 0.09)
+    refused(
+        tmp_path, text.replace("3000", "0"), "must have a density > 0 kg/m\\^3, got 0", "tank.sdf"
+    )
+
+
+def test_a_stated_mass_is_that_of_all_collisions(tmp_path: Path) -> None:
+    text = auto("<mass>6</mass>", CUBE.format(name="c", x=0.2, more=""))
+    found = read(tmp_path, text, "tank.sdf").tree.by_name["b"]
+    assert found.mass == pytest.approx(6.0)
+    assert found.inertia == pytest.approx(6.0 * 0.01 / 6.0 * np.eye(3))
+    refused(tmp_path, text.replace(">6<", ">-6<"), "must have a mass >= 0 kg", "tank.sdf")
+
+
+def test_what_collides_with_nothing_has_a_mass(tmp_path: Path) -> None:
+    masked = "<surface><contact><collide_bitmask>0x00</collide_bitmask></contact></surface>"
+    text = auto("", CUBE.format(name="c", x=0.2, more=masked))
+    assert read(tmp_path, text, "tank.sdf").tree.by_name["b"].mass == pytest.approx(1.0)
+
+
 def test_of_several_models_the_one_that_can_drive_is_read(tmp_path: Path) -> None:
     cart = (FILES / "cart.sdf").read_text().partition("<model")[2].rpartition("</model>")[0]
     door = """<model name="door"><link name="frame"/><link name="leaf"/>

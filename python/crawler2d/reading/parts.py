@@ -156,9 +156,9 @@ def inertia(element: Element, value: Callable[[str], float], doubts: list[Doubt]
     return tensor
 
 
-def solid(shapes: Sequence[Shape], density: float) -> tuple[float, Array, Array]:
+def solid(shapes: Sequence[Shape], densities: Sequence[float]) -> tuple[float, Array, Array]:
     """Return mass [kg], centre [m] and inertia [kg m^2] about it, of solid shapes."""
-    parts = [_filled(shape, density) for shape in shapes]
+    parts = [_filled(*each) for each in zip(shapes, densities, strict=True)]
     masses = np.array([own for own, _ in parts])
     places = np.array([shape.pose.place for shape in shapes])
     center = masses @ places / masses.sum()

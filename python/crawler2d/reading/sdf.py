@@ -12,6 +12,7 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import (
+    Array,
     Friction,
     Joint,
     Link,
@@ -368,14 +369,11 @@ class _Model:
                     lambda word: values.real(word, 1.0 if word[1] == word[2] else 0.0),
                     self.doubts,
                 )
-        if mass < 0.0:
-            link.refuse(mass, "must have a mass >= 0 kg")
         place, tensor = frame.place, frame.turn @ tensor @ frame.turn.T
         if inertial is not None and is_auto:
-            if unread or any(shape.kind == "hull" for shape in shapes) or not shapes:
-                rule = "must state mass and inertia, or be of boxes, cylinders, capsules, spheres"
-                inertial.refuse("auto", rule)
-            mass, place, tensor = solid(shapes, inertial.real("density", _USUAL_DENSITY))
+            mass, place, tensor = self.solid(part, inertial)
+        if mass < 0.0:
+            link.refuse(mass, "must have a mass >= 0 kg")
         return Link(
             name=name,
             pose=pose,
@@ -389,10 +387,37 @@ class _Model:
             mass_at=mass_at,
         )
 
+    def solid(self, part: _Part, inertial: Element) -> tuple[float, Array, Array]:
+        """Return mass, centre and inertia of a link that has those of its collisions.
+
+        Each has its own density, or else that of the link. A mass, if there is one, is that of all.
+        """
+        usual = inertial.real("density", _USUAL_DENSITY)
+        shapes, densities = [], []
+        for collision in part.element.all("collision"):
+            shape = self.geometry(collision, part)
+            if isinstance(shape, Shape) and shape.kind != "hull":
+                shapes.append(shape)
+                densities.append(collision.real("density", usual))
+                if not densities[-1] > 0.0:
+                    collision.refuse(densities[-1], "must have a density > 0 kg/m^3")
+            elif shape is not None:
+                shapes = []
+                break
+        if not shapes:
+            rule = "must state mass and inertia, or be of boxes, cylinders, capsules, spheres"
+            inertial.refuse("auto", rule)
+        mass, place, tensor = solid(shapes, densities)
+        stated = inertial.real("mass", mass)
+        return stated, place, tensor * (stated / mass)
+
     def shape(self, collision: Element, part: _Part) -> Shape | Unread | None:
         bitmask = collision.only("surface/contact/collide_bitmask")
         if bitmask is not None and re.fullmatch(r"0x0+|0+", bitmask.text):
             return None  # it meets nothing
+        return self.geometry(collision, part)
+
+    def geometry(self, collision: Element, part: _Part) -> Shape | Unread | None:
         pose = self.frames.inside(collision, part.name, part.scope)
         shape = Shape(
             name=collision.attributes.get("name", part.name),
