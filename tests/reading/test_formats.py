@@ -63,6 +63,31 @@ def test_a_geom_of_higher_priority_has_its_own_friction(tmp_path: Path) -> None:
     assert read(tmp_path, text, "cart.xml").friction == 0.75
 
 
+@pytest.mark.parametrize(
+    ("attributes", "wanted"),
+    [
+        ('friction="1.75" condim="1"', 1.75),
+        ('friction="1.75" condim="1" priority="1"', 0.0),
+        ('friction="1.75" priority="-1"', 1.0),
+        ('friction="0.75" priority="-1"', 1.0),
+    ],
+)
+def test_friction_is_that_of_a_contact_in_mujoco(
+    tmp_path: Path, attributes: str, wanted: float
+) -> None:
+    """Of two geoms, the larger number of dimensions counts, or all of that with more priority."""
+    mujoco = pytest.importorskip("mujoco")
+    on_ground = f"""<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 0.09">
+      <freejoint/><geom size="0.1" {attributes}/></body></worldbody></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(on_ground)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    has_friction = data.contact.dim[0] > 1
+    assert (data.contact.friction[0][0] if has_friction else 0.0) == wanted
+    text = (FILES / "cart.xml").read_text().replace('friction="0.75"', attributes)
+    assert read(tmp_path, text, "cart.xml").friction == wanted
+
+
 def test_mjcf_names_the_line_of_an_error(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     text = (FILES / "cart.xml").read_text().replace('zaxis="0 1 0"', 'zaxle="0 1 0"')

@@ -232,9 +232,12 @@ def combine_friction(
     places = []
     for runner, shape in [(each, shape) for each in runners for shape in each.surfaces]:
         own, priority, where = _friction_along(runner, shape, view, laws.usual_friction)
-        wins = engine == "mujoco" and priority > 0
-        value = own if wins else laws.friction(own, ground)
-        word = "of higher priority" if wins else f"{laws.combination} with {ground:g} of the ground"
+        value = laws.friction(own, ground)
+        word = f"{laws.combination} with {ground:g} of the ground"
+        if engine == "mujoco" and priority > 0:
+            value, word = own, "of higher priority"
+        elif engine == "mujoco" and priority < 0:
+            value, word = ground, f"of lower priority than {ground:g} of the ground"
         of_own = f"{own:g}" if where else f"{own:g}, the engine's default,"
         values.append((value, f"{of_own} along the track, {word}"))
         if abs(value - values[0][0]) > _SAME:

@@ -428,6 +428,10 @@ def _shape(model: Any, geom: Any) -> Item:
     i = geom.id
     kind = _SHAPES.get(int(model.geom_type[i]), "unknown")
     collides = bool(model.geom_contype[i] or model.geom_conaffinity[i])
+    # In one dimension a contact has no friction. The ground has three, and the larger number
+    # counts, unless the geom has the higher priority.
+    priority = int(model.geom_priority[i])
+    is_smooth = priority > 0 and int(model.geom_condim[i]) == 1
     points = None
     if kind == "mesh" and collides:
         mesh = int(model.geom_dataid[i])
@@ -441,9 +445,8 @@ def _shape(model: Any, geom: Any) -> Item:
         "turn": model.geom_quat[i].tolist(),
         "size": model.geom_size[i].tolist(),
         "points": points,
-        # In one dimension, a contact has no friction.
-        "friction": float(model.geom_friction[i, 0]) if model.geom_condim[i] > 1 else 0.0,
-        "priority": int(model.geom_priority[i]),
+        "friction": 0.0 if is_smooth else float(model.geom_friction[i, 0]),
+        "priority": priority,
         "collides": collides,
         "surface_velocity": geom.surfacevel.tolist() if hasattr(geom, "surfacevel") else [0.0] * 6,
         "line": _line(geom),
