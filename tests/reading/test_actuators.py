@@ -195,3 +195,37 @@ def test_wheels_without_servos_of_speed_have_no_controller(tmp_path: Path) -> No
         '<velocity joint="left_front_joint" kv="10"', '<motor joint="left_front_joint"'
     )
     assert read(tmp_path, text, "cart.xml").robot.drivetrain.controller is None
+
+
+def driven(actuator: str) -> str:
+    """The cart, whose wheels and flippers have these actuators."""
+    return re.sub(r'<velocity (joint="[^"]*").*?/>', actuator, mjcf(""))
+
+
+@pytest.mark.parametrize(("force", "wanted"), [("100", 20.0), ("0.25", 5.0)])
+def test_a_motor_of_mujoco_has_the_smaller_of_two_limits(
+    tmp_path: Path, force: str, wanted: float
+) -> None:
+    """Its control, and its force; three wheels a side have a gear of 20."""
+    pytest.importorskip("mujoco")
+    limits = f'ctrlrange="-1 1" forcerange="-{force} {force}"'
+    reading = read(tmp_path, driven(rf'<motor \1 gear="20" {limits}/>'), "cart.xml")
+    assert reading.robot.drivetrain.max_torque == pytest.approx(3.0 * wanted)
+
+
+@pytest.mark.parametrize(
+    ("settings", "wanted"),
+    [
+        ('gainprm="10" biasprm="0 0 -2" ctrlrange="-1 1"', 5.0),
+        ('gear="2" gainprm="10" biasprm="0 0 -2" ctrlrange="-1 1"', 2.5),
+        ('dyntype="integrator" gainprm="6" biasprm="0 -2 0" ctrlrange="-1 1"', 3.0),
+    ],
+)
+def test_a_servo_of_mujoco_holds_its_control_by_both_gains(
+    tmp_path: Path, settings: str, wanted: float
+) -> None:
+    """The speed [rad/s] at which a free wheel takes no torque, or that of its integrator."""
+    pytest.importorskip("mujoco")
+    text = driven(rf'<general \1 biastype="affine" {settings} forcerange="-5 5"/>')
+    reading = read(tmp_path, text, "cart.xml")
+    assert reading.robot.drivetrain.max_speed == pytest.approx(wanted * 0.125)

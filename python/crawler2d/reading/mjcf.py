@@ -459,23 +459,24 @@ def _motor(model: Any, actuator: Any) -> Item:
     gear = abs(float(model.actuator_gear[i, 0]))
     gain, bias = float(model.actuator_gainprm[i, 0]), model.actuator_biasprm[i]
     most = float(model.actuator_ctrlrange[i, 1]) if model.actuator_ctrllimited[i] else None
-    effort = None
+    limits = []
     if model.actuator_forcelimited[i]:
-        effort = float(model.actuator_forcerange[i, 1]) * gear
-    elif most is not None and not bias.any():  # a motor: its force is its control
-        effort = most * gain * gear
-    # A servo of speed holds control / gear; one of position has a bias on the position, too, and
-    # holds a speed if it integrates its control.
+        limits.append(float(model.actuator_forcerange[i, 1]))
+    if most is not None and not bias.any() and gain * most > 0.0:  # a motor: a gain times control
+        limits.append(gain * most)
+    # A servo of speed holds control / gear, times its gain by that of its bias; one of position has
+    # a bias on the position, too, and holds a speed if it integrates its control.
     is_integrator = int(model.actuator_dyntype[i]) == _INTEGRATOR
     is_of_speed = not is_integrator and bias[2] < 0.0 and bias[1] == 0.0
-    has_speed = (is_integrator or is_of_speed) and most is not None and gear > 0.0
+    held = float(bias[1] if is_integrator else bias[2])
+    has_speed = (is_of_speed or (is_integrator and held < 0.0)) and most is not None and gear > 0.0
     return {
         "joint": actuator.target,
-        "effort": effort,
+        "effort": min(limits) * gear if limits else None,
         "damping": float(model.actuator_damping[i]) * gear**2,
         "armature": float(model.actuator_armature[i]) * gear**2,
         "gain": -float(bias[2]) * gear**2 if is_of_speed else None,
-        "velocity": most / gear if has_speed and most is not None else None,
+        "velocity": abs(gain / held) * most / gear if has_speed and most is not None else None,
         "line": _line(actuator),
     }
 
