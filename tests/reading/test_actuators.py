@@ -229,3 +229,34 @@ def test_a_servo_of_mujoco_holds_its_control_by_both_gains(
     text = driven(rf'<general \1 biastype="affine" {settings} forcerange="-5 5"/>')
     reading = read(tmp_path, text, "cart.xml")
     assert reading.robot.drivetrain.max_speed == pytest.approx(wanted * 0.125)
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+def test_two_actuators_of_a_joint_add_up(tmp_path: Path, *, is_first: bool) -> None:
+    """A servo with 5 N m and a motor with 2 on each wheel, in either order."""
+    pytest.importorskip("mujoco")
+    motors = "".join(
+        f'<motor joint="{side}_{end}_joint" ctrlrange="-2 2"/>'
+        for side, _ in SIDES
+        for end in ("front", "middle", "rear")
+    )
+    text = mjcf("")
+    if is_first:
+        text = text.replace("<actuator>", f"<actuator>{motors}")
+    else:
+        text = text.replace("</actuator>", f"{motors}</actuator>")
+    reading = read(tmp_path, text, "cart.xml")
+    found = reading.robot.drivetrain
+    assert found.max_torque == pytest.approx(3.0 * (5.0 + 2.0))
+    assert found.controller == c2d.PI(gain=30.0)
+    assert found.max_speed == pytest.approx(1.25)
+    assert sum("several actuators" in doubt for doubt in reading.doubts) == 6
+
+
+def test_actuators_of_tendons_are_those_of_no_joint(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    tendon = '<tendon><fixed name="left_rear_joint"><joint joint="left_front_joint" coef="1"/>'
+    motor = '</fixed></tendon><actuator><motor tendon="left_rear_joint" ctrlrange="-2 2"/>'
+    reading = read(tmp_path, mjcf("").replace("<actuator>", tendon + motor), "cart.xml")
+    assert reading.robot.drivetrain.max_torque == pytest.approx(15.0)
+    assert not [doubt for doubt in reading.doubts if "several" in doubt]

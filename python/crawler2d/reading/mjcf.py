@@ -47,6 +47,7 @@ _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
 
 _SHAPES = {0: "plane", 1: "hfield", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder"}
 _SHAPES |= {6: "box", 7: "mesh"}
+_ON_JOINTS = (0, 1)  # the numbers of transmissions to a joint, not a tendon, site or body
 _INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is a position
 
 
@@ -120,7 +121,13 @@ class _Model:
         self.joints: dict[int, list[Item]] = {}
         for joint in answer["joints"]:
             self.joints.setdefault(joint["body"], []).append(joint)
-        self.motors = {motor["joint"]: motor for motor in answer["motors"]}
+        self.motors: dict[str, Item] = {}
+        for motor in (each for each in answer["motors"] if each["joint"]):
+            own = self.motors.setdefault(motor["joint"], motor)
+            if own is not motor:
+                self.motors[motor["joint"]] = _together(own, motor)
+                reason = "has several actuators: their torques are added up, as in MuJoCo"
+                meshes.doubts.append((f"{self.where(motor)}: actuator", motor["joint"], reason))
 
     def where(self, item: Item) -> Where:
         return Where(self.at.file, item["line"] or self.at.line)
@@ -144,7 +151,7 @@ class _Model:
             file=self.at.file,
             links=tuple(sorted(links, key=lambda link: order.index(link.name))),
             joints=joints,
-            driven={name: self.where(motor) for name, motor in self.motors.items() if name},
+            driven={name: self.where(motor) for name, motor in self.motors.items()},
             at=self.at,
         )
 
@@ -305,6 +312,18 @@ class _Model:
             surface_speed=max(math.hypot(*velocity[:3]), math.hypot(*velocity[3:]) * lever),
             at=at,
         )
+
+
+def _together(first: Item, second: Item) -> Item:
+    """Return two actuators of one joint as one, at whose joint their forces add up."""
+    both = {k: [each[k] for each in (first, second) if each[k] is not None] for k in first}
+    return {
+        **first,
+        **{name: sum(both[name]) for name in ("damping", "armature")},
+        "effort": sum(both["effort"]) if len(both["effort"]) > 1 else None,
+        "gain": sum(both["gain"]) if both["gain"] else None,
+        "velocity": min(both["velocity"], default=None),
+    }
 
 
 def _compile(mujoco: Any, *, text: str, file: str, files: Item) -> Item:
@@ -471,7 +490,7 @@ def _motor(model: Any, actuator: Any) -> Item:
     held = float(bias[1] if is_integrator else bias[2])
     has_speed = (is_of_speed or (is_integrator and held < 0.0)) and most is not None and gear > 0.0
     return {
-        "joint": actuator.target,
+        "joint": actuator.target if int(model.actuator_trntype[i]) in _ON_JOINTS else "",
         "effort": min(limits) * gear if limits else None,
         "damping": float(model.actuator_damping[i]) * gear**2,
         "armature": float(model.actuator_armature[i]) * gear**2,
