@@ -173,3 +173,15 @@ def test_a_flipper_has_a_belt_round_two_drums(tmp_path: Path) -> None:
 def test_a_belt_of_a_flipper_that_does_not_run_round_its_pivot_is_refused(tmp_path: Path) -> None:
     beside = on_flippers((0.1, 0.0, 0.1), (0.3, 0.0, 0.05))
     refused(tmp_path, beside, "must have a belt from the pivot to the tip", "tank.sdf")
+
+
+def test_the_speed_of_a_vehicle_with_tracks_is_that_of_its_plugin(tmp_path: Path) -> None:
+    """Gazebo's TrackedVehicle has limits within limits, that of turning among them."""
+    plugin = """<plugin name="gz::sim::systems::TrackedVehicle" filename="x">
+      <left_track><link>left</link></left_track><right_track><link>right</link></right_track>
+      <linear_velocity><max_velocity>0.4</max_velocity></linear_velocity>
+      <angular_velocity><max_velocity>0.2</max_velocity></angular_velocity></plugin>"""
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    reading = read(tmp_path, text.replace("</model>", f"{plugin}</model>"), "tank.sdf")
+    assert reading.robot.drivetrain.max_speed == 0.4
+    assert reading.sources["robot.drivetrain.max_speed"].startswith("tank.sdf:")

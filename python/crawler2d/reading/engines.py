@@ -51,6 +51,9 @@ _UNITS = {
     "armature": "kg m^2",
 }
 
+_SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity")
+"""Of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
+
 _WITHIN_A_STEP = "the commanded speed within one step, as far as the torque limit allows"
 _AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (read in its source)"
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
@@ -431,7 +434,7 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
             limits.append((runner.joint.velocity * runner.radius, runner.joint.velocity_at))
     for plugin in tree.plugins:
         if "track" in plugin.name.lower() or "diff" in plugin.name.lower():
-            for text, where in plugin.values("max_velocity", "max_linear_velocity"):
+            for text, where in plugin.values(*_SPEEDS):
                 with contextlib.suppress(ValueError):
                     limits.append((float(text), where))
     limits = [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
