@@ -139,6 +139,18 @@ def test_links_that_something_outside_the_file_moves_are_named(tmp_path: Path) -
         read(tmp_path, urdf(tracks), tracks=["middle_track"])
 
 
+@pytest.mark.parametrize("tracks", [5, None, "hull", object()])
+def test_tracks_are_a_collection_of_names(tracks: object) -> None:
+    with pytest.raises(c2d.ScenarioError, match="tracks must be a collection of names of links"):
+        quietly(FILES / "cart.urdf", tracks=tracks)
+
+
+@pytest.mark.parametrize("forward", [5, ["+x"], "x"])
+def test_forward_is_one_of_four_directions(forward: object) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"^forward must be one of .*\+x.*, or None, got"):
+        quietly(FILES / "cart.urdf", forward=forward)
+
+
 def sdf(version: str, axis: str) -> str:
     """A cart whose wheel links are rolled by 90 degrees: their z axis points to the right."""
     wheels = "".join(

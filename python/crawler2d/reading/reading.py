@@ -235,6 +235,8 @@ def read_robot(
     """
     if not isinstance(path, (str, os.PathLike)):
         raise ScenarioError("path", path, "must be a path")
+    if isinstance(tracks, str) or not isinstance(tracks, Collection):
+        raise ScenarioError("tracks", tracks, "must be a collection of names of links")
     options = ReadOptions(
         engine=engine,
         forward=forward,

@@ -209,7 +209,7 @@ def side_view(tree: Tree, surfaces: Surfaces, forward: str | None, tolerance: fl
     lateral = _lateral(tree, surfaces)
     ahead = np.cross(lateral, _UP)
     if forward is not None:
-        if forward not in _FORWARDS:
+        if not isinstance(forward, str) or forward not in _FORWARDS:
             rule = f"must be one of {', '.join(_FORWARDS)}, or None"
             raise ScenarioError("forward", forward, rule)
         if not is_parallel(_FORWARDS[forward], ahead):
