@@ -12,6 +12,7 @@ from tests.reading.carts import (
     FILES,
     SIDES,
     WHEELS,
+    XACRO,
     collision,
     link,
     pair,
@@ -209,6 +210,28 @@ def test_xacro_takes_arguments(tmp_path: Path) -> None:
     assert given.robot.mass == 22.0
     assert "cart.xacro (expanded):" in given.sources["robot.mass"]
     assert "18" in given.text
+
+
+def test_arguments_that_no_file_has_are_doubted(tmp_path: Path) -> None:
+    """Those of a file of settings are often passed as a whole."""
+    pytest.importorskip("xacrodoc")
+    (tmp_path / "sizes.yaml").write_text("load: 3\n", encoding="utf-8")
+    text = f'{XACRO}<xacro:arg name="mass" default="8"/>{urdf(WHEELS).partition(">")[2]}'
+    given = {"mas": "18", "Mass": "2", "mass": "9", "load": "1"}
+    found = read(tmp_path, text, "cart.xacro", arguments=given).doubts
+    close = "it must be an argument of the model, of which the closest is mass"
+    assert [each for each in found if "no effect" in each] == [
+        f"arguments[mas] has no effect: {close}, got mas=18",
+        f"arguments[Mass] has no effect: {close}, got Mass=2",
+    ]
+
+
+def test_arguments_that_a_format_does_not_have_are_doubted(tmp_path: Path) -> None:
+    found = read(tmp_path, urdf(WHEELS), model="cart", arguments={"mass": "9"}).doubts
+    assert [each.partition(":")[0] for each in found] == [
+        "arguments have no effect",
+        "model has no effect",
+    ]
 
 
 def test_xacro_that_needs_packages_says_which(tmp_path: Path) -> None:

@@ -200,6 +200,9 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
             leave_out=options.leaves_out_missing,
         )
         name = f"{name} (expanded)"
+    elif options.arguments:
+        reason = "have no effect: the file is no xacro, which is named *.xacro"
+        doubts.append(("arguments", ", ".join(options.arguments), reason))
     with add_doubts(doubts):
         root = parse_xml(data, name)
         if options.scale not in (None, 1.0):
@@ -218,6 +221,8 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
             tree = read_sdf(root, options.model, meshes)
         elif root.tag == "robot":
             is_bullet = options.engine == "bullet"
+            if options.model is not None:
+                doubts.append(("model", options.model, "has no effect: a URDF has one robot"))
             leave_out = options.leaves_out_missing
             tree = read_urdf(root, meshes, leave_out=leave_out, is_bullet=is_bullet)
         elif root.tag == "mujoco":

@@ -8,10 +8,11 @@ whole, as the repository would. Only ``name: value`` at the beginning of a line 
 from __future__ import annotations
 
 import builtins
+import difflib
 import os
 import re
 from collections import ChainMap
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple, NoReturn
@@ -131,6 +132,10 @@ class Settings:
             if len(values) == 1 and name not in differing
         }
         return agreed, list(differing.values())
+
+    def have(self, name: str) -> bool:
+        """Whether a setting has a name."""
+        return any(name in table for table in self._tables)
 
     @cached_property
     def _tables(self) -> list[dict[str, Setting]]:
@@ -274,7 +279,8 @@ def _expand(
     if failure is not None:
         _refuse(failure, files, xacro)
     replaced = _doubts_of(settings, files.defaults, lacking)
-    doubts = list(dict.fromkeys([*files.doubts, *of_model.doubts, *replaced]))
+    useless = _useless(arguments, files, package)
+    doubts = list(dict.fromkeys([*files.doubts, *of_model.doubts, *replaced, *useless]))
     if len(doubts) > _MOST_DOUBTS:
         path, value, _ = doubts[_MOST_DOUBTS - 1]
         reason = f"is one of {len(doubts) - _MOST_DOUBTS + 1} more places of this kind"
@@ -397,6 +403,24 @@ def _doubts_of(
             others.setdefault(each.file, []).append(f"{name}: {each.value} for {default}")
     reason = "is taken as a whole, also in place of defaults"
     return doubts + [(file, ", ".join(values), reason) for file, values in others.items()]
+
+
+def _useless(arguments: Mapping[str, str], files: XacroFiles, package: Settings) -> Iterator[Doubt]:
+    """Report arguments that were given and that neither the model nor its settings name.
+
+    A repository often passes all of its settings, used or not.
+    """
+    for name, value in arguments.items():
+        is_named = name in files.defaults or any(map(_word(name), files.texts.values()))
+        if not is_named and not package.have(name):
+            close = difflib.get_close_matches(name, files.defaults, n=1)
+            meant = f", of which the closest is {close[0]}" if close else ""
+            reason = f"has no effect: it must be an argument of the model{meant}"
+            yield f"arguments[{name}]", f"{name}={value}", reason
+
+
+def _word(name: str) -> Callable[[str], object]:
+    return re.compile(rf"(?<!\w){re.escape(name)}(?!\w)").search
 
 
 def _value(text: str) -> float | str:
