@@ -34,6 +34,24 @@ def test_files_that_others_include_and_files_of_macros_are_no_models(forest: Pat
     assert names == ["cart/cart.urdf", "other/urdf/<b>.urdf", "other/urdf/whole.xacro"]
 
 
+def test_what_a_scene_of_mjcf_includes_is_a_model(tmp_path: Path) -> None:
+    """It is read by itself; the scene is refused, as the reader takes no includes of MJCF."""
+    folder = tmp_path / "robots"
+    folder.mkdir()
+    shutil.copy(FILES / "cart.xml", folder)
+    scene = "<mujoco><include file='cart.xml'/><worldbody><geom size='1'/></worldbody></mujoco>"
+    (folder / "scene.xml").write_text(scene, encoding="utf-8")
+    names = [path.as_posix() for path in main_files(tmp_path)]
+    assert names == ["robots/cart.xml", "robots/scene.xml"]
+
+
+def test_files_beside_all_repositories_include_each_other(tmp_path: Path) -> None:
+    (tmp_path / "part.xacro").write_text("<robot><link name='a'/></robot>", encoding="utf-8")
+    caller = "<robot xmlns:xacro='x'><xacro:include filename='part.xacro'/><link name='b'/></robot>"
+    (tmp_path / "whole.xacro").write_text(caller, encoding="utf-8")
+    assert [path.name for path in main_files(tmp_path)] == ["whole.xacro"]
+
+
 @pytest.mark.usefixtures("one_obstacle")
 def test_the_page_has_every_model_with_its_licence_and_why_it_was_not_read(
     forest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -100,6 +100,8 @@ def run(options: argparse.Namespace) -> int:
 def main_files(folder: Path) -> Iterator[Path]:
     """Yield the model files of a folder that no other one includes and that hold more than macros.
 
+    What a scene of MJCF includes is a model: it is read by itself, and the scene is not.
+
     Parameters
     ----------
     folder : Path
@@ -122,14 +124,26 @@ def main_files(folder: Path) -> Iterator[Path]:
             if len(found) >= _MOST:
                 break
     named = {
-        (path.parts[0], Path(each.decode(errors="replace")).name)
+        (_repository(path), Path(each.decode(errors="replace")).name)
         for path, data in found.items()
+        if not _is_mjcf(data)
         for each in _NAMED.findall(data)
     }
     for path, data in found.items():
-        is_included = (path.parts[0], path.name) in named
+        is_included = (_repository(path), path.name) in named
         if not is_included and _LINKS.search(_MACROS.sub(b"", data)):
             yield path
+
+
+def _repository(path: Path) -> str:
+    """Name the repository of a file; files beside all repositories have one, too."""
+    return path.parts[0] if len(path.parts) > 1 else ""
+
+
+def _is_mjcf(data: bytes) -> bool:
+    """Whether a file is MJCF, which is read without its includes: a scene is no robot."""
+    root = _ROOTS.search(data)
+    return root is not None and root[1] == b"mujoco"
 
 
 def _entry(folder: Path, path: Path, *, samples: int, threads: int | None) -> Entry:
