@@ -478,6 +478,7 @@ def test_the_speed_goes_with_the_size_and_the_limit() -> None:
         ((SEIZING, {}), {}, "obstacles"),
         ((SEIZING, {"a": 1.0}), {}, "obstacles['a']"),
         ((SEIZING, {1: c2d.terrains.step(0.1)}), {}, "obstacles"),
+        ((SEIZING, {"level ground": c2d.terrains.step(0.1)}), {}, "obstacles"),
         ((SEIZING, STEP), {"engine": "gz"}, "engine"),
         ((SEIZING, STEP), {"samples": 0}, "samples"),
         ((SEIZING, STEP), {"repeats": 0}, "repeats"),
@@ -561,6 +562,19 @@ def test_a_field_that_a_later_obstacle_lacks_is_refused_before_any_run(argument:
     with pytest.raises(c2d.ScenarioError, match=r"terrain=gap\].terrain.height must be a known"):
         c2d.audit(SEIZING, obstacles, progress=lambda done, _: made.append(done), **given)
     assert not made
+
+
+@pytest.mark.parametrize(("argument", "runs"), [("vary", 9), ("unknown", 1)])
+def test_a_field_of_the_obstacle_is_drawn_where_repairs_are_searched(
+    argument: str, runs: int
+) -> None:
+    """Repairs are timed on level ground, which has no height."""
+    given: Any = {"unknown": {}, argument: {"terrain.height": c2d.scaled(0.98, 1.02)}}
+    found = c2d.audit(SEIZING, STEP, samples=9, repeats=runs, quick=True, **given, **QUIET)
+    assert found.repairs[0].what == "chassis: 5 wheels in place of 4"
+    assert all(each.speed > 0.0 for each in found.repairs)
+    assert found.repaired is not None
+    assert dict(found.repaired.table.sizes)["terrain"] == 2
 
 
 @pytest.mark.parametrize("most", [0.2996, 4e-4])

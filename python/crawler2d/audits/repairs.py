@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ from crawler2d.parameters.terrain import Flat, Terrain
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import simulate_many
 from crawler2d.runs.progress import Progress
+from crawler2d.variation.distributions import Ranges, scaled
 
 if TYPE_CHECKING:
     import xarray
@@ -42,6 +43,8 @@ _LEAST = 2
 
 LEVEL = "level ground"
 """Where the cost of driving is measured."""
+
+_OF_LEVEL = ("terrain.friction", "terrain.length")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -280,11 +283,20 @@ def _drive(
             break
     # Stops that rattle cost most, so what driving costs is measured where nothing stops.
     ground = Flat(length=5.0 * models[OWN].outline.axle_distance)
-    level = runs.course(models, LEVEL, ground, is_confirming=True)
+    on_level = replace(runs, vary=_on_level(runs.vary), unknown=_on_level(runs.unknown))
+    level = on_level.course(models, LEVEL, ground, is_confirming=True)
     for what in models:
         level.drive(what, next(look_counts(samples)), count.next_batch())
     fresh: xarray.Dataset = xr.concat([*tables.values(), level.table()], "terrain")
     return fresh
+
+
+def _on_level(draws: Mapping[str, Any]) -> Ranges:
+    """Leave out draws of what obstacles have and level ground has not, such as a height."""
+    lacking = [each for each in draws if each.startswith("terrain.") and each not in _OF_LEVEL]
+    left = (Ranges({}) | draws).without(lacking)
+    # Without any unknown, samples would be repeats.
+    return Ranges({"terrain.friction": scaled(1.0, 1.0)}) if draws and not left else left
 
 
 def _fails(

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Literal, NamedTuple, TypedDict
 
 from crawler2d.audits.lint import lint
+from crawler2d.audits.repairs import LEVEL
 from crawler2d.common.bodies import BELLY_HEIGHTS
 from crawler2d.errors import ScenarioError, ignore_doubts
 from crawler2d.parameters.outline import TrackOutline
@@ -169,13 +170,16 @@ def read_obstacles(obstacles: object) -> dict[str, Terrain]:
     Raises
     ------
     ScenarioError
-        If it is no mapping, or empty.
+        If it is no mapping, or empty, or a label is none or has a meaning of its own.
     """
     if not isinstance(obstacles, Mapping) or not obstacles:
         raise ScenarioError("obstacles", obstacles, "must be a mapping from labels to terrains")
     for label, ground in obstacles.items():
         if not isinstance(label, str):
             raise ScenarioError("obstacles", label, "must have strings as labels")
+        if label == LEVEL:
+            rule = "must have other labels than that of the ground on which repairs are timed"
+            raise ScenarioError("obstacles", label, rule)
         if not isinstance(ground, Terrain):
             raise ScenarioError(f"obstacles[{label!r}]", ground, "must be a terrain")
     return dict(obstacles)
