@@ -97,6 +97,61 @@ def test_more_and_larger_wheels_keep_the_rotor_of_their_side(where: str, tmp_pat
             assert after / found[1] ** 2 == pytest.approx(before / was[1] ** 2, rel=1e-6)
 
 
+def mjcf(folder: Path, motor: str, default: str = "") -> c2d.Reading:
+    """The cart with other motors on the wheels of its chassis."""
+    text = (FILES / "cart.xml").read_text().replace("<default>", f"<default>{default}", 1)
+    of_wheels = r'<velocity (joint="\w+_(?:rear|middle|front)_joint").*?/>'
+    path = folder / "motors.xml"
+    path.write_text(re.sub(of_wheels, motor, text), encoding="utf-8")
+    return quietly(path)
+
+
+SERVO = 'biastype="affine" gainprm="20" biasprm="0 0 -10" ctrlrange="-3 3" forcerange="-5 5"'
+
+
+@pytest.mark.parametrize(
+    "motor",
+    [
+        r'<motor \1 gear="20" ctrlrange="-1 1" forcerange="-100 100"/>',
+        r'<motor \1 gear="20" ctrlrange="-1 1" forcerange="-0.5 0.5"/>',
+        r'<motor \1 gear="20" ctrlrange="-1 1" armature="0.001"/>',
+        r'<general \1 gear="20" ctrlrange="-1 1"/>',
+        rf"<general \1 {SERVO}/>",
+    ],
+)
+def test_motors_of_mjcf_keep_what_they_do_together(tmp_path: Path, motor: str) -> None:
+    pytest.importorskip("mujoco")
+    reading = mjcf(tmp_path, motor)
+    was = reading.robot.drivetrain
+    assert was.max_torque in (60.0, 30.0, 15.0)
+    for radius in (None, 0.1):
+        text = patch_file(reading, on_chassis(reading, 5, radius)).text
+        found = reread(reading, text, tmp_path).robot
+        size = found.outline.rear_radius / reading.robot.outline.rear_radius
+        own = found.drivetrain
+        assert own.max_torque == pytest.approx(was.max_torque * size)
+        assert own.rotor_inertia == pytest.approx(was.rotor_inertia * size**2)
+        assert own.max_speed == pytest.approx(was.max_speed)
+        gains = [0.0 if each.controller is None else each.controller.gain for each in (was, own)]
+        assert gains[1] == pytest.approx(gains[0] * size**2)
+
+
+@pytest.mark.parametrize(
+    ("default", "motor"),
+    [
+        ('<motor gear="20" ctrlrange="-1 1"/>', r"<motor \1/>"),
+        (f"<general {SERVO}/>", r"<general \1/>"),
+    ],
+)
+def test_motors_of_a_class_are_refused_where_their_text_does_not_hold_their_limits(
+    tmp_path: Path, default: str, motor: str
+) -> None:
+    pytest.importorskip("mujoco")
+    reading = mjcf(tmp_path, motor, default)
+    with pytest.raises(c2d.ScenarioError, match=r"max_torque must be .*, that of all wheels"):
+        patch_file(reading, on_chassis(reading, 5))
+
+
 @pytest.mark.parametrize("name", CARTS)
 def test_larger_wheels_keep_speed_and_force(name: str, tmp_path: Path) -> None:
     reading = quietly(FILES / name)

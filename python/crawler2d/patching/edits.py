@@ -231,18 +231,22 @@ def _above(span: Span) -> list[str]:
 
 
 def _change_motor(document: Document, motor: Span, change: Change) -> None:
-    """Change the limits of a motor; that of a `motor` without a limit of force is its gear."""
-    if "forcerange" in motor.attributes or motor.tag != "motor":
+    """Change the limits of a motor: of servos their force, of others the gear, which scales all."""
+    rotor = change.inertia
+    is_servo = change.joint.gain is not None or change.joint.velocity is not None
+    if is_servo or motor.tag not in ("motor", "general"):
         document.multiply(motor, [change.effort] * 2, "forcerange")
+        if motor.tag in ("velocity", "intvelocity", "general"):
+            document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
+        for name in ("kv", "gainprm", "biasprm"):
+            document.multiply(motor, [change.inertia] * 3, name)
     elif change.effort != 1.0:
         gear = motor.attributes.get("gear", "1").split()
         document.set_attribute(
             motor, "gear", " ".join([lengths([float(gear[0]) * change.effort]), *gear[1:]])
         )
-    if motor.tag in ("velocity", "intvelocity"):
-        document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
-    for name in ("kv", "armature"):
-        document.multiply(motor, [change.inertia], name)
+        rotor /= change.effort**2  # it counts by the square of the gear
+    document.multiply(motor, [rotor], "armature")
 
 
 def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pose) -> None:

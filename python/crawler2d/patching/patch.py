@@ -44,6 +44,7 @@ _COUNTS = ("num_wheel_pairs", "wheel_torque", "max_wheel_torque")
 """Settings of plugins that hold for a certain number of wheels, and are not changed."""
 
 _MASS = 1e-4  # of the whole: far above what rounding leaves
+_MOTORS = 0.01  # [-] of torques, rotors and gains
 _CENTER = 0.01  # of the axle distance: the masses of unequal wheels are redistributed
 
 
@@ -200,6 +201,29 @@ def _check(reading: Reading, robot: Robot, text: str) -> None:
             " wheels are heavy; Robot.to_sdf, to_urdf and to_mjcf write a new file"
         )
         _fail("center_of_mass", f"{1e3 * off_center:.3g} mm", rule)
+    _check_motors(reading.robot, again.robot)
+
+
+def _check_motors(before: Robot, after: Robot) -> None:
+    """Refuse wheels that push with another force together, or with other rotors or gains."""
+    radius, own = after.outline.rear_radius, before.outline.rear_radius
+    names = {"max_torque": 1, "rotor_inertia": 2, "controller.gain": 2}
+    for name, power in names.items():
+        asked, got = (_read_figure(each, name) for each in (before, after))
+        asked *= (radius / own) ** power
+        if abs(got - asked) > _MOTORS * max(abs(asked), abs(got)):
+            rule = (
+                f"must be {asked:.6g}, that of all wheels of the file together; the text of their"
+                " motors leaves it to a class, say"
+            )
+            _fail(f"robot.drivetrain.{name}", float(f"{got:.6g}"), rule)
+
+
+def _read_figure(robot: Robot, name: str) -> float:
+    motors = robot.drivetrain
+    if name == "controller.gain":
+        return 0.0 if motors.controller is None else motors.controller.gain
+    return float(getattr(motors, name))
 
 
 def _fail(what: str, value: object, rule: str) -> NoReturn:
