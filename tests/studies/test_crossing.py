@@ -105,6 +105,10 @@ def test_the_figure_has_a_bar_for_every_cell_and_says_its_rate(found: Any) -> No
             [(0.05, 0.05, 0, "seized"), (0.07, 0.07, 0, "seized")],
             "height up to 0.05 to 0.07 m, then",
         ),
+        (
+            [(0.05, 0.05, 0, "seized"), (math.nan, math.nan, 0, "seized"), (0.07, 0.07, 0, "")],
+            "height up to 0.05 to 0.07 m, but none in 1 of 3 samples, then mostly seized",
+        ),
     ],
 )
 def test_the_summary_says_what_is_cleared_and_what_then(limits: list[Any], text: str) -> None:

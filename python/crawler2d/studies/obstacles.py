@@ -217,6 +217,8 @@ def _in_words(limits: Sequence[_Limits], name: str, units: str) -> str:
     else:
         ends = dict.fromkeys((f"{greatest[0]:g}", f"{greatest[-1]:g}"))
         text = f"{name} up to {' to '.join(ends)} {units}"
+        if none := sum(math.isnan(each.highest) for each in limits):
+            text += f", but none in {none} of {len(limits)} samples"
     if any(each.gaps for each in limits):
         text += ", but not every lower one"
     ((limit, _),) = Counter(each.limit for each in limits).most_common(1)
