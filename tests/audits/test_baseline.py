@@ -282,6 +282,29 @@ def test_a_baseline_is_a_line_for_each_thing(made: Made, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
+    "part",
+    [
+        {"lint": [["odd", "size", "too long"]]},
+        {"lint": [["error", "size"]]},
+        {"verdicts": {"step": {"word": "seizes"}}},
+        {"verdicts": {"step": {"word": "seizes", "seized": []}}},
+        {"verdicts": {"step": {"word": "seizes", "seized": [[1, 9]]}}},
+    ],
+)
+def test_an_entry_that_lacks_a_part_is_refused_before_anything_is_compared(
+    tmp_path: Path, part: dict[str, Any]
+) -> None:
+    entry = {"crawler2d": "1", "build": "x", "robot": {}, "lint": [], **part}
+    file = tmp_path / "audit.json"
+    file.write_text(json.dumps({"baseline": 1, "models": {"a.sdf": entry}}), encoding="utf-8")
+    assert "must have whole entries" in refused(lambda: read_baseline(file)).rule
+    whole = {"word": "seizes", "seized": [[1, 9, 0.0, 0.5]]}
+    entry |= {"lint": [["note", "sides", "differ"]], "verdicts": {"step": whole}}
+    file.write_text(json.dumps({"baseline": 1, "models": {"a.sdf": entry}}), encoding="utf-8")
+    assert read_baseline(file)["models"]["a.sdf"] == entry
+
+
+@pytest.mark.parametrize(
     ("text", "path"),
     [
         ("", "baseline"),

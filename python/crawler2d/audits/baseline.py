@@ -44,6 +44,7 @@ _LINE = re.compile(r"(:\d+)(?=[:,; ]|$)")
 _LIST = re.compile(r"\[([^][{}]*)\]")
 _SAME = 1e-6  # [-] of a figure: files round
 _ENTRY = {"crawler2d", "build", "robot", "lint"}  # what is kept of every file
+_VERDICT = {"word", "seized"}  # what is compared of every verdict
 _MOST = 4  # fields that are listed one by one
 
 
@@ -61,13 +62,16 @@ def read_baseline(path: Path) -> Plain:
         kept = json.loads(path.read_text(encoding="utf-8"))
         version = kept["baseline"]
         models = kept["models"]
-        is_whole = all(each.keys() >= _ENTRY for each in models.values())
+        is_whole = version != VERSION or all(map(_is_whole, models.values()))
     except (AttributeError, ValueError, KeyError, TypeError) as error:
         rule = f"must be a file that --update-baseline wrote ({type(error).__name__}: {error})"
         raise ScenarioError("baseline", str(path), rule) from None
-    if version != VERSION or not is_whole:
+    if version != VERSION:
         rule = f"must have format {VERSION}: write it again with --update-baseline"
         raise ScenarioError("baseline", version, rule)
+    if not is_whole:
+        rule = "must have whole entries, with robot and lint: write it again with --update-baseline"
+        raise ScenarioError("baseline", str(path), rule)
     return dict(kept)
 
 
@@ -142,6 +146,17 @@ def compare(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]
             f"crawler2d {was} is now {is_now}: CHANGELOG.md says what moved, under Physics"
         )
     return check, changes
+
+
+def _is_whole(kept: Plain) -> bool:
+    """Whether an entry has all that is compared: its robot, lint and verdicts."""
+    verdicts = kept.get("verdicts", {}).values()
+    return (
+        kept.keys() >= _ENTRY
+        and all(len(each) == 3 and each[0] in SEVERITIES for each in kept["lint"])
+        and all(each.keys() >= _VERDICT and each["seized"] for each in verdicts)
+        and all(len(rate) == 4 for each in verdicts for rate in each["seized"])
+    )
 
 
 def _name(path: Path, baseline: Path) -> str:
