@@ -122,6 +122,15 @@ def test_friction_above_two_counts_as_the_engine_combines_it(
     assert of_text(tmp_path, text, "friction", name="cart.sdf", engine=engine) == []
 
 
+@pytest.mark.parametrize("parts", ["hull", "left_front"])
+def test_friction_is_that_of_wheels_also_in_a_file_of_one_line(tmp_path: Path, parts: str) -> None:
+    shape = '<collision><geometry><box size="0.3 0.1 0.05"/></geometry></collision>'
+    sticky = f'<gazebo reference="{parts}"><mu1>5</mu1><mu2>5</mu2></gazebo>'
+    text = urdf(WHEELS, sticky, shapes=shape).replace("\n", " ")
+    found = of_text(tmp_path, text, "friction")
+    assert bool(found) is (parts != "hull")
+
+
 def test_effort_without_limit(tmp_path: Path) -> None:
     free = pair("front", 0.2, limit="") + pair("rear", -0.2, limit="")
     (found,) = of_text(tmp_path, urdf(free, MOTORS), "effort")

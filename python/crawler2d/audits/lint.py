@@ -17,7 +17,7 @@ from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
 from crawler2d.reading.loading import size_of
 from crawler2d.reading.log import lines, list_names
 from crawler2d.reading.reading import Reading
-from crawler2d.reading.wheels import farthest
+from crawler2d.reading.wheels import farthest, subtrees
 
 __all__ = ["RULES", "SEVERITIES", "Finding", "lint"]
 
@@ -303,13 +303,20 @@ def _wheel_links(reading: Reading) -> list[tuple[Link, Joint]]:
     return [(link, joints[link.name]) for link in reading.tree.links if link.name in names]
 
 
+def _touching_links(reading: Reading) -> Iterator[Link]:
+    """Yield the links of all wheels, with what is fixed to them, and of all drums."""
+    names, hanging = set(reading.wheels["name"].tolist()), subtrees(reading.tree)
+    turning = {each for name in names & hanging.keys() for each in hanging[name]}
+    for link in reading.tree.links:
+        if link.name in turning or any(f"{link.name}/{s.name}" in names for s in link.shapes):
+            yield link
+
+
 def _friction(reading: Reading) -> Iterator[_Break]:
     """Take the coefficients as they are written: an engine may combine them to less."""
-    shown = set(reading.wheels["line"].tolist())
     found = [
         (coefficient, at)
-        for link in reading.tree.links
-        if link.at.line in shown
+        for link in _touching_links(reading)
         for friction in (shape.friction for shape in link.shapes)
         if friction is not None
         for coefficient, at in (
