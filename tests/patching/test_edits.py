@@ -279,6 +279,19 @@ def test_a_wheel_placed_in_a_frame_that_is_no_link_is_refused(tmp_path: Path) ->
     assert caught.value.value == "side"
 
 
+def test_wheels_of_a_nested_model_are_refused(tmp_path: Path) -> None:
+    """Their names in the text are not those of the model that was read."""
+    outer = '<sdf version="1.9"><model name="outer"><link name="top"/><joint name="j" type="fixed">'
+    outer += "<parent>top</parent><child>cart</child></joint>"
+    inner = CART["sdf"].partition('<sdf version="1.9">')[2].replace("</sdf>", "</model></sdf>")
+    reading = read(tmp_path, outer + inner, "sdf")
+    assert len(reading.wheels) == 10
+    for track in (c2d.LineOfWheels(4), c2d.LineOfWheels(2), c2d.LineOfWheels(3, wheel_radius=0.1)):
+        with pytest.raises(c2d.ScenarioError, match="must be in the model itself") as caught:
+            patch_file(reading, reading.robot.with_track(track))
+        assert caught.value.value == "a nested model"
+
+
 @pytest.mark.parametrize("none", ["-1", "inf"])
 def test_a_limit_that_is_none_stays_none(none: str, tmp_path: Path) -> None:
     text = CART["sdf"].replace("<velocity>10</velocity>", f"<velocity>{none}</velocity>")

@@ -26,6 +26,7 @@ from crawler2d.patching.edits import (
     names_of,
 )
 from crawler2d.reading.reading import Reading, read_text
+from crawler2d.reading.sdf import SCOPE
 from crawler2d.reading.tracks import FIT
 from crawler2d.writing.document import Document, Span
 
@@ -134,6 +135,12 @@ def _edit(document: Document, changes: list[Change], tree: Tree) -> None:
     if scope.tag == "sdf":  # its model, of perhaps several
         models = (each for each in scope.within() if each.tag == "model" and each.name == tree.name)
         scope = next(models)
+        for change in changes:
+            if SCOPE in change.link:
+                rule = (
+                    "must be in the model itself, not in one inside it, to be changed in the text"
+                )
+                raise ScenarioError(f"link[{change.link}]", "a nested model", rule)
     taken = {span.name for span in scope.within()}
     for change in changes:
         if change.action == "changed":

@@ -43,7 +43,7 @@ from crawler2d.reading.parts import (
     solid,
 )
 
-__all__ = ["MODEL", "read_sdf"]
+__all__ = ["MODEL", "SCOPE", "read_sdf"]
 
 MODEL = "__model__"
 SCOPE = "::"
