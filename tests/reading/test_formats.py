@@ -4,6 +4,7 @@ import itertools
 import math
 import pickle
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -144,6 +145,12 @@ def test_links_that_something_outside_the_file_moves_are_named(tmp_path: Path) -
 def test_tracks_are_a_collection_of_names(tracks: object) -> None:
     with pytest.raises(c2d.ScenarioError, match="tracks must be a collection of names of links"):
         quietly(FILES / "cart.urdf", tracks=tracks)
+
+
+@pytest.mark.parametrize("ground", ["x", None, [1.0], True, -1.0, math.nan, 1e9])
+def test_what_is_no_coefficient_of_a_ground_is_refused(ground: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"^ground(_friction)? must be "):
+        SDF.friction_on(ground)
 
 
 @pytest.mark.parametrize("forward", [5, ["+x"], "x"])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from crawler2d.common.arrays import Table
+from crawler2d.common.arrays import Table, real_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.drawings.svg import table
 from crawler2d.errors import ScenarioError, ScenarioWarning, warn
@@ -88,7 +88,14 @@ class Reading:
 
     @takes_keywords
     def friction_on(self, ground: float) -> float:
-        """[-] Return the friction with ground of another coefficient, by the law of `engine`."""
+        """[-] Return the friction with ground of another coefficient, by the law of `engine`.
+
+        Raises
+        ------
+        ScenarioError
+            If it is none, or differs from wheel to wheel.
+        """
+        ReadOptions(ground_friction=real_number(ground, "ground"))  # which has its bounds
         _, friction, _ = assemble(
             self.tree,
             forward=self.how.forward,
