@@ -51,6 +51,12 @@ def test_a_robot_that_was_no_file_is_refused() -> None:
         alone.patch()
 
 
+@pytest.mark.parametrize("repair", ["chassis: 5 wheels in place of 4", 0])
+def test_what_is_no_repair_is_refused(audited: c2d.Audit, repair: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"^repair must be one of the repairs"):
+        audited.patch(repair=repair)
+
+
 def test_belts_are_written_anew_by_name(audited: c2d.Audit, tmp_path: Path) -> None:
     (belt,) = (each for each in audited.repairs if each.kind == "belt")
     assert audited.reading is not None

@@ -121,11 +121,13 @@ class Audit(AuditRecord):
         Raises
         ------
         ScenarioError
-            If no file was audited, or the wheels cannot be changed in the file, such as meshes of
-            another size, and no format holds the belts.
+            If no file was audited, `repair` is none, or the wheels cannot be changed in the file,
+            such as meshes of another size, and no format holds the belts.
         OSError
             If it cannot be written.
         """
+        if repair is not None and not isinstance(repair, Repair):
+            raise ScenarioError("repair", repair, "must be one of the repairs of an audit")
         change = best_change(self) if repair is None else change_of(self, repair)
         if change is None:
             return ""
