@@ -1,5 +1,6 @@
 """Drums that stand still, free wheels and castors: read as the track that they stand for."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -159,6 +160,21 @@ def test_one_wheel_a_side_with_castors_stands_on_all_three(tmp_path: Path) -> No
     assert len(found.robot.outline.discs) == 3
     assert len(found.robot.wheels()) == 2
     assert c2d.simulate(found.robot, c2d.terrains.flat()).outcome == "cleared"
+
+
+@pytest.mark.parametrize("ahead", [1.0, -1.0])
+@pytest.mark.parametrize(("radius", "lower"), [("0.08", 0.0), ("0.03", -0.05)])
+def test_one_wheel_a_side_may_trail_a_castor_or_push_it(
+    tmp_path: Path, ahead: float, radius: str, lower: float
+) -> None:
+    castor = wheel("castor", f"{0.2 * ahead} 0 {lower}", radius=radius)
+    text = urdf(pair("own", -0.2 * ahead), castor, motors("own"))
+    robot = read(tmp_path, text).robot
+    assert len(robot.wheels()) == 2
+    assert robot.outline.axle_distance == pytest.approx(math.hypot(0.4, lower))
+    at_rear, at_front = (0.08, float(radius))[:: int(ahead)]
+    assert robot.outline.rear_radius == pytest.approx(at_rear)
+    assert robot.outline.front_radius == pytest.approx(at_front)
 
 
 def test_flippers_lighter_than_the_core_can_move_get_the_least_mass(tmp_path: Path) -> None:

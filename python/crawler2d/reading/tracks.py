@@ -169,7 +169,7 @@ def wheels_of(
     radii = np.array([pair.radius for pair in pairs])
     places = base.of(centers(pairs))
     is_line = False
-    if is_whole:
+    if is_whole and len(pairs) > 1:
         even = np.linspace(-0.5 * base.length, 0.5 * base.length, len(pairs))
         between = np.linspace(radii[0], radii[-1], len(pairs))
         off = np.abs([places[:, 0] - even, places[:, 1], radii - between]).max()
