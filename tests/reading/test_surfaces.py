@@ -140,6 +140,17 @@ def test_wheels_without_a_motor_beside_driven_ones_are_doubted(tmp_path: Path) -
     assert "read as driven" in found.doubts[0]
 
 
+def test_a_differential_drive_in_a_urdf_names_its_motors(tmp_path: Path) -> None:
+    """As in SDF: a castor is no wheel without a partner, and the other wheels roll freely."""
+    joints = "".join(f"<{side}_joint>{side}_rear_joint</{side}_joint>" for side, _ in SIDES)
+    plugin = f'<gazebo><plugin name="diff_drive" filename="x">{joints}</plugin></gazebo>'
+    found = read(tmp_path, urdf(WHEELS, wheel("castor", "0.3 0 -0.05", radius="0.03"), plugin))
+    assert found.tree.driven.keys() == {f"{side}_rear_joint" for side, _ in SIDES}
+    assert "castor" in found.doubts[0]
+    assert "left_front, right_front" in found.doubts[1]
+    assert len(found.wheels) == 4
+
+
 def test_castors_in_the_middle_are_skids_of_the_belly(tmp_path: Path) -> None:
     castors = wheel("trailing", "-0.3 0 -0.05", radius="0.03") + wheel(
         "leading", "0.3 0 -0.05", radius="0.03"

@@ -29,6 +29,7 @@ from crawler2d.reading.parts import (
     coefficient,
     collision_ancestors,
     collisions,
+    driven_by,
     inertia,
     joint_of,
     joint_or_fixed,
@@ -138,7 +139,7 @@ def read_urdf(
         links=tuple(links),
         joints=joints,
         plugins=plugins,
-        driven=_driven(root),
+        driven=driven_by(plugins) | _driven(root),
         at=root.where,
     )
 
