@@ -138,6 +138,12 @@ def test_effort_without_limit(tmp_path: Path) -> None:
     assert of_text(tmp_path, urdf(WHEELS, MOTORS), "effort") == []
 
 
+def test_a_wheel_that_rolls_freely_needs_no_limit_of_effort(tmp_path: Path) -> None:
+    rear = "".join(BLOCK.format(name=name) for name in NAMES[1::2])
+    text = urdf(pair("front", 0.2, limit=""), pair("rear", -0.2), rear)
+    assert of_text(tmp_path, text, "effort") == []
+
+
 def test_sides_that_differ_within_the_tolerance(tmp_path: Path) -> None:
     skew = WHEELS.replace('xyz="0.2 0.15 0.0"', 'xyz="0.2005 0.15 0.0"')
     (found,) = of_text(tmp_path, urdf(skew), "sides")

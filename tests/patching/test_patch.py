@@ -152,6 +152,20 @@ def test_motors_of_a_class_are_refused_where_their_text_does_not_hold_their_limi
         patch_file(reading, on_chassis(reading, 5))
 
 
+@pytest.mark.parametrize("count", [2, 4, 5])
+def test_motors_of_some_wheels_keep_what_they_do_together(tmp_path: Path, count: int) -> None:
+    """The middle ones roll freely: what is copied or removed may have a motor or none."""
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text()
+    path = tmp_path / "some.xml"
+    path.write_text(re.sub(r'<velocity joint="\w+_middle_joint".*?/>', "", text))
+    reading = quietly(path)
+    found = reread(reading, patch_file(reading, on_chassis(reading, count)).text, tmp_path).robot
+    assert found.drivetrain.max_torque == pytest.approx(10.0)
+    assert found.drivetrain.controller is not None
+    assert found.drivetrain.controller.gain == pytest.approx(20.0)
+
+
 @pytest.mark.parametrize("name", CARTS)
 def test_larger_wheels_keep_speed_and_force(name: str, tmp_path: Path) -> None:
     reading = quietly(FILES / name)

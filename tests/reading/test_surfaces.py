@@ -1,6 +1,7 @@
 """Drums that stand still, free wheels and castors: read as the track that they stand for."""
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from tests.reading.carts import (
     ACROSS,
+    FILES,
     LIMIT,
     SIDES,
     WHEELS,
@@ -138,6 +140,26 @@ def test_wheels_without_a_motor_beside_driven_ones_are_doubted(tmp_path: Path) -
     assert len(found.wheels) == 6
     assert "left_mid, right_mid" in found.doubts[0]
     assert "read as driven" in found.doubts[0]
+
+
+@pytest.mark.parametrize("limit", ["", '<limit effort="5" velocity="10"/>'])
+def test_what_rolls_freely_adds_no_torque(tmp_path: Path, limit: str) -> None:
+    """Whether its joint states a limit or none, that of the driven wheel is that of its side."""
+    text = urdf(pair("front", 0.2, limit=limit), pair("rear", -0.2), motors("rear"))
+    found = read(tmp_path, text)
+    assert found.robot.drivetrain.max_torque == 5.0
+    assert found.robot.drivetrain.torque_sharing == "track"
+    assert len(found.sources["robot.drivetrain.max_torque"].split(", ")) == 2
+
+
+def test_what_rolls_freely_takes_no_servo_from_the_others(tmp_path: Path) -> None:
+    """Of three wheels a side two have a gain of 10 N m s/rad, and 5 N m."""
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    text = re.sub(r'<velocity joint="\w+_middle_joint".*?/>', "", text)
+    drivetrain = read(tmp_path, text, "cart.xml").robot.drivetrain
+    assert drivetrain.max_torque == pytest.approx(10.0)
+    assert drivetrain.controller == c2d.PI(gain=20.0)
 
 
 def test_a_differential_drive_in_a_urdf_names_its_motors(tmp_path: Path) -> None:

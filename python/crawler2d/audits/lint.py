@@ -336,7 +336,8 @@ def _friction(reading: Reading) -> Iterator[_Break]:
 
 
 def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
-    wheels = [joint for _, joint in _wheel_links(reading)]
+    every, driven = [joint for _, joint in _wheel_links(reading)], reading.tree.driven
+    wheels = [joint for joint in every if joint.name in driven] or every
     without = [joint for joint in wheels if not joint.effort or not math.isfinite(joint.effort)]
     if without:
         torque = reading.robot.drivetrain.max_torque

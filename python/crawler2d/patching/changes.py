@@ -45,9 +45,9 @@ class Change:
         [-] Factor of its radius.
     round_size : float
         [-] Factor of the radius of its round shapes: of gear wheels that of the root circle.
-    mass : float
-        [-] Factor of its mass: the total of all wheels of a carrier stays the same, as does that of
-        their efforts.
+    mass, motor : float
+        [-] Factors of its mass, and of its motor at the same radius: the totals of all wheels of a
+        carrier stay the same, also where not all of them have motors.
     grousers : tuple of Shape
         Boxes, in the frame of the model.
     """
@@ -59,6 +59,7 @@ class Change:
     size: float = 1.0
     round_size: float = 1.0
     mass: float = 1.0
+    motor: float = 1.0
     grousers: tuple[Shape, ...] = ()
 
     @property
@@ -69,7 +70,11 @@ class Change:
     @property
     def is_none(self) -> bool:
         """Whether its wheel stays as it is."""
-        same = self.size == self.mass == 1.0 and not self.shift.any() and not self.grousers
+        same = (
+            self.size == self.mass == self.motor == 1.0
+            and not self.shift.any()
+            and not self.grousers
+        )
         return self.action == "changed" and same
 
     def grousers_on(self, wheel: Pose) -> Iterator[tuple[Shape, Pose]]:
@@ -80,7 +85,12 @@ class Change:
     @property
     def effort(self) -> float:
         """[-] Factor of the limit of its motor."""
-        return self.mass * self.size
+        return self.motor * self.size
+
+    @property
+    def gain(self) -> float:
+        """[-] Factor of the gain of its motor."""
+        return self.motor * self.size**2
 
     @property
     def inertia(self) -> float:
@@ -148,6 +158,20 @@ def _has_same_outline(first: Wheel, second: Wheel) -> bool:
     )
 
 
+def _strength(joint: Joint, radius: float) -> float:
+    """Return what the motor of a wheel counts among the others: its force, or its gain on that."""
+    if joint.effort:
+        return joint.effort / radius
+    return (joint.gain or 1.0) / radius**2
+
+
+def _share(of_wheels: list[float], stay: list[int]) -> float:
+    """[-] Return by which factor those that stay, each with its copies, have the total of all."""
+    kept = sum(of_wheels[each] for each in stay)
+    factor = sum(of_wheels) / kept if kept > 0.0 else 1.0
+    return factor if abs(factor - 1.0) > _SAME else 1.0
+
+
 class _CarrierChange:
     """The changes of the wheels of one carrier."""
 
@@ -196,14 +220,25 @@ class _CarrierChange:
             sum(links[name].mass for joint in group for name in self.hanging[joint.child])
             for group in joints
         ]
-        kept = sum(masses[old] for old, new, _ in actions if new is not None)
-        factor = sum(masses) / kept if kept > 0.0 else 1.0
-        factor = factor if abs(factor - 1.0) > _SAME else 1.0
+        driven = self.reading.tree.driven
+        has_motors = any(joint.name in driven for group in joints for joint in group)
+        motors = [
+            sum(
+                _strength(joint, wheel.radius)
+                for joint in group
+                if joint.name in driven or not has_motors
+            )
+            for group, wheel in zip(joints, self.was.wheels, strict=True)
+        ]
+        stay = [old for old, new, _ in actions if new is not None]
+        factors = [_share(of_wheels, stay) for of_wheels in (masses, motors)]
         for old, new, action in actions:
             for joint in joints[old]:
-                yield self.change(joint, old, new, action, factor)
+                yield self.change(joint, old, new, action, factors)
 
-    def change(self, joint: Joint, old: int, new: int | None, action: str, mass: float) -> Change:
+    def change(
+        self, joint: Joint, old: int, new: int | None, action: str, factors: list[float]
+    ) -> Change:
         links = tuple(self.hanging[joint.child])
         if new is None:
             return Change(joint=joint, links=links, action=action, shift=np.zeros(3))
@@ -224,7 +259,8 @@ class _CarrierChange:
             shift=np.where(np.abs(shift) <= _SAME, 0.0, shift),
             size=size if abs(size - 1.0) * was.radius > _SAME else 1.0,
             round_size=root if abs(root - 1.0) * was.radius > _SAME else 1.0,
-            mass=mass,
+            mass=factors[0],
+            motor=factors[1],
             grousers=grousers,
         )
 

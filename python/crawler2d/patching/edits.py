@@ -239,7 +239,7 @@ def _change_motor(document: Document, motor: Span, change: Change) -> None:
         if motor.tag in ("velocity", "intvelocity", "general"):
             document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
         for name in ("kv", "gainprm", "biasprm"):
-            document.multiply(motor, [change.inertia] * 3, name)
+            document.multiply(motor, [change.gain] * 3, name)
     elif change.effort != 1.0:
         gear = motor.attributes.get("gear", "1").split()
         document.set_attribute(

@@ -220,8 +220,8 @@ def _check_motors(before: Robot, after: Robot) -> None:
         asked *= (radius / own) ** power
         if abs(got - asked) > _MOTORS * max(abs(asked), abs(got)):
             rule = (
-                f"must be {asked:.6g}, that of all wheels of the file together; the text of their"
-                " motors leaves it to a class, say"
+                f"must be {asked:.6g}, that of all wheels of the file together; it may be that of a"
+                " class there, or of motors that differ"
             )
             _fail(f"robot.drivetrain.{name}", float(f"{got:.6g}"), rule)
 

@@ -352,17 +352,20 @@ def drivetrain_of(
     sides = [_wheels(tree, pairs, side, engine) for side in ("left", "right")]
     wheels = [wheel for side in sides for wheel in side]
     joints = [joint for joint, _ in wheels]
-    efforts = [joint.effort for joint in joints if joint.effort]
-    has_limits = bool(joints) and len(efforts) == len(joints)
+    # What rolls freely has no motor, whatever limit its joint states.
+    motors = [wheel for wheel in wheels if wheel[0].name in tree.driven] or wheels
+    efforts = [joint.effort for joint, _ in motors if joint.effort]
+    has_limits = bool(motors) and len(efforts) == len(motors)
     sharing: Literal["track", "wheel"] = "track"
     torque_source = estimate("that of Robot.simple: the file has no limit")
     sharing_source = estimate("one speed, as motors without limit hold")
     if has_limits:
-        # Every wheel has its own motor; the robot's figure is that of one side.
-        torque = 0.5 * sum((joint.effort or 0.0) * radius / own for joint, own in wheels)
-        torque_source = lines([joint.effort_at for joint in joints], "sum of one side")
+        # Each of these has its own motor; the robot's figure is that of one side.
+        torque = 0.5 * sum((joint.effort or 0.0) * radius / own for joint, own in motors)
+        torque_source = lines([joint.effort_at for joint, _ in motors], "sum of one side")
         sharing_source = lines([joint.at for joint in joints])
-        if isinstance(track, LineOfWheels) and len(set(efforts)) == 1:
+        is_each = len(motors) == len(wheels) and len(set(efforts)) == 1
+        if isinstance(track, LineOfWheels) and is_each:
             sharing = "wheel"
     of_simple, none = estimate("that of Robot.simple"), f"{tree.at}: none"
     log.cite("robot.drivetrain", max_speed=speed_source)
@@ -377,10 +380,10 @@ def drivetrain_of(
     inertias = [sum(side) for side in rotors]
     if sharing == "wheel":
         inertias = [len(side) * rotor for side in rotors for rotor in side]
-    controller = _controller(log, wheels, radius)
+    controller = _controller(log, motors, radius)
     gain_torque = torque if controller is None else controller.gain * speed / radius
     if gain_torque < torque and has_limits:
-        path = f"{joints[0].gain_at}: gain[{joints[0].name}]"
+        path = f"{motors[0][0].gain_at}: gain[{motors[0][0].name}]"
         value = f"{gain_torque:.3g} of {torque:.3g} N m of a side"
         log.doubt(path, value, "is too soft for the torque limit, even at full speed")
     return Drivetrain(
