@@ -131,6 +131,19 @@ def test_a_differential_drive_of_gazebo_classic_limits_the_torque(tmp_path: Path
     assert read(tmp_path, stated(plugin)).robot.drivetrain.max_torque == pytest.approx(2.0 * 5.0)
 
 
+def test_a_skid_steer_drive_of_gazebo_classic_names_four_motors(tmp_path: Path) -> None:
+    joints = "".join(
+        f"<{side}{end.title()}Joint>{side}_{end}_joint</{side}{end.title()}Joint>"
+        for side, _ in SIDES
+        for end in ("front", "rear")
+    )
+    plugin = '<gazebo><plugin name="drive" filename="libgazebo_ros_skid_steer_drive.so">'
+    plugin += f"{joints}<torque>3</torque></plugin></gazebo>"
+    found = read(tmp_path, stated(plugin), engine="classic")
+    assert len(found.tree.driven) == 4
+    assert found.robot.drivetrain.max_torque == pytest.approx(2.0 * 3.0)
+
+
 def test_a_note_says_what_a_commanded_speed_does(tmp_path: Path) -> None:
     for engine, words in (
         ("gz", "within one step"),

@@ -70,6 +70,12 @@ _DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
 # plugins of Gazebo classic name the links of tracks and flippers like this.
 _TRACKS = {"link", "left_track", "right_track", "left_flipper", "right_flipper"}
 
+# Gazebo's DiffDrive has left_joint; those of Gazebo classic leftJoint, and for four wheels these.
+_DRIVEN = (
+    *("left_joint", "right_joint", "leftJoint", "rightJoint"),
+    *("leftFrontJoint", "rightFrontJoint", "leftRearJoint", "rightRearJoint"),
+)
+
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
 Limit = tuple[float, Where]
@@ -183,12 +189,12 @@ def plugin_of(plugin: Element) -> Plugin:
 
 
 def driven_by(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
-    """Return the joints that a differential drive turns, and the lines that say so."""
+    """Return the joints that a differential or skid-steer drive turns, with their lines."""
     return {
         joint: where
         for plugin in plugins
-        if "diff" in f"{plugin.name} {plugin.filename}".lower()
-        for joint, where in plugin.values("left_joint", "right_joint", "leftJoint", "rightJoint")
+        if any(kind in f"{plugin.name} {plugin.filename}".lower() for kind in ("diff", "skid"))
+        for joint, where in plugin.values(*_DRIVEN)
     }
 
 
