@@ -118,6 +118,8 @@ VARIANTS = {
                 mechanism="sprocket",
                 tensioner_stiffness=900.0,
                 tensioner_damping=60.0,
+                pin_stiffness=0.05,
+                pin_damping=0.002,
                 road_wheel_count=6,
                 return_roller_count=2,
             )

@@ -125,6 +125,8 @@ def test_the_same_bits_again_and_from_a_snapshot(mechanism: str) -> None:
         ({"mechanism": "friction"}, "robot.track.mechanism", "guide, sprocket"),
         ({"tensioner_stiffness": 0.0}, "robot.track.tensioner_stiffness", "N/m"),
         ({"tensioner_damping": -1.0}, "robot.track.tensioner_damping", "N s/m"),
+        ({"pin_damping": -1.0}, "robot.track.pin_damping", "N m s/rad"),
+        ({"pin_stiffness": 1e23}, "robot.track.pin_stiffness", "N m/rad"),
         ({"road_wheel_count": 5}, "robot.track.road_wheel_count", "a guide, which has no wheels"),
         (
             {"return_roller_count": 0},

@@ -125,6 +125,8 @@ def drawn_chain(draw: Draw, outline: c2d.TrackOutline) -> c2d.SegmentalTrack:
         pre_tension=draw.maybe(0.4, draw.size(1e-3, 1e6, (1.0, 100.0))),
         tensioner_stiffness=draw.maybe(0.4, draw.size(1e-3, 1e9, (1e2, 1e5))),
         tensioner_damping=draw.maybe(0.4, draw.size_or_zero(1e-9, 1e9, (1.0, 1e3))),
+        pin_stiffness=draw.size_or_zero(1e-9, 1e9, (1e-2, 10.0)),
+        pin_damping=draw.size_or_zero(1e-9, 1e9, (1e-4, 0.1)),
         road_wheel_count=draw.maybe_whole(0.4 * sprocket, draw.whole(0, 200, (0, 12))),
         return_roller_count=draw.maybe_whole(0.4 * sprocket, draw.whole(0, 200, (0, 6))),
     )

@@ -31,8 +31,8 @@ _FIELDS_BY_UNIT = {
     "N/m": "tensioner_stiffness",
     "N s/m": "tensioner_damping",
     "N m": "max_torque",
-    "N m s/rad": "gain",
-    "N m/rad": "integral",
+    "N m s/rad": "gain pin_damping",
+    "N m/rad": "integral pin_stiffness",
     "Hz": "contact_frequency",
     "1": (
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"

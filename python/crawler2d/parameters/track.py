@@ -7,7 +7,7 @@ Mobile Robot Servosila Engineer".
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from crawler2d.parameters.fields import Parameters
 
@@ -269,6 +269,11 @@ class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
         [N/m] Stiffness of that tensioner. None: a tenth of the pitch takes up its whole force.
     tensioner_damping : float, optional
         [N s/m] Damping of that tensioner. None: critical damping for the mass of one track.
+    pin_stiffness : float
+        [N m/rad] Stiffness of the bushing of each pin of one track, such as those of rubber in live
+        tracks: a spring that is at rest where the shoes of the pin are in line.
+    pin_damping : float
+        [N m s/rad] Its damping. The pin that closes the chain, its master link, has no bushing.
     road_wheel_count : int, optional
         Wheels on the lower run of one track between sprocket and idler, 0 to 200. None takes enough
         to leave gaps of at most one pitch: shoes sink into larger gaps. Only with a sprocket.
@@ -287,6 +292,8 @@ class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
     'rectangle'
     """
 
+    omitted_defaults: ClassVar[tuple[str, ...]] = ("pin_stiffness", "pin_damping")
+
     shoe_count: int | None = None
     mechanism: Literal["guide", "sprocket"] = "guide"
     shoe_shape: Literal["rectangle", "trapezoid"] = "rectangle"
@@ -294,6 +301,8 @@ class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
     pre_tension: float | None = None
     tensioner_stiffness: float | None = None
     tensioner_damping: float | None = None
+    pin_stiffness: float = 0.0
+    pin_damping: float = 0.0
     road_wheel_count: int | None = None
     return_roller_count: int | None = None
 

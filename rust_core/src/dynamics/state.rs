@@ -2,6 +2,8 @@
 //!
 //! The equations: docs/physics.md, "State".
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Pose, Rotation, Twist, Vector, direction, left_of};
@@ -87,6 +89,12 @@ impl Shoe {
     /// Its frame: x along its travel, y outwards.
     pub(crate) fn pose(&self) -> Pose {
         Pose::new(self.center, self.angle)
+    }
+
+    /// [rad] By how much the next shoe is turned against it, at most half a turn either way.
+    pub(crate) fn bend(&self, next: &Self) -> f64 {
+        let bend = next.angle - self.angle;
+        bend - TAU * (bend / TAU).round()
     }
 
     /// The shoe after a time [s] at constant velocity.

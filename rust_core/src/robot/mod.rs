@@ -15,6 +15,7 @@ pub use masses::{ChassisBody, WheelBody};
 pub use model::Model;
 pub use motor::MotorRule;
 pub(crate) use motor::{Line, held_speed};
+pub(crate) use moving_parts::Bushing;
 pub(crate) use moving_parts::Mounted;
 pub use moving_parts::{ChainOfShoes, Flipper, Sprocket, Tensioner};
 pub use outline::{Body, Circuit};

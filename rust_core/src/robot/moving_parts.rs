@@ -28,6 +28,8 @@ pub struct ChainOfShoes {
     pub shoe_inertia: f64,
     /// What holds the front end out.
     pub tensioner: Tensioner,
+    /// What turns the shoes of each pin against each other, but for the pin that closes the chain.
+    pub bushing: Bushing,
     /// The guide, or the hull of sprocket and idler.
     pub(crate) hull: Envelope,
 }
@@ -61,6 +63,25 @@ pub struct Tensioner {
     pub damping: f64,
     /// [m] How far it can be pressed in before it meets its stop.
     pub stop: f64,
+}
+
+/// A bushing of a pin: a spring that is at rest where its shoes are in line, and a damper.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bushing {
+    /// [N m/rad] Stiffness.
+    pub stiffness: f64,
+    /// [N m s/rad] Damping.
+    pub damping: f64,
+}
+
+impl Bushing {
+    /// As many of them side by side.
+    pub(crate) fn times(self, count: f64) -> Self {
+        Self {
+            stiffness: count * self.stiffness,
+            damping: count * self.damping,
+        }
+    }
 }
 
 impl ChainOfShoes {

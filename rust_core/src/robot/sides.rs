@@ -75,6 +75,7 @@ impl Model {
                     damping: 0.5 * chain.tensioner.damping,
                     ..chain.tensioner
                 },
+                bushing: chain.bushing.times(0.5),
                 sprocket: chain.sprocket.clone().map(|whole| Sprocket {
                     inertia: 0.5 * whole.inertia,
                     ..whole

@@ -83,6 +83,9 @@ pub(super) const ROTOR: Range = Range::between(0.0, 1e16, "kg m^2");
 /// [N/m], [N s/m] Up to a spring on the heaviest mass that swings once, or a damper that stops it, in the shortest step.
 pub(super) const STIFFNESS: Range = Range::above(0.0, 1e22, "N/m");
 pub(super) const DAMPING: Range = Range::between(0.0, 1e17, "N s/m");
+/// [N m/rad], [N m s/rad] The same of what turns.
+pub(super) const PIN_STIFFNESS: Range = Range::between(0.0, 1e22, "N m/rad");
+pub(super) const PIN_DAMPING: Range = Range::between(0.0, 1e17, "N m s/rad");
 /// [s] Shortest step.
 pub(super) const SHORTEST: f64 = 1e-5;
 

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::ScenarioError;
 use super::drivetrain::TorqueSharing;
 use super::fields::{
-    COORDINATE, Checked, DAMPING, FORCE, Fields, Range, SIZE, STIFFNESS, joined, one_of,
+    COORDINATE, Checked, DAMPING, FORCE, Fields, PIN_DAMPING, PIN_STIFFNESS, Range, SIZE,
+    STIFFNESS, is_zero, joined, one_of,
 };
 use super::objects::{Choice, FromJson, choice, kinds, object};
 
@@ -105,6 +106,12 @@ object! {
         tensioner_stiffness: Option<f64> = optional_number(STIFFNESS),
         /// [N s/m] Its damping; `None`: critical for the mass of one track.
         tensioner_damping: Option<f64> = optional_number(DAMPING),
+        /// [N m/rad] Stiffness of the bushing of each pin of one track, which is at rest where its shoes are in line.
+        #[serde(skip_serializing_if = "is_zero")]
+        pin_stiffness: f64 = number_or_zero(PIN_STIFFNESS),
+        /// [N m s/rad] Its damping.
+        #[serde(skip_serializing_if = "is_zero")]
+        pin_damping: f64 = number_or_zero(PIN_DAMPING),
         /// Wheels between sprocket and idler on the lower run; `None` takes enough to leave gaps of at most one pitch.
         road_wheel_count: Option<u32> = optional_integer(0, MAX_WHEELS),
         /// Rollers under the upper run; `None` takes enough to leave gaps of at most two pitches.

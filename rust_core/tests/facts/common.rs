@@ -248,6 +248,8 @@ pub(crate) fn segmental(shoe_count: Option<u32>) -> Track {
         mechanism: ChainMechanism::Guide,
         tensioner_stiffness: None,
         tensioner_damping: None,
+        pin_stiffness: 0.0,
+        pin_damping: 0.0,
         road_wheel_count: None,
         return_roller_count: None,
     })

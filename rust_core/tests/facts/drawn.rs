@@ -80,6 +80,8 @@ fn drawn_chain(draw: &mut Draw, outline: &TrackOutline) -> Track {
         pre_tension: None,
         tensioner_stiffness: None,
         tensioner_damping: None,
+        pin_stiffness: 0.0,
+        pin_damping: 0.0,
         road_wheel_count,
         return_roller_count,
     })

@@ -205,6 +205,8 @@ KINDS: dict[str, dict[str, dict[str, Field]]] = {
             "pre_tension": Number(0.0, 1e15, above=True, optional=True),
             "tensioner_stiffness": Number(0.0, 1e22, above=True, optional=True),
             "tensioner_damping": Number(0.0, 1e17, optional=True),
+            "pin_stiffness": Number(0.0, 1e22, left_out=True),
+            "pin_damping": Number(0.0, 1e17, left_out=True),
             "road_wheel_count": Whole(0, 200, optional=True),
             "return_roller_count": Whole(0, 200, optional=True),
         },

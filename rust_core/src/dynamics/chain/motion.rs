@@ -10,7 +10,7 @@ use super::pull::find_grasps;
 use super::{Chain, STOP_STIFFNESS};
 use crate::dynamics::state::{Shoe, State};
 use crate::geometry::{Pose, Vector};
-use crate::robot::Tensioner;
+use crate::robot::{Bushing, Tensioner};
 use crate::solver::{Damper, Hinge, Ring};
 
 impl Chain {
@@ -37,8 +37,12 @@ impl Chain {
                 ends: pin.arms(),
                 pushed_at: pin.arms(),
                 velocity: pin.gap / -h,
+                ..Hinge::default()
             };
         }
+        // As in the middle of the motion, to which it takes half of the step from here.
+        let Bushing { stiffness, damping } = self.rule.bushing;
+        self.resist(ring, shoes, 0.5 * h, damping + 0.5 * h * stiffness);
         if self.rule.sprocket.is_none() {
             let (center, _) = state.moved(0.5 * h);
             find_grasps(&mut ring.grasps, &self.rule, &middle, (chassis, center));
@@ -65,6 +69,7 @@ impl Chain {
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
             hinge.pushed_at = pin.arms();
         }
+        self.resist(ring, &self.middle, h, self.rule.bushing.damping);
         self.measure_gaps(shoes);
         self.inertias.fill(self.rule.shoe_inertia);
         ring.start(&self.inertias, free);
@@ -72,6 +77,19 @@ impl Chain {
             (hinge.ends, hinge.velocity) = (pin.arms(), Vector::ZERO);
         }
         ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, h);
+    }
+
+    /// Has the bushings of the pins act for a time [s], by the angles between these shoes and by a damping of their rates
+    /// [N m s/rad]. The pin that closes the chain has none.
+    fn resist(&self, ring: &mut Ring, shoes: &[Shoe], time: f64, damping: f64) {
+        let Bushing { stiffness, .. } = self.rule.bushing;
+        if stiffness == 0.0 && damping == 0.0 {
+            return;
+        }
+        for (hinge, pair) in ring.hinges.iter_mut().zip(shoes.windows(2)) {
+            let torque = -stiffness * pair[0].bend(&pair[1]);
+            hinge.twist = Damper::new(time * torque, time * damping);
+        }
     }
 
     /// Gives each shoe the inertia with which it turns to the middle of a motion of `h` [s] as if the torques of its

@@ -51,7 +51,7 @@ mod tests {
 
     use super::*;
     use crate::geometry::{Disc, Envelope, ShoeLoop, Twist, direction};
-    use crate::robot::Tensioner;
+    use crate::robot::{Bushing, Tensioner};
 
     const RADIUS: f64 = 0.05;
     const PIECES: u32 = 400;
@@ -78,6 +78,7 @@ mod tests {
                 damping: 10.0,
                 stop: f64::INFINITY,
             },
+            bushing: Bushing::default(),
             hull: Envelope::new(&ends),
         }
     }

@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::geometry::{Rotation, Twist, cross, left_of};
-use crate::robot::Model;
+use crate::robot::{Bushing, Model};
 use crate::scenario::{Friction, Scenario};
 use crate::terrain::GroundFriction;
 
-/// Momentum [kg m/s], angular momentum about the origin [kg m^2/s] and kinetic energy [J] of the shoes.
+/// Momentum [kg m/s], angular momentum about the origin [kg m^2/s] and energy [J] of the shoes and bushings.
 fn sums(dynamics: &Dynamics, state: &State) -> (Vector, f64, f64) {
     let rule = &dynamics.chains[0].rule;
     let (mass, inertia) = (rule.shoe_mass, rule.shoe_inertia);
@@ -17,12 +17,15 @@ fn sums(dynamics: &Dynamics, state: &State) -> (Vector, f64, f64) {
         sums.1 += cross(shoe.center, velocity) * mass + inertia * turn;
         sums.2 += 0.5 * mass * velocity.length_squared() + 0.5 * inertia * turn * turn;
     }
+    for pair in state.shoes.windows(2) {
+        sums.2 += 0.5 * rule.bushing.stiffness * pair[0].bend(&pair[1]).powi(2);
+    }
     sums
 }
 
 /// The Engineer without gravity and motors, and its chain 3 m away: still in the shape of the track, but turning as
 /// a whole and flying off.
-fn whirling() -> (Dynamics, State) {
+fn whirling(bushing: Bushing) -> (Dynamics, State) {
     let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
     scenario.robot.drivetrain.max_torque = 0.0;
@@ -39,20 +42,61 @@ fn whirling() -> (Dynamics, State) {
             turn,
         };
     }
-    let dynamics = Dynamics::new(
+    let mut dynamics = Dynamics::new(
         model,
         vec![GroundFriction::everywhere(Friction::dry(0.9))],
         0.0,
         scenario.solver,
     );
+    dynamics.chains[0].rule.bushing = bushing;
     (dynamics, state)
 }
 
 #[test]
 fn a_chain_that_whirls_in_the_air_keeps_momentum_and_energy_to_second_order() {
+    keeps_momentum_and_energy(Bushing::default());
+}
+
+/// Its hinges hold springs of a tenth of a newton metre a radian, which turn a shoe some ten times a second.
+#[test]
+fn springs_in_its_pins_keep_them_as_well() {
+    let stiffness = 0.1;
+    keeps_momentum_and_energy(Bushing {
+        stiffness,
+        damping: 0.0,
+    });
+}
+
+/// However strong: what is damped comes to turn as one, with the momentum that it has.
+#[test]
+fn dampers_in_its_pins_take_energy_until_it_turns_as_one() {
+    for damping in [1e-3, 0.1, 1e3] {
+        let stiffness = 0.0;
+        let (mut dynamics, mut state) = whirling(Bushing { stiffness, damping });
+        let before = sums(&dynamics, &state);
+        let mut energy = before.2;
+        for _ in 0..4000 {
+            dynamics.take(&mut state, &[], 0.0, 1e-3);
+            let now = sums(&dynamics, &state);
+            assert!((now.0 - before.0).length() < 1e-12 * before.0.length());
+            assert!((now.1 / before.1 - 1.0).abs() < 1e-3);
+            assert!(now.2 < energy * (1.0 + 1e-6), "{} of {energy} J", now.2);
+            energy = energy.min(now.2);
+        }
+        let turns = state.shoes.iter().map(|shoe| shoe.twist.turn);
+        let (low, high) = turns.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), turn| {
+            (low.min(turn), high.max(turn))
+        });
+        // 1 mN m s/rad take longer.
+        let is_one = high - low < 0.01 * high;
+        assert!(damping < 0.1 || is_one, "{damping}: {low} to {high} rad/s");
+    }
+}
+
+fn keeps_momentum_and_energy(bushing: Bushing) {
     let mut losses = Vec::new();
     for h in [1e-3_f64, 5e-4] {
-        let (mut dynamics, mut state) = whirling();
+        let (mut dynamics, mut state) = whirling(bushing);
         let before = sums(&dynamics, &state);
         let (mut turned, mut energy, mut estimate): (f64, f64, f64) = (0.0, 0.0, 0.0);
         let mut last = state.clone();

@@ -5,7 +5,7 @@
 
 use super::TrackModel;
 use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, left_of, lower_tangent, outline_discs};
-use crate::robot::{BodyKind, ChainOfShoes, Mount, Part, Shape, Sprocket, Tensioner};
+use crate::robot::{BodyKind, Bushing, ChainOfShoes, Mount, Part, Shape, Sprocket, Tensioner};
 use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, ScenarioError, SegmentalTrack, ShoeShape};
 
 /// [m/s^2] For the default pre-tension, a share of the weight; the scenario's gravity may be 0.
@@ -77,10 +77,15 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             (gear.ends, [gear.road_wheels, gear.rollers].concat())
         }
     };
+    let of_one_track = Bushing {
+        stiffness: track.pin_stiffness,
+        damping: track.pin_damping,
+    };
     let chain = ChainOfShoes {
         number: 0,
         shoes: 0..count,
         tensioner,
+        bushing: of_one_track.times(2.0),
         plate_thickness,
         shoe_mass,
         // A thin plate between its pins.

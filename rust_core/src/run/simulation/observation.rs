@@ -176,8 +176,7 @@ impl Simulation {
     }
 
     /// [J] Kinetic energy, that of motors' rotors included, potential energy relative to y = 0, and energy of the tensioners
-    /// of chains. Energy stored
-    /// in contacts and stops while they give way is not counted.
+    /// and bushings of chains. Energy stored in contacts and stops while they give way is not counted.
     pub fn energy(&self) -> f64 {
         let gravity = self.scenario.gravity;
         let of_body = |body: Body| {
@@ -189,9 +188,15 @@ impl Simulation {
             let (travel, spring) = (self.state.idlers[chain.number].travel, &chain.tensioner);
             (0.5 * spring.stiffness * travel - spring.pre_tension) * travel
         };
+        let of_bushings = |chain: &ChainOfShoes| {
+            let pairs = self.state.shoes[chain.shoes.clone()].windows(2);
+            let squares: f64 = pairs.map(|pair| pair[0].bend(&pair[1]).powi(2)).sum();
+            0.5 * chain.bushing.stiffness * squares
+        };
         let bodies: f64 = self.bodies().into_iter().map(of_body).sum();
         let chains = self.dynamics.model().chains.iter();
-        bodies + chains.map(of_tensioner).sum::<f64>() + self.energy_of_rotors()
+        let springs = chains.map(|chain| of_tensioner(chain) + of_bushings(chain));
+        bodies + springs.sum::<f64>() + self.energy_of_rotors()
     }
 
     /// [J] Kinetic energy of the motors' rotors, which turn over the chassis.

@@ -104,6 +104,8 @@ fn a_chain_that_comes_off_as_the_robot_tips_over_has_come_off() {
         mechanism: ChainMechanism::Guide,
         tensioner_stiffness: None,
         tensioner_damping: None,
+        pin_stiffness: 0.0,
+        pin_damping: 0.0,
         road_wheel_count: None,
         return_roller_count: None,
     });

@@ -8,9 +8,10 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 use super::system::{
-    BASE, CLOSING_HINGE, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, WIDTH,
+    BASE, CLOSING_HINGE, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, Twisted, WIDTH,
 };
 use crate::geometry::{Twist, Vector, left_of};
+use crate::solver::row::TURN;
 
 impl RingSystem {
     /// Reduces the system to the border, and that to the base and, where the drive is a body that spins, to this. None if the
@@ -19,8 +20,15 @@ impl RingSystem {
         let last = self.links.len() - 1;
         self.links[0].close(1, &hinges[last]);
         for (k, hinge) in hinges[..last].iter().enumerate() {
+            if hinge.is_stiff() {
+                self.resist(k, -1.0, hinge.twist);
+                self.resist(k + 1, 1.0, hinge.twist);
+            }
             let solved = self.links[k].turn_about_hinge(hinge)?;
             self.hand_on(k, hinge, &solved);
+            if hinge.is_stiff() {
+                self.hand_on_twist(k, hinge, &solved);
+            }
             self.solved[k] = solved;
         }
         self.links[last].close(0, &hinges[last]);
@@ -48,6 +56,31 @@ impl RingSystem {
         next.own += on_link(own, pushed_at).transpose();
         next.beside += on_link(beside, pushed_at);
         next.below += on_link(of_pin, end);
+    }
+
+    /// The same for what a link and the next one have from each other's turn.
+    fn hand_on_twist(&mut self, link: usize, hinge: &Hinge, solved: &Solved) {
+        let stiffness = hinge.twist.stiffness;
+        let velocity = Vector2::new(hinge.velocity.x, hinge.velocity.y);
+        let Entry { own, below, .. } = self.links[link];
+        let turning = turning_about(hinge.ends[0]);
+        let of_turn = own * turning;
+        let turn = stiffness / turning_about(hinge.pushed_at[0]).dot(&of_turn);
+        let impulse = of_turn.fixed_rows::<2>(0) * turn;
+        self.twisted[link] = Twisted { turn, impulse };
+
+        let (of_pin, of_border) = solved.turn;
+        let next = &mut self.links[link + 1];
+        let mut column = next.own.column_mut(TURN);
+        column += on_link(impulse.transpose(), hinge.pushed_at[1]).transpose();
+        let mut row = next.own.row_mut(TURN);
+        row -= on_link(of_pin, hinge.ends[1]) * stiffness;
+        next.own[(TURN, TURN)] -= stiffness * turn;
+        let mut column = next.beside.column_mut(TURN);
+        column -= of_border * stiffness;
+        next.beside[(RIGHT, TURN)] -= stiffness * (of_pin * velocity).x;
+        let mut column = next.below.column_mut(TURN);
+        column += below * turning * turn;
     }
 
     /// Expresses the velocity of the last link in terms of the border.
@@ -111,12 +144,18 @@ impl RingSystem {
             let Solved { turn, impulse } = &self.solved[k];
             let end = next.at(hinge.ends[1]) - hinge.velocity;
             let pin = Vector2::new(end.x, end.y);
-            let turn = (turn.0 * pin).x + turn.1.dot(&known);
+            let mut rate = (turn.0 * pin).x + turn.1.dot(&known);
+            let mut pull = impulse.0 * pin + impulse.1.tr_mul(&known);
+            if hinge.is_stiff() {
+                let twisted = self.twisted[k];
+                rate += twisted.turn * next.turn;
+                pull += twisted.impulse * next.turn;
+            }
             next = Twist {
-                velocity: end - turn * left_of(hinge.ends[0]),
-                turn,
+                velocity: end - rate * left_of(hinge.ends[0]),
+                turn: rate,
             };
-            self.impulses[k] = -(impulse.0 * pin + impulse.1.tr_mul(&known));
+            self.impulses[k] = -pull;
             set(next);
         }
         [known[SLIDE], known[DRIVE]]

@@ -12,9 +12,9 @@ use nalgebra::{Matrix2, Matrix3, RowVector2, SMatrix, SVector, Vector2, Vector3}
 
 use crate::geometry::Vector;
 use crate::solver::damper::Damper;
-use crate::solver::row::Row;
+use crate::solver::row::{Row, TURN};
 
-/// How a hinge holds its two links: it keeps an end of each together.
+/// How a hinge holds its two links: it keeps an end of each together, and may resist that they turn against each other.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Hinge {
     /// [m] From the centre of each link to the end that it holds, ...
@@ -23,6 +23,15 @@ pub(crate) struct Hinge {
     pub pushed_at: [Vector; 2],
     /// [m/s] Velocity of the second end relative to the first, with which it closes.
     pub velocity: Vector,
+    /// What turns the next link, by its rate over this one [rad/s]; the hinge that closes the ring has none.
+    pub twist: Damper,
+}
+
+impl Hinge {
+    /// Whether anything resists the turn of its links against each other.
+    pub(super) fn is_stiff(&self) -> bool {
+        self.twist != Damper::default()
+    }
 }
 
 /// How a drive that pulls at links acts on one of them and on the base.
@@ -63,6 +72,13 @@ pub(super) struct Solved {
     pub(super) impulse: (Matrix2<f64>, SMatrix<f64, WIDTH, 2>),
 }
 
+/// The same from the turn of the next link, if that is resisted.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Twisted {
+    pub(super) turn: f64,
+    pub(super) impulse: Vector2<f64>,
+}
+
 /// The system of one ring.
 pub(super) struct RingSystem {
     pub(super) links: Vec<Entry>,
@@ -70,6 +86,7 @@ pub(super) struct RingSystem {
     free: Vec<[Vector3<f64>; 2]>,
     /// What the elimination keeps of each link but the last, and of that one: its velocity in terms of the border.
     pub(super) solved: Vec<Solved>,
+    pub(super) twisted: Vec<Twisted>,
     pub(super) last: SMatrix<f64, WIDTH, 3>,
     pub(super) border: SMatrix<f64, WIDTH, WIDTH>,
     /// [N s] Impulse of each hinge on the next link.
@@ -82,6 +99,7 @@ impl RingSystem {
             links: vec![Entry::default(); count],
             free: vec![Default::default(); count],
             solved: vec![Solved::default(); count],
+            twisted: vec![Twisted::default(); count],
             last: SMatrix::zeros(),
             border: SMatrix::zeros(),
             impulses: vec![Vector2::zeros(); count],
@@ -149,6 +167,13 @@ impl RingSystem {
             }
             self.border[(at, RIGHT)] += force_beside[i] * impulse;
         }
+    }
+
+    /// Adds what a hinge does against the turn of one of its links, the other one being at rest.
+    pub(super) fn resist(&mut self, link: usize, sign: f64, twist: Damper) {
+        let entry = &mut self.links[link];
+        entry.own[(TURN, TURN)] += twist.stiffness;
+        entry.beside[(RIGHT, TURN)] += sign * twist.at(0.0);
     }
 
     /// Couples a link to the drive: how its velocity, and that of the base, enter the drive's speed.

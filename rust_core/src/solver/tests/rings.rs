@@ -1,6 +1,7 @@
 //! Rings of links.
 
 use super::*;
+use crate::draw::Draw;
 use crate::geometry::{cross, direction, left_of};
 
 /// [kg], [kg m^2] and [m] A link: its mass, inertia, and the way from its centre to either hinge.
@@ -112,4 +113,54 @@ fn a_ring_that_falls_keeps_its_hinges_closed() {
     let of_ground: Vector = problem.contacts.iter().map(of_contact).sum();
     assert!((gained - of_ground).length() < 1e-10 * of_ground.length());
     assert!(of_ground.y > 0.0);
+}
+
+/// The hinges of a ring but the last one resist that its links turn against each other. What each does to them is its
+/// damper at the rates that are found, and neither momentum nor what the hinges hold is changed by it.
+#[test]
+fn stiff_hinges_turn_links_by_their_dampers_and_keep_momentum() {
+    let count = 7;
+    let (mut problem, centers) = polygon(count);
+    let mut draw = Draw(5);
+    let mut speed = || draw.between(-1.0, 1.0);
+    let free: Vec<Twist> = (0..count)
+        .map(|_| Twist::from([speed(), speed(), 5.0 * speed()]))
+        .collect();
+    throw(&mut problem, &free);
+    let dampers: Vec<Damper> = (0..count - 1)
+        .map(|_| Damper::new(0.01 * speed(), 0.01 * (1.0 + speed())))
+        .collect();
+    for (hinge, damper) in problem.rings[0].hinges.iter_mut().zip(&dampers) {
+        hinge.twist = *damper;
+    }
+    problem.solve();
+    assert_eq!(problem.effort.unresolved, 0);
+    let links = links(&problem);
+    let ring = &problem.rings[0];
+    let pushes: Vec<Vector> = ring.impulses().collect();
+    for k in 0..count {
+        let (next, behind) = ((k + 1) % count, (k + count - 1) % count);
+        let [own, of_next] = ring.hinges[k].ends;
+        let opens = links[next].at(of_next) - links[k].at(own);
+        assert!(opens.length() < 1e-12, "{opens}");
+        // What the hinges before and behind a link do to it is all that changes its momentum.
+        let twist = |k: usize| {
+            let rate = links[(k + 1) % count].turn - links[k].turn;
+            dampers.get(k).map_or(0.0, |damper| damper.at(rate))
+        };
+        let push = pushes[behind] - pushes[k];
+        let gained = (links[k].velocity - free[k].velocity) * MASS;
+        assert!((gained - push).length() < 1e-12, "{k}: {gained} of {push}");
+        let arms = [ring.hinges[behind].ends[1], own];
+        let turned = cross(arms[0], pushes[behind]) - cross(arms[1], pushes[k]);
+        let moment = INERTIA * (links[k].turn - free[k].turn);
+        assert_relative_eq!(moment, turned + twist(behind) - twist(k), epsilon = 1e-12);
+    }
+    let moment = |twists: &[Twist]| -> f64 {
+        let of_link = |(link, center): (&Twist, &Vector)| {
+            cross(*center, link.velocity) * MASS + INERTIA * link.turn
+        };
+        twists.iter().zip(&centers).map(of_link).sum()
+    };
+    assert_relative_eq!(moment(&links), moment(&free), epsilon = 1e-12);
 }
