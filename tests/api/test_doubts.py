@@ -71,6 +71,16 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
     "huge wheels": (on(line(0.5)), "robot.track.wheel_radius", 0.5),
     "a huge placed wheel": (on(placed(0.1, 0.0, 0.5)), "robot.track.placements[1][2]", 0.5),
     "a wheel beside the robot": (on(placed(18.0, 0.0, 0.06)), "robot.track.placements[1][0]", 18.0),
+    "pins that straighten the chain": (
+        on(c2d.SegmentalTrack(pin_stiffness=50.0)),
+        "robot.track.pin_stiffness",
+        50.0,
+    ),
+    "pins that hold the chain fast": (
+        on(c2d.SegmentalTrack(pin_damping=2.0)),
+        "robot.track.pin_damping",
+        2.0,
+    ),
     "an angle in degrees": (hold(5.0), "drive.gait.angle", 5.0),
     "an angle in degrees, later": (
         Scenario(ARMED, STEP, drive=c2d.Drive(gait=c2d.Hold(0.5, ((1.0, -6.0),)))),

@@ -6,8 +6,8 @@ use std::f64::consts::{PI, TAU};
 
 use super::fields::joined;
 use super::{
-    CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, ScenarioError, Terrain,
-    Track,
+    CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, ScenarioError,
+    SegmentalTrack, Terrain, Track,
 };
 
 /// Obstacles larger than this many robot lengths are doubtful; so is a goal this many times farther than a run gets.
@@ -17,6 +17,8 @@ const SUNK: f64 = 1e-3;
 /// [kg/m^3] Densities that no robot comes near.
 const AIR: f64 = 1.2;
 const GOLD: f64 = 19_300.0;
+/// [m/s^2] The weight of a robot is meant to be that on Earth.
+const GRAVITY: f64 = 9.81;
 /// Friction that no ground has: rubber on dry concrete has about 1.
 const MOST_FRICTION: f64 = 3.0;
 
@@ -213,9 +215,26 @@ impl Robot {
         doubts.at_most("robot.moment_of_inertia", inertia, most, what);
         let size = (o.largest_radius(), o.axle_distance());
         add_doubts_of_wheels(&self.track, "robot.track", size, doubts);
+        if let Track::Segmental(chain) = &self.track {
+            self.add_doubts_of_pins(chain, doubts);
+        }
         if let Some(flippers) = &self.flippers {
             flippers.add_doubts(self, doubts);
         }
+    }
+
+    /// Round an end of radius r shoes of pitch p are bent by p/r: a spring k presses them off it with k/r. At a speed v they are
+    /// bent with v/r, and a damper d takes about d v/r^2 of the traction.
+    fn add_doubts_of_pins(&self, chain: &SegmentalTrack, doubts: &mut Doubts) {
+        let (half, radius) = (0.5 * self.mass * GRAVITY, self.outline.smallest_radius());
+        let most = (half * radius, "N m/rad");
+        let what = "with which a track presses itself off its smaller end with half the weight";
+        let path = "robot.track.pin_stiffness";
+        doubts.at_most(path, chain.pin_stiffness, most, what);
+        let most = half * radius * radius / self.drivetrain.max_speed;
+        let what = "with which pins take half the weight of traction at robot.drivetrain.max_speed";
+        let path = "robot.track.pin_damping";
+        doubts.at_most(path, chain.pin_damping, (most, "N m s/rad"), what);
     }
 }
 
