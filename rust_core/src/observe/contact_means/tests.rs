@@ -35,3 +35,80 @@ fn the_range_of_motion_is_that_of_all_steps_and_of_no_other_place() {
     assert_eq!(stance.range, [4.0, 3.0, 0.0]);
     assert_eq!(stance.position, Vector::new(5.0, -2.0));
 }
+
+/// Steps of three lengths over two windows, of a contact and a drive: each mean is the sum of value times time over the time.
+#[test]
+fn means_over_two_windows_weigh_each_step_by_its_time() {
+    let steps = [
+        (0.5, 4.0),
+        (0.5, 8.0),
+        (0.75, -2.0),
+        (0.5, 16.0),
+        (1.75, 1.0),
+    ];
+    let (mut signals, mut time) = (Signals::default(), 0.0);
+    let mean = |of: fn(f64) -> f64| {
+        let sum: f64 = steps.iter().map(|(dt, value)| dt * of(*value)).sum();
+        sum / 4.0
+    };
+    for (dt, value) in steps {
+        time += dt;
+        let mut now = Reading::at_rest(time, Vector::new(value, 3.0 * value));
+        now.chassis_angle = 0.5 * value;
+        let contact = Contact {
+            normal_force: f64::max(value, 0.0),
+            friction_force: 2.0 * value,
+            ..Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), 0.0)
+        };
+        let drive = DriveState {
+            force: 5.0 * value,
+            ..DriveState::default()
+        };
+        let drives = [(drive, 7.0 * value)].into_iter();
+        signals.add((&now, dt), &[contact], drives, 2.25);
+    }
+    let stance = signals.stance();
+    assert_eq!(stance.position, Vector::new(mean(|x| x), mean(|x| 3.0 * x)));
+    assert_eq!(stance.angle, mean(|x| 0.5 * x));
+    assert_eq!(stance.range, [18.0, 54.0, 9.0]);
+    let [drive] = &stance.drives[..] else {
+        panic!("there is one drive");
+    };
+    assert_eq!(
+        [drive.force, drive.speed],
+        [mean(|x| 5.0 * x), mean(|x| 7.0 * x)]
+    );
+    let [bearing] = &stance.bearings[..] else {
+        panic!("there is one contact");
+    };
+    assert_eq!(bearing.contact.normal_force, mean(|x| x.max(0.0)));
+    assert_eq!(bearing.contact.friction_force, mean(|x| 2.0 * x));
+    assert_eq!(bearing.duration, 3.25 / 4.0);
+}
+
+#[test]
+fn loads_of_an_interval_are_means_of_each_contact_that_bears() {
+    let contact = |number: u64, normal_force: f64, friction_force: f64| {
+        let mut contact = Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), 0.0);
+        (contact.number, contact.normal_force) = (number, normal_force);
+        contact.friction_force = friction_force;
+        contact
+    };
+    let mut loads = Loads::default();
+    loads.add(
+        &[
+            contact(3, 4.0, -1.0),
+            contact(5, 0.0, 0.0),
+            contact(8, 1.0, 0.5),
+        ],
+        0.25,
+    );
+    loads.add(&[contact(3, 8.0, 2.0), contact(5, 2.0, 1.0)], 0.75);
+    assert_eq!(loads.count(), 3);
+    let means: Vec<_> = loads
+        .drain()
+        .map(|l| (l.number, l.normal_force, l.friction_force))
+        .collect();
+    assert_eq!(means, [(3, 7.0, 1.25), (8, 0.25, 0.125), (5, 1.5, 0.75)]);
+    assert_eq!((loads.count(), loads.drain().count()), (0, 0));
+}
