@@ -135,6 +135,25 @@ def test_an_edge_inside_the_track_is_marked_and_named() -> None:
     assert shaded == [np.count_nonzero(run.events["kind"] == "stop")] * 3 == [1] * 3
 
 
+@pytest.mark.parametrize("radius", [0.0, 0.03])
+def test_an_edge_inside_the_track_is_marked_where_it_is_deepest_at_that_instant(
+    radius: float,
+) -> None:
+    simulation = c2d.Simulation(c2d.Scenario(WHEELS, c2d.terrains.step(0.1, edge_radius=radius)))
+    simulation.advance(1.75)
+    inside = simulation.intrusions()
+    simulation.advance(0.25)
+    run = simulation.to_run()
+    assert inside["depth"][0] < 0.9 * run.events["depth"].max()
+    side = run.plot(time=1.75)
+    (mark,) = [line for line in side.get_lines() if "inside" in str(line.get_label())]
+    told = float(str(mark.get_label()).partition(": ")[2].partition(" mm")[0])
+    assert told == pytest.approx(1e3 * inside["depth"][0], abs=0.1)
+    # The points of the arc that are drawn are 3 mm apart.
+    place = np.array(mark.get_xydata())
+    assert np.allclose(place, [[inside["x"][0], inside["y"][0]]], rtol=0.0, atol=2e-3)
+
+
 def labels(ax: Any) -> list[str]:
     return [str(artist.get_label()) for artist in (*ax.get_lines(), *ax.collections)]
 

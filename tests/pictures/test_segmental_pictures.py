@@ -167,7 +167,7 @@ def test_no_edge_is_between_the_wheels_in_a_chain() -> None:
     (told,) = [
         str(line.get_label()) for line in ax.get_lines() if "inside" in str(line.get_label())
     ]
-    assert re.fullmatch(r"edge inside the envelope: \d+\.\d mm", told)
+    assert re.fullmatch(r"edge inside the envelope: at most \d+\.\d mm", told)
 
 
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])

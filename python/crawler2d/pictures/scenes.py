@@ -235,35 +235,58 @@ class Envelopes:
 
 
 def draw_edges(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
-    """Mark the edges inside the track at one sample."""
+    """Mark the edges inside the track at one sample, each where it is deepest."""
     events, time = run.events, run.time[sample]
     inside = events["kind"] == "intrusion"
     inside &= (events["start"] <= time) & (time <= events["end"])
     rows = np.flatnonzero(inside)
     if not rows.size:
         return
-    ids, lanes = run.edges["id"], run.edges["lane"]
-    edges = [
-        np.flatnonzero((ids == events["edge"][row]) & (lanes == events["lane"][row]))[0]
-        for row in rows
-    ]
-    most_loaded = rows[events["force"][rows].argmax()]
-    depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
-    label = f"edge inside the envelope: {1e3 * depth:.1f} mm"
-    # In a chain the edge is between two shoes, not between wheels.
-    if one != other and not scene.kinds[one].is_in_chain:
-        label += f", between wheels {one} and {other}"
+    points, depths = zip(*(_deepest(run, scene, sample, row) for row in rows.tolist()), strict=True)
+    at = int(events["force"][rows].argmax())
+    one, other = sorted(events["bodies"][rows[at]])
+    if scene.kinds[one].is_in_chain:  # between two shoes, inside a belt round these
+        depth = f"at most {1e3 * events['depth'][rows[at]]:.1f} mm"
+    else:
+        depth = f"{1e3 * depths[at]:.1f} mm"
+        depth += "" if one == other else f", between wheels {one} and {other}"
     ax.plot(
-        run.edges["x"][edges],
-        run.edges["y"][edges],
+        *np.transpose(points),
         linestyle="none",
         marker="D",
         markersize=6,
         markerfacecolor="white",
         markeredgecolor=VIOLET,
-        label=label,
+        label=f"edge inside the envelope: {depth}",
         zorder=5,
     )
+
+
+def _deepest(run: Record, scene: Scene, sample: int, row: int) -> tuple[NDArray[np.float64], float]:
+    """[m] Find the deepest point of the edge of an intrusion at a sample, and how deep it is."""
+    lane, edge, bodies = (run.events[name][row] for name in ("lane", "edge", "bodies"))
+    profile, edges = dict(scene.lanes)[lane], run.edges
+    own = np.flatnonzero((edges["id"] == edge) & (edges["lane"] == lane))[0]
+    # A rounded edge is an arc of the ground, as far as this from where the sharp corner would be.
+    reach = edges["radius"][own] * np.tan(0.5 * abs(edges["angle"][own]))
+    away = np.hypot(profile[:, 0] - edges["x"][own], profile[:, 1] - edges["y"][own])
+    points = profile[away <= (1.0 + 1e-6) * max(reach, away.min())]
+    carrier = scene.carriers[scene.carrier_of(bodies[0])]
+    frames = np.repeat(carrier.poses[[sample]], len(points), axis=0)
+    here = relative(np.column_stack([points, np.zeros(len(points))]), frames)[:, :2]
+    depths = _depth_inside(carrier.envelope, here)
+    return points[depths.argmax()], float(depths.max())
+
+
+def _depth_inside(polygon: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Distances of points from the nearest side of a convex polygon, counter-clockwise."""
+    sides = np.roll(polygon, -1, axis=0) - polygon
+    lengths = np.hypot(*sides.T)
+    long = lengths > 1e-9  # others have no direction
+    sides, corners, lengths = sides[long], polygon[long], lengths[long]
+    x, y = np.moveaxis(points[:, None] - corners, -1, 0)
+    depths: NDArray[np.float64] = ((sides[:, 0] * y - sides[:, 1] * x) / lengths).min(axis=1)
+    return depths
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
