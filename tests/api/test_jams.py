@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 
 import crawler2d as c2d
 from crawler2d import studies
@@ -136,3 +137,16 @@ def test_the_chart_has_each_jam_at_its_frictions_and_draws_itself() -> None:
     assert "between wheels 1 and 2" in labels
     with pytest.raises(c2d.ScenarioError, match="model"):
         chart.plot()
+
+
+def test_a_chart_of_one_height_has_a_line_for_each_way_to_jam() -> None:
+    chart = studies.jam_chart(c2d.Scenario(WHEELS, STEP), values=[0.1])
+    ax = chart.plot()
+    lines = [each for each in ax.collections if isinstance(each, LineCollection)]
+    legend = ax.get_legend()
+    assert legend is not None
+    assert len(lines) == len(legend.get_texts()) > 2
+    drawn = [piece[:, 1].tolist() for each in lines for piece in each.get_segments()]
+    assert max(high for _, high in drawn) == chart["high"].max()
+    left, right = ax.get_xlim()
+    assert left < 100.0 < right

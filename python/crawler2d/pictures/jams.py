@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from crawler2d.common.extras import extra
-from crawler2d.drawings.canvas import axes_or_new
+from crawler2d.drawings.canvas import axes_or_new, moved
 from crawler2d.drawings.palette import BLACK, GRAY, LINES
 from crawler2d.pictures.rates import legend_below, one_model, readable
 
@@ -21,6 +21,10 @@ __all__ = ["JamRegion", "jam_regions", "plot_jam_chart"]
 
 _FILL = 0.55
 """[-] Opacity of a region."""
+_LINE = 3.0
+"""[point] Width of a region at a single value."""
+_ROOM = 0.1
+"""[-] Beside the only value of a chart."""
 _STRIPES = "////", "....", "xxxx"
 """Hatches, for those who tell colours badly."""
 
@@ -41,7 +45,8 @@ class JamRegion(NamedTuple):
     is_belt : bool
         Whether it is of the belt.
     pieces : list of list of tuple
-        Corners of its pieces: value along the first axis, friction.
+        Corners of its pieces: value along the first axis, friction. Those of two are at one value
+        alone.
     """
 
     text: str
@@ -79,9 +84,10 @@ def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
     name = data.attrs["x"]
     factor, label = readable(data[name])
     at = factor * data[name].to_numpy()
-    handles = []
+    handles: list[Any] = []
     top = 0.1
-    collection = extra("matplotlib.collections", "plot").PolyCollection
+    collections = extra("matplotlib.collections", "plot")
+    collection, segments = collections.PolyCollection, collections.LineCollection
     for text, place, is_belt, pieces in jam_regions(data):
         style: dict[str, Any] = {"edgecolor": BLACK, "linewidth": 0.0}
         if is_belt:
@@ -93,9 +99,16 @@ def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
             style |= {"facecolor": LINES[place % len(LINES)], "hatch": hatch, "alpha": _FILL}
         scaled = [[(factor * x, friction) for x, friction in piece] for piece in pieces]
         ax.add_collection(collection(scaled, **style))
+        if lines := [piece for piece in scaled if len(piece) == 2]:
+            color = BLACK if is_belt else style["facecolor"]
+            look: dict[str, Any] = {"color": color, "linewidth": 1.0 if is_belt else _LINE}
+            beside = moved(ax, _LINE * len(handles))  # at one value all would cover each other
+            ax.add_collection(segments(lines, transform=beside, **look))
         handles.append(extra("matplotlib.patches", "plot").Patch(label=text, **style))
         top = max(top, *(friction for piece in pieces for _, friction in piece))
-    ax.set(xlabel=label, ylabel="friction", xlim=(at[0], at[-1]), ylim=(0.0, top))
+    room = 0.0 if at.size > 1 else _ROOM * abs(at[0]) or 1.0
+    ends = at[0] - room, at[-1] + room
+    ax.set(xlabel=label, ylabel="friction", xlim=ends, ylim=(0.0, top))
     title = f"{data['model'].item()}\n" if "model" in data.coords else ""
     text = f"{title}where it can stand still with its drives running, on three contacts"
     ax.set_title(text, loc="left", fontsize="small", parse_math=False)
@@ -121,15 +134,18 @@ def _intervals(
 
 
 def _pieces(at: NDArray[np.float64], rows: list[list[Interval]]) -> list[list[Corner]]:
-    """List what is between overlapping intervals of neighbouring values, and those of one."""
+    """List what is between overlapping intervals of neighbouring values, and those left alone."""
     pieces: list[list[Corner]] = []
-    for here, there, own, others in zip(at, at[1:], rows, rows[1:], strict=False):
+    alone = [set(row) for row in rows]
+    for k, (here, there, own, others) in enumerate(zip(at, at[1:], rows, rows[1:], strict=False)):
         for low, high in own:
             for low_there, high_there in others:
                 if low <= high_there and low_there <= high:
                     pieces.append(
                         [(here, low), (here, high), (there, high_there), (there, low_there)]
                     )
-    for x, row in zip(at, rows, strict=True):
-        pieces += [[(x, low), (x, high)] for low, high in row]
+                    alone[k].discard((low, high))
+                    alone[k + 1].discard((low_there, high_there))
+    for x, row in zip(at, alone, strict=True):
+        pieces += [[(x, low), (x, high)] for low, high in sorted(row)]
     return pieces
