@@ -33,6 +33,9 @@ __all__ = ["Simulation", "State"]
 _BETWEEN_DECISIONS = 0.01
 """[s] Between two calls of a gait that is a function."""
 
+_LONGEST = 1e5
+"""[s] Of one advance, as in the core."""
+
 _SAME_TIME = 1e-9
 """[s] Times that differ by less differ by rounding."""
 
@@ -155,8 +158,8 @@ class Simulation(TakesKeywords):
         """
         duration = real_number(duration, "duration")
         gait, flippers = self._gait, self._simulated.robot.flippers
-        if gait is None or flippers is None or not duration > 0.0:
-            self._core.advance(duration)
+        if gait is None or flippers is None or not 0.0 < duration <= _LONGEST:
+            self._core.advance(duration)  # which refuses what is out of range
             return
         end = self.time + duration
         while (left := end - self.time) > _SAME_TIME:
@@ -172,7 +175,10 @@ class Simulation(TakesKeywords):
         angles = gait(self.state())
         if angles is None:
             return
-        both = list(angles) if np.ndim(angles) else [angles, angles]
+        try:
+            both = list(angles) if np.ndim(angles) else [angles, angles]
+        except ValueError:  # of NumPy, where the two have unlike shapes
+            both = []
         if len(both) != 2:
             rule = "must return an angle, a pair of angles (front, rear), or None"
             raise ScenarioError("drive.gait", angles, rule)
