@@ -1,5 +1,8 @@
 """Many simulations beside each other."""
 
+import math
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -115,6 +118,30 @@ def test_what_cannot_be_simulated_is_refused() -> None:
         many.reset([4])
     with pytest.raises(c2d.ScenarioError, match=r"duration must be"):
         many.advance(-1.0)
+
+
+@pytest.mark.parametrize("given", [SCENARIOS[0], 5, None])
+def test_what_is_no_list_of_scenarios_is_refused(given: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"scenarios must be several"):
+        c2d.Simulations(given)
+    if given is not None:  # which keeps theirs
+        with pytest.raises(c2d.ScenarioError, match=r"scenarios must be several"):
+            c2d.Simulations(SCENARIOS).reset([0], given)
+
+
+@pytest.mark.parametrize("which", [[[0, 1]], [[0], [1, 2]], [0.5], "first", {}])
+def test_what_are_no_places_is_refused(which: Any) -> None:
+    many = c2d.Simulations(SCENARIOS)
+    with pytest.raises(c2d.ScenarioError, match=r"which must be places from 0 to 3"):
+        many.advance(0.1, which)
+    with pytest.raises(c2d.ScenarioError, match=r"which must be places from 0 to 3"):
+        many.reset(which)
+
+
+@pytest.mark.parametrize("offsets", [[0.1, math.nan], math.inf, "ahead", None, [[1.0], [1.0, 2.0]]])
+def test_heights_are_asked_for_at_finite_offsets(offsets: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"offsets must be"):
+        c2d.Simulations(SCENARIOS).heights(offsets)
 
 
 def test_flippers_turn_at_commanded_rates_alone_and_side_by_side() -> None:

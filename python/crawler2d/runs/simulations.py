@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -239,8 +239,19 @@ class Simulations(TakesKeywords):
         ndarray of float, shape (N, K)
             [m] At a vertical face that of its upper end; of grounds that differ that under the left
             track.
+
+        Raises
+        ------
+        ScenarioError
+            If an offset is no number, or not finite.
         """
-        return self._core.heights(np.asarray(offsets, float).ravel().tolist())
+        try:
+            array = np.asarray(offsets, float).ravel()
+        except (TypeError, ValueError):
+            raise ScenarioError("offsets", offsets, "must be numbers") from None
+        if not np.isfinite(array).all():
+            raise ScenarioError("offsets", array[~np.isfinite(array)][0], "must be finite")
+        return self._core.heights(array.tolist())
 
     @takes_keywords
     def snapshot(self, place: int) -> bytes:
@@ -279,11 +290,15 @@ class Simulations(TakesKeywords):
     def _places(self, which: ArrayLike | None) -> list[int]:
         if which is None:
             return list(range(len(self)))
-        places = np.atleast_1d(np.asarray(which))
+        try:
+            places = np.atleast_1d(np.asarray(which))
+        except ValueError:  # of NumPy, where rows have unlike lengths
+            places = np.array([which], object)
         if places.dtype == bool:
             places = np.flatnonzero(self._shaped(places, "which"))
         is_whole = places.size == 0 or np.issubdtype(places.dtype, np.integer)
-        if not is_whole or not ((places >= 0) & (places < len(self))).all():
+        is_list = is_whole and places.ndim == 1
+        if not is_list or not ((places >= 0) & (places < len(self))).all():
             rule = f"must be places from 0 to {len(self) - 1}, or a mask"
             raise ScenarioError("which", which, rule)
         found: list[int] = places.tolist()
@@ -307,6 +322,8 @@ class Simulations(TakesKeywords):
 
 def _prepared(scenarios: Sequence[Scenario | _core.Passed]) -> list[_core.Passed]:
     """Validate them, if that has not been done; equal robots and grounds are built once."""
+    if not isinstance(scenarios, Iterable):
+        raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")
     found: list[_core.Passed] = []
     for each in scenarios:
         if isinstance(each, _core.Passed):
