@@ -332,6 +332,20 @@ def test_a_wrong_action_is_refused(action: Any) -> None:
         env.step(action)
 
 
+def test_the_action_of_an_episode_that_has_ended_may_be_anything() -> None:
+    def states(after_the_end: float) -> Any:
+        env = FlipperVectorEnv(2, WHEELED, dt=0.5)
+        env.reset(seed=3)
+        actions = np.array([[1.0], [0.0]])
+        while not env._ended.any():
+            env.step(actions)
+        actions[env._ended] = after_the_end
+        return env.step(actions)
+
+    for one, other in zip(states(0.0)[:4], states(np.nan)[:4], strict=True):
+        assert_array_equal(one, other)
+
+
 def test_nothing_is_done_before_a_reset_or_after_the_end() -> None:
     env = FlipperEnv(WHEELED, dt=1.0)
     for call in (lambda: env.step(np.array([1.0])), lambda: env.run, lambda: env.state):

@@ -147,3 +147,15 @@ def test_a_model_with_flippers_elsewhere_is_refused() -> None:
 def test_a_policy_of_the_wrong_shape_is_refused() -> None:
     with pytest.raises(c2d.ScenarioError, match="action"):
         audited(lambda seen: seen)
+
+
+def test_rows_of_episodes_that_have_ended_do_not_matter() -> None:
+    def undefined_when_over(seen: Any) -> Any:
+        # What is observed of an episode that has ended does not change any more.
+        over = (seen == last[-1]).all(axis=1) if last else np.zeros(len(seen), bool)
+        last.append(seen.copy())
+        return np.where(over[:, None], np.nan, climbing(seen))
+
+    last: list[Any] = []
+    assert audited(undefined_when_over).rate.identical(audited(climbing).rate)
+    assert np.isnan(undefined_when_over(last[-1])).any()

@@ -96,11 +96,11 @@ class Episodes:
         Raises
         ------
         ScenarioError
-            If actions have another shape or are not finite.
+            If actions have another shape, or those of the driven are not finite.
         """
         task, before, count = self._task, self._states, len(self._many)
         driven = np.ones(count, bool) if which is None else which
-        speeds, flippers = task.commands(self._read(actions), self._full_speeds)
+        speeds, flippers = task.commands(self._read(actions, driven), self._full_speeds)
         given = np.where(driven[:, None], np.column_stack([speeds, flippers]), np.nan)
         kind = "angle" if task.commands_angles else "rate"
         names = ("speed", f"flipper_{kind}", f"rear_flipper_{kind}")
@@ -126,7 +126,8 @@ class Episodes:
             outcomes[place] = _DIVERGED if failed[place] else states.outcome[place] or without
         return Step(self.observe(), rewards, terminated, truncated, tuple(outcomes), states.error)
 
-    def _read(self, actions: ArrayLike) -> NDArray[np.float64]:
+    def _read(self, actions: ArrayLike, driven: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Clip actions to their range; those of episodes that are not driven may be anything."""
         try:
             array = np.asarray(actions, float)
         except (TypeError, ValueError):
@@ -136,6 +137,7 @@ class Episodes:
             each = f" for each of {shape[0]} robots" if shape[0] > 1 else ""
             rule = f"must be {shape[1]} numbers{each}"
             raise ScenarioError("action", f"shape {array.shape}", rule)
+        array = np.where(driven[:, None], array, 0.0)
         if not np.isfinite(array).all():
             raise ScenarioError("action", array[~np.isfinite(array)][0], "must be finite")
         clipped: NDArray[np.float64] = np.clip(array, -1.0, 1.0)
