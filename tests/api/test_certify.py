@@ -81,6 +81,7 @@ def test_regions_of_three_fields_have_no_figure() -> None:
         (OVER, {"depth": 0.0}, r"depth must be > 0 m"),
         (OVER, {"smallest": 0.0}, r"smallest must be >= 1/1024"),
         (OVER, {"most_cells": 0}, r"most_cells must be"),
+        (OVER, {"keep_cells": "no"}, r"keep_cells must be True or False"),
     ],
 )
 def test_what_cannot_be_certified_is_refused(

@@ -296,6 +296,7 @@ def test_a_picture_is_drawn_if_asked() -> None:
         ({"randomize": {"terrain.height": 0.1}}, "randomize['terrain.height']"),
         ({"shock_weight": -1.0}, "shock_weight"),
         ({"effort_weight": np.nan}, "effort_weight"),
+        ({"end_when_stopped": "no"}, "end_when_stopped"),
         ({"render_mode": "human"}, "render_mode"),
     ],
 )

@@ -196,9 +196,10 @@ def test_another_suffix_is_refused(short: c2d.Run, tmp_path: Path, name: str) ->
         {"speed": -1.0},
         {"speed": 4e-4},
         {"width": 100},
+        {"follow": "no"},
     ],
 )
-def test_a_number_out_of_range_is_refused(
+def test_a_value_out_of_range_is_refused(
     short: c2d.Run, tmp_path: Path, field: dict[str, Any]
 ) -> None:
     error = refused(lambda: short.animate(tmp_path / "run.gif", **field))

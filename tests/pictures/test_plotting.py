@@ -74,6 +74,11 @@ def test_what_is_no_axes_is_refused(run: c2d.Run, ax: Any) -> None:
     assert (error.path, error.rule) == ("ax", "must be an Axes of matplotlib")
 
 
+def test_trials_are_drawn_or_not(run: c2d.Run) -> None:
+    given: Any = "no"
+    assert refused(lambda: run.plot(trials=given)).path == "trials"
+
+
 def test_another_number_of_axes_is_refused_for_the_history(run: c2d.Run) -> None:
     _, axes = plt.subplots(2, 1)
     assert refused(lambda: run.plot_history(axes)).path == "axes"

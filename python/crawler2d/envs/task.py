@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import read_bool, real_number
 from crawler2d.common.keywords import read_choice
 from crawler2d.envs.scenarios import read_scenario
 from crawler2d.errors import ScenarioError
@@ -144,7 +144,7 @@ class Task:
             dt=dt,
             sees_heights=read_choice(observe, "observe", _VIEWS) == "privileged",
             commands_angles=read_choice(flipper_command, "flipper_command", _COMMANDS) == "angle",
-            ends_when_stopped=end_when_stopped,
+            ends_when_stopped=read_bool(end_when_stopped, "end_when_stopped"),
             weights=(
                 _weight(shock_weight, "shock_weight"),
                 _weight(effort_weight, "effort_weight"),

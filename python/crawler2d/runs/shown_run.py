@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, overload
 
+from crawler2d.common.arrays import read_bool
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.results.record import Record
 from crawler2d.runs.progress import Progress, reporter
@@ -69,7 +70,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If `time` is no number, or not finite.
+            If `time` is no number, or not finite, or `trials` neither True nor False.
         ImportError
             If matplotlib is missing; the message names the extra to install.
         AttributeError
@@ -92,7 +93,7 @@ class ShownRun(Record):
         """
         from crawler2d.pictures.side_view import plot_run  # noqa: PLC0415 - optional
 
-        return plot_run(self, ax, time, trials=trials)
+        return plot_run(self, ax, time, trials=read_bool(trials, "trials"))
 
     @takes_keywords
     def plot_history(self, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes, Axes]:
@@ -175,7 +176,7 @@ class ShownRun(Record):
             labels=[self.subject],
             fps=fps,
             speed=speed,
-            follow=follow,
+            follow=None if follow is None else read_bool(follow, "follow"),
             beside=False,
             width=width,
             counted=partial(reporter, progress, unit="frame"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.common.arrays import read_range, real_number, whole_number
+from crawler2d.common.arrays import read_bool, read_range, real_number, whole_number
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
@@ -222,14 +222,15 @@ def certify(
     if not 1.0 / 1024.0 <= share <= 1.0:
         raise ScenarioError("smallest", share, "must be >= 1/1024 and <= 1")
     most = whole_number(most_cells, "most_cells", 1, 10_000_000)
+    keeps_cells = read_bool(keep_cells, "keep_cells")
     members = _members(scenario, names, ranges)
     found = _core.certify(
         [member.to_json() for member in members],
         [on_belt(member).to_json() for member in members],
         names,
-        effort=(limit, share, most, bool(keep_cells)),
+        effort=(limit, share, most, keeps_cells),
     )
-    return _certificate(names, ranges, limit, found, keeps_cells=bool(keep_cells))
+    return _certificate(names, ranges, limit, found, keeps_cells=keeps_cells)
 
 
 def _read(
