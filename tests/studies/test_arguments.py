@@ -10,6 +10,7 @@ import crawler2d as c2d
 
 ROBOT: Any = c2d.robots.engineer(flippers=None)
 STUDIES: dict[str, Callable[[Any], Any]] = {
+    "certify": lambda scenario: c2d.studies.certify(scenario, {"terrain.friction": (0.3, 0.8)}),
     "compare": lambda scenario: c2d.compare(scenario, {"as it is": {}}),
     "critical": lambda scenario: c2d.studies.critical(scenario, "terrain.friction", (0.3, 0.8)),
     "jam_chart": c2d.studies.jam_chart,
@@ -33,7 +34,7 @@ def test_a_study_of_something_else_than_a_scenario_is_refused(name: str, given: 
         STUDIES[name](given)
 
 
-@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"compare"}))
+@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"certify", "compare"}))
 def test_a_study_without_xarray_names_its_extra_before_anything_runs(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -56,6 +57,20 @@ def test_a_study_without_xarray_names_its_extra_before_anything_runs(
 def test_flat_ground_has_no_greatest_obstacle(study: Callable[[Any], Any], rule: str) -> None:
     with pytest.raises(c2d.ScenarioError, match=f"terrain {rule}"):
         study(c2d.Scenario(ROBOT, c2d.terrains.flat()))
+
+
+@pytest.mark.parametrize("given", [5, None, ("terrain.height",)])
+def test_a_path_that_is_no_text_is_refused_by_the_name_of_its_argument(given: Any) -> None:
+    base = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
+    cases: list[tuple[str, Callable[[], Any]]] = [
+        ("path", lambda: c2d.studies.critical(base, given, (0.3, 0.8))),
+        ("over", lambda: c2d.studies.certify(base, {given: (0.3, 0.8)})),
+        ("x", lambda: c2d.studies.jam_chart(base, x=given, values=[0.1])),
+    ]
+    for name, study in cases:
+        with pytest.raises(c2d.ScenarioError, match="must be the path of a number") as caught:
+            study()
+        assert caught.value.path == name
 
 
 @pytest.mark.parametrize("given", [0.05, "0.05", [], ["low"], [None]])

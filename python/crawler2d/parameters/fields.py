@@ -365,7 +365,8 @@ def is_whole(parameters: Parameters, path: str) -> bool:
 
 def read_number_path(parameters: Parameters, path: str, name: str) -> str:
     """Refuse the path of anything but a real number; `name` is that of the argument."""
-    if type(read_path(parameters, path)) not in (int, float) or is_whole(parameters, path):
+    number = read_path(parameters, path) if isinstance(path, str) else None
+    if type(number) not in (int, float) or is_whole(parameters, path):
         raise ScenarioError(name, path, "must be the path of a number that may have decimals")
     return path
 

@@ -13,7 +13,7 @@ from crawler2d.common.arrays import read_bool, read_range, real_number, whole_nu
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
-from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.pictures.certificates import plot_regions
 from crawler2d.runs.jams import on_belt
 from crawler2d.sweeps.axes import field_attributes
@@ -214,7 +214,7 @@ def certify(
     >>> found.holds
     True
     """
-    names, ranges = _read(scenario, over)
+    names, ranges = _read(check_scenario(scenario), over)
     limit = real_number(depth, "depth")
     if not 0.0 < limit <= 1.0:
         raise ScenarioError("depth", limit, "must be > 0 m and <= 1 m")
