@@ -374,6 +374,8 @@ def test_an_unknown_keyword_is_refused_with_the_nearest_name() -> None:
     ("call", "path", "rule"),
     [
         (lambda env: env.reset(seed=[1, 2, 3]), "seed", "must be one or 2"),
+        (lambda env: env.reset(seed=np.int64(1)), "seed", "must be an int, or one each"),
+        (lambda env: env.reset(seed=0.5), "seed", "must be an int, or one each"),
         (
             lambda env: env.reset(options={"reset_mask": np.zeros(2, bool)}),
             "options['reset_mask']",
@@ -385,7 +387,7 @@ def test_an_unknown_keyword_is_refused_with_the_nearest_name() -> None:
             "must be a mask of shape (2,) with at least one True",
         ),
     ],
-    ids=["seeds", "nothing", "three"],
+    ids=["seeds", "NumPy", "half", "nothing", "three"],
 )
 def test_two_environments_are_reset_by_two_seeds_or_a_mask_of_two(
     call: Any, path: str, rule: str

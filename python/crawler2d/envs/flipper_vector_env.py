@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -160,10 +160,15 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         infos : dict
             Empty.
         """
-        seeds = [seed + k for k in range(self.num_envs)] if isinstance(seed, int) else seed
-        seeds = [None] * self.num_envs if seeds is None else list(seeds)
-        if len(seeds) != self.num_envs:
-            raise ScenarioError("seed", len(seeds), f"must be one or {self.num_envs}")
+        seeds: list[int | None] = [None] * self.num_envs
+        if isinstance(seed, int):
+            seeds = [seed + k for k in range(self.num_envs)]
+        elif isinstance(seed, Iterable):
+            seeds = list(seed)
+            if len(seeds) != self.num_envs:
+                raise ScenarioError("seed", len(seeds), f"must be one or {self.num_envs}")
+        elif seed is not None:
+            raise ScenarioError("seed", seed, "must be an int, or one each")
         mask = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)))
         if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
             rule = f"must be a mask of shape ({self.num_envs},) with at least one True"
