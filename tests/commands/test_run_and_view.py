@@ -128,6 +128,19 @@ def test_a_scenario_may_come_from_the_standard_input(
     assert (status, out.splitlines()[0]) == (0, c2d.simulate(CLEARS).title)
 
 
+@pytest.mark.usefixtures("folder")
+def test_a_saved_run_may_come_from_the_standard_input(
+    ran: Ran, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saved = c2d.simulate(CLEARS).save("saved.npz").read_bytes()
+    for data, expected in ((saved, 0), (saved[:-40], 2)):
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(data)))
+        status, out, err = ran("view", "-")
+        assert status == expected
+        assert out.splitlines()[:1] == ([c2d.load("saved.npz").title] if status == 0 else [])
+        assert ("- is cut short or damaged" in err) == (status == 2)
+
+
 def write_bad_files(folder: Path) -> None:
     """Write files that are no scenarios, or no good ones."""
     (folder / "folder.json").mkdir()

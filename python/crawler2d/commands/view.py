@@ -6,8 +6,8 @@ A scenario is simulated first. The page is one file for any browser and needs no
 from __future__ import annotations
 
 import argparse
+import io
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from crawler2d.commands.files import (
     OUT,
@@ -18,12 +18,9 @@ from crawler2d.commands.files import (
     show_page,
 )
 from crawler2d.errors import ScenarioError
-from crawler2d.results.run_file import SIGNATURE
+from crawler2d.results.run_file import SIGNATURE, read_open_run
 from crawler2d.runs.batch import simulate
-from crawler2d.runs.saved import load
-
-if TYPE_CHECKING:
-    from crawler2d.runs.run import Run
+from crawler2d.runs.run import Run
 
 __all__ = ["add_arguments", "run"]
 
@@ -64,7 +61,7 @@ def _run_of(path: Path) -> Run:
     data = read_data(path)
     if not data.startswith(SIGNATURE):
         return simulate(scenario_of(data, path))
-    saved = load(path)
+    saved = read_open_run(io.BytesIO(data), path, Run)
     if not saved.has_history:
         rule = "must have a history: the run was saved without, recorded with record='summary'"
         raise ScenarioError("FILE", str(path), rule)

@@ -7,7 +7,7 @@ import os
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from crawler2d.results.record import Record
 
-__all__ = ["SIGNATURE", "read_run", "write_run"]
+__all__ = ["SIGNATURE", "read_open_run", "read_run", "write_run"]
 
 R = TypeVar("R")
 
@@ -106,18 +106,23 @@ def read_run(path: str | os.PathLike[str], make: Callable[..., R]) -> R:
     except OSError as error:
         raise StoreError(f"{path} cannot be read: {error.strerror or error}") from None
     with file:
-        if file.read(len(SIGNATURE)) != SIGNATURE:
-            raise StoreError(f"{path} {_OTHER}")
-        file.seek(0)
-        try:
-            with _entries(file, path) as entries:
-                about = _about(entries, path)
-                return make(*_arguments(entries, about, path))
-        except StoreError:
-            raise
-        except Exception as error:  # there is no end to what a changed file may raise
-            fault = f"{type(error).__name__}: {error}"
-            raise StoreError(f"{path} is damaged ({fault}): {_AGAIN}") from error
+        return read_open_run(file, path, make)
+
+
+def read_open_run(file: IO[bytes], path: str | os.PathLike[str], make: Callable[..., R]) -> R:
+    """Read a run from a file that is open, or its content; see `read_run`."""
+    if file.read(len(SIGNATURE)) != SIGNATURE:
+        raise StoreError(f"{path} {_OTHER}")
+    file.seek(0)
+    try:
+        with _entries(file, path) as entries:
+            about = _about(entries, path)
+            return make(*_arguments(entries, about, path))
+    except StoreError:
+        raise
+    except Exception as error:  # there is no end to what a changed file may raise
+        fault = f"{type(error).__name__}: {error}"
+        raise StoreError(f"{path} is damaged ({fault}): {_AGAIN}") from error
 
 
 def _entries(file: Any, path: str | os.PathLike[str]) -> Any:
