@@ -138,6 +138,34 @@ def test_what_cannot_be_written_is_refused_before_the_audit(
     assert err.startswith(f"crawler2d audit: {option} must be a file in a folder that exists")
 
 
+@pytest.mark.parametrize(
+    ("options", "rule"),
+    [
+        ("--html any.sdf", "--html must be another file than the one that is read"),
+        ("--junit ./any.sdf", "--junit must be another file than the one that is read"),
+        ("--junit a --sarif a", "--sarif must be another file than that of --junit"),
+        ("--patch a --html a", "--html must be another file than that of --patch"),
+        ("--update-baseline --baseline a --html a", "--baseline must be another file than that of"),
+        ("--store a --html a", "--html must be another file than the store"),
+    ],
+)
+def test_no_file_takes_the_place_of_another_one(
+    made: Path, capsys: Any, options: str, rule: str
+) -> None:
+    (made / "any.sdf").write_text("<sdf/>")
+    status, out, err = run(capsys, "any.sdf", *options.split())
+    assert (status, out) == (2, "")
+    assert err.startswith(f"crawler2d audit: {rule}")
+    assert [each.name for each in made.iterdir()] == ["any.sdf"]
+
+
+@pytest.mark.usefixtures("made")
+def test_the_changed_file_may_take_the_place_of_the_model(capsys: Any) -> None:
+    _, out, err = run(capsys, "any.sdf", "--no-html", "--patch", "any.sdf")
+    assert out
+    assert "another file" not in err
+
+
 CALL = Call(samples=4, repeats=3, seed=2**63, repair=False)
 HOWS: Any = [
     {},

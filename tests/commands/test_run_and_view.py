@@ -176,6 +176,10 @@ def write_bad_files(folder: Path) -> None:
         ("run whole.npz", "if it is a saved run: crawler2d view whole.npz"),
         ("run clears.json --html no/a.html", "--html must be a file in a folder that exists"),
         ("run clears.json --save folder.json", "--save must be a file in a folder that exists"),
+        ("run clears.json --save clears.json", "--save must be another file than the one that is"),
+        ("run clears.json --html ./clears.json", "--html must be another file than the one that"),
+        ("run clears.json --html a --save ../{}/a", "--save must be another file than that of --"),
+        ("view whole.npz --out whole.npz", "--out must be another file than the one that is read"),
         ("run clears.json --htlm a.html", "--htlm is not known (did you mean --html?)"),
         ("run", "the following arguments are required: FILE"),
         ("view missing.npz", "FILE must be a file that can be read (No such file or directory)"),
@@ -191,7 +195,7 @@ def test_what_cannot_be_done_is_refused_in_one_line(
 ) -> None:
     write_bad_files(folder)
     before = sorted(folder.rglob("*"))
-    status, out, err = ran(*arguments.split())
+    status, out, err = ran(*arguments.format(folder.name).split())
     assert (status, out) == (2, "")
     assert len(err.splitlines()) == 1
     assert err.startswith("crawler2d")

@@ -14,11 +14,12 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
 __all__ = [
     "OUT",
     "check_place",
+    "check_places",
     "keeping",
     "read_data",
     "read_scenario",
@@ -93,6 +94,37 @@ def check_place(option: str, path: Path | None) -> None:
     if is_taken or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
         rule = "must be a file in a folder that exists and can be written"
         raise ScenarioError(option, str(path), rule)
+
+
+def check_places(
+    places: Mapping[str, Path | None], *, read: Sequence[Path] = (), kept: Path | None = None
+) -> None:
+    """Refuse places as `check_place` does, and those where one file would take another's place.
+
+    Parameters
+    ----------
+    places : mapping of str to Path or None
+        By option; None asks for no file.
+    read : sequence of Path
+        Files that are read.
+    kept : Path, optional
+        A store.
+
+    Raises
+    ------
+    ScenarioError
+        If there are some.
+    """
+    taken = {os.path.realpath(path): "the one that is read" for path in read}
+    if kept is not None:
+        taken[os.path.realpath(kept)] = "the store"
+    for option, path in places.items():
+        check_place(option, path)
+        if path is not None:
+            place = os.path.realpath(path)
+            if place in taken:
+                raise ScenarioError(option, str(path), f"must be another file than {taken[place]}")
+            taken[place] = f"that of {option}"
 
 
 @contextmanager

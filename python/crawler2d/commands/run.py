@@ -15,7 +15,7 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crawler2d.commands.files import check_place, keeping, read_scenario
+from crawler2d.commands.files import check_places, keeping, read_scenario
 from crawler2d.common.units import METRICS
 from crawler2d.pictures.page import main_figures
 from crawler2d.results.outcome import Outcome
@@ -43,8 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Simulate a scenario file; returns the exit status."""
-    check_place("--html", options.html)
-    check_place("--save", options.save)
+    check_places({"--html": options.html, "--save": options.save}, read=[options.file])
     scenario = read_scenario(options.file)
     written: list[Path] = []
     with keeping(written):

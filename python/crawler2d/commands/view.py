@@ -11,7 +11,7 @@ from pathlib import Path
 
 from crawler2d.commands.files import (
     OUT,
-    check_place,
+    check_places,
     keeping,
     read_data,
     scenario_of,
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the page of a run; returns the exit status."""
-    check_place("--out", options.out)
+    check_places({"--out": options.out}, read=[options.file])
     written: list[Path] = []
     with keeping(written):
         shown = _run_of(options.file)
