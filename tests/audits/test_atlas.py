@@ -111,3 +111,14 @@ def test_a_bad_number_is_refused_once_not_for_every_robot(
     assert main(["atlas", str(forest), "--html", str(page), f"--{option}", "0"]) == 2
     assert f"{option} must be a whole number from 1" in capsys.readouterr().err
     assert not page.exists()
+
+
+def test_a_page_that_cannot_be_written_is_refused_before_the_audits(
+    forest: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr("crawler2d.commands.atlas.read_robot", lambda _: 1 / 0)
+    assert main(["atlas", str(forest), "--html", str(tmp_path)]) == 2
+    assert "--html must be a file in a folder" in capsys.readouterr().err

@@ -166,6 +166,16 @@ def test_the_changed_file_may_take_the_place_of_the_model(capsys: Any) -> None:
     assert "another file" not in err
 
 
+def test_a_page_without_a_place_is_refused_before_the_audit_where_out_is_no_folder(
+    made: Path, capsys: Any
+) -> None:
+    (made / "out").write_text("")
+    status, out, err = run(capsys, "any.sdf")
+    assert (status, out) == (2, "")
+    assert err.startswith("crawler2d audit: --html must be given: out is no folder")
+    assert run(capsys, "any.sdf", "--no-html")[0] == 1
+
+
 CALL = Call(samples=4, repeats=3, seed=2**63, repair=False)
 HOWS: Any = [
     {},

@@ -203,6 +203,16 @@ def test_what_cannot_be_done_is_refused_in_one_line(
     assert sorted(folder.rglob("*")) == before
 
 
+def test_a_page_without_a_place_is_refused_before_the_run_where_out_is_no_folder(
+    folder: Path, ran: Ran, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "out").write_text("")
+    monkeypatch.setattr("crawler2d.commands.view.simulate", lambda _: 1 / 0)
+    status, out, err = ran("view", "clears.json")
+    assert (status, out) == (2, "")
+    assert err.startswith("crawler2d view: --out must be given, got None: out is no folder")
+
+
 @pytest.mark.usefixtures("folder")
 def test_a_file_that_cannot_be_written_is_named(ran: Ran, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(part: Path, _: Path) -> None:

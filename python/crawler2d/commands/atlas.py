@@ -16,7 +16,7 @@ from pathlib import Path
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
 from crawler2d.audits.page.drawings import draw_robot
-from crawler2d.commands.files import OUT
+from crawler2d.commands.files import OUT, check_place
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.files import write_text
 from crawler2d.drawings.svg import escape
@@ -82,6 +82,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         files = list(main_files(folder))
         options.html.parent.mkdir(parents=True, exist_ok=True)
+        check_place("--html", options.html)
         for number, path in enumerate(files, 1):
             print(f"{number} of {len(files)}: {path}", flush=True)
             entry = _entry(folder, path, samples=options.samples, threads=options.threads)

@@ -25,7 +25,7 @@ from crawler2d.audits.record import READING, as_options
 from crawler2d.audits.runs import LivePrinter
 from crawler2d.audits.text import LintResult, lint_only, plain_of
 from crawler2d.audits.verdicts import least_samples
-from crawler2d.commands.files import OUT, check_places
+from crawler2d.commands.files import OUT, check_out, check_places
 from crawler2d.common.files import write_text
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.engines import ENGINES
@@ -172,6 +172,8 @@ def _check_options(options: argparse.Namespace) -> None:
         raise ScenarioError("--update-baseline", "none", "needs --baseline FILE, where to write")
     places = {f"--{name}": getattr(options, name) for name in ("html", "junit", "sarif")}
     places["--baseline"] = options.baseline if options.update_baseline else None
+    if not (options.lint or options.no_html or options.html):
+        check_out("--html")
     check_places(places, read=options.file)
     # A change may take the place of the file that it changes.
     check_places({"--patch": options.patch, **places}, kept=options.store)

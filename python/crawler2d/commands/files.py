@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "OUT",
+    "check_out",
     "check_place",
     "check_places",
     "keeping",
@@ -125,6 +126,20 @@ def check_places(
             if place in taken:
                 raise ScenarioError(option, str(path), f"must be another file than {taken[place]}")
             taken[place] = f"that of {option}"
+
+
+def check_out(option: str) -> None:
+    """Refuse the folder of pages without a place, if it could not be written after the work.
+
+    Raises
+    ------
+    ScenarioError
+        If so; `option` names the place of the page.
+    """
+    folder = OUT if OUT.exists() else OUT.absolute().parent
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        rule = f"must be given: {OUT} is no folder that can be written"
+        raise ScenarioError(option, None, rule)
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from crawler2d.commands.files import (
     OUT,
+    check_out,
     check_places,
     keeping,
     read_data,
@@ -42,6 +43,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write the page of a run; returns the exit status."""
     check_places({"--out": options.out}, read=[options.file])
+    if options.out is None:
+        check_out("--out")
     written: list[Path] = []
     with keeping(written):
         shown = _run_of(options.file)
