@@ -6,6 +6,7 @@ Each command has a --help of its own.
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import signal
 import sys
@@ -73,6 +74,8 @@ def run_command(
     An error and Ctrl-C end in one line; the notes of a KeyboardInterrupt say what is kept.
     """
     given = sys.argv[1:] if given is None else given
+    if isinstance(sys.stdout, io.TextIOWrapper):  # one in a code page, as on Windows, lacks letters
+        sys.stdout.reconfigure(errors="backslashreplace")
     parser = _Parser(prog=prog, description=text, formatter_class=_Help)
     if version is not None:
         parser.add_argument("--version", action="version", version=version)

@@ -120,6 +120,21 @@ def test_a_reader_that_has_seen_enough_is_no_error(tmp_path: Path) -> None:
     assert (process.returncode, err) == (141, "")
 
 
+def test_letters_that_an_output_lacks_are_no_error(tmp_path: Path) -> None:
+    scenario = c2d.Scenario(ROBOT, c2d.terrains.step(0.05)).replace({"robot.name": "танк"})
+    (tmp_path / "it.json").write_text(scenario.to_json(), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "crawler2d", "run", "it.json"],
+        capture_output=True,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONIOENCODING": "cp1252", "PYTHONUTF8": "0"},
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.decode("cp1252").startswith(r"\u0442\u0430\u043d\u043a, belt, step: cleared")
+    assert "°" in done.stdout.decode("cp1252")
+
+
 def test_files_are_written_whether_or_not_anyone_reads(tmp_path: Path) -> None:
     scenario = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
     (tmp_path / "it.json").write_text(scenario.to_json())
