@@ -194,6 +194,21 @@ def test_rates_over_many_pairs_of_numbers_are_a_map_with_what_is_open_hatched() 
     plt.close("all")
 
 
+def test_rates_are_drawn_in_the_order_of_their_values_however_these_were_listed() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    over = {"terrain.height": np.linspace(0.04, 0.16, 7), "terrain.friction": [0.3, 0.9]}
+    listed = c2d.rate(c2d.sweep(BASE, over, repeats=1, progress=False))
+    found = listed.isel(height=[3, 0, 6, 1, 5, 2, 4], friction=[1, 0])
+    cells: list[Any] = [each.plot().collections[0] for each in (listed, found)]
+    for one, other in zip(*(each.get_coordinates().T for each in cells), strict=True):
+        np.testing.assert_array_equal(one, other)
+    np.testing.assert_array_equal(*(each.get_array() for each in cells))
+    (line,) = found.isel(friction=0, drop=True).plot().get_lines()
+    assert np.all(np.diff(line.get_xdata()) > 0.0)
+    plt.close("all")
+
+
 def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 

@@ -277,10 +277,11 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     lines stand side by side about the value that was tried, which has a tick. Many lines over two
     dimensions of numbers are a map instead.
     """
-    rates = data["rate"]
     banded = "band_low" in data
+    numbers = _numbers(data["band_median" if banded else "rate"])
+    data = data.sortby(numbers)  # they may have been tried in any order
+    rates = data["rate"]
     shown = data["band_median"] if banded else rates
-    numbers = _numbers(shown)
     along = numbers[-1]
     if len(numbers) == 2 and shown.size > _LINES * shown.sizes[along] and shown.squeeze().ndim == 2:
         return _plot_rate_map(data.squeeze(), numbers, ax)
