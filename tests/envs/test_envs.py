@@ -269,6 +269,15 @@ def test_a_simulation_that_fails_ends_its_episode_and_the_others_go_on() -> None
     assert many.state.time.tolist() == [0.5, 0.0]
 
 
+@pytest.mark.parametrize(("dt", "rate"), [(0.05, 20), (0.2, 5), (3.0, 1)])
+def test_a_film_has_as_many_pictures_a_second_as_there_are_steps(dt: float, rate: int) -> None:
+    made: list[Any] = [FlipperEnv(WHEELED, dt=dt), FlipperVectorEnv(2, WHEELED, dt=dt)]
+    made.append(gymnasium.make(IDS[0], dt=dt, render_mode="rgb_array"))
+    made.append(gymnasium.make_vec(IDS[0], num_envs=2, dt=dt))
+    assert [env.metadata["render_fps"] for env in made] == [rate] * 4
+    assert FlipperEnv.metadata["render_fps"] == 20
+
+
 def test_a_picture_is_drawn_if_asked() -> None:
     env = FlipperEnv(WHEELED, render_mode="rgb_array")
     env.reset(seed=0)

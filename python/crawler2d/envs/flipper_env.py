@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import gymnasium
 import numpy as np
@@ -28,12 +28,13 @@ __all__ = [
     "FlipperEnv",
     "TakesMadeKeywords",
     "check_render_mode",
+    "metadata_of",
     "spaces_of",
     "task_of",
 ]
 
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}
-"""Of both environments; `render_fps` is that of the default `dt`."""
+"""Of both environments; `metadata_of` has the `render_fps` of another `dt` than the default."""
 
 
 _OF_ITSELF = ("num_envs", "render_mode", "autoreset_mode", "threads")
@@ -125,7 +126,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
     ('cleared', 'cleared')
     """
 
-    metadata: ClassVar[dict[str, Any]] = METADATA  # type: ignore[misc] # of the base it is not
+    metadata: dict[str, Any] = METADATA
 
     def __init__(
         self,
@@ -145,6 +146,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         EzPickle.__init__(self, **given)
         self.render_mode = check_render_mode(render_mode)
         self.task = task_of(given)
+        self.metadata = metadata_of(self.task)
         self.observation_space, self.action_space = spaces_of(self.task)
         self._episodes: Episodes | None = None
         self._ended, self._supply = False, Supply(self.task, 1)
@@ -256,6 +258,11 @@ def spaces_of(task: Task) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:
         gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32),
         gymnasium.spaces.Box(-1.0, 1.0, (count,), dtype=np.float32),
     )
+
+
+def metadata_of(task: Task) -> dict[str, Any]:
+    """Say how many pictures a film in real time has in a second: one a step."""
+    return METADATA | {"render_fps": max(round(1.0 / task.dt), 1)}
 
 
 def check_render_mode(mode: str | None) -> str | None:

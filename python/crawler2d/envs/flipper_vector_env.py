@@ -14,9 +14,9 @@ from gymnasium.vector.utils import batch_space
 from crawler2d.common.arrays import whole_number
 from crawler2d.envs.episodes import Episodes, Step
 from crawler2d.envs.flipper_env import (
-    METADATA,
     TakesMadeKeywords,
     check_render_mode,
+    metadata_of,
     spaces_of,
     task_of,
 )
@@ -98,7 +98,7 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         self.render_mode = check_render_mode(render_mode)
         self.num_envs = whole_number(num_envs, "num_envs", 1, _MOST)
         self.task = task_of(given)
-        self.metadata = METADATA | {"autoreset_mode": _read_mode(autoreset_mode)}
+        self.metadata = metadata_of(self.task) | {"autoreset_mode": _read_mode(autoreset_mode)}
         spaces = spaces_of(self.task)
         self.single_observation_space, self.single_action_space = spaces
         self.observation_space, self.action_space = (
