@@ -13,6 +13,7 @@ from crawler2d.envs import FlipperEnv, FlipperVectorEnv, audit_policy
 from crawler2d.envs.policy_audit import _gain, _lost
 from crawler2d.pictures.policies import plot_policy
 from crawler2d.sweeps.statistics import newcombe_paired
+from tests.shared import refused
 
 FLIPPERS = c2d.robots.absolem().flippers
 START = FLIPPERS.angle if FLIPPERS else 0.0
@@ -86,7 +87,7 @@ def test_it_says_where_gains_are_lost() -> None:
     drawn = " ".join(text.get_text() for text in ax.texts)
     assert "100% (0%)" in drawn
     assert len(ax.patches) == is_lost
-    with pytest.raises(c2d.ScenarioError, match="must have models and obstacles"):
+    with pytest.raises(c2d.ScenarioError, match="must have models, obstacles and both"):
         found.sel(model="belt").plot()
 
 
@@ -103,6 +104,20 @@ def test_where_nothing_is_gained_the_picture_shows_nothing_lost() -> None:
     data = xr.Dataset(columns, {**coords, "repeat": range(10)})
     assert not plot_policy(data, None).patches
     assert len(plot_policy(data.assign(gain_low=data["gain_low"] + 1.0), None).patches) == 1
+
+
+def test_a_picture_of_parts_has_the_first_model_and_both_drivers() -> None:
+    found = audited(climbing)
+    first, other = MODELS
+    assert found.attrs["first_model"] == first
+    assert f"gain on {first}" in found.sel(model=[first]).plot().get_title(loc="left")
+    parts: list[Any] = [{"model": [other, first]}, {"model": [other]}]
+    for part in parts:
+        assert refused(lambda part=part: found.sel(part).plot()).rule.startswith(
+            f"must begin with {first}, on which the policy was trained"
+        )
+    for part in ({"driver": ["policy"]}, {"driver": "policy"}, {"obstacle": 0.2}):
+        assert "both drivers" in refused(lambda part=part: found.sel(part).plot()).rule
 
 
 def test_a_run_without_an_outcome_is_left_out_of_the_gain_with_its_pair() -> None:

@@ -99,7 +99,8 @@ def audit_policy(
           interval adds the squares of those of both gains, as if these were independent;
         - `ending`: how most of the runs end that do not clear, and how many do.
 
-        The attribute `summary` says in words where a gain is lost.
+        The attribute `summary` says in words where a gain is lost; `first_model` is the label of
+        the first model.
 
     Raises
     ------
@@ -242,6 +243,7 @@ def _compared(driven: xarray.Dataset, compared: xarray.Dataset) -> FigureDataset
     whole = table.merge(rates[["rate", "low", "high"]]).assign(columns)
     found = FigureDataset(dict(whole.data_vars), coords=whole.coords, attrs=whole.attrs)
     found.attrs |= {"figure": "policy", "interval": "Wilson", "confidence_level": 0.95}
+    found.attrs["first_model"] = found["model"].to_numpy().tolist()[0]
     found.attrs["summary"] = _summary(found)
     return found
 

@@ -29,9 +29,14 @@ def plot_policy(data: xarray.Dataset, ax: Axes | None) -> Axes:
 
     Cells where some of the gain on the first model is lost, with confidence, have a red frame.
     """
-    if data["gain"].ndim != 2 or "driver" not in data.dims:
-        raise ScenarioError("plot", str(data["gain"].dims), "must have models and obstacles")
+    if data["gain"].ndim != 2 or data.sizes.get("driver") != 2:
+        rule = "must have models, obstacles and both drivers"
+        raise ScenarioError("plot", str(dict(data.sizes)), rule)
     models, obstacles = (data[name].to_numpy().tolist() for name in ("model", "obstacle"))
+    first = data.attrs.get("first_model", models[0])
+    if models[0] != first:
+        rule = f"must begin with {first}, on which the policy was trained"
+        raise ScenarioError("plot", models, rule)
     size = [each * len(n) for each, n in zip(_CELL, (obstacles, models), strict=True)]
     ax = axes_or_new(ax, (size[0] + _MARGIN[0], size[1] + _MARGIN[1]))
     colors = extra("matplotlib.colors", "plot").LinearSegmentedColormap.from_list(
