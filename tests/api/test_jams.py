@@ -150,3 +150,5 @@ def test_a_chart_of_one_height_has_a_line_for_each_way_to_jam() -> None:
     assert max(high for _, high in drawn) == chart["high"].max()
     left, right = ax.get_xlim()
     assert left < 100.0 < right
+    part = studies.jam_chart(c2d.Scenario(WHEELS, STEP), values=[0.05, 0.1]).sel(height=0.1).plot()
+    assert part.get_xlim() == (left, right)

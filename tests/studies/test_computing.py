@@ -71,3 +71,10 @@ def test_the_figure_has_a_line_at_real_time() -> None:
     assert [label.get_text() for label in ax.get_legend().get_texts()] == ["standing", "driving"]
     assert ax.texts[0].get_text().startswith("drove")
     plt.close("all")
+
+
+@pytest.mark.parametrize("motion", ["standing", "driving"])
+def test_the_figure_shows_one_motion_alone(motion: str) -> None:
+    ax = factor_of(repeats=1).sel(motion=motion).plot()
+    told = [text.get_text().partition(" ")[0] for text in ax.texts]
+    assert told == (["drove"] if motion == "driving" else [""])

@@ -298,6 +298,8 @@ def test_a_figure_draws_one_model_or_its_boundaries() -> None:
         found.plot()
     with pytest.raises(c2d.ScenarioError, match="show"):
         found.sel(model="belt").plot(show="bounds")
+    alone = found.sel(model="belt", unknown="friction").plot()
+    assert [label.get_text() for label in alone.get_yticklabels()] == ["friction"]
     _, ax = plt.subplots()
     one = found.sel(model="belt")
     assert one.plot(ax) is ax

@@ -236,6 +236,8 @@ def test_the_figure_shows_every_model_with_its_limit() -> None:
     assert shown == ["unchanged", "command x 2", "torque x 2", "friction x 2"]
     _, own = plt.subplots()
     assert found.sel(model="on ice").plot(own) is own
+    alone = found.sel(change="unchanged").plot()
+    assert [line.get_label() for line in alone.get_lines()] == ["unchanged"]
     with pytest.raises(c2d.ScenarioError, match="acceleration, acceleration_with, speed"):
         found.plot(of="height")
     plt.close("all")

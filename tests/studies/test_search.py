@@ -217,6 +217,8 @@ def test_a_search_draws_cost_against_the_lowest_rate() -> None:
     assert "friction" in ax.get_title(loc="left")
     assert "seed" not in ax.get_title(loc="left")
     assert found.sel(terrain="step").plot().get_ylabel() == "rate of clearing"
+    alone = found.sel(candidate=found.attrs["winner"]).plot()
+    assert any("winner" in text.get_text() for text in alone.get_legend().get_texts())
     plt.close("all")
 
 

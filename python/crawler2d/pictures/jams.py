@@ -10,7 +10,7 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import axes_or_new, moved
 from crawler2d.drawings.palette import BLACK, GRAY, LINES
-from crawler2d.pictures.rates import legend_below, one_model, readable
+from crawler2d.pictures.rates import legend_below, one_model, readable, with_dims
 
 if TYPE_CHECKING:
     import xarray
@@ -79,9 +79,9 @@ def jam_regions(data: xarray.Dataset) -> list[JamRegion]:
 
 def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Fill where one model can jam, and hatch where a belt can."""
-    data = one_model(data)
-    ax = axes_or_new(ax, (8.0, 6.0))
     name = data.attrs["x"]
+    data = with_dims(one_model(data), name)
+    ax = axes_or_new(ax, (8.0, 6.0))
     factor, label = readable(data[name])
     at = factor * data[name].to_numpy()
     handles: list[Any] = []

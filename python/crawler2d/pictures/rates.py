@@ -41,6 +41,7 @@ __all__ = [
     "plot_outcomes",
     "populations",
     "readable",
+    "with_dims",
 ]
 
 _SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
@@ -303,6 +304,11 @@ def one_model(data: xarray.Dataset) -> xarray.Dataset:
     return data.squeeze("model") if "model" in data.dims else data
 
 
+def with_dims(data: xarray.Dataset, *dims: str) -> xarray.Dataset:
+    """Give a part of a data set at one value of a dimension that dimension back, of length one."""
+    return data.expand_dims([dim for dim in dims if dim in data.coords and dim not in data.dims])
+
+
 def plot_measured(data: xarray.Dataset, ax: Axes | None, *, of: str | None = None) -> Axes:
     """Draw a row for each model: the median, how far the repeats lie apart, and the evidence.
 
@@ -324,8 +330,7 @@ def plot_measured(data: xarray.Dataset, ax: Axes | None, *, of: str | None = Non
     if f"{name}_each" not in data:
         known = [str(key)[:-5] for key in data if str(key).endswith("_each")]
         raise ScenarioError("of", name, f"must be one of {', '.join(known)}")
-    if "model" not in data.dims:
-        data = data.expand_dims("model")
+    data = with_dims(data, "model", "motion")
     models = [str(label) for label in data["model"].to_numpy()]
     ax = axes_or_new(ax, (8.0, _MEASURE_ROW * len(models) + _MEASURE_REST))
     factor, label = readable(data[name])
@@ -371,7 +376,7 @@ def _draw(
 def _draw_evidence(ax: Axes, data: xarray.Dataset, name: str, factor: float) -> None:
     """Draw the medians with each change as fainter points, a little below."""
     evidence = f"{name}_with"
-    if evidence not in data:
+    if evidence not in data or "change" not in data.dims:
         return
     key = f"{evidence}_band_median" if f"{evidence}_band_median" in data else evidence
     changes = [str(each) for each in data["change"].to_numpy() if each != _UNCHANGED]
@@ -385,7 +390,8 @@ def _draw_evidence(ax: Axes, data: xarray.Dataset, name: str, factor: float) -> 
 def _notes(own: xarray.Dataset, name: str) -> list[str]:
     """Say what limits a model, why there is no figure, how its runs ended, or how it drove."""
     if "moved" in own:
-        return [f"drove {own['moved'].sel(motion='driving').item():.2f} m"]
+        ways = own["moved"].to_numpy()[own["motion"].to_numpy() == "driving"]
+        return [f"drove {way:.2f} m" for way in ways]
     ended = own["ended"].sel(change=_UNCHANGED) if "change" in own.dims else own["ended"]
     if "limit" not in own:
         return [_tally("", ended)]

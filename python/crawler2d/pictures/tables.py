@@ -21,6 +21,7 @@ from crawler2d.pictures.rates import (
     plot_outcomes,
     populations,
     readable,
+    with_dims,
 )
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ _LARGEST, _LEAST = 8.0, 3.5
 
 def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw every candidate's lowest rate in order of cost, and the fresh runs of two."""
+    data = with_dims(data, "candidate")
     ax = axes_or_new(ax, (8.0, 6.0))
     two = [data.attrs["winner"], data.attrs["runner_up"]]
     names = data["candidate"].to_numpy().tolist()
@@ -136,7 +138,7 @@ def plot_decides(data: xarray.Dataset, ax: Axes | None, show: str = "indices") -
     drawings = {"indices": _indices, "boundary": _boundary}
     if show not in drawings:
         raise ScenarioError("show", show, f"must be one of {', '.join(drawings)}")
-    data = one_model(data)
+    data = with_dims(one_model(data), "unknown")
     if show == "boundary":
         data = data.isel(unknown=np.flatnonzero(data["path"].to_numpy() != ""))
     ax = axes_or_new(ax, (8.0, _ROW * data.sizes["unknown"] + _REST))
