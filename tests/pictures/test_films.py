@@ -108,6 +108,17 @@ def test_one_legend_explains_what_any_picture_shows(pair: list[c2d.Run]) -> None
     assert sum(text.startswith("contact forces") for text in told) == 1
 
 
+def test_the_longest_arrows_are_of_larger_forces_too(pair: list[c2d.Run]) -> None:
+    film = film_of(pair, [0.0])
+    texts = film.figure.axes[1].get_legend().get_texts()
+    (told,) = (text.get_text() for text in texts if text.get_text().startswith("contact forces"))
+    assert told.endswith(" N or more")
+    forces = [
+        np.hypot(run.contacts["normal_force"], run.contacts["friction_force"]) for run in pair
+    ]
+    assert max(map(np.max, forces)) > float(told.split()[-4])
+
+
 def test_arrows_of_robots_of_any_size_are_to_one_scale() -> None:
     small, large = (
         c2d.simulate(

@@ -209,7 +209,7 @@ class Film:
         # Arrows are as long as their robots are, so forces are scaled by that.
         sizes = [run.scenario.robot.outline.axle_distance for run in runs]
         scale = max(usual_force(run) / size for run, size in zip(runs, sizes, strict=True))
-        forces = f"contact forces, the longest {scale * max(sizes):.0f} N"
+        forces = f"contact forces, the longest {scale * max(sizes):.0f} N or more"
         note = "" if pace == 1.0 else f" ({pace:g} x real time)"
         self._pictures = [
             _Picture(run, scene, of_run, ax, most=scale * size, label=label, times=times, note=note)
