@@ -96,6 +96,13 @@ def test_on_level_ground_paths_do_not_part() -> None:
     assert "stay within 1 mm" in str(check)
 
 
+def test_a_check_says_when_a_run_cleared_and_not_when_it_ended() -> None:
+    run = c2d.simulate(SEIZING.replace({"terrain.height": 0.03}))
+    assert run.metrics["time"] > run.metrics["time_to_clear"] + 0.4
+    text = str(compare_engines(run, lambda _: run, announce=False))
+    assert f": cleared after {run.metrics['time_to_clear']:.2f} s" in text
+
+
 def test_a_run_that_did_not_stop_has_neither_balance_nor_forces(seized: c2d.Run) -> None:
     check = compare_engines(
         seized, lambda other: c2d.simulate(other.replace({"duration": 1.0})), announce=False

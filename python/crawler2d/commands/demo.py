@@ -72,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
         runs = demo_runs()
         written.append(write_text(options.out, demo_page(runs)))
         for name, each in zip(_NAMES, runs, strict=True):
-            print(f"{name}: {each.outcome} after {each.metrics['time']:.1f} s")
+            print(f"{name}: {each.ending}")
         print(f"The page is in {options.out}")
         print(f"Next: crawler2d audit {shlex.quote(str(samples.path()))}")
         print("or a model of your own in its place: SDF, URDF, xacro or MJCF")

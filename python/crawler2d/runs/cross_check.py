@@ -379,8 +379,8 @@ def _sentences(check: CrossCheck[R]) -> Iterator[str]:
 
 
 def _ended(run: Record) -> str:
-    outcome = str(run.outcome).replace("_", " ")
     if run.diagnosis is None:
-        return f"{outcome} after {run.metrics['time']:.2f} s"
+        return run.ending.replace("_", " ")
+    outcome = str(run.outcome).replace("_", " ")
     x, y, angle = _last_pose(run)
     return f"{outcome} at x = {x:z.3f} m, y = {y:z.3f} m, {np.degrees(angle):z.1f} degrees nose up"

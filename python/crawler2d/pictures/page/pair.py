@@ -43,9 +43,8 @@ def pair_figure(name: str, run: Record) -> str:
     """Write the place of the picture of a run, with what it is and how it ended."""
     if run.error is not None:
         return f"<p><b>{escape(name)}</b> no result: {escape(str(run.error))}</p>"
-    outcome = str(run.outcome).replace("_", " ")
-    end = f"{outcome} after {run.metrics['time']:.1f} s"
-    look = _LOOKS.get(outcome, "quiet")
+    end = run.ending.replace("_", " ")
+    look = _LOOKS.get(str(run.outcome), "quiet")
     return (
         f'<figure><figcaption><b>{escape(name)}</b> <strong class="{look}">{end}</strong>'
         f'</figcaption><canvas tabindex="0" role="img" aria-label="{escape(name)}, side view:'
