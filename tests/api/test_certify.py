@@ -58,6 +58,35 @@ def test_shares_add_up_and_figures_show_them(part: Certificate) -> None:
         part.share("proven")
 
 
+@pytest.mark.parametrize(
+    ("edge", "certified", "jams"),
+    [
+        (0.999, "more than 99 % certified", "less than 1 % where it can jam"),
+        (0.75, "75 % certified", "25 % where it can jam"),
+        (0.001, "less than 1 % certified", "more than 99 % where it can jam"),
+    ],
+)
+def test_what_is_not_all_is_not_called_a_hundred_percent(
+    edge: float, certified: str, jams: str
+) -> None:
+    found = Certificate(
+        fields=("terrain.friction",),
+        ranges=np.array([[0.0, 1.0]]),
+        depth=1e-3,
+        low=np.array([[0.0], [edge]]),
+        high=np.array([[edge], [1.0]]),
+        status=np.array(["certified", "jams"]),
+        witness=np.array([[np.nan] * 4, [0.9995, 0.0, 0.0, 0.0]]),
+        count=np.array([1, 0]),
+        cells=None,
+    )
+    assert f": {certified}: no equilibrium" in str(found)
+    assert f"; {jams}, as at terrain.friction = 0.9995" in str(found)
+    alone = dataclasses.replace(found, status=np.array(["jams", "jams"]))
+    assert "0 % certified: no equilibrium" in str(alone)
+    assert "; 100 % where it can jam" in str(alone)
+
+
 def test_regions_of_three_fields_have_no_figure() -> None:
     low_and_high = {
         "terrain.height": 0.05,

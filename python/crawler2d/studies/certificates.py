@@ -128,7 +128,7 @@ class Certificate:
         if (self.status == "certified").all():
             none = f"no equilibrium with running drives and {inside} exists for {where}"
             return f"certified: {none}; so it cannot come to rest there. {limits}"
-        parts = [f"{100.0 * self.share('certified'):.0f} % certified: no equilibrium with {inside}"]
+        parts = [f"{self._percent('certified')} certified: no equilibrium with {inside}"]
         texts = {
             "as a belt": "where a belt can jam, too",
             "jams": f"where it can jam, as at {self._first_jam()}",
@@ -136,8 +136,16 @@ class Certificate:
         }
         for status, text in texts.items():
             if (self.status == status).any():
-                parts.append(f"{100.0 * self.share(status):.0f} % {text}")
+                parts.append(f"{self._percent(status)} {text}")
         return f"{where}: {'; '.join(parts)}. {limits}"
+
+    def _percent(self, status: str) -> str:
+        """Write the share of a status: only all is 100 %, and only nothing is 0 %."""
+        own = self.status == status
+        percent = 100.0 * self.share(status)
+        if percent > 99.5 and not own.all():
+            return "more than 99 %"
+        return "less than 1 %" if percent < 0.5 and own.any() else f"{percent:.0f} %"
 
     def _first_jam(self) -> str:
         """Name the values of the fields of the first jam, if there is one."""
