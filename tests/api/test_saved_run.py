@@ -153,6 +153,14 @@ def test_a_run_of_another_build_is_not_repeated_by_this_one(saved: Path) -> None
     assert again.to_html()
 
 
+def test_page_and_data_set_of_a_run_say_what_simulated_it(saved: Path) -> None:
+    change(saved, lambda about: about["build"].update(version="0.0.9", build_id="an earlier one"))
+    again = c2d.load(saved)
+    assert f"crawler2d 0.0.9, scenario {again.scenario.identity[:16]}" in again.to_html()
+    attributes = again.to_xarray().attrs
+    assert {name: attributes[f"build_{name}"] for name in again.build} == again.build
+
+
 def test_a_run_that_has_not_stopped_when_its_file_says_so_is_not_continued(saved: Path) -> None:
     with np.load(saved) as entries:
         arrays: dict[str, Any] = {name: entries[name] for name in entries.files}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from crawler2d._core import build_info
 from crawler2d.common.extras import extra
@@ -48,9 +49,9 @@ _DIMENSIONS = {
 }
 
 
-def build_attributes() -> dict[str, str | int]:
-    """Return what the core is made of, as attributes of a data set."""
-    return {f"build_{name}": value for name, value in build_info().items()}
+def build_attributes(build: Mapping[str, Any] | None = None) -> dict[str, str | int]:
+    """Return what a core is made of, None this one, as attributes of a data set."""
+    return {f"build_{name}": value for name, value in (build or build_info()).items()}
 
 
 def to_dataset(run: Record) -> xarray.Dataset:
@@ -77,7 +78,7 @@ def to_dataset(run: Record) -> xarray.Dataset:
             **run.metrics,
             "scenario": run.scenario.to_json(),
             "identity": run.scenario.identity,
-            **build_attributes(),
+            **build_attributes(run.build),
         },
     )
     return dataset

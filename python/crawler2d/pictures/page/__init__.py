@@ -171,6 +171,7 @@ def replay_page(run: Record, time: float | None = None) -> str:
         thinned=_thinned(data["every"], data["samples"]),
         figures=_listed(main_figures(run)),
         all_figures=_listed(_all_figures(run)),
+        simulated_by=escape(str(run.build["version"])),
         identity=run.scenario.identity[:16],
         data=as_json(data),
     )
