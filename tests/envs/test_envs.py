@@ -25,6 +25,13 @@ WHEELED = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.0
 """A robot without flippers that gets over in time."""
 
 
+IN_RAPIER = c2d.Scenario(
+    c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4)).without_rotors(),
+    c2d.terrains.step(0.05),
+    solver=c2d.Solver(engine="rapier"),
+)
+
+
 def actions_of(env: Any, seed: int, count: int = 1) -> np.ndarray:
     """Return random actions that mostly drive on, shape (count, N, m) or (count, m)."""
     space = env.action_space
@@ -307,6 +314,7 @@ def test_a_picture_is_drawn_if_asked() -> None:
         ({"effort_weight": np.nan}, "effort_weight"),
         ({"end_when_stopped": "no"}, "end_when_stopped"),
         ({"render_mode": "human"}, "render_mode"),
+        ({"scenario": IN_RAPIER, "render_mode": "rgb_array"}, "render_mode"),
     ],
 )
 def test_a_wrong_argument_is_refused_before_anything_runs(

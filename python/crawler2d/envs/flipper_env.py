@@ -100,7 +100,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
     shock_weight, effort_weight : float
         [-] Of these terms of the reward, >= 0.
     render_mode : {"rgb_array"}, optional
-        Whether `render` returns a picture.
+        Whether `render` returns a picture; None in another engine than crawler2d's own.
 
     Raises
     ------
@@ -144,8 +144,8 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
     ) -> None:
         given = {name: value for name, value in locals().items() if name != "self"}
         EzPickle.__init__(self, **given)
-        self.render_mode = check_render_mode(render_mode)
         self.task = task_of(given)
+        self.render_mode = check_render_mode(render_mode, self.task)
         self.metadata = metadata_of(self.task)
         self.observation_space, self.action_space = spaces_of(self.task)
         self._episodes: Episodes | None = None
@@ -265,11 +265,15 @@ def metadata_of(task: Task) -> dict[str, Any]:
     return METADATA | {"render_fps": max(round(1.0 / task.dt), 1)}
 
 
-def check_render_mode(mode: str | None) -> str | None:
-    """Refuse an unknown render mode."""
+def check_render_mode(mode: str | None, task: Task) -> str | None:
+    """Refuse an unknown render mode, and any for what cannot be copied to be drawn."""
     modes = METADATA["render_modes"]
     if mode is not None and mode not in modes:
         raise ScenarioError("render_mode", mode, f"must be None or one of {modes}")
+    engine = task.scenario.solver.engine
+    if mode is not None and engine != "own":
+        rule = f"must be None where solver.engine is {engine}: draw the run of an episode"
+        raise ScenarioError("render_mode", mode, rule)
     return mode
 
 

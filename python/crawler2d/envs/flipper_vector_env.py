@@ -95,9 +95,9 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
     ) -> None:
         given = {name: value for name, value in locals().items() if name != "self"}
         EzPickle.__init__(self, **given)
-        self.render_mode = check_render_mode(render_mode)
         self.num_envs = whole_number(num_envs, "num_envs", 1, _MOST)
         self.task = task_of(given)
+        self.render_mode = check_render_mode(render_mode, self.task)
         self.metadata = metadata_of(self.task) | {"autoreset_mode": _read_mode(autoreset_mode)}
         spaces = spaces_of(self.task)
         self.single_observation_space, self.single_action_space = spaces
