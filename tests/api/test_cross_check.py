@@ -1,6 +1,7 @@
 """The same scenario in both engines: how they end, when they part, what statics says."""
 
 import math
+import pickle
 import time
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import Track
 from crawler2d.results.findings import Balance, Pull
 from crawler2d.runs import cross_check
@@ -94,6 +96,22 @@ def test_on_level_ground_paths_do_not_part() -> None:
     assert check.balances == (None, None)
     assert len(check.forces) == 0
     assert "stay within 1 mm" in str(check)
+
+
+def test_a_run_of_another_build_is_simulated_again(seized: c2d.Run) -> None:
+    earlier = pickle.loads(pickle.dumps(seized))
+    earlier.build = {**seized.build, "build_id": "an earlier one"}
+    for run in (seized, earlier):
+        scenarios: list[Scenario] = []
+
+        def simulate(scenario: Scenario, scenarios: list[Scenario] = scenarios) -> c2d.Run:
+            scenarios.append(scenario)
+            return seized
+
+        check = compare_engines(run, simulate, announce=False)
+        assert check.run is seized
+        engines = [scenario.solver.engine for scenario in scenarios]
+        assert engines == (["rapier"] if run is seized else ["rapier", "own"])
 
 
 def test_a_check_says_when_a_run_cleared_and_not_when_it_ended() -> None:

@@ -370,7 +370,8 @@ class Run(ShownRun):
         """Simulate the same scenario in the other engine, and compare.
 
         What crawler2d's own dynamics moved is moved by rapier, and the other way round, at that
-        engine's default accuracy; nothing else differs. Where both stop at different places, or one
+        engine's default accuracy; nothing else differs. A run without history, or of another build,
+        is simulated again. Where both stop at different places, or one
         does not, statics tells which stop is an equilibrium. Runs of gear wheels and of many small
         wheels are chaotic: of these compare rates, by a `sweep` or `compare` over
         ``solver.engine``.
