@@ -209,6 +209,28 @@ def test_rates_are_drawn_in_the_order_of_their_values_however_these_were_listed(
     plt.close("all")
 
 
+def test_values_in_a_legend_have_the_unit_that_they_have_at_an_axis() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    over = {"terrain.height": [0.04, 0.16], "start.approach": [0.1, 0.2]}
+    found = c2d.rate(c2d.sweep(BASE, over, repeats=1, progress=False))
+
+    def told(part: Any) -> tuple[str, list[str]]:
+        ax = part.plot()
+        legend = ax.get_legend()
+        assert legend is not None
+        return ax.get_xlabel(), [text.get_text() for text in legend.get_texts()]
+
+    assert told(found) == ("approach [mm]", ["height 40 mm", "height 160 mm"])
+    other = found.transpose("approach", "height")
+    assert told(other) == ("height [mm]", ["approach 100 mm", "approach 200 mm"])
+    frictions = c2d.rate(
+        c2d.sweep(BASE, {"terrain.friction": [0.5, 1.0], **over}, repeats=1, progress=False)
+    )
+    assert told(frictions.isel(height=0))[1] == ["friction 0.5", "friction 1"]
+    plt.close("all")
+
+
 def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 

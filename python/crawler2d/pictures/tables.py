@@ -345,8 +345,15 @@ def _lines(shown: xarray.DataArray, along: str) -> Iterator[tuple[str, dict[str,
     others = [str(dim) for dim in shown.dims if dim != along]
     for place in np.ndindex(*(shown.sizes[dim] for dim in others)):
         labels = {dim: shown[dim].values[k] for dim, k in zip(others, place, strict=True)}
-        text = [v if isinstance(v, str) else f"{d} {v:g}" for d, v in labels.items()]
-        yield ", ".join(map(str, text)), labels
+        text = [v if isinstance(v, str) else _value(shown[d], v) for d, v in labels.items()]
+        yield ", ".join(text), labels
+
+
+def _value(values: xarray.DataArray, value: float) -> str:
+    """Name a value of a dimension in the unit of its axis, such as ``height 50 mm``."""
+    factor, label = readable(values)
+    unit = label.partition(" [")[2].rstrip("]")
+    return f"{values.name} {factor * value:.4g} {unit}".rstrip()
 
 
 FIGURES: Mapping[str, Callable[..., Any]] = {
