@@ -146,6 +146,7 @@ def test_what_cannot_be_written_is_refused_before_the_audit(
         ("--junit a --sarif a", "--sarif must be another file than that of --junit"),
         ("--patch a --html a", "--html must be another file than that of --patch"),
         ("--update-baseline --baseline a --html a", "--baseline must be another file than that of"),
+        ("--baseline a --junit a", "--junit must be another file than the one that is read"),
         ("--store a --html a", "--html must be another file than the store"),
     ],
 )

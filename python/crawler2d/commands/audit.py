@@ -171,10 +171,14 @@ def _check_options(options: argparse.Namespace) -> None:
     if options.update_baseline and options.baseline is None:
         raise ScenarioError("--update-baseline", "none", "needs --baseline FILE, where to write")
     places = {f"--{name}": getattr(options, name) for name in ("html", "junit", "sarif")}
-    places["--baseline"] = options.baseline if options.update_baseline else None
+    read = list(options.file)
+    if options.update_baseline:
+        places["--baseline"] = options.baseline
+    elif options.baseline is not None:
+        read.append(options.baseline)
     if not (options.lint or options.no_html or options.html):
         check_out("--html")
-    check_places(places, read=options.file)
+    check_places(places, read=read)
     # A change may take the place of the file that it changes.
     check_places({"--patch": options.patch, **places}, kept=options.store)
 
