@@ -3,6 +3,7 @@
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -122,3 +123,17 @@ def test_a_page_that_cannot_be_written_is_refused_before_the_audits(
     monkeypatch.setattr("crawler2d.commands.atlas.read_robot", lambda _: 1 / 0)
     assert main(["atlas", str(forest), "--html", str(tmp_path)]) == 2
     assert "--html must be a file in a folder" in capsys.readouterr().err
+
+
+def test_a_file_that_may_not_be_read_is_one_of_the_refused(
+    forest: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened = Path.open
+
+    def refuse(path: Path, *how: Any, **options: Any) -> Any:
+        if path.name == "cart.urdf":
+            raise PermissionError(13, "Permission denied", str(path))
+        return opened(path, *how, **options)
+
+    monkeypatch.setattr(Path, "open", refuse)
+    assert [path.name for path in main_files(forest)][-1] == "cart.urdf"

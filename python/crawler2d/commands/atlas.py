@@ -102,6 +102,7 @@ def main_files(folder: Path) -> Iterator[Path]:
     """Yield the model files of a folder that no other one includes and that hold more than macros.
 
     What a scene of MJCF includes is a model: it is read by itself, and the scene is not.
+    Those that cannot be read are the last: whoever reads them is told why.
 
     Parameters
     ----------
@@ -114,12 +115,18 @@ def main_files(folder: Path) -> Iterator[Path]:
         From the folder, in order.
     """
     found: dict[Path, bytes] = {}
+    unread: list[Path] = []
     for place, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(names):
             path = Path(place, name)
             if path.suffix in _KINDS and path.is_file() and not path.is_symlink():
-                data = path.read_bytes()[: _LARGEST + 1]
+                try:
+                    with path.open("rb") as file:
+                        data = file.read(_LARGEST + 1)
+                except OSError:
+                    unread.append(path.relative_to(folder))
+                    continue
                 if len(data) <= _LARGEST and _ROOTS.search(data):
                     found[path.relative_to(folder)] = data
             if len(found) >= _MOST:
@@ -134,6 +141,7 @@ def main_files(folder: Path) -> Iterator[Path]:
         is_included = (_repository(path), path.name) in named
         if not is_included and _LINKS.search(_MACROS.sub(b"", data)):
             yield path
+    yield from unread
 
 
 def _repository(path: Path) -> str:
