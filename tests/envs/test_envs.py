@@ -240,6 +240,21 @@ def test_what_is_drawn_is_in_the_scenarios_of_the_episodes() -> None:
     assert seeds[0] != seeds[1]
 
 
+def test_episodes_are_drawn_from_a_generator_that_is_set() -> None:
+    def drawn(seed: int) -> list[float]:
+        env = FlipperEnv()
+        env.reset(seed=seed)
+        env.np_random = np.random.default_rng(5)
+        starts = []
+        for _ in range(3):
+            env.reset()
+            starts.append(float(env.state.to_goal[0]))
+        return starts
+
+    assert drawn(1) == drawn(2)
+    assert len(set(drawn(1))) == 3
+
+
 def test_a_full_action_is_the_speed_that_was_drawn() -> None:
     flat = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat(), duration=4.0)
     many = FlipperVectorEnv(3, flat, randomize={"drive.speed": c2d.uniform(0.1, 0.2)})

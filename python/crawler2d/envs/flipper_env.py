@@ -150,6 +150,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         self.observation_space, self.action_space = spaces_of(self.task)
         self._episodes: Episodes | None = None
         self._ended, self._supply = False, Supply(self.task, 1)
+        self._drawn_from: np.random.Generator | None = None
 
     @property
     def observation_names(self) -> list[str]:
@@ -185,8 +186,9 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
             Empty.
         """
         super().reset(seed=seed, options=options)
-        if seed is not None:
+        if self.np_random is not self._drawn_from:  # of a seed, or set from outside
             self._supply.forget(0)
+            self._drawn_from = self.np_random
         scenarios = self._supply.take([0], [self.np_random])
         if self._episodes is None:
             self._episodes = Episodes(self.task, scenarios, 1)
