@@ -381,3 +381,17 @@ def test_the_deepest_edge_is_named_by_its_own_wheels(open_page: Open, stopped: c
     page.evaluate(DRAWN)
     named = [text for text in page.evaluate("window.texts") if text.startswith("between wheels")]
     assert named == ["between wheels 1 and 2"]
+
+
+@pytest.mark.parametrize("start", [0.0, 1.0])
+def test_the_times_of_a_run_and_of_a_branch_have_their_unit(
+    open_page: Open, stopped: c2d.Run, start: float
+) -> None:
+    run = stopped.branch(start, duration=2.0) if start else stopped
+    page = open_page(run.to_html())
+    page.evaluate(TEXTS)
+    page.keyboard.press("End")
+    page.evaluate(DRAWN)
+    times = [text for text in page.evaluate("window.texts") if re.fullmatch(r"[\d.]+ s", text)]
+    assert len(times) == 1
+    assert float(times[0].removesuffix(" s")) >= start

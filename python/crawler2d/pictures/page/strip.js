@@ -112,8 +112,9 @@ class Strip {
     const step = nice(((end - begin || 1) * 110) / (this.width - GUTTER));
     ctx.fillStyle = colors.quiet;
     ctx.textAlign = "center";
-    for (let k = Math.ceil(begin / step); k * step <= end + 1e-9; k++) {
-      const text = `${+(k * step).toPrecision(6)}${k === 0 ? " s" : ""}`;
+    const first = Math.ceil(begin / step);
+    for (let k = first; k * step <= end + 1e-9; k++) {
+      const text = `${+(k * step).toPrecision(6)}${k === first ? " s" : ""}`;
       ctx.fillText(text, Math.min(this.pixel(k * step), this.width - 14), this.height - 4);
     }
     ctx.textAlign = "left";
