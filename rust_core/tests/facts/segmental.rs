@@ -237,6 +237,35 @@ fn a_chain_runs_as_far_as_its_sprocket_turns() {
     }
 }
 
+/// Where the chain goes onto an end of radius r, and where it leaves it, one pin after the other is bent by p/r while the
+/// chain runs a pitch p: at a speed U four pins turn with U/r, and dampers d in both tracks take 8 d (U/r)^2. The pin that
+/// closes the chain has none. They take a little more where shoes bend unevenly; those on a guide swing besides.
+#[test]
+fn dampers_in_the_pins_take_what_it_takes_to_bend_them() {
+    const DURATION: f64 = 4.0;
+    for count in [22, 44] {
+        let work = |damping: f64| {
+            let mut scenario = toothed(count);
+            scenario.terrain = slope(0.0, 0.9);
+            scenario.duration = DURATION;
+            if let Track::Segmental(chain) = &mut scenario.robot.track {
+                chain.pin_damping = damping;
+            }
+            run(&scenario).metrics.drive_work
+        };
+        let (without, damping) = (work(0.0), 0.01);
+        let taken = work(damping) - without;
+        let pitch = 22.0 * 0.048 / f64::from(count);
+        let radius = 0.064 - 0.012 - 0.5 * pitch / 16.0;
+        // The speed rises by 0.2 m/s^2 to 0.4 m/s.
+        let squares = 0.16 * (DURATION - 2.0 + 2.0 / 3.0);
+        let share = f64::from(count - 1) / f64::from(count);
+        let expected = 8.0 * damping * squares / (radius * radius) * share;
+        println!("{count} shoes: {taken:.2} J of {expected:.2}, without {without:.2}");
+        assert!((taken / expected - 1.05).abs() < 0.1);
+    }
+}
+
 /// Only teeth hold the chain: a sprocket that stands holds the robot against a push as hard as its motors can.
 #[test]
 fn teeth_hold_a_push() {
