@@ -193,6 +193,12 @@ def test_an_element_of_another_kind_is_refused_by_its_path(
     assert str(caught.value).startswith(message)
 
 
+@pytest.mark.parametrize("fields", [5, None, "duration", [("duration", 2.0)]])
+def test_what_is_no_mapping_is_refused(fields: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match="must be a mapping from paths to values"):
+        VARIANTS["belt-step"].replace(fields)
+
+
 def test_another_track_is_the_same_robot() -> None:
     other = ROBOT.with_track(c2d.LineOfWheels(3))
     assert other.track == c2d.LineOfWheels(3)

@@ -164,6 +164,8 @@ def test_with_json_the_baseline_is_told_beside_it(quick: Path, capsys: Any) -> N
         ["a.sdf", "b.sdf", "--html", "page.html"],
         ["a.sdf", "b.sdf", "--patch", "c.sdf"],
         ["a.sdf", "--lint", "--html", "page.html"],
+        ["a.sdf", "--lint", "--samples", "5"],
+        ["a.sdf", "--lint", "--store", "runs.store"],
         ["a.sdf", "--update-baseline"],
         ["a.sdf", "--baseline", "none.json"],
         ["a.sdf", "--baseline", "none/a.json", "--update-baseline"],

@@ -165,7 +165,8 @@ def _check_options(options: argparse.Namespace) -> None:
     given = [name for name, value in ones.items() if value]
     if given and len(options.file) > 1:
         raise ScenarioError(given[0], f"{len(options.file)} files", "takes one file")
-    for name in given:
+    of_runs = {"--samples": options.samples, "--store": options.store}
+    for name in given + [name for name, value in of_runs.items() if value is not None]:
         if options.lint and name != "--json":
             raise ScenarioError(name, "--lint", "needs runs")
     if options.update_baseline and options.baseline is None:

@@ -82,14 +82,17 @@ class Scenario(ScenarioBase):
         Raises
         ------
         ScenarioError
-            If a path is not a field; the message lists the fields and the nearest name. If an index
-            is out of range; the message gives the length.
+            If `fields` is no mapping. If a path is not a field; the message lists the fields and
+            the nearest name. If an index is out of range; the message gives the length.
 
         Warns
         -----
         ScenarioWarning
             If the flippers are removed but their mass stays on the robot.
         """
+        if not isinstance(fields, Mapping):
+            rule = 'must be a mapping from paths to values, such as {"terrain.height": 0.06}'
+            raise ScenarioError("fields", fields, rule)
         variant = self
         given = {path for path, value in fields.items() if value is not None}
         for path, value in fields.items():
