@@ -5,7 +5,7 @@ use super::*;
 use crate::contact::{Contact, TrackEnvelope};
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::observe::{Bearing, DriveMean};
-use crate::robot::{BodyKind, Model, Mount};
+use crate::robot::{BodyKind, Model, Mount, Part};
 use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, TrackOutline, Wheel};
 use crate::terrain::Ground;
 
@@ -257,4 +257,211 @@ fn the_moment_on_a_hinge_is_the_arms_weight_times_its_level_arm() {
     let expected = 2.0 * flippers.mass * level / scenario.robot.mass;
     assert_eq!(hinges.len(), 1);
     assert!((hinges[0].weight / expected - 1.0).abs() < 1e-12);
+}
+
+/// Both tracks are one drive here. A motor is stalled if it stands, up to the creep of what sticks, and gives its limit.
+#[test]
+fn a_motor_that_stands_at_its_limit_is_stalled() {
+    let stage = Stage::new();
+    let (criteria, motor) = (&stage.scenario.criteria, &stage.model.motor);
+    let limit = criteria.torque_limit * motor.force;
+    let creep = criteria.sliding_speed * stage.scenario.drive.speed;
+    for (force, speed, stalled) in [
+        (limit, 0.0, true),
+        (-limit, creep, true),
+        (0.99 * limit, 0.0, false),
+        (limit, 1.01 * creep, false),
+        (limit, -1.01 * creep, false),
+    ] {
+        let mut stance = stage.stance([0.5, 0.5]);
+        stance.drives = vec![DriveMean { force, speed }];
+        let found = stage.examine(&stance);
+        assert_eq!(found.stalled_share, f64::from(u8::from(stalled)));
+        assert_eq!(
+            found.outcome == Outcome::Stalled,
+            stalled,
+            "{force} N, {speed} m/s"
+        );
+    }
+}
+
+#[test]
+fn a_contact_slides_that_moves_with_nearly_all_of_its_friction() {
+    let stage = Stage::new();
+    let creep = stage.scenario.criteria.sliding_speed * stage.scenario.drive.speed;
+    for (share, speed, slides) in [
+        (0.96, 1.01 * creep, true),
+        (-0.96, -1.01 * creep, true),
+        (0.94, 1.01 * creep, false),
+        (0.96, creep, false),
+    ] {
+        let mut stance = stage.stance([0.25, 0.75]);
+        let contact = &mut stance.bearings[1].contact;
+        contact.friction_force = share * 0.9 * contact.normal_force;
+        contact.surface_speed = speed;
+        let found = stage.examine(&stance);
+        assert_eq!(found.contacts[1].slides, slides, "{share}, {speed} m/s");
+        assert!((found.sliding_share - if slides { 0.75 } else { 0.0 }).abs() < 1e-12);
+    }
+}
+
+/// Ground between two wheels jams if it is deeper inside the track than the least depth.
+#[test]
+fn ground_between_wheels_jams_from_the_least_depth_on() {
+    let mut stage = Stage::new();
+    for (least, jams) in [(0.9 * DEPTH, true), (1.1 * DEPTH, false)] {
+        stage.scenario.criteria.intrusion_depth = least;
+        let found = stage.examine(&stage.stance([0.5, 0.5]));
+        assert_eq!(found.jammed, jams, "{least} m");
+        assert!(found.intrusion.is_some());
+    }
+}
+
+/// What counts is how much of the weight a contact lifts, by its normal force and by its friction.
+#[test]
+fn the_belly_bears_its_share_of_what_is_lifted() {
+    let stage = Stage::new();
+    let parts = &stage.model.parts;
+    let belly = parts.iter().position(|part| part.kind == BodyKind::Belly);
+    let mut stance = stage.stance([0.5, 0.25]);
+    let contact = &mut stance.bearings[1].contact;
+    contact.part = belly.expect("it has a belly");
+    // Friction acts along the normal turned by -90 degrees, here down.
+    contact.normal = Vector::new(0.6, 0.8);
+    contact.friction_force = 0.5 * contact.normal_force;
+    let lifted = 0.25 * (0.8 - 0.5 * 0.6);
+    let found = stage.examine(&stance);
+    assert!((found.belly_share - lifted / (0.5 + lifted)).abs() < 1e-12);
+    let least = stage.scenario.criteria.belly_load;
+    assert_eq!(found.outcome == Outcome::HungUp, found.belly_share >= least);
+}
+
+#[test]
+fn a_robot_drives_forwards_unless_its_speed_is_negative() {
+    let mut stage = Stage::new();
+    for (speed, direction) in [(0.4, 1.0), (0.0, 1.0), (-0.4, -1.0)] {
+        stage.scenario.drive.speed = speed;
+        assert_eq!(stage.scene().direction(), direction);
+    }
+}
+
+/// Behind a gear that locks itself a motor of no force holds what stands; what moves it holds back, and does not push on.
+#[test]
+fn a_lock_holds_what_stands_and_holds_back_what_moves() {
+    let mut stage = Stage::new();
+    (stage.model.motor.self_locking, stage.model.motor.force) = (true, 0.0);
+    let speed = stage.scenario.drive.speed;
+    for (angle, speed, holds) in [
+        (0.3, 0.0, true),
+        (-0.3, 0.0, true),
+        (0.3, speed, false),
+        (-0.3, speed, true),
+        (0.3, -speed, true),
+        (-0.3, -speed, false),
+    ] {
+        let turn = Rotation::new(angle);
+        let mut stance = stage.stance([0.5, 0.5]);
+        (stance.angle, stance.position) = (angle, turn * stance.position);
+        stance.drives = vec![DriveMean { force: 0.0, speed }];
+        for Bearing { contact, .. } in &mut stance.bearings {
+            (contact.point, contact.normal) = (turn * contact.point, turn * contact.normal);
+        }
+        let found = balance::balance(&stage.scene(), &stance, 1e-6).expect("there is a weight");
+        assert_eq!(found.holds(), holds, "{angle} rad, {speed} m/s");
+    }
+}
+
+/// The same stage with the Engineer on a chain of shoes.
+fn on_a_chain() -> Stage {
+    let mut stage = Stage::new();
+    let text = include_str!("../../../tests/scenarios/engineer_chain_step.json");
+    stage.scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    stage.model = Model::on(&stage.scenario.robot, &stage.ground).expect("it can be built");
+    stage
+}
+
+/// The part that is the plate of a shoe.
+fn plate(stage: &Stage, shoe: usize) -> usize {
+    let is_plate = |part: &Part| part.kind == BodyKind::Shoe && part.mount == Mount::Shoe(shoe);
+    let plate = stage.model.parts.iter().position(is_plate);
+    plate.expect("each shoe has one")
+}
+
+/// Driving forwards shoes run rearwards below and turn with the front end; a contact that another shoe has by now moves as
+/// that one does.
+#[test]
+fn a_shoe_moves_as_the_chain_runs_where_its_contact_is() {
+    let stage = on_a_chain();
+    let scene = stage.scene();
+    let shoes = &scene.running.shoes;
+    let chain = &stage.model.chains[0];
+    let [_, front] = chain.ends;
+    let (mut below, mut round) = (0, 0);
+    for (shoe, pose) in shoes.iter().enumerate() {
+        let at = pose.translation;
+        let motion = scene.motion(plate(&stage, shoe), at).at(at);
+        let arm = at - front.center;
+        if at.y < 0.0 && at.x.abs() < 0.1 {
+            below += 1;
+            assert!(
+                (motion - Vector::new(-1.0, 0.0)).length() < 1e-9,
+                "{motion}"
+            );
+        } else if arm.x > 0.5 * front.radius {
+            round += 1;
+            // The chord over two pitches is a little shorter than the way.
+            let along = -crate::geometry::left_of(arm).normalize();
+            assert!((motion - along).length() < 0.25, "{motion} for {along}");
+        }
+        let other = (shoe + 7) % shoes.len();
+        assert_eq!(scene.motion(plate(&stage, other), at).at(at), motion);
+    }
+    assert!(below > 2 && round > 0);
+}
+
+/// Two shoes that bear at once on ground inside the track pinch it where the gap between them closes.
+#[test]
+fn neighbouring_shoes_pinch_at_the_leading_end() {
+    let mut stage = on_a_chain();
+    let shoes = stage.scene().running.shoes.clone();
+    let count = shoes.len();
+    let bend = |shoe: usize| {
+        let next = shoes[(shoe + 1) % count];
+        (shoes[shoe].rotation.inverse() * next.rotation)
+            .angle()
+            .abs()
+    };
+    let middle =
+        |shoe: usize| 0.5 * (shoes[shoe].translation.x + shoes[(shoe + 1) % count].translation.x);
+    let any = |is: &dyn Fn(usize) -> bool| (0..count).find(|shoe| is(*shoe)).expect("there is one");
+    let front = any(&|shoe| bend(shoe) > 0.5 && middle(shoe) > 0.0);
+    let rear = any(&|shoe| bend(shoe) > 0.5 && middle(shoe) < 0.0);
+    let straight = any(&|shoe| bend(shoe) < 1e-3 && middle(shoe) > 0.05);
+    for (shoe, speed, durations, pinched) in [
+        (front, 0.4, [0.6, 0.6], true),
+        (rear, -0.4, [0.6, 0.6], true),
+        (front, -0.4, [0.6, 0.6], false),
+        (rear, 0.4, [0.6, 0.6], false),
+        (straight, 0.4, [0.6, 0.6], false),
+        (front, 0.4, [0.6, 0.4], false),
+    ] {
+        stage.scenario.drive.speed = speed;
+        let mut stance = stage.stance([0.5, 0.5]);
+        let both = [shoe, (shoe + 1) % count];
+        for (i, bearing) in stance.bearings.iter_mut().enumerate() {
+            bearing.contact.part = plate(&stage, both[i]);
+            bearing.duration = durations[i];
+        }
+        let scene = stage.scene();
+        let mut contacts = scene.facts(&stance, None).contacts;
+        assert!(!scene.pinches(&stance, &contacts));
+        for contact in &mut contacts {
+            contact.in_pocket = true;
+        }
+        assert_eq!(
+            scene.pinches(&stance, &contacts),
+            pinched,
+            "{both:?}, {speed} m/s"
+        );
+    }
 }
