@@ -8,9 +8,15 @@ fn signals(steps: &[([f64; 2], f64, [f64; 2])]) -> Signals {
     let mut signals = Signals::default();
     for (k, (place, force, point)) in steps.iter().enumerate() {
         let now = Reading::at_rest(0.25 * (k + 1) as f64, Vector::from(*place));
+        let normal = if k == 0 {
+            Vector::Y
+        } else {
+            Vector::new(0.6, 0.8)
+        };
         let contact = Contact {
             normal_force: *force,
-            ..Contact::new(0, (0, -1), (Vector::from(*point), Vector::Y), 0.0)
+            surface_speed: [1.0, 7.0][k.min(1)],
+            ..Contact::new(0, (0, -1), (Vector::from(*point), normal), 0.0)
         };
         signals.add((&now, 0.25), &[contact], std::iter::empty(), 10.0);
     }
@@ -26,6 +32,9 @@ fn a_contact_is_where_it_was_weighed_by_its_force() {
     assert_eq!(bearing.contact.point, Vector::new(7.0, 1.5));
     assert_eq!(bearing.contact.normal_force, 2.0);
     assert_eq!(bearing.duration, 1.0);
+    let sum = Vector::new(0.0, 1.0) + Vector::new(0.6, 0.8) * 3.0;
+    assert_eq!(bearing.contact.normal, sum.normalize());
+    assert_eq!(bearing.contact.surface_speed, 5.5);
 }
 
 #[test]
@@ -101,9 +110,9 @@ fn loads_of_an_interval_are_means_of_each_contact_that_bears() {
             contact(5, 0.0, 0.0),
             contact(8, 1.0, 0.5),
         ],
-        0.25,
+        0.5,
     );
-    loads.add(&[contact(3, 8.0, 2.0), contact(5, 2.0, 1.0)], 0.75);
+    loads.add(&[contact(3, 8.0, 2.0), contact(5, 2.0, 1.0)], 1.5);
     assert_eq!(loads.count(), 3);
     let means: Vec<_> = loads
         .drain()
