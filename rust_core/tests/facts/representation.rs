@@ -11,17 +11,17 @@ const LOOK: f64 = 0.01;
 const LOOKS: usize = 100;
 /// So many of these the twins may part later.
 const LATER: usize = 3;
-/// Paths part exponentially: a few twins know to a power of ten how far.
+/// Paths part exponentially: a few twins tell how far to a power of ten.
 const TIMES: f64 = 10.0;
 
 /// Ground of sharp corners.
-struct Way {
+struct Course {
     points: Vec<[f64; 2]>,
     friction: f64,
     first_edge: f64,
 }
 
-impl Way {
+impl Course {
     /// Level ground, then a dozen steps up and down with slopes between them.
     fn drawn(draw: &mut Draw, height: f64) -> Self {
         let mut points = vec![[-20.0, 0.0], [0.0, 0.0]];
@@ -82,9 +82,9 @@ impl Way {
     }
 }
 
-/// Pose over the first second, an angle as the way of an axle [m].
-fn path(scenario: &Scenario, way: &Way) -> Vec<[f64; 3]> {
-    let mut simulation = Simulation::on_ground(scenario, way.ground()).expect("it fits");
+/// Pose over the first second, an angle as how far an axle moves by it [m].
+fn path(scenario: &Scenario, course: &Course) -> Vec<[f64; 3]> {
+    let mut simulation = Simulation::on_ground(scenario, course.ground()).expect("it fits");
     let arm = 0.5 * scenario.robot.outline.axle_distance();
     (0..LOOKS)
         .map(|_| {
@@ -154,13 +154,13 @@ struct Paths {
 }
 
 impl Paths {
-    fn of(scenario: &Scenario, way: &Way) -> Self {
-        let base = path(scenario, way);
+    fn of(scenario: &Scenario, course: &Course) -> Self {
+        let base = path(scenario, course);
         let mut spread = vec![0.0_f64; LOOKS];
         for k in 1..=6 {
             let mut twin = scenario.clone();
             twin.start.approach += 1e-7 * f64::from(k);
-            for (most, off) in spread.iter_mut().zip(apart(&base, &path(&twin, way))) {
+            for (most, off) in spread.iter_mut().zip(apart(&base, &path(&twin, course))) {
                 *most = most.max(off);
             }
         }
@@ -187,25 +187,25 @@ fn drawn_robots_move_alike_however_their_ground_is_given() {
         let mut scenario = drawn(&mut draw);
         let size = scenario.robot.outline.smallest_radius();
         let height = size * draw.between(0.1, 1.0);
-        let way = Way::drawn(&mut draw, height);
+        let course = Course::drawn(&mut draw, height);
         scenario.start.approach = size * draw.between(0.0, 3.0);
-        let paths = Paths::of(&scenario, &way);
+        let paths = Paths::of(&scenario, &course);
         let pieces = 2 + (draw.unit() * 30.0) as u32;
         let by = draw.between(-1e3, 1e3);
-        let mut there = path(&scenario, &way.moved(by));
+        let mut there = path(&scenario, &course.moved(by));
         there.iter_mut().for_each(|pose| pose[0] -= by);
         let mut others = vec![
-            ("in pieces", path(&scenario, &way.cut(pieces))),
+            ("in pieces", path(&scenario, &course.cut(pieces))),
             ("elsewhere", there),
         ];
         if let Some(other) = mirrored(&scenario) {
             mirrors += 1;
-            let begin = |scenario: &Scenario, way: &Way| {
-                let simulation = Simulation::on_ground(scenario, way.ground()).expect("it fits");
+            let begin = |scenario: &Scenario, course: &Course| {
+                let simulation = Simulation::on_ground(scenario, course.ground()).expect("it fits");
                 simulation.reading().position.x
             };
-            let mut seen = way.mirrored();
-            seen.first_edge -= begin(&other, &seen) + begin(&scenario, &way);
+            let mut seen = course.mirrored();
+            seen.first_edge -= begin(&other, &seen) + begin(&scenario, &course);
             let mut there = path(&other, &seen);
             for pose in &mut there {
                 (pose[0], pose[2]) = (-pose[0], -pose[2]);
@@ -222,6 +222,6 @@ fn drawn_robots_move_alike_however_their_ground_is_given() {
         }
     }
     println!("{farther} of {compared} led farther, {mirrors} in a mirror");
-    // Six twins do not know all ways in which a path may part.
+    // Six twins do not show all ways in which a path may part.
     assert!(farther * 100 <= compared);
 }
