@@ -234,6 +234,8 @@ def _change_motor(document: Document, motor: Span, change: Change) -> None:
     """Change the limits of a motor: of servos their force, of others the gear, which scales all."""
     rotor = change.inertia
     is_servo = change.joint.gain is not None or change.joint.velocity is not None
+    if motor.tag == "velocity" and "class" in motor.attributes:
+        _write_out_class(document, motor, change)
     if is_servo or motor.tag not in ("motor", "general"):
         document.multiply(motor, [change.effort] * 2, "forcerange")
         if motor.tag in ("velocity", "intvelocity", "general"):
@@ -247,6 +249,22 @@ def _change_motor(document: Document, motor: Span, change: Change) -> None:
         )
         rotor /= change.effort**2  # it counts by the square of the gear
     document.multiply(motor, [rotor], "armature")
+
+
+def _write_out_class(document: Document, motor: Span, change: Change) -> None:
+    """Give a servo of speed the changed limits that it has of its class, which others have, too."""
+    ratio = float(motor.attributes.get("gear", "1").split()[0])
+    force, speed, gain = change.joint.effort, change.joint.velocity, change.joint.gain
+    limits = {
+        "forcerange": (force, change.effort / ratio, (-1.0, 1.0)),
+        "ctrlrange": (speed, ratio / change.size, (-1.0, 1.0)),
+        "kv": (gain, change.gain / ratio**2, (1.0,)),
+    }
+    changed = (change.effort, change.size, change.gain) != (1.0, 1.0, 1.0)
+    for name, (figure, factor, signs) in limits.items():
+        if changed and figure and name not in motor.attributes:
+            value = numbers([sign * figure * factor for sign in signs])
+            document.set_attribute(motor, name, value)
 
 
 def _add_mjcf_grousers(document: Document, body: Span, change: Change, pose: Pose) -> None:
