@@ -84,6 +84,17 @@ impl Stage {
         }
     }
 
+    /// The same, half of the weight on each, with ground and robot turned [rad].
+    fn on_slope(&self, angle: f64) -> Stance {
+        let turn = Rotation::new(angle);
+        let mut stance = self.stance([0.5, 0.5]);
+        (stance.angle, stance.position) = (angle, turn * stance.position);
+        for Bearing { contact, .. } in &mut stance.bearings {
+            (contact.point, contact.normal) = (turn * contact.point, turn * contact.normal);
+        }
+        stance
+    }
+
     fn scene(&self) -> Scene<'_> {
         Scene {
             model: &self.model,
@@ -182,13 +193,7 @@ fn a_contact_that_would_have_to_pull_is_named_with_its_force() {
 fn a_braked_robot_on_a_slope_holds_from_the_friction_of_the_angle_on() {
     let mut stage = Stage::new();
     let (friction, angle) = (0.9, 0.4);
-    let turn = Rotation::new(angle);
-    let mut stance = stage.stance([0.5, 0.5]);
-    (stance.angle, stance.position) = (angle, turn * stance.position);
-    for bearing in &mut stance.bearings {
-        let contact = &mut bearing.contact;
-        (contact.point, contact.normal) = (turn * contact.point, turn * contact.normal);
-    }
+    let stance = stage.on_slope(angle);
     let needed = libm::sin(angle) * stage.weight();
     for (share, holds) in [(1.01, true), (0.99, false)] {
         // Both tracks are one drive here.
@@ -359,13 +364,8 @@ fn a_lock_holds_what_stands_and_holds_back_what_moves() {
         (0.3, -speed, true),
         (-0.3, -speed, false),
     ] {
-        let turn = Rotation::new(angle);
-        let mut stance = stage.stance([0.5, 0.5]);
-        (stance.angle, stance.position) = (angle, turn * stance.position);
+        let mut stance = stage.on_slope(angle);
         stance.drives = vec![DriveMean { force: 0.0, speed }];
-        for Bearing { contact, .. } in &mut stance.bearings {
-            (contact.point, contact.normal) = (turn * contact.point, turn * contact.normal);
-        }
         let found = balance::balance(&stage.scene(), &stance, 1e-6).expect("there is a weight");
         assert_eq!(found.holds(), holds, "{angle} rad, {speed} m/s");
     }
@@ -409,7 +409,7 @@ fn a_shoe_moves_as_the_chain_runs_where_its_contact_is() {
             );
         } else if arm.x > 0.5 * front.radius {
             round += 1;
-            // The chord over two pitches is a little shorter than the way.
+            // The chord over two pitches is a little shorter than the arc.
             let along = -crate::geometry::left_of(arm).normalize();
             assert!((motion - along).length() < 0.25, "{motion} for {along}");
         }

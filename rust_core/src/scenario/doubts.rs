@@ -17,8 +17,6 @@ const SUNK: f64 = 1e-3;
 /// [kg/m^3] Densities that no robot comes near.
 const AIR: f64 = 1.2;
 const GOLD: f64 = 19_300.0;
-/// [m/s^2] The weight of a robot is meant to be that on Earth.
-const GRAVITY: f64 = 9.81;
 /// Friction that no ground has: rubber on dry concrete has about 1.
 const MOST_FRICTION: f64 = 3.0;
 
@@ -226,7 +224,7 @@ impl Robot {
     /// Round an end of radius r shoes of pitch p are bent by p/r: a spring k presses them off it with k/r. At a speed v they are
     /// bent with v/r, and a damper d takes about d v/r^2 of the traction.
     fn add_doubts_of_pins(&self, chain: &SegmentalTrack, doubts: &mut Doubts) {
-        let (half, radius) = (0.5 * self.mass * GRAVITY, self.outline.smallest_radius());
+        let (half, radius) = (0.5 * self.earth_weight(), self.outline.smallest_radius());
         let most = (half * radius, "N m/rad");
         let what = "with which a track presses itself off its smaller end with half the weight";
         let path = "robot.track.pin_stiffness";

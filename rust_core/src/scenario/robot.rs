@@ -42,6 +42,12 @@ object! {
 }
 
 impl Robot {
+    /// [N] Its weight on Earth, by which springs are meant; the scenario's gravity may be 0.
+    pub(crate) fn earth_weight(&self) -> f64 {
+        const EARTH: f64 = 9.81;
+        self.mass * EARTH
+    }
+
     /// [m] The convex polygons of its belly, counter-clockwise; none if it has no belly.
     pub(crate) fn belly_polygons(&self) -> impl Iterator<Item = &[[f64; 2]]> {
         self.belly.iter().map(Vec::as_slice)

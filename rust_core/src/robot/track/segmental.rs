@@ -8,8 +8,6 @@ use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, left_of, lower_tangent, 
 use crate::robot::{BodyKind, Bushing, ChainOfShoes, Mount, Part, Shape, Sprocket, Tensioner};
 use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, ScenarioError, SegmentalTrack, ShoeShape};
 
-/// [m/s^2] For the default pre-tension, a share of the weight; the scenario's gravity may be 0.
-const GRAVITY: f64 = 9.81;
 /// Largest mass of the rest of the robot, in shoes; docs/decisions/0008 has the gaps of pins beyond that.
 const HEAVIEST: f64 = 3000.0;
 /// Travel of the tensioner from its pre-tension to no force, in pitches.
@@ -170,7 +168,7 @@ fn shrunk(disc: Disc, inside: f64) -> Disc {
 
 /// The tensioners of both tracks, lumped together.
 fn tensioner(robot: &Robot, track: &SegmentalTrack, pitch: f64) -> Tensioner {
-    let pre_tension = track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
+    let pre_tension = track.pre_tension.unwrap_or(robot.earth_weight() / 40.0);
     let stiffness = track
         .tensioner_stiffness
         .unwrap_or(pre_tension / (SOFTNESS * pitch));
