@@ -9,6 +9,8 @@ mod outline;
 mod parts;
 mod sides;
 mod start;
+#[cfg(test)]
+mod tests;
 mod track;
 
 pub use masses::{ChassisBody, WheelBody};

@@ -1,0 +1,284 @@
+//! However a robot is taken apart, its mass, centre of mass and moment of inertia are those of the scenario.
+
+use approx::assert_relative_eq;
+
+use super::{Model, MotorRule};
+use crate::geometry::{Rotation, Vector};
+use crate::scenario::{ClosedSurface, ClosedTrack, Ends, Pi, Robot, Scenario, Track};
+use crate::terrain::Ground;
+
+/// Bodies that add up.
+#[derive(Default)]
+struct Sum {
+    mass: f64,
+    moment: Vector,
+    about_origin: f64,
+}
+
+impl Sum {
+    fn add(&mut self, mass: f64, place: Vector, inertia: f64) {
+        self.mass += mass;
+        self.moment += place * mass;
+        self.about_origin += inertia + mass * place.length_squared();
+    }
+
+    fn center(&self) -> Vector {
+        self.moment / self.mass
+    }
+
+    fn inertia(&self) -> f64 {
+        self.about_origin - self.mass * self.center().length_squared()
+    }
+
+    fn check(&self, robot: &Robot) {
+        assert_relative_eq!(self.mass, robot.mass, max_relative = 1e-13);
+        let off = self.center() - Vector::from(robot.center_of_mass);
+        assert!(off.length() < 1e-14, "{off} m");
+        assert_relative_eq!(
+            self.inertia(),
+            robot.moment_of_inertia,
+            max_relative = 1e-12
+        );
+    }
+}
+
+/// All bodies of a model, with its arms at an angle of 0.
+fn whole(model: &Model) -> Sum {
+    let mut sum = Sum::default();
+    let turning: f64 = (0..model.drives).map(|k| model.drive_inertia(k)).sum();
+    let of_chassis = model.moment_of_inertia + turning;
+    sum.add(model.mass, model.center_of_mass, of_chassis);
+    for arm in &model.flippers {
+        sum.add(arm.mass, arm.pivot + arm.arm, arm.moment_of_inertia);
+    }
+    for chain in &model.chains {
+        for place in chain.path.places(0.0) {
+            sum.add(chain.shoe_mass, place.translation, chain.shoe_inertia);
+        }
+        let of_sprocket = chain.sprocket.as_ref().map_or(0.0, |s| s.inertia);
+        sum.add(0.0, Vector::ZERO, of_sprocket);
+    }
+    sum
+}
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+/// The Engineer on every track model.
+fn on_all_tracks() -> Vec<Robot> {
+    let texts = [
+        include_str!("../../../tests/scenarios/engineer_belt_step.json"),
+        include_str!("../../../tests/scenarios/engineer_chain_step.json"),
+        include_str!("../../../tests/scenarios/engineer_force_step.json"),
+        include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
+        include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json"),
+        include_str!("../../../tests/scenarios/engineer_hybrid_step.json"),
+        include_str!("../../../tests/scenarios/engineer_sprocket_step.json"),
+    ];
+    texts.map(|text| scenario(text).robot).to_vec()
+}
+
+/// The same with arms at both ends, at an angle [rad].
+fn on_arms(angle: f64) -> Vec<Robot> {
+    let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
+    let mut flippers = scenario(text).robot.flippers.expect("it has some");
+    (flippers.ends, flippers.angle) = (Ends::Both, angle);
+    let mut robots = on_all_tracks();
+    for robot in &mut robots {
+        robot.flippers = Some(flippers.clone());
+        robot.moment_of_inertia = 1.0;
+    }
+    robots
+}
+
+/// With each track on a ground of its own.
+fn on_two_lanes(robot: &Robot) -> Model {
+    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+    let mut ground = Ground::new(&scenario(text).terrain, robot.gauge).expect("it is ground");
+    let lane = ground.lanes.remove(0);
+    let ground = Ground::apart([lane.clone(), lane], None, ground.goal).expect("they overlap");
+    Model::on(robot, &ground).expect("it is valid")
+}
+
+fn model(robot: &Robot) -> Model {
+    Model::new(robot).expect("it is valid")
+}
+
+/// [N] What all motors of its tracks can give.
+fn force(model: &Model) -> f64 {
+    model.motor.force * model.motors as f64
+}
+
+#[test]
+fn all_bodies_together_are_the_robot() {
+    for robot in on_all_tracks().iter().chain(&on_arms(0.0)) {
+        for model in [model(robot), on_two_lanes(robot)] {
+            whole(&model).check(robot);
+            whole(&model.with_circulating_mass()).check(robot);
+            assert_relative_eq!(model.total_mass(), robot.mass, max_relative = 1e-14);
+        }
+    }
+}
+
+#[test]
+fn a_closed_track_has_mass_and_force_of_the_one_that_it_closes() {
+    for robot in on_all_tracks() {
+        let open = model(&robot);
+        let closed = Robot {
+            track: Track::Closed(ClosedTrack {
+                of: Box::new(robot.track.clone()),
+                surface: ClosedSurface::Own,
+            }),
+            ..robot.clone()
+        };
+        for model in [model(&closed), on_two_lanes(&closed)] {
+            whole(&model).check(&robot);
+            assert_relative_eq!(force(&model), force(&open), max_relative = 1e-14);
+            assert!(model.chains.is_empty() && !model.pushes_chassis);
+        }
+    }
+}
+
+#[test]
+fn two_sides_have_all_of_what_is_shared() {
+    for robot in on_all_tracks().iter().chain(&on_arms(0.0)) {
+        let (whole, sides) = (model(robot), on_two_lanes(robot));
+        assert_relative_eq!(force(&sides), force(&whole), max_relative = 1e-14);
+        let pre_tension = |model: &Model| -> f64 {
+            let of_chains = model.chains.iter().map(|chain| chain.tensioner.pre_tension);
+            of_chains.sum()
+        };
+        assert_relative_eq!(pre_tension(&sides), pre_tension(&whole));
+        let numbers: Vec<usize> = sides.chains.iter().map(|chain| chain.number).collect();
+        assert_eq!(numbers, (0..2 * whole.chains.len()).collect::<Vec<_>>());
+        // Each surface turns with one drive, each drive has a surface.
+        let mut drives: Vec<usize> = sides.parts.iter().filter_map(|part| part.drive).collect();
+        drives.sort_unstable();
+        drives.dedup();
+        assert_eq!(
+            drives.len(),
+            sides.drives - usize::from(sides.pushes_chassis)
+        );
+    }
+}
+
+#[test]
+fn chassis_and_wheels_are_the_robot() {
+    for robot in on_all_tracks() {
+        let model = model(&robot);
+        if !model.is_one_body() {
+            continue;
+        }
+        let (chassis, wheels) = model.bodies();
+        let mut sum = Sum::default();
+        sum.add(
+            chassis.mass,
+            chassis.center_of_mass,
+            chassis.moment_of_inertia,
+        );
+        for wheel in &wheels {
+            sum.add(wheel.mass, wheel.center, wheel.moment_of_inertia);
+        }
+        sum.check(&robot);
+        let turning: f64 = wheels
+            .iter()
+            .map(|wheel| wheel.moment_of_inertia / (wheel.radius * wheel.radius))
+            .sum();
+        if !wheels.is_empty() {
+            assert_relative_eq!(turning, robot.track_mass, max_relative = 1e-13);
+        }
+        for wheel in wheels {
+            let side = wheel.clone().of_one_side();
+            assert_relative_eq!(2.0 * side.mass, wheel.mass);
+            assert_relative_eq!(2.0 * side.moment_of_inertia, wheel.moment_of_inertia);
+        }
+    }
+}
+
+#[test]
+fn raised_arms_carry_the_centre_of_mass_along() {
+    let angle = 0.8;
+    for robot in on_arms(angle) {
+        let model = model(&robot);
+        let (mass, center) = model.mass_center(&model.running_at_start(0.0));
+        let mut sum = whole(&model);
+        for arm in &model.flippers {
+            let raised = Rotation::new(arm.sign() * angle) * arm.arm;
+            sum.moment += (raised - arm.arm) * arm.mass;
+        }
+        assert_relative_eq!(mass, robot.mass, max_relative = 1e-14);
+        assert!((center - sum.center()).length() < 1e-14);
+        let fixed = model.as_one_body(&model.running_at_start(0.0));
+        assert!((fixed.center_of_mass - center).length() < 1e-14);
+    }
+}
+
+#[test]
+fn nothing_reaches_farther_than_the_tip_of_an_arm() {
+    for robot in on_arms(0.0) {
+        let model = model(&robot);
+        let flippers = robot.flippers.as_ref().expect("it has some");
+        let reach = model.flippers.iter().map(|arm| {
+            let to_pivot = (arm.pivot - model.center_of_mass).length();
+            to_pivot + flippers.length + flippers.tip_radius
+        });
+        assert_relative_eq!(model.reach(), reach.fold(0.0, f64::max));
+    }
+    for robot in on_all_tracks() {
+        let model = model(&robot);
+        let far = model
+            .track_parts()
+            .flat_map(|part| part.discs().collect::<Vec<_>>());
+        let far = far.map(|(tip, _)| (tip.center - model.center_of_mass).length() + tip.radius);
+        let far = far.fold(0.0, f64::max);
+        assert!(model.reach() >= far, "{} m, {far} m", model.reach());
+        assert!(model.reach() < far + 0.05, "{} m, {far} m", model.reach());
+    }
+}
+
+#[test]
+fn a_track_runs_round_wheels_that_stand_for_one() {
+    let mut robot = on_arms(0.0).remove(3);
+    for as_track in [true, false] {
+        let Track::Line(line) = &mut robot.track else {
+            panic!("it is a line")
+        };
+        line.as_track = as_track;
+        let model = model(&robot);
+        assert!(
+            model
+                .mounts()
+                .all(|mount| model.has_track(mount) == as_track)
+        );
+    }
+}
+
+/// Both tracks feel at the belt what one sprocket feels, times two, over the radius for each of torque and rate.
+#[test]
+fn motors_are_seen_from_the_belt() {
+    let mut robot = on_all_tracks().remove(0);
+    let radius = robot.outline.belt_radius();
+    robot.drivetrain.rotor_inertia = 0.01;
+    robot.drivetrain.controller = Some(Pi {
+        gain: 3.0,
+        integral: 40.0,
+    });
+    let rule = MotorRule::of(&robot.drivetrain, &robot.outline);
+    let correction = rule.correction.expect("it corrects its speed");
+    let at_belt = 2.0 / (radius * radius);
+    assert_relative_eq!(rule.force, 2.0 * robot.drivetrain.max_torque / radius);
+    assert_relative_eq!(rule.rotor_mass, 0.01 * at_belt);
+    assert_relative_eq!(correction.gain, 3.0 * at_belt);
+    assert_relative_eq!(correction.integral, 40.0 * at_belt);
+    // The error at the end, and the sum of errors up to there by the rule of the trapezoid.
+    let (speed, target, error, sum, time) = (0.35, 0.4, 0.08, 7.0, 1e-3);
+    let force = correction.force(target, error, sum, time);
+    let errors = 0.5 * time * (error + (target - speed));
+    let expected = correction.gain * (target - speed) + correction.integral * errors + sum;
+    assert_relative_eq!(
+        force.at_rest - force.slope * speed,
+        expected,
+        max_relative = 1e-12
+    );
+}
