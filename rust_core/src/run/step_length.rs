@@ -156,3 +156,100 @@ pub(super) fn fastest_turn(scenario: &Scenario, parts: &[Part]) -> f64 {
         .map_or(0.0, |f| f.rate_limit);
     of_flippers.max(scenario.robot.drivetrain.max_speed / tip)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::float_cmp)] // lengths are handed on
+
+    use super::*;
+
+    const ACCURACY: f64 = 1e-6;
+    const RULE: StepRule = StepRule::Accuracy {
+        accuracy: ACCURACY,
+        longest: 0.01,
+    };
+
+    /// After a step of `h` [s] with an error of so many times the accuracy.
+    fn after(h: f64, ratio: f64) -> (StepControl, Result<(), f64>) {
+        let mut control = StepControl {
+            wanted: h,
+            last: 1.0,
+        };
+        let judged = control.judge(RULE, h, ratio * ACCURACY);
+        (control, judged)
+    }
+
+    #[test]
+    fn a_step_is_repeated_only_where_its_error_exceeds_the_accuracy_by_half() {
+        assert_eq!(after(1e-3, 1.49).1, Ok(()));
+        for ratio in [1.51, 40.0, f64::INFINITY] {
+            let (control, judged) = after(1e-3, ratio);
+            let shorter = judged.expect_err("it is off by too much");
+            assert!((1e-4..=0.7e-3).contains(&shorter), "{shorter} s");
+            assert_eq!(control.wanted, shorter);
+        }
+        assert_eq!(after(SHORTEST.value(), 40.0).1, Ok(()));
+    }
+
+    #[test]
+    fn errors_of_the_third_order_settle_where_the_controller_keeps_its_length() {
+        let mut control = StepControl::default();
+        let mut h = 1e-4;
+        for _ in 0..200 {
+            control
+                .judge(RULE, h, ACCURACY * (h / 2e-3_f64).powi(3))
+                .ok();
+            h = control.next(RULE, 0.0, f64::INFINITY);
+        }
+        // (AIM / r)^0.35 r^0.2 is 1 at this share of the accuracy.
+        let ratio: f64 = AIM.powf(0.35 / 0.15);
+        let settled = 2e-3 * ratio.cbrt();
+        assert!((h - settled).abs() < 1e-6 * settled, "{h} s, {settled} s");
+    }
+
+    #[test]
+    fn a_step_that_was_cut_short_says_nothing_against_a_longer_one() {
+        let (mut control, _) = after(4e-3, 0.6);
+        let wanted = control.wanted;
+        control
+            .judge(RULE, 1e-4, 1e-5 * ACCURACY)
+            .expect("it will do");
+        assert_eq!(control.wanted, wanted);
+        let next = control.next(RULE, 1.0, f64::INFINITY);
+        assert_eq!(next, wanted);
+    }
+
+    #[test]
+    fn no_short_step_is_left_for_the_end() {
+        let (control, _) = after(4e-3, 0.6);
+        let wanted = control.wanted;
+        assert_eq!(
+            control.next(RULE, 1.0, 1.0 + 0.9 * wanted),
+            1.0 + 0.9 * wanted - 1.0
+        );
+        let half = control.next(RULE, 0.0, 1.2 * wanted);
+        assert_eq!(half, 0.6 * wanted);
+    }
+
+    #[test]
+    fn steps_of_a_given_length_end_at_its_multiples() {
+        let rule = StepRule::Fixed(0.25);
+        let mut control = StepControl::default();
+        assert_eq!(control.judge(rule, 0.25, f64::INFINITY), Ok(()));
+        assert_eq!(control.next(rule, 0.5, f64::INFINITY), 0.25);
+        assert_eq!(control.next(rule, 0.625, f64::INFINITY), 0.125);
+        assert_eq!(control.next(rule, 0.5, 0.5625), 0.0625);
+    }
+
+    #[test]
+    fn only_what_steps_lead_to_is_taken_from_a_snapshot() {
+        assert!(StepControl::default().fits());
+        assert!(!StepControl::never().fits());
+        let control = |wanted: f64, last: f64| StepControl { wanted, last };
+        assert!(control(LONGEST.value(), LEAST).fits());
+        assert!(!control(1.1 * LONGEST.value(), 1.0).fits());
+        for last in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(!control(1e-3, last).fits());
+        }
+    }
+}
