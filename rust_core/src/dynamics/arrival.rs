@@ -65,7 +65,8 @@ impl Dynamics {
         let drives = &problem.motors[self.model.drive_motors()];
         let of_drives = drives.iter().map(|motor| match motor.hold {
             _ if motor.correction.is_some() => None,
-            Hold::Holds => Some(Middle::Held(problem.motor_load(motor))),
+            // A lock bears more than the motor gives.
+            Hold::Holds => Some(Middle::Held(problem.motor_load(motor).min(1.0))),
             Hold::Pushes | Hold::Brakes => {
                 Some(Middle::Left(problem.motor_speed(motor) - motor.target))
             }

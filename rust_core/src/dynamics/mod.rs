@@ -324,8 +324,10 @@ impl Dynamics {
 
     /// [m/s] Upper bound of the speed of any point of the outline; `reach` is the farthest from the centre of mass [m].
     pub(crate) fn fastest(&self, state: &State, reach: f64) -> f64 {
-        let speeds = (0..state.drives.len()).map(|k| state.track_speed(&self.model, k).abs());
-        let surface = speeds.fold(0.0, f64::max);
+        let over =
+            |mount| (0..state.drives.len()).map(move |k| state.speed_over(mount, k, &self.model));
+        let surface = self.model.mounts().flat_map(over);
+        let surface = surface.fold(0.0, |fastest: f64, speed| fastest.max(speed.abs()));
         let shoes = state.shoes.iter().map(|shoe| {
             let pitch = self.model.chains[0].path.pitch;
             shoe.twist.velocity.length() + pitch * shoe.twist.turn.abs()

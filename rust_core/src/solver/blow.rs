@@ -38,6 +38,7 @@ impl Problem {
     /// and tangents, and motors have no time to do anything.
     pub(super) fn rebound(&mut self, share: f64) {
         let blow: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
+        let along: Vec<f64> = self.bilaterals.iter().map(|each| each.impulse).collect();
         self.start_from_here();
         for contact in &mut self.contacts {
             contact.normal_impulse *= share;
@@ -51,6 +52,9 @@ impl Problem {
         for (contact, [normal, friction]) in self.contacts.iter_mut().zip(blow) {
             contact.normal_impulse += (1.0 + share) * normal;
             contact.friction_impulse += (1.0 + share) * friction;
+        }
+        for (bilateral, blow) in self.bilaterals.iter_mut().zip(along) {
+            bilateral.impulse += blow;
         }
     }
 

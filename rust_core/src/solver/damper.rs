@@ -65,6 +65,12 @@ impl Inertia {
         }
     }
 
+    /// [J] Its kinetic energy without constraints.
+    pub(super) fn energy(&self) -> f64 {
+        let momentum = self.damper.at(0.0);
+        0.5 * momentum * momentum / self.damper.stiffness
+    }
+
     /// [N s] Its impulse at these velocities.
     pub(super) fn impulse(&self, unknowns: &[f64]) -> f64 {
         self.damper.at(self.row.along(unknowns))

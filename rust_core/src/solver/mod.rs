@@ -119,11 +119,11 @@ impl Problem {
         self.balance();
     }
 
-    /// Finds them from the states of the last solve or, as that can end in a jam to which a search from the air does not
-    /// come, from there.
+    /// Searches from the states of the last solve and, where that finds nothing, or its offsets do too much work, from where
+    /// all contacts are open.
     fn find(&mut self) -> bool {
         let mut starts = [Start::LastStates, Start::Air].into_iter();
-        starts.any(|start| self.search(start) && !self.offsets_throw())
+        starts.any(|start| self.search(start) && !self.offsets_do_too_much())
     }
 
     /// Searches for them; returns whether they agree.
@@ -144,20 +144,33 @@ impl Problem {
         (self.follow_path(start)).is_some_and(|off| off < AGREEMENT.value())
     }
 
-    /// Whether contacts that jam give more energy by how they move along their directions than there was. Wedged together
-    /// almost exactly, bodies would have to move fast to follow contacts that hardly move.
-    fn offsets_throw(&self) -> bool {
+    /// Whether the offsets of contacts do more work than the kinetic energy that bodies have without constraints. Wedged
+    /// together almost exactly, they would have to move fast to follow contacts that hardly move.
+    fn offsets_do_too_much(&self) -> bool {
         let of_contact = |c: &Contact| {
             (c.normal.offset * c.normal_impulse).abs()
                 + (c.tangent.offset * c.friction_impulse).abs()
         };
         let given: f64 = self.contacts.iter().map(of_contact).sum();
-        let moving = self.masses.iter().zip(&self.free);
-        given > 0.5 * moving.map(|(mass, v)| mass * v * v).sum::<f64>()
+        let of_body = |(mass, v): (&f64, &f64)| 0.5 * mass * v * v;
+        let mut bodies = self.masses.iter().zip(&self.free);
+        let of_base: f64 = bodies.by_ref().take(BASE).map(of_body).sum();
+        if given <= of_base {
+            return false;
+        }
+        // The drive of a ring has no inertia of its own.
+        let is_of_ring = |at: usize| {
+            let mut on = self.motors.iter().map(|motor| motor.on);
+            on.any(|on| matches!(on, Driven::Ring(k) if self.layout.spin(k) == at))
+        };
+        let beside = (BASE..).zip(bodies).filter(|(at, _)| !is_of_ring(*at));
+        let of_bodies: f64 = beside.map(|(_, body)| of_body(body)).sum();
+        let of_inertias: f64 = self.inertias.iter().map(Inertia::energy).sum();
+        given > of_base + of_bodies + of_inertias
     }
 
-    /// Lets all contacts move along their directions as these are: contacts that jam cannot all open or slide on their
-    /// own. Returns whether that changes anything.
+    /// Sets all offsets to 0: contacts that jam cannot all open or slide on their own. Returns whether that changes
+    /// anything.
     fn forget_offsets(&mut self) -> bool {
         if !self.contacts.iter().any(Contact::has_offset) {
             return false;

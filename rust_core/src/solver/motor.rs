@@ -78,6 +78,11 @@ impl Motor {
         }
     }
 
+    /// Whether there is no motor.
+    pub(crate) fn is_none(&self) -> bool {
+        self.hold == Hold::Free
+    }
+
     /// The same behind a gear that locks itself: that holds it at rest whether the motor has an impulse to give or not.
     pub(crate) fn behind_lock(self) -> Self {
         Self {
@@ -143,7 +148,8 @@ impl Motor {
             return impulse;
         }
         let [most, least] = self.limits.map(|limit| limit.at(self.held_speed()));
-        impulse.clamp(least, most)
+        // A line of the limit may be below 0 at a speed far from where it began.
+        impulse.clamp(least.min(0.0), most.max(0.0))
     }
 
     /// Its state after a solve in which it gave this impulse [N s] at this speed [m/s].
@@ -311,6 +317,13 @@ mod tests {
         for (impulse, of_motor) in [(-5.0, -2.0), (-1.0, -1.0), (1.5, 1.5), (7.0, 2.0)] {
             assert_eq!(motor.without_lock(impulse), of_motor);
         }
+        // A line of the limit that is below 0 there leaves nothing to give.
+        motor.limits = [Damper::constant(-3.0), Damper::constant(-2.0)];
+        assert_eq!(
+            [-5.0, -1.0, 1.0].map(|impulse| motor.without_lock(impulse)),
+            [-2.0, -1.0, 0.0]
+        );
+        motor.aim(0.0, 2.0);
         // At its limit the motor gives all of it, and without a lock always.
         motor.hold = Hold::Pushes;
         assert_eq!(motor.without_lock(7.0), 7.0);

@@ -9,7 +9,7 @@
 //!
 //! The equations: docs/physics.md, "The path".
 
-use super::contact::{Contact, Grip};
+use super::contact::Grip;
 use super::motor::{Hold, Motor};
 use super::{AGREEMENT, Problem, Start};
 
@@ -60,7 +60,7 @@ impl Problem {
             })
         };
         if off.is_none() {
-            self.bearing().for_each(Contact::uncenter);
+            self.uncenter();
         }
         off
     }

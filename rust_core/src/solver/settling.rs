@@ -59,12 +59,15 @@ impl Problem {
             }
             let must_stand = is_after_path || solution >= FAR_FROM_JAM;
             let error = if must_stand { self.moved() } else { off };
+            // The last error that contacts had says nothing of how the base moves.
+            let is_alike = is_after_path || solution != FAR_FROM_JAM;
+            let before = before.filter(|_| is_alike);
             if off < AGREEMENT.value() && (!must_stand || stands(before, error)) {
                 return true;
             }
             last = self.center_after(before, error);
         }
-        self.bearing().for_each(Contact::uncenter);
+        self.uncenter();
         false
     }
 
@@ -91,7 +94,15 @@ impl Problem {
         }
     }
 
-    /// The same after a solution with an error, the states being those of the last one with its error, if there was one:
+    /// Goes back to the impulses about which they are damped.
+    pub(super) fn uncenter(&mut self) {
+        self.bearing().for_each(Contact::uncenter);
+        for bilateral in &mut self.bilaterals {
+            bilateral.impulse = bilateral.center;
+        }
+    }
+
+    /// The same as [`Self::center`] after a solution with an error, the states being those of the last one with its error, if there was one:
     /// then the impulses are taken to where such changes lead. Returns the error of this one, if they are not.
     fn center_after(&mut self, before: Option<f64>, error: f64) -> Option<f64> {
         let rest = rest_of_series(before, error);

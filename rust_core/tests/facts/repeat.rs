@@ -132,16 +132,16 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0x0285_9b64_9482_9453),
+        ("line of 5", engineer_on(line(5)), 0xf5c7_2b3f_24a7_70b3),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0x9a22_f097_e5b3_2f25,
+            0x5370_36dd_5387_ecaa,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0x772c_11ad_676e_84e9,
+            0xd6dd_e9d6_4693_2eee,
         ),
         ("chain", engineer_on(segmental(None)), 0xffd9_5a58_a999_7e12),
         (
@@ -153,7 +153,7 @@ fn every_build_finds_the_same_values() {
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0xe770_205e_e91c_551a,
+            0x33da_8a68_a7f6_8d52,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {

@@ -194,3 +194,33 @@ fn no_blow_on_drives_behind_locks_gains_energy() {
     }
     assert!(solved > 3900, "{solved} of 4000");
 }
+
+/// A body on a rail along a slope strikes the ground and bounces: the rail has turned what the ground gave.
+#[test]
+fn what_a_rail_does_to_a_blow_counts_in_both_of_its_parts() {
+    let along = Vector::new(0.6, 0.8);
+    for share in [0.0, 0.3, 1.0] {
+        let mut problem = body(along * -2.0, 0.0);
+        let across = right_of(along);
+        let rail = Row::on_base([across.x, across.y, 0.0]);
+        problem.bilaterals.push(Bilateral::new(rail));
+        problem.contacts.push(contact(Vector::ZERO, Vector::Y, 0.0));
+        problem.contacts[0].bears = false;
+        problem.solve();
+        problem.contacts[0].bears = true;
+        let before = problem.base().velocity;
+        problem.blow(share);
+        let gained = (problem.base().velocity - before) * 2.0;
+        let of_ground = Vector::Y * problem.contacts[0].normal_impulse;
+        let given = of_ground + across * problem.bilaterals[0].impulse;
+        assert!(
+            (given - gained).length() < 1e-6,
+            "{given} N s, {gained} N s"
+        );
+        assert_relative_eq!(
+            problem.base().velocity.dot(along),
+            2.0 * share,
+            epsilon = 1e-6
+        );
+    }
+}
