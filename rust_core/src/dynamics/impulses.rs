@@ -53,6 +53,8 @@ impl Dynamics {
         push.is_some() == self.push_force.is_some()
             && push.is_none_or(|push| plausible(&[push]))
             && motors.len() == self.problem.motors.len()
+            && (motors.iter().zip(&self.problem.motors))
+                .all(|(hold, motor)| (*hold == Hold::Free) == motor.is_none())
             && chains.len() == self.chains.len()
             && chains
                 .iter()
@@ -66,7 +68,10 @@ impl Dynamics {
     pub(crate) fn start_from(&mut self, impulses: Impulses) {
         self.push_force = impulses.push;
         for (motor, hold) in self.problem.motors.iter_mut().zip(impulses.motors) {
-            motor.hold = hold;
+            // A branch may have another torque: there may be a motor in only one of both.
+            if motor.is_none() == (hold == Hold::Free) {
+                motor.hold = hold;
+            }
         }
         self.loaded = impulses.contacts;
         self.identity = impulses.identity;

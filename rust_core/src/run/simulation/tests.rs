@@ -212,3 +212,26 @@ fn a_robot_that_is_pushed_by_a_force_keeps_the_balance_in_every_step() {
         assert!(pushed > 0.1 * weight, "{support:?}: {pushed} N");
     }
 }
+
+/// Without torque there is no motor; with some there is one, whatever was there before.
+#[test]
+fn a_branch_has_the_motors_of_its_own_torque() {
+    let mut weak = engineer();
+    weak.robot.drivetrain.max_torque = 0.0;
+    let mut strong = weak.clone();
+    strong.robot.drivetrain.max_torque = 6.0;
+    let [weak, strong] = [weak, strong].map(|s| ValidScenario::new(&s).expect("it is valid"));
+    let mut stands = Simulation::new(&weak);
+    run_until(&mut stands, 0.3);
+    let mut drives = stands.branch(&strong);
+    run_until(&mut drives, 0.8);
+    assert!(drives.reading().velocity.x > 0.05);
+    let mut rolls = drives.branch(&weak);
+    run_until(&mut rolls, 0.9);
+    assert!(rolls.drive_force().abs() < 1e-12);
+    // A snapshot has no motor that the robot has not.
+    let [without, with] = [&stands, &drives].map(|robot| robot.dynamics.impulses());
+    let lanes = &drives.ground.lanes;
+    assert!(drives.dynamics.fits(&with, lanes) && stands.dynamics.fits(&without, lanes));
+    assert!(!drives.dynamics.fits(&without, lanes) && !stands.dynamics.fits(&with, lanes));
+}
