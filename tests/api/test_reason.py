@@ -71,7 +71,8 @@ def test_every_run_that_does_not_clear_has_a_reason(tipped: c2d.Run) -> None:
     short = c2d.simulate(ROBOT, c2d.terrains.step(0.05), duration=1.0)
     assert short.reason == "timed out after 1.00 s, still driving at 99 % of the commanded speed"
     end = c2d.terrains.from_points([(-3, 0), (0, 0), (1, 0)], goal=0.9, friction=0.9)
-    fallen = c2d.simulate(ROBOT, end)
+    with pytest.warns(c2d.ScenarioWarning, match="cannot be cleared"):
+        fallen = c2d.simulate(ROBOT, end)
     assert fallen.outcome is c2d.Outcome.LEFT_TERRAIN
     assert fallen.reason.startswith("left the terrain after")
     stopped = c2d.simulate(ROBOT, c2d.terrains.step(0.3, friction=0.3))
@@ -99,3 +100,7 @@ def test_a_goal_that_no_robot_clears_on_the_ground_is_doubted() -> None:
     scenario = c2d.Scenario(ROBOT, ground, duration=300.0)
     with pytest.warns(c2d.ScenarioWarning, match="goal cannot be cleared: beyond .* the ground"):
         scenario.replace({"goal": 99.8}).validate()
+    points = [(-3.0, 0.0), (0.0, 0.0), (0.0, 0.02), (2.0, 0.02)]
+    ends = scenario.replace({"terrain": c2d.terrains.from_points(points, goal=2.0)})
+    with pytest.warns(c2d.ScenarioWarning, match=r"terrain\.goal cannot be cleared: beyond 1\."):
+        ends.validate()

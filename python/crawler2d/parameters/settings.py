@@ -114,8 +114,9 @@ class Start(Parameters, path="start"):
     Parameters
     ----------
     approach : float
-        [m] From the robot's foremost point to the first edge at or beyond x = 0. The ground must
-        reach under the whole robot there.
+        [m] From the robot's foremost point to the first edge at or beyond x = 0, or to that of a
+        barrier which begins before its step field. The ground must reach under the whole robot
+        there.
     track_phase : float
         [m] Initial advance of all wheels, or of the belt.
     angle : float

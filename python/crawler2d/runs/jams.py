@@ -149,8 +149,8 @@ def jams(
     Raises
     ------
     ScenarioError
-        If the scenario breaks a rule, or has another track model, no friction, no speed, or another
-        ground under each track.
+        If the scenario breaks a rule, or has another track model, no friction, friction by segment,
+        no speed, or another ground under each track.
     SimulationDiverged
         If the simulation that tells whether one is stable became non-finite.
 

@@ -113,6 +113,10 @@ fn check(scenario: &Scenario, ground: &Ground) -> Result<(), ScenarioError> {
         let rule = "must be the same under both tracks";
         return Err(ScenarioError::new("terrain", "two lanes", rule));
     }
+    if let Some(path) = scenario.terrain.path_of_segments("terrain") {
+        let rule = "must be null for jams, whose faces have one friction each";
+        return Err(ScenarioError::new(path, "a list", rule));
+    }
     if scenario.drive.speed == 0.0 {
         let rule = "must not be 0: jams are of a robot that drives";
         return Err(ScenarioError::new("drive.speed", 0.0, rule));

@@ -17,17 +17,13 @@ pub(crate) fn start_position(
         ..d
     };
     let running = model.running_at_start(scenario.start.track_phase);
-    // Then the lower run need not join discs that are neighbours in the list.
-    let has_more = scenario.robot.outline.discs.len() > 2;
     // The shapes above each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
     for part in model.parts.iter().filter(|part| !part.kind.is_in_chain()) {
         let mount = running.mounted(part.mount, Pose::IDENTITY);
         let placed = |p: Vector| turned(mount.transform_point(p));
         touching[part.lane].add(part, part.run(&running), placed);
-        if has_more {
-            touching[part.lane].add_runs(part, placed);
-        }
+        touching[part.lane].add_runs(part, placed);
     }
     // The outline counts for where the robot begins, even if the model does not touch there.
     let outline = outline_discs(&scenario.robot.outline).into_iter();
@@ -116,12 +112,15 @@ impl Touching {
         }
     }
 
-    /// Adds the straight runs of a hull.
+    /// Adds the straight runs of a hull of more than two discs: they need not join neighbours in its list.
     fn add_runs(&mut self, part: &Part, placed: impl Fn(Vector) -> Vector) {
-        if let Shape::Hull { discs, .. } = &part.shape {
-            let hull = Envelope::new(discs);
-            let runs = hull.runs().map(|run| run.map(&placed));
-            self.segments.extend(runs);
+        match &part.shape {
+            Shape::Hull { discs, .. } if discs.len() > 2 => {
+                let hull = Envelope::new(discs);
+                let runs = hull.runs().map(|run| run.map(&placed));
+                self.segments.extend(runs);
+            }
+            _ => {}
         }
     }
 

@@ -2,9 +2,12 @@
 
 use approx::assert_relative_eq;
 
-use super::{Model, MotorRule};
+use super::{Model, MotorRule, start_position};
 use crate::geometry::{Rotation, Vector};
-use crate::scenario::{ClosedSurface, ClosedTrack, Ends, Pi, Robot, Scenario, Track};
+use crate::scenario::{
+    ClosedSurface, ClosedTrack, Ends, HybridWheels, Pi, Robot, Scenario, Surface, Terrain, Track,
+    Wheel,
+};
 use crate::terrain::Ground;
 
 /// Bodies that add up.
@@ -281,4 +284,40 @@ fn motors_are_seen_from_the_belt() {
         expected,
         max_relative = 1e-12
     );
+}
+
+/// The lower run of its belt joins wheels that are no neighbours in the list, and covers one that hangs higher.
+#[test]
+fn a_closed_track_starts_on_what_is_highest_below_its_hull() {
+    let mut scenario = scenario(include_str!(
+        "../../../tests/scenarios/engineer_belt_step.json"
+    ));
+    scenario.robot.belly = None;
+    scenario.terrain = Terrain::Points {
+        points: vec![
+            [-3.0, 0.0],
+            [-0.31, 0.0],
+            [-0.30, 0.02],
+            [-0.29, 0.0],
+            [0.0, 0.0],
+            [0.0, 0.02],
+            [3.0, 0.02],
+        ],
+        goal: 0.0,
+        surface: Surface::sharp(0.9),
+        segment_friction: None,
+    };
+    let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
+    let placements = vec![[-0.15, 0.0, 0.06], [0.0, 0.0, 0.03], [0.15, 0.0, 0.06]];
+    scenario.robot.track = Track::Closed(ClosedTrack {
+        of: Box::new(Track::Hybrid(HybridWheels {
+            placements,
+            wheel: Wheel::Round,
+        })),
+        surface: ClosedSurface::Own,
+    });
+    let model = model(&scenario.robot);
+    let start = start_position(&scenario, &model, &ground).expect("it fits");
+    assert!((start.x + 0.3).abs() < 0.15, "its run is above the ridge");
+    assert_relative_eq!(start.y, 0.02 + 0.06, max_relative = 1e-12);
 }

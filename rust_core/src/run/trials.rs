@@ -12,13 +12,15 @@ use crate::limits::Cancel;
 use crate::observe::Outcome;
 use crate::scenario::{
     BeltTrack, ClosedSurface, ClosedTrack, Engine, Gait, Hold, Robot, Scenario, TorqueSharing,
-    Track,
+    Track, scaled_friction,
 };
 
 /// From how many instants a stop that rattles is tried.
 const STARTS: u32 = 5;
 /// In how many of these a change must free the robot.
 const ENOUGH: u32 = 4;
+/// [s] A trial takes no longer, however slow the command is.
+const LONGEST: f64 = 1e3;
 
 /// Diagnoses a simulation's stop; `None` if it has not stopped.
 ///
@@ -153,7 +155,7 @@ pub(super) fn shown_start(
     cancel: &Cancel,
 ) -> Result<Option<Simulation>, Error> {
     let Some(found) = stop.examine().filter(|found| !found.stationary) else {
-        return start(stop, change);
+        return start(&stop.copy(), change);
     };
     let mut series = TrialSeries::new(stop, &found, cancel);
     match series.attempt_change(change)? {
@@ -197,7 +199,8 @@ pub(super) fn duration(stop: &Simulation, change: Change) -> f64 {
 /// [s] The same of a change in the pose of the stop.
 fn pose_duration(stop: &Simulation) -> f64 {
     let criteria = &stop.scenario().criteria;
-    criteria.escape_time + criteria.escape_distance / stop.command().abs()
+    let time = criteria.escape_time + criteria.escape_distance / stop.command().abs();
+    time.min(LONGEST)
 }
 
 /// A stop, and the trials that have been made of it.
@@ -295,7 +298,7 @@ impl<'a> TrialSeries<'a> {
         Ok(&self.starts[i])
     }
 
-    /// Lets one start run for a time [s]; a change of the command changes neither that nor what is ahead.
+    /// Lets one start run for a time [s]. That, and which way is ahead, are those of the stop, whatever a change commands.
     fn follow(
         &self,
         mut simulation: Simulation,
@@ -415,7 +418,7 @@ fn variant_of(scenario: &Scenario, change: Change) -> Option<Scenario> {
         Change::TwiceTheFriction => {
             variant.terrain.scale_friction(2.0);
             if let Track::Force(force) = &mut robot.track {
-                force.skid_friction *= 2.0;
+                force.skid_friction = scaled_friction(force.skid_friction, 2.0);
             }
         }
         Change::NoBelly => *robot = robot.without_belly()?,

@@ -99,19 +99,19 @@ impl Scenario {
     fn add_doubts_of_goal(&self, to_goal: f64, end: f64, doubts: &mut Doubts) {
         let outline = &self.robot.outline;
         let last = end - outline.axle_distance() - outline.rear_radius();
-        if let Some(goal) = self.goal.filter(|goal| *goal > last) {
-            let reason = format!(
-                "cannot be cleared: beyond {last:.3} m the robot leaves the ground, which ends at {end:.3} m"
-            );
-            doubts.add("goal", goal, reason);
-        }
         let given = match (self.goal, &self.terrain) {
             (Some(goal), _) => Some(("goal", goal)),
             (None, Terrain::Points { goal, .. }) => Some(("terrain.goal", *goal)),
             _ => None,
         };
+        if let Some((path, goal)) = given.filter(|(_, goal)| *goal > last) {
+            let reason = format!(
+                "cannot be cleared: beyond {last:.3} m the robot leaves the ground, which ends at {end:.3} m"
+            );
+            doubts.add(path, goal, reason);
+        }
         if let Some((path, goal)) = given.filter(|_| to_goal <= 0.0) {
-            let reason = "is behind the robot at its start, which clears without a step";
+            let reason = "is behind the robot at its start, which clears where it stands";
             doubts.add(path, goal, reason);
         }
     }

@@ -70,11 +70,14 @@ impl Drivetrain {
         2.0 * self.max_torque / outline.belt_radius()
     }
 
-    /// Multiplies the torque that the motors have at any speed.
+    /// Multiplies the torque that the motors have at any speed, as far as it may be.
     pub(crate) fn scale_torque(&mut self, factor: f64) {
-        self.max_torque *= factor;
-        for [_, torque] in self.torque_curve.iter_mut().flatten() {
-            *torque *= factor;
+        let of_curve = self.torque_curve.iter_mut().flatten();
+        for torque in of_curve
+            .map(|[_, torque]| torque)
+            .chain([&mut self.max_torque])
+        {
+            *torque = TORQUE.cut(*torque * factor);
         }
     }
 

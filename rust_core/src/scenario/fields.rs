@@ -35,6 +35,12 @@ impl Range {
         (self.low..=self.high).contains(&x) && (self.low_included || x > self.low)
     }
 
+    /// The nearest number in it, if it has all its ends.
+    pub(super) fn cut(self, x: f64) -> f64 {
+        debug_assert!(self.low_included);
+        x.clamp(self.low, self.high)
+    }
+
     fn rule(self) -> String {
         let sign = if self.low_included { ">=" } else { ">" };
         let unit = if self.unit.is_empty() {

@@ -28,6 +28,7 @@ pub use fields::ScenarioError;
 pub use outline::TrackOutline;
 pub use robot::{End, Ends, Flippers, Robot};
 pub use settings::{ContactMethod, Engine, SeizureCriteria, Solver, Start};
+pub(crate) use terrain::scaled_friction;
 pub use terrain::{FieldPattern, Friction, MAX_POINTS, Stepfield, Surface, Terrain};
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ClosedSurface, ClosedTrack, ForceSupport,

@@ -21,7 +21,7 @@ pub struct Friction {
     pub coefficient: f64,
 }
 
-const COEFFICIENT: Range = Range::between(0.0, 100.0, "");
+pub(super) const COEFFICIENT: Range = Range::between(0.0, 100.0, "");
 
 impl Friction {
     /// Dry, as Coulomb has it.
@@ -282,11 +282,12 @@ impl Terrain {
         Some(friction.coefficient)
     }
 
-    /// Multiplies the friction of all its lanes.
+    /// Multiplies the friction of all its lanes, as far as it may be.
     pub(crate) fn scale_friction(&mut self, factor: f64) {
+        let scale = |coefficient: &mut f64| *coefficient = scaled_friction(*coefficient, factor);
         match self {
             Self::Flat { friction, .. } | Self::HalfRound { friction, .. } => {
-                friction.coefficient *= factor;
+                scale(&mut friction.coefficient);
             }
             Self::Step { surface, .. }
             | Self::Ramp { surface, .. }
@@ -296,7 +297,7 @@ impl Terrain {
             | Self::Stairs { surface, .. }
             | Self::DiagonalBarrier { surface, .. }
             | Self::RandomStepfield(Stepfield { surface, .. }) => {
-                surface.friction.coefficient *= factor;
+                scale(&mut surface.friction.coefficient);
             }
             Self::Points {
                 surface,
@@ -305,7 +306,7 @@ impl Terrain {
             } => {
                 let segments = segment_friction.iter_mut().flatten();
                 let all = segments.chain(std::iter::once(&mut surface.friction.coefficient));
-                all.for_each(|coefficient| *coefficient *= factor);
+                all.for_each(scale);
             }
             Self::Lanes {
                 left,
@@ -317,6 +318,11 @@ impl Terrain {
             }
         }
     }
+}
+
+/// A coefficient of friction times a factor, as far as it may be.
+pub(crate) fn scaled_friction(coefficient: f64, factor: f64) -> f64 {
+    COEFFICIENT.cut(coefficient * factor)
 }
 
 impl Fields<'_> {

@@ -9,6 +9,7 @@ use super::fields::{
     STIFFNESS, is_zero, joined, one_of,
 };
 use super::objects::{Choice, FromJson, choice, kinds, object};
+use super::terrain::COEFFICIENT;
 
 /// Largest number of wheels per side.
 pub(crate) const MAX_WHEELS: u32 = 200;
@@ -146,7 +147,7 @@ object! {
         /// What the robot slides or rolls on.
         support: ForceSupport = choice(),
         /// Friction of the skids; the smaller of this and the terrain's friction applies.
-        skid_friction: f64 = number(Range::between(0.0, 100.0, "")),
+        skid_friction: f64 = number(COEFFICIENT),
         /// Number of free wheels per side.
         wheel_count: u32 = integer(2, MAX_WHEELS),
     }

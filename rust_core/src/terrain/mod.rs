@@ -25,7 +25,8 @@ pub struct Ground {
     pub tracks: usize,
     /// [m] The x that the whole robot must pass.
     pub goal: f64,
-    /// [m] Where the obstacle begins: the first edge at or beyond x = 0, else the first of all, else 0.
+    /// [m] Where the obstacle begins: the first edge at or beyond x = 0, or where a field begins before that; else the first
+    /// of all, else 0.
     pub first_edge: f64,
 }
 
@@ -100,12 +101,15 @@ impl Ground {
             let points = skyline.points(begin - RUN_OUT.value(), end + RUN_OUT.value());
             Profile::new("terrain", &points, surface, true)
         };
-        if lanes[0] == lanes[1] {
-            return Ok(Self::of(vec![profile(&lanes[0])?], 1, end));
-        }
-        let [left, right, middle] = lanes;
-        let tracks = [profile(left)?, profile(right)?];
-        Self::apart(tracks, Some(profile(middle)?), end)
+        let mut ground = if lanes[0] == lanes[1] {
+            Self::of(vec![profile(&lanes[0])?], 1, end)
+        } else {
+            let [left, right, middle] = lanes;
+            let tracks = [profile(left)?, profile(right)?];
+            Self::apart(tracks, Some(profile(middle)?), end)?
+        };
+        ground.first_edge = first_edge(&ground.lanes, begin);
+        Ok(ground)
     }
 
     /// A profile under each track; without a profile of its own, the belly meets the higher of the two.
@@ -117,6 +121,8 @@ impl Ground {
         middle: Option<Profile>,
         goal: f64,
     ) -> Result<Self, ScenarioError> {
+        let first_edge_of_tracks = first_edge([&left, &right], 0.0);
+        let is_given = middle.is_some();
         let middle = match middle {
             Some(middle) => middle,
             None => upper_envelope("terrain", &left, &right)?,
@@ -126,21 +132,20 @@ impl Ground {
             right.under(Side::Right),
             middle.under(Side::Middle),
         ];
-        Ok(Self::of(lanes, 2, goal))
+        let mut ground = Self::of(lanes, 2, goal);
+        if !is_given {
+            // The envelope has corners where lanes cross, and all along their arcs.
+            ground.first_edge = first_edge_of_tracks;
+        }
+        Ok(ground)
     }
 
     fn of(lanes: Vec<Profile>, tracks: usize, goal: f64) -> Self {
-        let first = |profile: &Profile| {
-            let edges = &profile.edges;
-            let ahead = edges.iter().find(|edge| edge.x >= -COLLINEAR.value());
-            ahead.or(edges.first()).map(|edge| edge.x)
-        };
-        let first_edge = lanes.iter().filter_map(first).reduce(f64::min);
         Self {
+            first_edge: first_edge(&lanes, 0.0),
             lanes,
             tracks,
             goal,
-            first_edge: first_edge.unwrap_or(0.0),
         }
     }
 
@@ -188,10 +193,30 @@ impl Ground {
         points.fold(f64::NEG_INFINITY, |high, point| high.max(point.y))
     }
 
+    /// [m] The height under the first track at an x; at a vertical face that of its upper end, beyond the ends of the ground
+    /// that of the end.
+    pub(crate) fn height(&self, x: f64) -> f64 {
+        let profile = &self.lanes[0];
+        let [first, last] = [0, profile.points.len() - 1].map(|i| profile.points[i].x);
+        let [before, behind] = heights_at(profile, x.clamp(first, last));
+        before.max(behind)
+    }
+
     /// [m] The scenario's goal, or else the terrain's.
     pub fn goal_of(&self, scenario: &Scenario) -> f64 {
         scenario.goal.unwrap_or(self.goal)
     }
+}
+
+/// [m] The first edge of lanes whose obstacle begins at an x [m], else the first of all, else 0.
+fn first_edge<'a>(lanes: impl IntoIterator<Item = &'a Profile>, begin: f64) -> f64 {
+    let first = |profile: &Profile| {
+        let edges = &profile.edges;
+        let ahead = (edges.iter()).find(|edge| edge.x >= begin - COLLINEAR.value());
+        ahead.or(edges.first()).map(|edge| edge.x)
+    };
+    let all = lanes.into_iter().filter_map(first);
+    all.reduce(f64::min).unwrap_or(0.0)
 }
 
 /// One lane of the terrain at a path, with its goal [m].
@@ -269,17 +294,6 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
     Profile::new(path, &points, surface, true)
 }
 
-impl Ground {
-    /// [m] The height under the first track at an x; at a vertical face that of its upper end, beyond the ends of the ground
-    /// that of the end.
-    pub(crate) fn height(&self, x: f64) -> f64 {
-        let profile = &self.lanes[0];
-        let [first, last] = [0, profile.points.len() - 1].map(|i| profile.points[i].x);
-        let [before, behind] = heights_at(profile, x.clamp(first, last));
-        before.max(behind)
-    }
-}
-
 /// [m] Heights of a profile just before and just behind an x.
 fn heights_at(profile: &Profile, x: f64) -> [f64; 2] {
     let points = &profile.points;
@@ -295,6 +309,7 @@ fn heights_at(profile: &Profile, x: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::{FieldPattern, Stepfield};
 
     fn profile(points: &[[f64; 2]]) -> Profile {
         Profile::new("terrain", points, Surface::sharp(0.5), true).expect("a profile")
@@ -334,5 +349,49 @@ mod tests {
         let there = profile(&[[2.0, 0.0], [3.0, 0.0]]);
         let error = upper_envelope("terrain", &here, &there).expect_err("nothing in common");
         assert!(error.to_string().contains("common stretch"));
+    }
+
+    /// Turned far enough, the barrier of a field is longer than that.
+    #[test]
+    fn an_obstacle_begins_with_the_barrier_of_its_field() {
+        let field = Stepfield {
+            seed: 1,
+            pattern: FieldPattern::Flat,
+            posts: 2,
+            post: 0.1,
+            rise: 0.02,
+            levels: 4,
+            barrier_height: 0.1,
+            barrier_thickness: 1.0,
+            barrier_yaw: 0.0,
+            surface: Surface::sharp(0.9),
+        };
+        let ground = Ground::new(&Terrain::RandomStepfield(field), 0.2).expect("a ground");
+        assert!(
+            (ground.first_edge + 0.4).abs() < 1e-12,
+            "{} m",
+            ground.first_edge
+        );
+    }
+
+    /// The corners that the belly meets between two lanes are no obstacle of their own.
+    #[test]
+    fn two_lanes_of_one_shape_begin_where_that_does() {
+        let lane = |friction: f64| Terrain::Points {
+            points: vec![[-3.0, 0.0], [1.0, 0.0], [1.5, -0.3], [4.0, -0.3]],
+            goal: 1.5,
+            surface: Surface {
+                edge_radius: 0.5,
+                ..Surface::sharp(friction)
+            },
+            segment_friction: None,
+        };
+        let lanes = Terrain::Lanes {
+            left: Box::new(lane(0.9)),
+            right: Box::new(lane(0.8)),
+            middle: None,
+        };
+        let begins = |terrain| Ground::new(&terrain, 0.2).expect("a ground").first_edge;
+        assert_eq!(begins(lanes).to_bits(), begins(lane(0.9)).to_bits());
     }
 }

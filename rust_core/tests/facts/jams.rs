@@ -278,6 +278,14 @@ fn what_has_no_jams_of_this_kind_is_refused_by_name() {
         middle: None,
     };
     assert_eq!(path(&lanes), "terrain");
+    let mut icy = strong(line(4), 0.05, 0.9);
+    icy.terrain = Terrain::Points {
+        points: vec![[-3.0, 0.0], [0.0, 0.0], [0.0, 0.05], [3.0, 0.05]],
+        goal: 1.0,
+        surface: Surface::sharp(0.9),
+        segment_friction: Some(vec![0.9, 0.9, 0.1]),
+    };
+    assert_eq!(path(&icy), "terrain.segment_friction");
     let mut rough = strong(line(4), 0.05, 0.9);
     let point = |i: u32| [1e-3 * f64::from(i) - 3.0, 1e-4 * f64::from(i % 2)];
     rough.terrain = Terrain::Points {
