@@ -4,6 +4,7 @@ import copy
 import pickle
 import threading
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -283,3 +284,39 @@ def test_doubts_are_told_once_and_not_at_every_reset(scenario: Scenario) -> None
     sim.reset()  # warnings are errors
     with pytest.warns(c2d.ScenarioWarning, match="gravity"):
         sim.reset(c2d.Start())
+
+
+def test_metrics_of_a_copy_count_all_that_it_has_done(seizing: Scenario) -> None:
+    original = c2d.Simulation(seizing)
+    original.advance(1.0)
+    twin = copy.copy(original)
+    for sim in (original, twin):
+        sim.advance(0.5)
+    whole, later = original.to_run(), twin.to_run()
+    assert later.time[0] == 1.0
+    assert later.metrics == whole.metrics
+    assert later.metrics["distance"] == whole.position[-1, 0] - whole.position[0, 0]
+
+
+@pytest.mark.parametrize("speed", [0.0, -0.4, 1e-6])
+def test_after_another_command_there_is_no_stop_until_the_robot_has_stopped_again(
+    seizing: Scenario, speed: float
+) -> None:
+    sim = c2d.Simulation(seizing)
+    sim.advance(5.0)
+    found = sim.diagnosis()
+    assert found is not None
+    sim.command(speed=speed)
+    if speed > 0.0:
+        # A slower command the same way frees nothing; its trials are as long as they may be.
+        assert sim.to_run(trials=()).diagnosis is not None
+    else:
+        assert sim.diagnosis() is None
+
+
+def test_without_gravity_an_escape_force_is_refused() -> None:
+    robot = c2d.robots.engineer(flippers=None, track=c2d.BeltTrack())
+    still = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=0.0))
+    run = c2d.simulate(c2d.Scenario(still, c2d.terrains.flat(), gravity=0.0, duration=6.0))
+    with pytest.raises(c2d.ScenarioError, match="gravity must be > 0 for an escape force"):
+        run.escape_force()

@@ -11,7 +11,7 @@ __all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "glossary_text"]
 OUTCOMES = {
     "detracked": "a chain of shoes came off its guide or its wheels",
     "tipped_over": "the chassis tilted by more than criteria.tip_over_angle",
-    "left_terrain": "an end axle went beyond the end of the described ground",
+    "left_terrain": "an end axle went beyond the end of the ground, or a metre below all of it",
     "cleared": "the robot is past the goal",
     "seized": "stopped with ground jammed in a track; closed, that track gets free",
     "cycling": "stopped, moving to and fro by more than criteria.cycling_distance",

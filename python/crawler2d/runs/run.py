@@ -146,8 +146,8 @@ class Run(ShownRun):
         drive : Drive, optional
             Another command. The times of its schedules count from the start of this run.
         push : tuple of two floats, optional
-            [N], [s] A horizontal force at the centre of mass, above 0 towards +x, and the time in
-            which it rises from 0, evenly; then it stays.
+            [N], [s] A horizontal force at the chassis' centre of mass, above 0 towards +x, and the
+            time in which it rises from 0, evenly; then it stays.
         duration : float, optional
             [s] How long to continue; None takes the scenario's duration, from that instant.
         record : {"full", "summary"}
@@ -158,7 +158,8 @@ class Run(ShownRun):
         Returns
         -------
         Run
-            The run from that instant on; stops, metrics and outcome count from there.
+            The run from that instant on; stops, metrics and outcome count from there, but for
+            `time` and `time_to_clear`, which are on the clock of this run.
 
         Raises
         ------
@@ -314,9 +315,9 @@ class Run(ShownRun):
     def escape_force(self) -> EscapeForce:
         """Measure the push that moves the robot on from the stop that the run ended in.
 
-        A horizontal force at the centre of mass, in the commanded direction, is raised by a tenth
-        every half a second, from a hundredth of the weight on, until the robot has got ahead of its
-        greatest x before the stop by `criteria.escape_distance`.
+        A horizontal force at the chassis' centre of mass, in the commanded direction, is raised by
+        a tenth every half a second, from a hundredth of the weight on, until the robot has got
+        ahead of its greatest x before the stop by `criteria.escape_distance`.
 
         Returns
         -------
@@ -327,7 +328,7 @@ class Run(ShownRun):
         Raises
         ------
         ScenarioError
-            If the run did not end in a stop, or is a branch itself.
+            If the run did not end in a stop, or is a branch itself; without gravity.
         """
         time = branch_time(self, "stop")
         return EscapeForce(*_core.escape_force(self.scenario.to_json(), time))

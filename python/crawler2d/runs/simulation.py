@@ -212,8 +212,8 @@ class Simulation(TakesKeywords):
             [rad/s] The same by the rates at which they turn, in place of an angle; at 0 they stay
             where they are.
         push : float, optional
-            [N] Horizontal external force at the centre of mass, from now on; above 0 pushes towards
-            +x. None leaves it unchanged.
+            [N] Horizontal external force at the chassis' centre of mass, from now on; above 0
+            pushes towards +x. None leaves it unchanged.
 
         Raises
         ------
@@ -277,7 +277,8 @@ class Simulation(TakesKeywords):
         """Return all that it has done so far as a run, with its history.
 
         It is simulated once more with the same commands, and so bit by bit the same; a simulation
-        that goes on from a snapshot, as a copy does, has its run from there on.
+        that goes on from a snapshot, as a copy does, has its history from there on, but metrics and
+        events of all that it has done.
 
         Parameters
         ----------

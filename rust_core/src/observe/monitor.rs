@@ -31,7 +31,7 @@ pub(crate) struct Monitor {
     parts: Vec<Part>,
     /// Envelopes of the tracks, each with its lane.
     envelopes: Vec<TrackEnvelope>,
-    /// Whether a driver may still do something that changes everything.
+    /// Whether a driver may still do something that changes everything, or a controller, which adds up errors.
     may_change: bool,
     /// Whether a turning grouser may change the contacts while the pose stays the same.
     has_grousers: bool,
@@ -58,6 +58,7 @@ impl Monitor {
                 })
                 .collect(),
             may_change: scenario.drive.schedule.is_some()
+                || (scenario.robot.drivetrain.controller).is_some_and(|pi| pi.integral > 0.0)
                 || (scenario.drive.gait.is_some() && !model.flippers.is_empty()),
             parts: model.parts.clone(),
             has_grousers: model.parts.iter().any(Part::is_carried),
@@ -105,7 +106,7 @@ impl Monitor {
             self.observed.ended = self.ended(now, dt);
         }
         if now.time >= self.next_look() {
-            // The first step may be longer than the time between two: those within it are left out.
+            // The first step is not cut at looks: those within it are left out.
             while now.time >= self.next_look() {
                 self.observed.looks += 1;
             }
@@ -228,7 +229,7 @@ impl Monitor {
         }
     }
 
-    /// If the state does not change at all, it will not change later either: the run may end.
+    /// Where neither pose nor contacts change, and nothing else can, the run may end.
     fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[Contact]) {
         let here = Anchor {
             since: now.time,
@@ -259,6 +260,11 @@ impl Monitor {
     /// The outcome of a run that did not end in a stop or by time.
     pub(crate) fn ended_as(&self) -> Option<Outcome> {
         self.observed.ended
+    }
+
+    /// +1 or -1 as commanded when it last looked; 0 in a pause.
+    pub(crate) fn direction(&self) -> f64 {
+        self.observed.progress.direction
     }
 
     /// [s] Since when the robot has been stopped, if it is.

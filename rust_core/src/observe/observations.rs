@@ -16,9 +16,14 @@ use crate::units::Seconds;
 /// [s] Time between two checks of the progress; far shorter than any stop window.
 pub(super) const LOOK: Seconds = Seconds(0.01);
 
+/// Share of the time between two checks by which a window may be longer than some of them, as it is rounded.
+const ROUNDING: f64 = 1e-9;
+
 /// What a monitor has observed of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Observations {
+    /// [m] The x of the chassis frame and the track position where these observations begin.
+    pub start: [f64; 2],
     pub(super) looks: u64,
     pub(super) last_time: f64,
     pub(super) progress: Progress,
@@ -32,7 +37,7 @@ pub(crate) struct Observations {
     pub(super) beyond: f64,
     pub(super) ended: Option<Outcome>,
     pub(super) stays: bool,
-    /// [s] When the goal was first held, if ever.
+    /// [s] When the robot reached the goal for good; infinite if it has not.
     pub time_to_clear: f64,
     /// [m] Deepest penetration so far.
     pub max_penetration: f64,
@@ -91,6 +96,7 @@ impl Observations {
         next_look <= time + 2.0 * LOOK.value()
             && (self.last_time - time).abs() <= 2.0 * LOOK.value()
             && numbers.iter().all(|number| !number.is_nan())
+            && self.start.iter().all(|number| number.is_finite())
             && self.goal_since.is_none_or(f64::is_finite)
             && self.progress.fits(parts, lanes)
             && self.intrusions.fits(parts, lanes)
@@ -114,7 +120,7 @@ pub(super) struct Anchor {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// +1 or -1 as commanded; 0 in a pause.
-    direction: f64,
+    pub(super) direction: f64,
     history: VecDeque<Look>,
     best_advance: f64,
     best_angle: f64,
@@ -188,7 +194,8 @@ impl Progress {
 
     /// Takes one step of `dt` [s] of a robot whose end axles are `length` [m] apart.
     pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
-        let direction = if command == 0.0 {
+        // While it still brakes from the other direction it cannot follow.
+        let direction = if command == 0.0 || command * now.commanded_speed < 0.0 {
             0.0
         } else {
             command.signum()
@@ -221,7 +228,7 @@ impl Progress {
         let is_anew = self.history.is_empty();
         self.history.push_back(here);
         // For slow commands the window may be longer than any run, and is then never complete.
-        let span = (window / every).ceil() as usize;
+        let span = (window / every - ROUNDING).ceil() as usize;
         while self.history.len() > span.saturating_add(1) {
             self.history.pop_front();
         }

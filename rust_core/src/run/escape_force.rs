@@ -4,6 +4,7 @@ use super::{Simulation, ValidScenario};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::observe::Outcome;
+use crate::scenario::ScenarioError;
 
 /// First level of the push and the last, in weights, and from one to the next.
 const LEVELS: (f64, f64, f64) = (0.01, 10.0, 1.1);
@@ -33,7 +34,7 @@ pub struct EscapeForce {
 /// command.
 ///
 /// # Errors
-/// As [`simulate`](crate::simulate), and [`Error::Interrupted`] once `cancel` is asked.
+/// As [`simulate`](crate::simulate), [`Error::Interrupted`] once `cancel` is asked, and [`Error::Scenario`] without gravity.
 pub fn escape_force(
     scenario: &ValidScenario,
     at: f64,
@@ -41,6 +42,10 @@ pub fn escape_force(
 ) -> Result<EscapeForce, Error> {
     let stop = Simulation::replayed(scenario, at, cancel)?;
     let weight = stop.weight();
+    if weight <= 0.0 {
+        let rule = "must be > 0 for an escape force, whose levels are shares of the weight";
+        return Err(ScenarioError::new("gravity", 0.0, rule).into());
+    }
     let mut robot = stop.copy();
     let (direction, greatest) = (robot.direction(), stop.monitor().best_advance());
     let far = stop.scenario().criteria.escape_distance;

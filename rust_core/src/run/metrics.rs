@@ -4,7 +4,7 @@
 
 use super::Simulation;
 use crate::contact::depth;
-use crate::observe::{Event, EventKind, Reading};
+use crate::observe::{Event, EventKind};
 use crate::scenario::{Doubt, Engine};
 use crate::units::{Metres, Seconds};
 
@@ -57,8 +57,8 @@ metrics! {
     stopped_time ["s"] "time spent in stops"
     time_to_free ["s"] "longest stop from which the robot freed itself; 0 if there was none"
     progress ["1"] "share of the commanded distance covered in the last stop window; 1 until the first window is over"
-    vertical_acceleration ["m/s^2"] "of the chassis frame, averaged over 10 ms; root mean square"
-    angular_velocity ["rad/s"] "rate of change of the chassis angle, root mean square"
+    vertical_acceleration ["m/s^2"] "of the chassis frame, averaged over 10 ms; root mean square, 0 in a run that is shorter"
+    angular_velocity ["rad/s"] "rate of change of the chassis angle, root mean square of its values every 10 ms, 0 in a run that is shorter"
     intrusion_depth ["m"] "greatest depth, below the circumscribed circles, of the most loaded intrusion that lasts to the end; 0 if there is none"
     intrusion_root_depth ["m"] "the same, measured from the root circles"
     intrusion_force ["N"] "its mean normal force"
@@ -84,8 +84,8 @@ impl Metrics {
         Self::ALL.iter().map(entry).collect()
     }
 
-    /// Metrics of a run that began at `start` and had these events.
-    pub(super) fn of(simulation: &Simulation, start: &Reading, events: &[Event]) -> Self {
+    /// Metrics of a run that had these events.
+    pub(super) fn of(simulation: &Simulation, events: &[Event]) -> Self {
         let end = simulation.reading();
         let monitor = simulation.monitor();
         let observed = &monitor.observed;
@@ -96,11 +96,11 @@ impl Metrics {
             final_x: end.position.x,
             final_y: end.position.y,
             final_angle: end.chassis_angle,
-            distance: end.position.x - start.position.x,
-            track_distance: end.track_position - start.track_position,
+            distance: end.position.x - observed.start[0],
+            track_distance: end.track_position - observed.start[1],
             path_length: observed.path_length,
-            max_angle: observed.max_angle.max(start.chassis_angle),
-            min_angle: observed.min_angle.min(start.chassis_angle),
+            max_angle: observed.max_angle,
+            min_angle: observed.min_angle,
             max_penetration: observed.max_penetration,
             drive_work: observed.drive_work,
             stopped_time: events

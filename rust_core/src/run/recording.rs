@@ -9,7 +9,7 @@ use crate::diagnosis::Diagnosis;
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
-use crate::observe::{Event, Outcome, Reading};
+use crate::observe::{Event, Outcome};
 use crate::scenario::Doubt;
 use crate::terrain::Edge;
 
@@ -48,7 +48,6 @@ pub struct Run {
 pub(super) struct Recording<'a> {
     record: Record,
     clock: Clock,
-    start: Reading,
     sinkage: Sinkage,
     /// The history, if it is recorded.
     recorder: Option<Recorder<'a>>,
@@ -68,7 +67,6 @@ impl<'a> Recording<'a> {
         Ok(Self {
             record,
             clock,
-            start: simulation.reading(),
             sinkage: Sinkage::from(simulation),
             recorder: recorder.transpose()?,
         })
@@ -91,7 +89,7 @@ impl<'a> Recording<'a> {
         let diagnosis = trials::diagnose(simulation, self.record.trials, cancel)?;
         let ended = simulation.monitor().ended_as().unwrap_or(Outcome::TimedOut);
         let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
-        let mut metrics = Metrics::of(simulation, &self.start, &events);
+        let mut metrics = Metrics::of(simulation, &events);
         let doubts = Vec::from_iter(self.sinkage.doubt(simulation));
         // Where contacts were not found they do not tell how deep it was.
         for doubt in &doubts {

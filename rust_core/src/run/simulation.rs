@@ -118,7 +118,7 @@ impl Simulation {
             scenario.gravity,
             scenario.solver.clone(),
         );
-        Self {
+        let mut simulation = Self {
             commands: Commands::of(&scenario.drive),
             scenario: scenario.clone(),
             ground,
@@ -137,7 +137,17 @@ impl Simulation {
             step_control: StepControl::default(),
             attempt: Attempt::default(),
             scratch: Scratch::default(),
-        }
+        };
+        simulation.observe_from_here();
+        simulation
+    }
+
+    /// Has its observations begin in this pose.
+    fn observe_from_here(&mut self) {
+        let now = self.reading();
+        let observed = &mut self.monitor.observed;
+        observed.start = [now.position.x, now.track_position];
+        (observed.min_angle, observed.max_angle) = (now.chassis_angle, now.chassis_angle);
     }
 
     /// Whether another engine than our own dynamics moves it.
@@ -229,14 +239,21 @@ impl Simulation {
         self.monitor.ended_as()
     }
 
+    /// [s] Since when the robot has been stopped under the present command, if it is: another one may have come since the
+    /// last check.
+    fn stop_since(&self) -> Option<f64> {
+        let is_of_it = self.monitor.direction() * self.commands.speed > 0.0;
+        self.monitor.stop_since().filter(|_| is_of_it)
+    }
+
     /// Whether the robot is stopped; nothing is tried.
     pub fn is_stopped(&self) -> bool {
-        self.monitor.stop_since().is_some()
+        self.stop_since().is_some()
     }
 
     /// What is seen of a stop, before anything is tried; `None` if the robot is not stopped.
     pub(crate) fn examine(&self) -> Option<Diagnosis> {
-        let since = self.monitor.stop_since()?;
+        let since = self.stop_since()?;
         if self.monitor.ended_as().is_some() {
             return None;
         }
@@ -267,7 +284,7 @@ impl Simulation {
             gravity: self.scenario.gravity,
             command: self.commands.speed,
             set_point: self.set_point,
-            half_length: 0.5 * self.scenario.robot.outline.axle_distance(),
+            half_length: self.half_length(),
             running,
         })
     }

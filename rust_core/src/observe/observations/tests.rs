@@ -213,7 +213,7 @@ fn a_new_direction_begins_anew() {
     for forwards in [1.0, -1.0] {
         let mut way = Way::new(forwards);
         way.stands(3.0, SPAN + 1);
-        way.command = -forwards;
+        (way.command, way.set_point) = (-forwards, -forwards);
         assert_eq!(way.at(3.0), Some(1.0));
         way.stands(3.0, SPAN - 1);
         assert_eq!(way.progress.stop_since, None);
@@ -341,5 +341,34 @@ fn progress_fits_before_its_first_step_and_in_each_direction() {
         way.at(3.0);
         assert_eq!(way.progress.direction, command);
         assert!(way.progress.fits(1, &[]), "at {command}");
+    }
+}
+
+#[test]
+fn a_robot_that_still_brakes_from_the_other_direction_has_not_stopped() {
+    let mut way = Way::new(-1.0);
+    way.set_point = 0.5;
+    way.stands(3.0, 3 * SPAN);
+    assert_eq!(
+        (way.progress.stop_since, way.progress.direction),
+        (None, 0.0)
+    );
+    // From here on it could follow.
+    way.set_point = -1.0;
+    let begin = way.time;
+    way.stands(3.0, SPAN + 1);
+    assert!(way.progress.stop_since.is_some_and(|since| since >= begin));
+}
+
+#[test]
+fn a_window_of_whole_checks_is_as_many_checks_long() {
+    for checks in 1..200 {
+        let window = f64::from(checks) * 0.01;
+        let mut progress = Progress::default();
+        progress.look(0.0, true, (window, 0.01), LEAST);
+        for _ in 0..400 {
+            progress.look(0.0, true, (window, 0.01), LEAST);
+        }
+        assert_eq!(progress.history.len(), checks as usize + 1, "{window} s");
     }
 }

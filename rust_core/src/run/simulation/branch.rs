@@ -74,12 +74,13 @@ impl Simulation {
         branch
     }
 
-    /// A copy whose observations begin now; the same engine moves it.
+    /// A copy whose observations begin now, and which drives on as it is commanded now; the same engine moves it.
     pub(in crate::run) fn copy(&self) -> Self {
         let model = self.dynamics.model().clone();
         let mut copy = self.continued(&self.scenario, Arc::clone(&self.ground), model);
         copy.engine.clone_from(&self.engine);
         copy.commands.follow_scenario = self.commands.follow_scenario;
+        copy.commands.driver.ignore_schedule(&self.scenario.drive);
         copy
     }
 
@@ -118,6 +119,7 @@ impl Simulation {
         };
         (self.set_point, self.last.set_point) = (other.set_point, other.set_point);
         self.monitor.observed = Observations::from(self.time);
+        self.observe_from_here();
     }
 }
 

@@ -72,8 +72,13 @@ impl Driver {
         let entries = drive.schedule.as_deref().unwrap_or_default();
         let past = entries.partition_point(|[from, _]| *from <= time);
         let speed = (past > self.entries).then(|| entries[past - 1][1]);
-        self.entries = past;
+        self.entries = past.max(self.entries);
         speed
+    }
+
+    /// Drives on at the present speed, whatever the schedule has yet.
+    pub(crate) fn ignore_schedule(&mut self, drive: &Drive) {
+        self.entries = drive.schedule.as_ref().map_or(0, Vec::len);
     }
 
     /// The same driver with another command; what the commands have in common goes on.
@@ -309,6 +314,66 @@ mod drive_tests {
     #[test]
     fn reaches_the_command_and_stays() {
         assert!((set_point(0.399, 0.4, &LIMITS, 0.1) - 0.4).abs() < 1e-15);
+    }
+}
+
+#[cfg(test)]
+mod driver_tests {
+    use super::*;
+
+    const CLIMB: Climb = Climb {
+        reach_angle: 0.7,
+        sweep_angle: -0.2,
+        push_angle: -0.5,
+        level_angle: 0.1,
+    };
+
+    /// What a driver that has seen this has front and rear arms do, which start at 0.3 rad.
+    fn after(views: &[(f64, [bool; 2])]) -> [FlipperCommand; 2] {
+        let mut driver = Driver::default();
+        let drive = Drive {
+            gait: Some(Gait::Climb(CLIMB)),
+            speed: 0.4,
+            schedule: None,
+        };
+        let mut commands = [FlipperCommand::default(); 2];
+        for (time, (chassis_angle, touches)) in (0_u32..).zip(views) {
+            let sight = DriverView {
+                time: f64::from(time),
+                chassis_angle: *chassis_angle,
+                touches: *touches,
+            };
+            commands = driver.flippers(&drive, 0.3, sight);
+        }
+        commands
+    }
+
+    #[test]
+    fn front_arms_reach_until_they_touch_and_then_press_down() {
+        let (nothing, front) = ([false; 2], [true, false]);
+        let reach = [FlipperCommand::Angle(0.7), FlipperCommand::Angle(0.3)];
+        assert_eq!(after(&[(0.0, nothing)]), reach);
+        let sweep = [
+            FlipperCommand::Level(-0.2 - 0.05),
+            FlipperCommand::Angle(0.3),
+        ];
+        assert_eq!(after(&[(0.0, nothing), (0.05, front)]), sweep);
+        assert_eq!(after(&[(0.05, front), (0.0, nothing)]), reach);
+    }
+
+    #[test]
+    fn rear_arms_push_a_raised_chassis_until_it_is_level_and_they_bear_nothing() {
+        let (nothing, rear) = ([false; 2], [false, true]);
+        let push = |angle: f64| {
+            [
+                FlipperCommand::Level(-0.2 - angle),
+                FlipperCommand::Level(-0.5 + angle),
+            ]
+        };
+        assert_eq!(after(&[(0.2, nothing)]), push(0.2));
+        assert_eq!(after(&[(0.2, rear), (0.05, rear)]), push(0.05));
+        let reach = [FlipperCommand::Angle(0.7), FlipperCommand::Angle(0.3)];
+        assert_eq!(after(&[(0.2, rear), (0.05, nothing)]), reach);
     }
 }
 

@@ -255,3 +255,89 @@ fn a_line_of_torques_and_its_curve_have_the_same_trials() {
     assert_eq!(line.len(), 2);
     assert_eq!(curve, line);
 }
+
+/// Wheels that a step of 80 mm stops, after some time.
+fn stopped(schedule: Option<Vec<[f64; 2]>>) -> (Scenario, Simulation) {
+    let mut scenario = wheels(4, 0.08);
+    scenario.drive.schedule = schedule;
+    let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&checked);
+    simulation.advance(5.0).expect("the state stays finite");
+    (scenario, simulation)
+}
+
+#[test]
+fn a_stop_is_over_with_the_command_that_it_resists() {
+    for speed in [0.0, -0.4] {
+        let (_, mut robot) = stopped(None);
+        assert!(robot.is_stopped());
+        robot.set_speed(speed).expect("it is within limits");
+        assert!(!robot.is_stopped());
+        let found = diagnose(&robot, Wanted::default(), &Cancel::default());
+        assert!(found.expect("the state stays finite").is_none());
+    }
+    let mut scenario = wheels(4, 0.08);
+    scenario.drive.schedule = Some(vec![[5.0, 0.0]]);
+    scenario.duration = 5.005;
+    let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
+    let run = simulate(&checked, Record::summary()).expect("the state stays finite");
+    assert_eq!(run.outcome, Outcome::TimedOut);
+}
+
+#[test]
+fn what_is_commanded_later_changes_no_verdict() {
+    let verdict = |schedule| {
+        let (_, robot) = stopped(schedule);
+        let found = diagnose(&robot, Wanted::default(), &Cancel::default());
+        let found = found
+            .expect("the state stays finite")
+            .expect("it is stopped");
+        let trials = found.trials.into_iter();
+        let made: Vec<_> = trials.map(|trial| (trial.name, trial.freed)).collect();
+        (found.outcome, made)
+    };
+    let without = verdict(None);
+    assert_eq!(without.0, Outcome::Seized);
+    assert_eq!(verdict(Some(vec![[5.01, 0.0]])), without);
+    assert_eq!(verdict(Some(vec![[5.2, -0.4]])), without);
+}
+
+#[test]
+fn no_trial_takes_for_ever() {
+    let (_, mut robot) = stopped(None);
+    assert!(pose_duration(&robot) < 10.0);
+    robot.set_speed(1e-6).expect("it is within limits");
+    assert!(pose_duration(&robot) <= LONGEST);
+}
+
+#[test]
+fn without_gravity_there_is_no_escape_force() {
+    let mut scenario = engineer();
+    scenario.gravity = 0.0;
+    let checked = ValidScenario::new(&scenario).expect("the scenario is valid");
+    let Err(Error::Scenario(error)) = escape_force(&checked, 1.0, &Cancel::default()) else {
+        panic!("it is refused")
+    };
+    assert_eq!(error.path, "gravity");
+}
+
+#[test]
+fn variants_of_valid_scenarios_are_valid() {
+    let mut scenario = wheels(4, 0.08);
+    scenario.robot.track = Track::Force(ForceTrack {
+        support: ForceSupport::Skids,
+        skid_friction: 60.0,
+        wheel_count: 5,
+    });
+    scenario.terrain = Terrain::Step {
+        height: 0.08,
+        surface: Surface::sharp(60.0),
+    };
+    scenario.robot.drivetrain.max_torque = 5e16;
+    for change in Change::ALL {
+        if let Some(variant) = variant_of(&scenario, change) {
+            let read = Scenario::from_json(&variant.to_json());
+            assert_eq!(read.expect("it is valid"), variant, "{}", change.name());
+        }
+    }
+}

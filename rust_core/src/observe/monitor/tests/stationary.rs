@@ -1,7 +1,7 @@
 //! A run ends early when its whole state stays the same.
 
 use super::*;
-use crate::scenario::{Ends, Flippers, Gait, GearWheel, Hold, LineOfWheels, Track, Wheel};
+use crate::scenario::{Ends, Flippers, Gait, GearWheel, Hold, LineOfWheels, Pi, Track, Wheel};
 
 /// [s] Length of a stop window, and of three.
 const WINDOW: f64 = 0.5;
@@ -167,4 +167,19 @@ fn what_may_still_change_by_itself_does_not_stay() {
         with_arms(s);
         with_gait(s);
     }));
+}
+
+/// Its motor pushes harder and harder in the same pose.
+#[test]
+fn a_robot_whose_controller_adds_up_errors_may_leave_yet() {
+    let with = |integral: f64| {
+        robot(|scenario| {
+            scenario.robot.drivetrain.controller = Some(Pi {
+                gain: 1.0,
+                integral,
+            });
+        })
+    };
+    assert!(is_over_early(with(0.0), |_| {}));
+    assert_eq!(over_at(with(0.1), |_| {}), None);
 }
