@@ -257,7 +257,7 @@ pub(super) fn without_redundant(contacts: &mut Vec<Contact>) {
 /// Whether the middle gap is at least that of the chord between its neighbours.
 fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
     /// [m] A gap this close to the chord is on the same face.
-    const SAME_FACE: Metres = Metres(1e-9);
+    const ON_CHORD: Metres = Metres(1e-9);
 
     let along = right_of(middle.normal);
     let (a, b) = (
@@ -265,5 +265,5 @@ fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
         (last.point - middle.point).dot(along),
     );
     let chord = (first.distance * b + last.distance * a) / (a + b);
-    a * b > 0.0 && middle.distance > chord - SAME_FACE.value()
+    a * b > 0.0 && middle.distance > chord - ON_CHORD.value()
 }

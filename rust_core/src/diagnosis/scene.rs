@@ -22,8 +22,8 @@ pub(crate) struct Scene<'a> {
     pub envelopes: &'a [TrackEnvelope],
     pub criteria: &'a SeizureCriteria,
     pub gravity: f64,
-    /// [m/s] Commanded speed.
-    pub command: f64,
+    /// 1 or -1 as commanded.
+    pub direction: f64,
     /// [m/s] Current set-point, within the acceleration limits.
     pub set_point: f64,
     /// [m] Half the distance between the end axles.
@@ -33,10 +33,6 @@ pub(crate) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    pub(super) fn direction(&self) -> f64 {
-        if self.command < 0.0 { -1.0 } else { 1.0 }
-    }
-
     /// Ground inside the track that carries weight, with the force on it. Inside a single smooth body there is none:
     /// a robot that moves has only been there at different times.
     pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
@@ -99,7 +95,7 @@ impl Scene<'_> {
     }
 
     /// The facts from which the mechanism follows.
-    pub(super) fn facts(&self, stance: &Stance, pocket: Option<&LoadedIntrusion>) -> Facts {
+    pub(super) fn facts(&self, stance: &Stance, inside: Option<&LoadedIntrusion>) -> Facts {
         let of_stop = |Bearing { contact, .. }: &Bearing| {
             let part = &self.model.parts[contact.part];
             StopContact {
@@ -114,7 +110,7 @@ impl Scene<'_> {
                 friction_force: contact.friction_force,
                 surface_speed: contact.surface_speed,
                 slides: self.slides(contact),
-                in_pocket: pocket.is_some_and(|p| self.bears_on(&p.place, contact)),
+                in_pocket: inside.is_some_and(|p| self.bears_on(&p.place, contact)),
                 side: self.lanes[part.lane].side,
             }
         };
@@ -161,7 +157,7 @@ impl Scene<'_> {
             let levers = self.levers(stance.pose(), &bearing.contact);
             let into_ground = levers.normal.spin_lever;
             contact.in_pocket
-                && self.direction() * into_ground > INTO_GROUND * self.model.drive_radius
+                && self.direction * into_ground > INTO_GROUND * self.model.drive_radius
         })
     }
 
@@ -378,7 +374,7 @@ impl Scene<'_> {
             let middle = 0.5 * (a.translation.x + b.translation.x);
             durations[one].min(durations[next]) > STAYS
                 && bent > BENT
-                && self.direction() * middle > 0.0
+                && self.direction * middle > 0.0
         };
         self.model.chains.iter().any(|chain| {
             let next = |shoe: usize| {

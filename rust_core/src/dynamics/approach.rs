@@ -24,8 +24,8 @@ impl Approach {
         }
     }
 
-    /// The one that a `way` [rad] calls for in a step of `h` [s], at a rate of at most `limit` [rad/s], below 0 if the
-    /// way gets longer for all that it can do, and with at most this deceleration [rad/s^2], which is above 0.
+    /// The one that a `way` [rad] calls for in a step of `h` [s], at a rate of at most `limit` [rad/s], below 0 if what it is
+    /// to follow turns away faster than it can, and with at most this deceleration [rad/s^2], which is above 0.
     pub(super) fn new(way: f64, [limit, deceleration]: [f64; 2], h: f64) -> Self {
         if limit <= 0.0 {
             return Self::going_on(limit * 1.0_f64.copysign(way));

@@ -40,16 +40,6 @@ impl Within {
 }
 
 impl State {
-    /// Makes this state equal to another, without asking for memory.
-    pub(crate) fn copy(&mut self, other: &Self) {
-        (self.center, self.angle) = (other.center, other.angle);
-        (self.velocity, self.angular_velocity) = (other.velocity, other.angular_velocity);
-        self.drives.clone_from(&other.drives);
-        self.shoes.clone_from(&other.shoes);
-        self.idlers.clone_from(&other.idlers);
-        self.flippers.clone_from(&other.flippers);
-    }
-
     /// Sets this state to that at a share of a step of `h` [s].
     pub(crate) fn set_between(&mut self, ends: [&Self; 2], model: &Model, (h, share): (f64, f64)) {
         let at = Within { h, share };

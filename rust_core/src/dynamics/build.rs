@@ -4,10 +4,10 @@
 
 use super::arm::Arm;
 use super::chain::Chain;
-use super::push::push_axis;
+use super::push::push_row;
 use crate::robot::Model;
 use crate::scenario::Solver;
-use crate::solver::{Bilateral, Driven, Layout, Motor, Problem, RingSpec, Row};
+use crate::solver::{Bilateral, Driven, Motor, Problem, RingSpec};
 
 /// A robot's bodies and motors: those of its drives, then those of its arms.
 pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solver) -> Problem {
@@ -48,11 +48,6 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
     }
     problem.iterations = solver.iterations;
     problem
-}
-
-/// The row of the push of a model that pushes the chassis, at a chassis angle [rad].
-pub(super) fn push_row(model: &Model, layout: Layout, angle: f64) -> Row {
-    push_axis(model, angle).row(layout, model.push_drive(), None)
 }
 
 /// A motor behind a gear, which may lock itself.

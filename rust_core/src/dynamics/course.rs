@@ -17,7 +17,7 @@ const TOUCHING: Metres = Metres(1e-10);
 impl Touch {
     /// Updates the gap for the motion in a step of `h` [s], and how much faster the gap opens, and the surface slides, at
     /// its end than with the levers of its middle.
-    pub(super) fn follow(
+    pub(super) fn move_gap(
         &mut self,
         solved: &mut Contact,
         (state, unknowns): (&State, &[f64]),

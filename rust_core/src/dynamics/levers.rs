@@ -8,6 +8,17 @@ use crate::geometry::{Motion, Rotation, Vector, cross, left_of, right_of};
 use crate::robot::Model;
 use crate::solver::{Layout, Row};
 
+/// How the touching point moves relative to its carrier per metre of drive travel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Carried {
+    /// [m] From the axle about which it turns, or from where it began, to the point.
+    pub spoke: Vector,
+    /// [1/m] Rotation about that axle.
+    turn: f64,
+    /// Translation in addition to that.
+    along: Vector,
+}
+
 impl Carried {
     /// Whether its drive moves it at all, other than along the surface.
     pub(super) fn is_moving(&self) -> bool {
@@ -91,17 +102,6 @@ pub(crate) struct Levers {
     /// [m] From the carrier's centre to the contact.
     pub(super) arm: Vector,
     pub(super) carried: Carried,
-}
-
-/// How the touching point moves relative to its carrier per metre of drive travel.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Carried {
-    /// [m] From the axle about which it turns, or from where it began, to the point.
-    pub spoke: Vector,
-    /// [1/m] Rotation about that axle.
-    turn: f64,
-    /// Translation in addition to that.
-    along: Vector,
 }
 
 impl Levers {

@@ -24,14 +24,14 @@ pub(super) enum Meeting {
     SideOnCorner,
 }
 
-/// The motion of a part, seen from the contact: what is given twice, along its normal and its tangent.
+/// The motion of a part, seen from the contact; pairs are along its normal and its tangent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swing {
     /// [rad/s] Its angular velocity.
     pub turn: f64,
     /// [m] The way from the contact to the centre of rotation.
     pub center: [f64; 2],
-    /// [m/s^2] How fast that gains speed.
+    /// [m/s^2] Acceleration of that.
     pub pull: [f64; 2],
     /// [m/s] Velocity of the part's point at the contact along the tangent.
     pub slip: f64,

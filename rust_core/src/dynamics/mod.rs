@@ -1,4 +1,4 @@
-//! The equations of motion: one body, drives that turn surfaces, and contacts with Coulomb friction.
+//! The equations of motion: chassis, drives that turn surfaces, arms, chains, and contacts with Coulomb friction.
 //!
 //! A step is symmetric: half of the weight's impulse, the constraints, the motion, the other half, the
 //! constraints again. Free flight is therefore exact, and a constant load causes only a second-order error.
@@ -87,7 +87,7 @@ pub(crate) struct Dynamics {
     forces: Vec<Forces>,
     flippers: Vec<Arm>,
     chains: Vec<Chain>,
-    /// Speed of the fastest tip relative to the chassis, in units of the surface speed.
+    /// Speed of the fastest tip relative to its carrier, in units of the surface speed.
     tip_speed: f64,
     loaded: Vec<Contact>,
     /// The state of the last step with the velocities of its motion.
@@ -143,8 +143,8 @@ impl Dynamics {
         &self.model
     }
 
-    /// Whether a gap of the last step below `travel` [m] was not recognised: what comes so close may be past it, and then
-    /// bears nowhere.
+    /// Whether a contact of the last step with a gap below `travel` [m] was not found again: its part may have passed through
+    /// the ground.
     pub(crate) fn has_lost(&self, travel: f64) -> bool {
         let mut gone = self.identity.gone(&self.loaded);
         gone.any(|l| (0.0..travel).contains(&l.distance))
@@ -184,8 +184,13 @@ impl Dynamics {
         let problem = &mut self.problem;
         problem.contacts.clear();
         state.write_velocities(problem.layout, &mut problem.unknowns);
-        let velocities = (problem.layout, problem.unknowns.as_slice());
-        let start = Start::new((state, &self.model), velocities, half);
+        let start = Start {
+            state,
+            unknowns: &problem.unknowns,
+            layout: problem.layout,
+            model: &self.model,
+            half,
+        };
         let mut last = Numbered::new(&self.loaded);
         for contact in contacts {
             let last = last.get(contact.number);
@@ -317,7 +322,7 @@ impl Dynamics {
         of_contacts + axis * pushes.map(|push| push.impulse).sum::<f64>()
     }
 
-    /// Goes back to before a step that was not kept.
+    /// Undoes what a step that was not kept has counted of its chains; motors start from the states that it found.
     pub(crate) fn rewind(&mut self) {
         self.chains.iter_mut().for_each(Chain::rewind);
     }
@@ -371,7 +376,7 @@ impl Dynamics {
         }
         for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {
             let now = (&*state, self.problem.unknowns.as_slice());
-            touch.follow(solved, now, &self.model, h);
+            touch.move_gap(solved, now, &self.model, h);
         }
     }
 

@@ -6,6 +6,7 @@
 use super::levers::Direction;
 use crate::geometry::{Rotation, Vector, cross};
 use crate::robot::Model;
+use crate::solver::{Layout, Row};
 
 /// Direction of a force along the x axis of the chassis frame, at a chassis angle [rad].
 pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
@@ -19,4 +20,9 @@ pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
         spin_lever: model.drive_radius,
         ..Direction::default()
     }
+}
+
+/// The row of the push of a model that pushes the chassis, at a chassis angle [rad].
+pub(super) fn push_row(model: &Model, layout: Layout, angle: f64) -> Row {
+    push_axis(model, angle).row(layout, model.push_drive(), None)
 }

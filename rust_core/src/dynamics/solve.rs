@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "A step".
 
 use super::Dynamics;
-use super::build::push_row;
+use super::push::push_row;
 use super::state::State;
 use crate::solver::{Damper, Driven, Inertia, Row, TURN};
 
@@ -66,7 +66,7 @@ impl Dynamics {
     }
 
     /// Starts the solve over all of the step, for contacts that bear: from the forces of its first half, in which springs
-    /// shared the load. From those of the last step, wheels that share a load in many ways went on to pass it round.
+    /// shared the load. From those of the last step, wheels that can share a load in many ways did not settle.
     /// Where something `strikes`, what closes is left to the blow.
     pub(super) fn guess_more(&mut self, strikes: bool) {
         for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {

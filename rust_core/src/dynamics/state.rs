@@ -261,6 +261,16 @@ impl State {
         (turn - self.drives[drive].spin) * model.drive_radius
     }
 
+    /// Makes this state equal to another, without asking for memory.
+    pub(crate) fn copy(&mut self, other: &Self) {
+        (self.center, self.angle) = (other.center, other.angle);
+        (self.velocity, self.angular_velocity) = (other.velocity, other.angular_velocity);
+        self.drives.clone_from(&other.drives);
+        self.shoes.clone_from(&other.shoes);
+        self.idlers.clone_from(&other.idlers);
+        self.flippers.clone_from(&other.flippers);
+    }
+
     /// [m/s] Upper bound of the speed of any point; `reach` is the farthest from the centre of mass.
     pub(crate) fn fastest(&self, reach: f64) -> f64 {
         let turns = self.flippers.iter().map(|flipper| flipper.rate.abs());

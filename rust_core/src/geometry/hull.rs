@@ -8,7 +8,7 @@ use super::{Disc, Vector, cross, direction};
 /// [rad] Smaller turns are rounding errors of collinear tangents.
 pub(super) const SAME_TURN: f64 = 1e-12;
 
-/// One disc's fraction of the hull.
+/// The arc of the hull round one disc.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arc {
     /// Index of the disc.

@@ -1,5 +1,5 @@
-//! Vectors and poses of the plane, which are the engine's and named by no other file, discs and their tangents, and bounds of
-//! what is plausible.
+//! Discs and their tangents, bounds of what is plausible, and the engine's vectors and poses under names that only this file
+//! imports.
 
 use crate::scenario::TrackOutline;
 

@@ -105,7 +105,7 @@ macro_rules! table {
 table! {
     /// Samples of the state; every column has one entry per sample (two for x, y pairs).
     pub struct Trace for robot {
-        /// [s] Time at the end of the step.
+        /// [s] Time of the sample.
         time: f64 [1],
         /// [m] Origin of the chassis frame, x and y.
         position: f64 [2],
@@ -148,7 +148,7 @@ table! {
 pub(crate) struct Recorder<'a> {
     /// [s] Time between two samples.
     every: f64,
-    /// Number of samples at multiples of that, the first included.
+    /// Number of the last multiple of that of which there is a sample; 0 is that of time 0.
     taken: u64,
     /// [s] Time up to which forces have been added.
     until: f64,

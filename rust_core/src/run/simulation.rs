@@ -282,7 +282,7 @@ impl Simulation {
             envelopes: self.monitor.envelopes(),
             criteria: &self.scenario.criteria,
             gravity: self.scenario.gravity,
-            command: self.commands.speed,
+            direction: self.direction(),
             set_point: self.set_point,
             half_length: self.half_length(),
             running,
@@ -307,6 +307,11 @@ impl Simulation {
     /// 1 or -1 as commanded.
     pub(crate) fn direction(&self) -> f64 {
         if self.commands.speed < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// [m] Half the distance between the end axles.
+    fn half_length(&self) -> f64 {
+        0.5 * self.scenario.robot.outline.axle_distance()
     }
 
     /// [N] Weight of the whole robot.

@@ -118,7 +118,7 @@ impl TrackOutline {
         Err(ScenarioError::new(path, self.grouser_pitch, rule))
     }
 
-    /// Whether two numbers of [`Self::two_discs`] say all of its discs, as texts do then.
+    /// Whether the numbers of [`Self::two_discs`] say all of its discs; then texts have these.
     fn is_short(&self) -> bool {
         match self.discs[..] {
             [[rear, rear_y, _], [front, front_y, _]] => {

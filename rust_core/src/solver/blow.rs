@@ -45,7 +45,7 @@ impl Problem {
             contact.friction_impulse *= share;
         }
         self.tie();
-        self.balance();
+        self.find_velocities();
         self.start_from_here();
         self.lock();
         self.solve_anew();
@@ -63,7 +63,7 @@ impl Problem {
         self.free.clone_from(&self.unknowns);
         for inertia in &mut self.inertias {
             let free = inertia.row.along(&self.unknowns);
-            *inertia = Inertia::new(inertia.row, inertia.damper.stiffness, free);
+            *inertia = Inertia::new(inertia.row, inertia.damper.damping, free);
         }
         for motor in &mut self.motors {
             motor.hold = Hold::Free;

@@ -35,8 +35,8 @@ impl Problem {
             contact.actions[0] = system.tied(&contact.normal);
             contact.actions[1] = system.tied(&contact.tangent);
             let own = [0, 1].map(|i| admittance(&contact.actions[i], system, rings));
-            let springs = contact.mass.map_or(own, |mass| [mass.recip(); 2]);
-            contact.admittances = Admittances { own, springs };
+            let of_springs = contact.mass.map_or(own, |mass| [mass.recip(); 2]);
+            contact.admittances = Admittances { own, of_springs };
         }
         for bilateral in &mut self.bilaterals {
             bilateral.action = system.tied(&bilateral.row);
@@ -97,7 +97,7 @@ impl Problem {
         }
         self.system.solve(&mut self.change)?;
         for ring in &mut self.rings {
-            ring.follow(&mut self.change);
+            ring.back_substitute(&mut self.change);
         }
         for (change, unknown) in self.change.iter_mut().zip(&mut self.unknowns) {
             let before = std::mem::replace(unknown, *change);
@@ -113,9 +113,9 @@ impl Problem {
         }
     }
 
-    /// Computes the velocities from all impulses so far, for the current state of the motors. With rings the velocities
-    /// that keep links together matter more.
-    pub(super) fn balance(&mut self) {
+    /// Computes the velocities from all impulses so far, for the current state of the motors. With rings those of the last
+    /// system stay, which hold the hinges exactly.
+    pub(super) fn find_velocities(&mut self) {
         if self.rings.is_empty() {
             self.solve_system(Impulses::Given);
         }
@@ -149,7 +149,7 @@ fn admittance(row: &Row, system: &System, rings: &[Ring]) -> f64 {
         .map(|(at, lever)| lever * lever * system.weights[at])
         .sum();
     let on_link = row.link.map_or(0.0, |link| {
-        let weights = rings[link.ring()].weights();
+        let weights = rings[link.ring()].weights;
         let of = |i: usize| row.on_link[i] * row.on_link[i] * weights[i];
         of(0) + of(1) + of(2)
     });

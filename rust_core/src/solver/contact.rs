@@ -39,7 +39,7 @@ impl Grip {
 pub(super) struct Admittances {
     pub own: [f64; 2],
     /// ... and that of the mass on their springs.
-    pub springs: [f64; 2],
+    pub of_springs: [f64; 2],
 }
 
 /// [N s] How the law of a contact is relaxed along normal and tangent.
@@ -59,16 +59,17 @@ pub(crate) struct Contact {
     pub friction: Friction,
     /// Whether it can carry a load in this solve.
     pub bears: bool,
-    /// [kg] The mass on its springs, if not what it moves.
+    /// [kg] The mass by which its springs are stiff; `None`: its own effective mass.
     pub mass: Option<f64>,
     /// [m/s] Speed at which it may close or, if negative, must open.
     pub bias: f64,
     /// Compliance in units of the admittance of its spring.
     pub compliance: f64,
-    /// The same of a grip that gives way elastically; it is damped about its impulse of the last step.
+    /// Compliance of the tangential spring while it sticks, in units of the admittance of that spring, about its impulse of the
+    /// last step; 0 if it is rigid.
     pub give: f64,
     /// Share of a change of the friction of an elastic grip that its spring keeps; the rest is damping.
-    pub springs: f64,
+    pub spring_share: f64,
     /// [N s] Impulse along the normal.
     pub normal_impulse: f64,
     /// [N s] Impulse along the tangent.
@@ -100,7 +101,7 @@ impl Contact {
             bias: 0.0,
             compliance: 0.0,
             give: 0.0,
-            springs: 1.0,
+            spring_share: 1.0,
             normal_impulse: 0.0,
             friction_impulse: 0.0,
             grip: Grip::Open,
@@ -126,8 +127,8 @@ impl Contact {
     }
 
     /// Softens its grip by a compliance, about the friction [N s] of the last step; its spring keeps a share of a change.
-    pub(crate) fn give_way(&mut self, compliance: f64, springs: f64, last: f64) {
-        (self.give, self.springs) = (compliance, springs);
+    pub(crate) fn give_way(&mut self, compliance: f64, spring_share: f64, last: f64) {
+        (self.give, self.spring_share) = (compliance, spring_share);
         self.center[1] = last;
     }
 
@@ -136,12 +137,7 @@ impl Contact {
         if self.give == 0.0 || self.grip != Grip::Sticks {
             return self.friction_impulse;
         }
-        self.center[1] + (self.friction_impulse - self.center[1]) * self.springs
-    }
-
-    /// Whether its directions move on their own.
-    pub(super) fn has_offset(&self) -> bool {
-        self.normal.offset != 0.0 || self.tangent.offset != 0.0
+        self.center[1] + (self.friction_impulse - self.center[1]) * self.spring_share
     }
 
     /// [N s] Its impulses along normal and tangent.
@@ -178,7 +174,7 @@ impl Contact {
     /// Sets the dampers about their centres.
     pub(super) fn place_dampers(&mut self) {
         let [normal, friction] = self.center;
-        let [spring, grip] = self.admittances.springs;
+        let [spring, grip] = self.admittances.of_springs;
         let proximal = self.proximal();
         let damping = proximal * spring;
         let stiffness = 1.0 / (self.compliance * spring + damping);
@@ -190,7 +186,7 @@ impl Contact {
     }
 
     /// Updates impulses and fitting state for the velocities; returns the error of the velocity [m/s].
-    pub(super) fn follow(&mut self, unknowns: &[f64]) -> f64 {
+    pub(super) fn apply_law(&mut self, unknowns: &[f64]) -> f64 {
         let (grip, impulses) = self.law(self.speeds(unknowns));
         self.fitting = grip;
         self.set_impulses(impulses);
@@ -322,7 +318,7 @@ impl Contact {
         self.conditions(unknowns, 0.0, |next, value| {
             let is_normal = next == Grip::Open || self.grip == Grip::Open;
             let damper = self.dampers[usize::from(!is_normal)];
-            most = most.max(-value / damper.stiffness);
+            most = most.max(-value / damper.damping);
         });
         most
     }
@@ -330,7 +326,7 @@ impl Contact {
     /// Relaxes its law so that its state fits these velocities; by at least a speed [m/s] where that is more.
     pub(super) fn relax(&mut self, unknowns: &[f64], least: f64) {
         let [normal, friction] = self.seen(unknowns, 0.0);
-        let [of_normal, of_friction] = self.dampers.map(|damper| least * damper.stiffness);
+        let [of_normal, of_friction] = self.dampers.map(|damper| least * damper.damping);
         let (mut seen, mut without) = ([0.0; 2], [0.0; 2]);
         if self.grip == Grip::Open {
             seen[0] = -of_normal;

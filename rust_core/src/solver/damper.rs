@@ -4,7 +4,8 @@
 
 use super::row::Row;
 
-/// Compliance of the dampers, in units of the contact's own admittance.
+/// Compliance of the dampers: along the normal in units of the admittance of its spring, along the tangent in units of the
+/// contact's own.
 pub(super) const COMPLIANCE: f64 = 1e-6;
 
 /// An impulse that decreases with the speed along its direction.
@@ -12,13 +13,13 @@ pub(super) const COMPLIANCE: f64 = 1e-6;
 pub(crate) struct Damper {
     /// [N s] Impulse at zero speed.
     impulse: f64,
-    /// [kg] Impulse per speed.
-    pub stiffness: f64,
+    /// [kg] Loss of impulse per speed.
+    pub damping: f64,
 }
 
 impl Damper {
-    pub(crate) fn new(impulse: f64, stiffness: f64) -> Self {
-        Self { impulse, stiffness }
+    pub(crate) fn new(impulse: f64, damping: f64) -> Self {
+        Self { impulse, damping }
     }
 
     /// A constant impulse, whatever the speed.
@@ -28,20 +29,17 @@ impl Damper {
 
     /// [N s] Impulse at a speed.
     pub(crate) fn at(self, speed: f64) -> f64 {
-        self.impulse - self.stiffness * speed
+        self.impulse - self.damping * speed
     }
 
     /// A share of it.
     pub(crate) fn times(self, share: f64) -> Self {
-        Self::new(self.impulse * share, self.stiffness * share)
+        Self::new(self.impulse * share, self.damping * share)
     }
 
     /// Both at one speed.
     pub(crate) fn plus(self, other: Self) -> Self {
-        Self::new(
-            self.impulse + other.impulse,
-            self.stiffness + other.stiffness,
-        )
+        Self::new(self.impulse + other.impulse, self.damping + other.damping)
     }
 }
 
@@ -68,7 +66,7 @@ impl Inertia {
     /// [J] Its kinetic energy without constraints.
     pub(super) fn energy(&self) -> f64 {
         let momentum = self.damper.at(0.0);
-        0.5 * momentum * momentum / self.damper.stiffness
+        0.5 * momentum * momentum / self.damper.damping
     }
 
     /// [N s] Its impulse at these velocities.
@@ -107,7 +105,7 @@ impl Bilateral {
     }
 
     /// Updates the impulse to match the velocities; returns the error of the velocity [m/s].
-    pub(super) fn follow(&mut self, unknowns: &[f64]) -> f64 {
+    pub(super) fn apply_law(&mut self, unknowns: &[f64]) -> f64 {
         let slip = self.action.speed(unknowns);
         self.impulse = self.damper().at(slip);
         slip.abs()

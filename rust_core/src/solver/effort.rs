@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Effort {
     /// Steps taken.
     pub steps: u64,
-    /// Steps taken again with a shorter one, because their error was too large.
+    /// Steps taken again with a shorter one, because their error was too large or a force jumped in them.
     pub repeated_steps: u64,
-    /// Searches for impulses that satisfy all constraints: two a step.
+    /// Searches for impulses that satisfy all constraints: two a step, and those of a blow.
     pub solves: u64,
     /// Linear systems solved in them.
     pub rounds: u64,
     /// How often corrections did not lead to right states, so that a path was followed.
     pub paths: u64,
-    /// Solves that ended without a solution, with laws that stay relaxed a little.
+    /// Solves that found no solution: impulses are those about which constraints were damped last.
     pub unresolved: u64,
 }
 

@@ -116,7 +116,7 @@ impl Problem {
         let solved = self.find() || (self.forget_offsets() && self.find());
         self.effort.unresolved += u64::from(!solved);
         // From the impulses, so that momentum is conserved to the last digit.
-        self.balance();
+        self.find_velocities();
     }
 
     /// Searches from the states of the last solve and, where that finds nothing, or its offsets do too much work, from where
@@ -172,7 +172,8 @@ impl Problem {
     /// Sets all offsets to 0: contacts that jam cannot all open or slide on their own. Returns whether that changes
     /// anything.
     fn forget_offsets(&mut self) -> bool {
-        if !self.contacts.iter().any(Contact::has_offset) {
+        let has_offset = |c: &Contact| c.normal.offset != 0.0 || c.tangent.offset != 0.0;
+        if !self.contacts.iter().any(has_offset) {
             return false;
         }
         for contact in &mut self.contacts {

@@ -47,7 +47,8 @@ pub(crate) enum Driven {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motor {
     pub on: Driven,
-    /// [m] The lever, below 0 if it runs forwards while what it turns spins clockwise.
+    /// [m] The lever, below 0 if it runs forwards while what it turns spins clockwise; 1 for an arm, where speeds are rad/s and
+    /// impulses N m s.
     pub lever: f64,
     /// [m/s] The speed that it holds.
     pub target: f64,
@@ -55,8 +56,8 @@ pub(crate) struct Motor {
     pub limits: [Damper; 2],
     /// Its impulse at a speed between these, if it corrects its speed; if not, it holds that.
     pub correction: Option<Damper>,
-    /// Its gear locks itself: no load turns it back, or on faster than its target, which is then without limit what holds
-    /// that.
+    /// Its gear locks itself: its speed stays between 0 and the target whatever the load, as the gear gives what the motor
+    /// cannot.
     pub locks: bool,
     pub hold: Hold,
     /// [N s] By how much its limits are wider on the path to a solution.

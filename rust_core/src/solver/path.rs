@@ -78,7 +78,7 @@ impl Problem {
         let most = self.relax();
         let ends = most == 0.0 || self.pivot_along(pivots, together);
         // Where conditions are met together, a motor may come to a state that does not fit.
-        (ends && self.motors_off(|_| true) < AGREEMENT.value()).then(|| self.follow_unknowns())
+        (ends && self.motors_off(|_| true) < AGREEMENT.value()).then(|| self.apply_laws())
     }
 
     /// The pivots of [`Problem::pivot`], from relaxed laws; returns whether the relaxation became nothing.
@@ -166,8 +166,8 @@ impl Problem {
         changed
     }
 
-    /// Finds the conditions of the present states, from the share of the relaxation that is left to none, and goes to where
-    /// these states are a solution without any; it stays where it is if there is none. At the start that is where it is.
+    /// Finds the conditions of the present states at this share of the relaxation and at none, and moves the unknowns to where
+    /// these states are a solution without any: at the start they are there. None if the system is singular.
     fn look_ahead(
         &mut self,
         share: f64,
@@ -199,7 +199,7 @@ impl Problem {
             let impulses = contact.held(&self.unknowns, share);
             contact.set_impulses(impulses);
         }
-        self.follow_bilaterals();
+        self.apply_laws_of_bilaterals();
         self.note_loads();
     }
 

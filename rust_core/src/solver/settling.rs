@@ -48,7 +48,7 @@ impl Problem {
             if self.solve_states().is_none() {
                 break;
             }
-            let off = self.follow_unknowns();
+            let off = self.apply_laws();
             if !self.correct_contacts() {
                 continue;
             }
@@ -76,7 +76,7 @@ impl Problem {
         let unknowns = &self.unknowns;
         let bearing = self.contacts.iter_mut().filter(|c| c.bears);
         for contact in bearing.filter(|c| c.grip == Grip::Open) {
-            contact.follow(unknowns);
+            contact.apply_law(unknowns);
             contact.grip = contact.fitting;
         }
     }
@@ -117,19 +117,19 @@ impl Problem {
     }
 
     /// Updates all impulses to match the velocities; returns the largest error of a velocity [m/s].
-    pub(super) fn follow_unknowns(&mut self) -> f64 {
+    pub(super) fn apply_laws(&mut self) -> f64 {
         let mut off: f64 = 0.0;
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
-            off = off.max(contact.follow(&self.unknowns));
+            off = off.max(contact.apply_law(&self.unknowns));
         }
-        off.max(self.follow_bilaterals())
+        off.max(self.apply_laws_of_bilaterals())
     }
 
     /// The same for bilaterals alone.
-    pub(super) fn follow_bilaterals(&mut self) -> f64 {
+    pub(super) fn apply_laws_of_bilaterals(&mut self) -> f64 {
         let unknowns = &self.unknowns;
         let bilaterals = self.bilaterals.iter_mut();
-        bilaterals.fold(0.0, |off: f64, each| off.max(each.follow(unknowns)))
+        bilaterals.fold(0.0, |off: f64, each| off.max(each.apply_law(unknowns)))
     }
 
     /// Corrects the states of contacts that do not fit; returns whether all fitted.

@@ -22,9 +22,9 @@ pub(super) struct System {
     count: usize,
     /// Row by row, each with the right-hand side at its end.
     rows: Vec<f64>,
-    /// Whether any row has other unknowns than its own, ...
+    /// Whether there are entries off the diagonal, ...
     is_coupled: bool,
-    /// ... and whether that may be unknowns of two bodies beside the base.
+    /// ... and whether there may be some between two bodies beside the base.
     spins_meet: bool,
     /// [1/kg, 1/kg, 1/(kg m^2), ...] One over the inertia of each unknown, 0 for those of rings: the weights of the rows.
     pub weights: Vec<f64>,
@@ -101,7 +101,7 @@ impl System {
         }
         for inertia in inertias {
             for (at, lever) in inertia.action.entries() {
-                weights[at] += inertia.damper.stiffness * lever * lever;
+                weights[at] += inertia.damper.damping * lever * lever;
             }
         }
         for (weight, held) in weights.iter_mut().zip(held).take(self.count) {
@@ -128,7 +128,7 @@ impl System {
     /// Adds a constraint: its impulse acts along the first of two tied rows, with a damper along the second.
     pub(super) fn add(&mut self, [force, action]: [&Row; 2], damper: Damper) {
         self.push(force, damper.at(action.offset));
-        if damper.stiffness == 0.0 {
+        if damper.damping == 0.0 {
             return;
         }
         self.is_coupled = true;
@@ -137,7 +137,7 @@ impl System {
         let of_base = action.of_base();
         for (i, f) in force.entries() {
             let row = &mut self.rows[i * stride..][..stride];
-            let share = damper.stiffness * f;
+            let share = damper.damping * f;
             for (entry, d) in row[..BASE].iter_mut().zip(of_base) {
                 *entry += share * d;
             }

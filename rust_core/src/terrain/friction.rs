@@ -4,9 +4,9 @@ use crate::geometry::Vector;
 use crate::scenario::Friction;
 use crate::units::Metres;
 
-/// [m] Of two segments this much apart in their distance from a contact, both are touched: contacts overlap with the
-/// ground by less, and so are off its corners.
-const AT_CORNER: Metres = Metres(1e-5);
+/// [m] A contact whose distances from two segments differ by less touches both: by its overlap with the ground, which is
+/// less, it may be off their corner.
+const AT_BOTH: Metres = Metres(1e-5);
 
 /// How a lane resists a robot that slides on it.
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ impl GroundFriction {
         Self {
             most: most.fold(Friction::dry(0.0), Friction::or_larger),
             segments,
-            reach: radius + AT_CORNER.value(),
+            reach: radius + AT_BOTH.value(),
         }
     }
 
@@ -82,7 +82,7 @@ impl GroundFriction {
         let behind = to(point.x + self.reach).max(first + 1);
         let near = &self.segments[first..behind];
         let least = near.iter().map(|s| s.distance(point));
-        let limit = least.fold(f64::INFINITY, f64::min) + AT_CORNER.value();
+        let limit = least.fold(f64::INFINITY, f64::min) + AT_BOTH.value();
         let touched = near.iter().filter(|s| s.distance(point) <= limit);
         touched.fold(Friction::dry(0.0), |most, s| most.or_larger(s.friction))
     }

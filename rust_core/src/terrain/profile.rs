@@ -14,6 +14,7 @@ use crate::units::Metres;
 const FACET_TURN: f64 = 0.0175;
 /// Largest number of facets of a lane, which are built in well under a second.
 const MAX_FACETS: f64 = 1e6;
+
 /// The part of the robot that a profile is under; the code is the `lane` of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
@@ -145,7 +146,7 @@ impl Profile {
         if radius > 0.0 {
             check_facets(path, corners, radius)?;
         }
-        let mut spare = 0.0; // [m] length that the previous arc takes of the segment behind it
+        let mut taken = 0.0; // [m] what the arc before takes of the segment between both
         self.push(corners[0], -1);
         for i in 1..corners.len() - 1 {
             let (before, corner, behind) = (corners[i - 1], corners[i], corners[i + 1]);
@@ -153,7 +154,7 @@ impl Profile {
             if angle.abs() * (corner - before).length().min((behind - corner).length())
                 < COLLINEAR.value()
             {
-                spare = 0.0;
+                taken = 0.0;
                 self.push(corner, -1);
                 continue;
             }
@@ -165,7 +166,7 @@ impl Profile {
                 0.0
             };
             let (to_last, to_next) = (
-                (corner - before).length() - spare,
+                (corner - before).length() - taken,
                 (behind - corner).length(),
             );
             let room = to_last.min(to_next);
@@ -178,8 +179,8 @@ impl Profile {
                 return Err(ScenarioError::new(path, radius, rule));
             }
             // What an arc leaves of a face has no direction if it is no longer than this.
-            let is_joined = spare + tangent > 0.0 && to_last - tangent < COLLINEAR.value();
-            spare = tangent;
+            let is_joined = taken + tangent > 0.0 && to_last - tangent < COLLINEAR.value();
+            taken = tangent;
             let outward = left_of(d1);
             let start = corner - d1 * tangent;
             let radius = if rounded { radius } else { 0.0 };

@@ -34,8 +34,8 @@ impl Chain {
         ring.start(&self.inertias, free);
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
             *hinge = Hinge {
-                ends: pin.arms(),
-                pushed_at: pin.arms(),
+                ends: pin.arms,
+                pushed_at: pin.arms,
                 velocity: pin.gap / -h,
                 ..Hinge::default()
             };
@@ -67,14 +67,14 @@ impl Chain {
         self.turn_pins(&middle);
         self.middle = middle;
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
-            hinge.pushed_at = pin.arms();
+            hinge.pushed_at = pin.arms;
         }
         self.resist(ring, &self.middle, h, self.rule.bushing.damping);
         self.measure_gaps(shoes);
         self.inertias.fill(self.rule.shoe_inertia);
         ring.start(&self.inertias, free);
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
-            (hinge.ends, hinge.velocity) = (pin.arms(), Vector::ZERO);
+            (hinge.ends, hinge.velocity) = (pin.arms, Vector::ZERO);
         }
         ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, h);
     }

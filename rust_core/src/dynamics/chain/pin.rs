@@ -10,7 +10,7 @@ use crate::geometry::{Vector, plausible_vectors};
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Pin {
     /// [m] From the centre of the shoe, and from that of the next shoe, to the pin.
-    arms: [Vector; 2],
+    pub arms: [Vector; 2],
     /// [m] Offset of the next shoe's end from this one's.
     pub gap: Vector,
     /// [N] Mean force on the next shoe in the last step.
@@ -36,10 +36,5 @@ impl Pin {
     /// line.
     pub(super) fn straightens(&self) -> [f64; 2] {
         [-self.arms[0].dot(self.force), self.arms[1].dot(self.force)]
-    }
-
-    /// [m] From the centre of the shoe, and from that of the next shoe, to the pin.
-    pub(super) fn arms(&self) -> [Vector; 2] {
-        self.arms
     }
 }

@@ -1,4 +1,5 @@
-//! Commands by hand, which override those of the scenario from now on.
+//! Commands by hand: a speed holds until the next entry of the schedule, angles and rates of flippers override the gait from
+//! now on.
 
 use super::Simulation;
 use super::commands::Push;

@@ -123,11 +123,6 @@ impl Simulation {
             arm.angle += turn;
         }
     }
-
-    /// [m] Half the distance between the end axles.
-    pub(super) fn half_length(&self) -> f64 {
-        0.5 * self.scenario.robot.outline.axle_distance()
-    }
 }
 
 /// The point nearest to the origin that is beyond all walls, `along . x >= bound`: Hildreth's method.

@@ -8,7 +8,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 use super::system::{
-    BASE, CLOSING_HINGE, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, Twisted, WIDTH,
+    CLOSING_HINGE, DRIVE, Entry, Hinge, ON_BASE, RIGHT, RingSystem, SLIDE, Solved, Twisted, WIDTH,
 };
 use crate::geometry::{Twist, Vector, left_of};
 use crate::solver::row::TURN;
@@ -60,7 +60,7 @@ impl RingSystem {
 
     /// The same for what a link and the next one have from each other's turn.
     fn hand_on_twist(&mut self, link: usize, hinge: &Hinge, solved: &Solved) {
-        let stiffness = hinge.twist.stiffness;
+        let stiffness = hinge.twist.damping;
         let velocity = Vector2::new(hinge.velocity.x, hinge.velocity.y);
         let Entry { own, below, .. } = self.links[link];
         let turning = turning_about(hinge.ends[0]);
@@ -112,14 +112,14 @@ impl RingSystem {
 
     /// Computes the velocities of the links and the impulses of the hinges from the velocity of the base and, where the
     /// drive is a body that spins, of this; returns those of the slide and the drive.
-    pub(super) fn follow(
+    pub(super) fn back_substitute(
         &mut self,
         hinges: &[Hinge],
         (base, spin): ([f64; 3], Option<f64>),
         links: &mut [f64],
     ) -> [f64; 2] {
         let mut known = SVector::<f64, WIDTH>::zeros();
-        known.fixed_rows_mut::<3>(BASE).copy_from_slice(&base);
+        known.fixed_rows_mut::<3>(ON_BASE).copy_from_slice(&base);
         known[DRIVE] = spin.unwrap_or_default();
         known[RIGHT] = -1.0;
         let of_border = -(self.border * known);

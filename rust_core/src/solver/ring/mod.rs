@@ -35,7 +35,7 @@ pub(crate) struct Ring {
     /// [kg] Mass of a link, ...
     mass: f64,
     /// [1/kg, 1/kg, 1/(kg m^2)] ... and one over its inertia for x, y and turn.
-    weights: [f64; BASE],
+    pub(super) weights: [f64; BASE],
     /// The hinge in front of each link.
     pub hinges: Vec<Hinge>,
     /// What holds the slide.
@@ -68,11 +68,6 @@ impl Ring {
             }
         };
         specs.iter().enumerate().map(ring).collect()
-    }
-
-    /// [1/kg, 1/kg, 1/(kg m^2)] One over the inertia of a link for x, y and turn.
-    pub(super) fn weights(&self) -> [f64; BASE] {
-        self.weights
     }
 
     /// The velocities of its links among all unknowns.
@@ -120,7 +115,7 @@ impl Ring {
             return self.system.let_go();
         }
         match motor.given().map(|given| given.plus(self.rotor)) {
-            Some(given) if given.stiffness == 0.0 => {
+            Some(given) if given.damping == 0.0 => {
                 self.system.let_go();
                 for grasp in &self.grasps {
                     self.system.push(grasp, given.at(0.0));
@@ -167,11 +162,13 @@ impl Ring {
     }
 
     /// Finds the velocities of links and slide from those of the base and of what spins.
-    pub(super) fn follow(&mut self, unknowns: &mut [f64]) {
+    pub(super) fn back_substitute(&mut self, unknowns: &mut [f64]) {
         let base = [unknowns[0], unknowns[1], unknowns[2]];
         let spin = self.spin.map(|at| unknowns[at]);
         let links = &mut unknowns[self.first..][..BASE * self.hinges.len()];
-        let [slide, drive] = self.system.follow(&self.hinges, (base, spin), links);
+        let [slide, drive] = self
+            .system
+            .back_substitute(&self.hinges, (base, spin), links);
         unknowns[self.slide_at] = slide;
         if spin.is_none() {
             unknowns[self.drive_at] = drive;

@@ -44,7 +44,7 @@ pub(crate) struct Grasp {
 }
 
 /// Rows and columns of the border: three for the base, ...
-pub(super) const BASE: usize = 0;
+pub(super) const ON_BASE: usize = 0;
 /// ... one for the drive (its force or the spin through which it acts), one for the slide, ...
 pub(super) const DRIVE: usize = 3;
 pub(super) const SLIDE: usize = 4;
@@ -126,7 +126,7 @@ impl RingSystem {
             link.beside.set_row(RIGHT, &momentum.transpose());
         }
         self.border = SMatrix::zeros();
-        self.border[(SLIDE, SLIDE)] = slide.stiffness;
+        self.border[(SLIDE, SLIDE)] = slide.damping;
         self.border[(SLIDE, RIGHT)] = slide.at(0.0);
     }
 
@@ -134,7 +134,7 @@ impl RingSystem {
     pub(super) fn add(&mut self, link: usize, [force, action]: [&Row; 2], damper: Damper) {
         let entry = &mut self.links[link];
         let [force, along] = [force, action].map(|row| Vector3::from(row.on_link));
-        entry.own += force * along.transpose() * damper.stiffness;
+        entry.own += force * along.transpose() * damper.damping;
         let mut right = entry.beside.row_mut(RIGHT);
         right += force.transpose() * damper.at(action.offset);
     }
@@ -147,14 +147,14 @@ impl RingSystem {
         damper: Damper,
     ) {
         self.add(link, rows, damper);
-        let (stiffness, impulse) = (damper.stiffness, damper.at(rows[1].offset));
+        let (stiffness, impulse) = (damper.damping, damper.at(rows[1].offset));
         let [force, action] = rows.map(|row| row.on_link);
         let [force_beside, action_beside] = rows.map(|row| {
             let [x, y, turn] = row.of_base();
             let own = row.beside_base().map(|(_, lever)| lever).sum();
             [x, y, turn, own]
         });
-        let columns = [BASE, BASE + 1, BASE + 2, column];
+        let columns = [ON_BASE, ON_BASE + 1, ON_BASE + 2, column];
         let entry = &mut self.links[link];
         for (i, at) in columns.into_iter().enumerate() {
             let (of_force, of_action) = (stiffness * force_beside[i], action_beside[i]);
@@ -172,7 +172,7 @@ impl RingSystem {
     /// Adds what a hinge does against the turn of one of its links, the other one being at rest.
     pub(super) fn resist(&mut self, link: usize, sign: f64, twist: Damper) {
         let entry = &mut self.links[link];
-        entry.own[(TURN, TURN)] += twist.stiffness;
+        entry.own[(TURN, TURN)] += twist.damping;
         entry.beside[(RIGHT, TURN)] += sign * twist.at(0.0);
     }
 
@@ -187,8 +187,8 @@ impl RingSystem {
         for i in 0..3 {
             entry.beside[(DRIVE, i)] += on_link[i];
             entry.below[(DRIVE, i)] += on_link[i];
-            self.border[(BASE + i, DRIVE)] += on_base[i];
-            self.border[(DRIVE, BASE + i)] += on_base[i];
+            self.border[(ON_BASE + i, DRIVE)] += on_base[i];
+            self.border[(DRIVE, ON_BASE + i)] += on_base[i];
         }
     }
 
@@ -204,15 +204,15 @@ impl RingSystem {
 
     /// Has the drive give the impulse of a damper that is not constant.
     pub(super) fn give(&mut self, damper: Damper) {
-        self.border[(DRIVE, DRIVE)] = -1.0 / damper.stiffness;
-        self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.stiffness;
+        self.border[(DRIVE, DRIVE)] = -1.0 / damper.damping;
+        self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.damping;
     }
 
     /// Has the drive give a constant impulse [N s], through a link and the base.
     pub(super) fn push(&mut self, grasp: &Grasp, impulse: f64) {
         for i in 0..3 {
             self.links[grasp.link].beside[(RIGHT, i)] += grasp.on_link[i] * impulse;
-            self.border[(BASE + i, RIGHT)] += grasp.on_base[i] * impulse;
+            self.border[(ON_BASE + i, RIGHT)] += grasp.on_base[i] * impulse;
         }
     }
 

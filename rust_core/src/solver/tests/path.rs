@@ -72,7 +72,7 @@ fn a_relaxed_law_holds_in_any_state_with_the_same_impulses() {
             violated += u32::from(least > 0.0);
             let before = contact.held(&unknowns, 0.0);
             contact.relax(&unknowns, least);
-            let scale = 1e-12 * (contact.dampers[0].stiffness + contact.dampers[1].stiffness);
+            let scale = 1e-12 * (contact.dampers[0].damping + contact.dampers[1].damping);
             contact.conditions(&unknowns, 1.0, |next, value| {
                 assert!(value >= -scale, "{:?} to {next:?}: {value}", contact.grip);
             });
