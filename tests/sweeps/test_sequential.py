@@ -369,6 +369,8 @@ def test_at_least_one_run_is_made() -> None:
         Until(least=0, most=0)
     assert not Until(least=0, most=1, width=0.9).is_done(0, 0)
     assert Until(least=0, most=1, width=0.9).is_done(1, 1)
+    assert not Until(least=0, width=1.0).is_done(0, 0)
+    assert Until(least=0, width=1.0).is_done(0, 1)
 
 
 def test_a_rule_is_frozen_equal_to_its_copy_and_made_of_python_numbers() -> None:

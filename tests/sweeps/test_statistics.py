@@ -77,6 +77,14 @@ def test_wilson_bounds_solve_the_score_equation(confidence: float) -> None:
         assert abs(rate - bound) == pytest.approx(z * math.sqrt(bound * (1 - bound) / 20))
 
 
+@pytest.mark.parametrize("confidence", [math.nextafter(0.0, 1.0), math.nextafter(1.0, 0.0)])
+def test_every_confidence_between_0_and_1_has_an_interval(confidence: float) -> None:
+    rate, low, high = wilson(1, 2, confidence)
+    assert 0.0 <= low <= rate <= high <= 1.0
+    z = 8.29 if confidence > 0.5 else 0.0  # of a tail of 2^-54, as tables have it
+    assert high - low == pytest.approx(z / math.sqrt(2.0 + z**2), abs=1e-3)
+
+
 def test_wilson_ends_exactly_at_0_and_1() -> None:
     assert wilson(0, 20).low == 0.0
     assert wilson(20, 20).high == 1.0

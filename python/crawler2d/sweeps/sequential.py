@@ -168,7 +168,7 @@ class Until(TakesKeywords):
             If not ``0 <= successes <= count``.
         """
         interval = sequential(successes, count, self.confidence)
-        if count < self.least or count >= self.most:
+        if count < max(self.least, 1) or count >= self.most:  # of no runs nothing is known
             return count >= self.most
         return interval.high - interval.low <= self.width or interval.side(self.threshold) != 0
 

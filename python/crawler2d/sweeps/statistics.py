@@ -376,7 +376,8 @@ def _root(a: float, b: float, phi: float) -> float:
 def _normal_quantile(confidence: float) -> float:
     from statistics import NormalDist  # noqa: PLC0415 - slow to import
 
-    return NormalDist().inv_cdf(0.5 + read_level(confidence) / 2.0)
+    # Of the lower tail: the upper one rounds to all below a confidence of 1.
+    return -NormalDist().inv_cdf(0.5 * (1.0 - read_level(confidence)))
 
 
 def read_counts(successes: int, count: int) -> tuple[int, int]:
