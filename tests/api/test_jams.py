@@ -139,6 +139,15 @@ def test_the_chart_has_each_jam_at_its_frictions_and_draws_itself() -> None:
         chart.plot()
 
 
+def test_a_chart_over_a_field_that_is_called_as_one_of_its_figures_has_its_whole_path() -> None:
+    base = c2d.Scenario(WHEELS, c2d.terrains.ramp(0.3))
+    models: dict[int, Any] = {4: {}, 5: c2d.LineOfWheels(5)}
+    chart = studies.jam_chart(base, models=models, x="terrain.angle", values=[0.3, 0.4])
+    assert chart["low"].dims == ("model", "terrain_angle", "jam")
+    assert chart["model"].values.tolist() == [4, 5]
+    assert chart.sel(model=4).plot().get_xlabel().startswith("angle")
+
+
 def test_a_chart_of_one_height_has_a_line_for_each_way_to_jam() -> None:
     chart = studies.jam_chart(c2d.Scenario(WHEELS, STEP), values=[0.1])
     ax = chart.plot()

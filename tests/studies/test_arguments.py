@@ -98,3 +98,5 @@ def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
         c2d.simulate_many(scenario)
     with pytest.raises(c2d.ScenarioError, match="table must be what sweep returned"):
         c2d.rate(c2d.simulate(scenario))  # type: ignore[arg-type]
+    with pytest.raises(c2d.ScenarioError, match="runs must be several"):
+        c2d.table(c2d.simulate(scenario))  # type: ignore[arg-type]

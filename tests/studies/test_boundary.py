@@ -42,6 +42,15 @@ def test_every_model_and_sample_has_its_own_bracket() -> None:
     assert found["rate"].dims == ("model", "friction", "sample")
 
 
+def test_where_a_model_was_not_tried_nothing_was_drawn() -> None:
+    models = {"as it is": {}, "weak": {"robot.drivetrain.max_torque": 0.5}}
+    how: dict[str, Any] = {"unknown": {"robot.mass": c2d.uniform(18.0, 24.0)}, "samples": 2}
+    found = friction_of(models=models, tolerance=0.2, until=c2d.Until(least=1, most=1), **how)
+    is_tried = found["count"] > 0
+    assert not is_tried.all()
+    assert (found["unknown_mass"].notnull() == is_tried).all()
+
+
 def test_where_nothing_passes_one_half_there_is_no_bracket() -> None:
     found = c2d.studies.critical(SLOPE, "terrain.friction", (0.1, 0.3), points=2, **STEADY)
     assert math.isnan(found["bracket_low"].item())

@@ -83,6 +83,7 @@ def test_several_dimensions_can_be_counted_over() -> None:
     assert found["rate"].item() == 3 / 7
     assert rate(TABLE, dim=("repeat", "height")).identical(found)
     assert rate(TABLE, dim=iter(["repeat"])).identical(rate(TABLE))
+    assert rate(TABLE, dim=["repeat", "repeat"]).identical(rate(TABLE))
     alone = rate(TABLE, dim=[])
     assert alone["count"].equals(TABLE["outcome"].isin([str(o) for o in c2d.Outcome]).astype(int))
 

@@ -141,7 +141,8 @@ def critical(
         samples = lines[0].samples
         # Not every value is tried of every model.
         some = lines[0].tallies[values[0]][0]
-        empty = [Tally(some.world, some.until, some.counts)] * samples
+        none = replace(some.world, own={}, sampled={})
+        empty = [Tally(none, some.until, some.counts)] * samples
         tallies = [line.tallies.get(value, empty) for line in lines for value in values]
         dims = {"model": (list(fields), {}), name: (values, field_attributes([path]))}
         table = rate_table(study, "critical", tallies, dims)

@@ -152,7 +152,7 @@ def _dataset(
 ) -> FigureDataset:
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
-    name = short_names([x])[x]
+    name = short_names([x, *_TEXTS])[x]
     columns = {
         "low": _padded(own, lambda cell: cell["low"]),
         "high": _padded(own, lambda cell: cell["high"]),
@@ -174,7 +174,7 @@ def _dataset(
         for key, array in of_belts.items()
     }
     coordinates = {
-        "model": ("model", [str(label) for label in labels]),
+        "model": ("model", list(labels)),
         name: (name, list(along), field_attributes([x])),
     }
     return FigureDataset(variables, coordinates, {"figure": "jam_chart", "x": name})

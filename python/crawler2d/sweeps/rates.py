@@ -145,7 +145,7 @@ def rates_of(
     else:
         runs = xr.Dataset({"outcome": ("repeat", np.array(_texts(table), dtype=str))})
     outcomes = runs["outcome"]
-    given = dim if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
+    given = dict.fromkeys(dim) if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
     dims = [read_choice(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
     with xr.set_options(keep_attrs=True):  # those of the coordinates
         valid = outcomes.isin([str(each) for each in Outcome])

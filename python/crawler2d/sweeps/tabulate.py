@@ -143,6 +143,8 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
         origin["build"] = [build for _, build, _ in stored]
         origin["trials"] = [", ".join(trials) for _, _, trials in stored]
     else:
+        if not isinstance(runs, Iterable):
+            raise ScenarioError("runs", runs, "must be several: give them in a list")
         rows, tried = [], []
         for index, run in enumerate(runs):
             if not isinstance(run, Run):
