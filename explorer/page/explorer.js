@@ -37,7 +37,7 @@ class View {
     this.text = text;
     const answer = await this.core.ask(requested(text, null, INTERVAL));
     if (!answer) return false;
-    this.answer = answer;
+    Object.assign(this, { answer, answered: text });
     if (answer.drawing) {
       const { drawing } = answer;
       this.scene = new Scene(this.canvas, drawing, new Recording(drawing));
@@ -50,7 +50,8 @@ class View {
   // Tries at the stop what its outcome needs, and a little more.
   async judge() {
     const { text } = this;
-    if (!this.answer || this.answer.error || this.answer.judged) return;
+    // A run that is still awaited is not pushed aside; when it is there, it is judged.
+    if (text !== this.answered || this.answer.error || this.answer.judged) return;
     const judged = await this.core.ask(requested(text, tables.trials, null), "trials");
     if (!judged || text !== this.text) return;
     this.answer = { ...judged, drawing: this.answer.drawing };

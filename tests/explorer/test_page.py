@@ -107,6 +107,41 @@ def test_of_many_changes_the_newest_wins(page: Page) -> None:
     assert part(page, "ending") == f"{run.outcome} after {run.metrics['time']:.1f} s"
 
 
+def test_a_run_that_waits_for_a_slow_one_is_not_pushed_aside_by_trials(page: Page) -> None:
+    page.evaluate(
+        """async (place) => {
+            const [{ core }] = window.explored.views;
+            const input = document.querySelector(place);
+            const held = [];
+            const later = (ms) => new Promise((done) => setTimeout(done, ms));
+            const release = async () => {
+                while (!held.length) await later(10);
+                core.take(held.shift());
+                await later(0);
+            };
+            const send = (type, height) => {
+                input.value = height;
+                input.dispatchEvent(new Event(type));
+            };
+            core.worker.onmessage = ({ data }) => held.push(data);
+            send("input", "0.08");
+            await release(); // a stop that is not judged yet
+            send("input", "0.085");
+            send("input", "0.03");
+            send("change", "0.03");
+            await later(400); // by now stops would be tried
+            core.worker.onmessage = ({ data }) => core.take(data);
+            await release();
+        }""",
+        HEIGHT,
+    )
+    page.wait_for_timeout(400)
+    settled(page)
+    highest = """() => window.explored.views.map(({ scene }) =>
+        Math.max(...scene.lanes.at(-1).edges.map(({ y }) => y)))"""
+    assert page.evaluate(highest) == [0.03, 0.03]
+
+
 def test_a_link_restores_the_state(page: Page, open_page: Open, html: str) -> None:
     page.select_option("[id='field-terrain.kind']", "barrier")
     page.select_option("[id='field-robot.track.wheel.kind']", "gear")
