@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -100,6 +101,11 @@ def test_any_name_of_a_file_gives_xml(check: Check) -> None:
     assert len(cases(text)) == 4
     suite = ElementTree.fromstring(text.encode())[0]
     assert suite.attrib["name"] == 'a\ufffd <b> & "c".urdf'
+
+
+def test_any_name_of_a_file_has_an_address(check: Check) -> None:
+    odd = dataclasses.replace(check, path=Path(os.fsdecode(b"caf\xe9 %.urdf")))
+    assert where(odd)["uri"] == "caf%E9%20%25.urdf"
 
 
 def results(text: str) -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -316,7 +317,7 @@ def _location(path: Path, line: int) -> dict[str, Any]:
     root = repository_of(path) or Path.cwd()
     file = {"uri": whole.as_uri()}
     if whole.is_relative_to(root):
-        file = {"uri": quote(whole.relative_to(root).as_posix()), "uriBaseId": _ROOT}
+        file = {"uri": quote(os.fsencode(whole.relative_to(root).as_posix())), "uriBaseId": _ROOT}
     place: dict[str, Any] = {"artifactLocation": file}
     if line:
         place["region"] = {"startLine": line}
