@@ -79,6 +79,21 @@ def test_a_repository_without_a_licence_says_so(tmp_path: Path) -> None:
     assert licence_of(tmp_path) == "licence: none found"
 
 
+def test_a_licence_that_cannot_be_read_does_not_end_the_atlas(
+    tmp_path: Path, monkeypatch: Any
+) -> None:
+    def denied(path: Path, **_: Any) -> Any:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    (tmp_path / "a" / "package.xml").mkdir(parents=True)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "package.xml").write_text("<license>BSD</license>", encoding="utf-8")
+    assert licence_of(tmp_path) == "licence: package.xml: BSD"
+    (tmp_path / "LICENSE").touch()
+    monkeypatch.setattr(Path, "open", denied)
+    assert licence_of(tmp_path) == "licence: LICENSE: "
+
+
 def test_after_ctrl_c_the_page_has_what_was_done(
     forest: Path,
     tmp_path: Path,

@@ -268,11 +268,19 @@ def licence_of(repository: Path) -> str:
     statements = []
     for path in sorted(repository.glob("*")):
         if re.match(r"(?i)(licen[cs]e|copying)", path.name) and path.is_file():
-            lines = path.read_text(encoding="utf-8", errors="replace")[:4000].splitlines()
+            lines = _beginning(path).splitlines()
             first = next((line.strip() for line in lines if line.strip()), "")
             statements.append(f"{path.name}: {first[:80]}")
-    for path in sorted(repository.rglob("package.xml"))[:1]:
-        text = path.read_text(encoding="utf-8", errors="replace")[:100_000]
-        if stated := re.search(r"<license[^>]*>([^<]*)</license>", text):
+    for path in sorted(filter(Path.is_file, repository.rglob("package.xml")))[:1]:
+        if stated := re.search(r"<license[^>]*>([^<]*)</license>", _beginning(path)):
             statements.append(f"package.xml: {stated[1].strip()[:80]}")
     return f"licence: {'; '.join(statements) or 'none found'}"
+
+
+def _beginning(path: Path) -> str:
+    """Read the beginning of a text; nothing of one that cannot be read."""
+    try:
+        with path.open(encoding="utf-8", errors="replace") as file:
+            return file.read(100_000)
+    except OSError:
+        return ""
