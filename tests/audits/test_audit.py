@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d.audits import words
@@ -134,9 +135,12 @@ def test_a_quick_audit_has_fewer_samples_and_tries_round_wheels_alone() -> None:
     }
 
 
-@pytest.mark.parametrize(("name", "value"), [("samples", 0), ("repeats", 0), ("threads", 0)])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("samples", 0), ("repeats", 0), ("threads", 0), ("repair", 1), ("quick", "no")],
+)
 def test_bad_numbers_are_refused_before_anything_is_told(
-    name: str, value: int, capsys: Any
+    name: str, value: Any, capsys: Any
 ) -> None:
     bad: Any = {name: value}
     with pytest.raises((c2d.ScenarioError, LimitError), match=name):
@@ -271,6 +275,24 @@ def test_what_a_user_says_is_unknown_counts() -> None:
 def test_only_what_differs_is_said_to_be_drawn(unknown: Any, many: str) -> None:
     few = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repair=False, **QUIET)
     assert f"Verdicts: at most {many}" in str(few)
+
+
+@pytest.mark.parametrize(
+    ("how", "said"),
+    [
+        ({"vary": {}}, "at 0.378 m/s"),
+        ({"vary": {"drive.speed": c2d.uniform(0.1, 0.4)}}, "at 0.1 to 0.4 m/s"),
+        ({"vary": c2d.variability.of_contact()}, "at 0.378 m/s, times 0.98 to 1.02"),
+        ({"vary": {"drive.speed": stats.norm(0.3, 0.01)}}, "at norm(0.3, 0.01)"),
+        (
+            {"drive": c2d.Drive(schedule=((0.0, 0.3),))},
+            "at the speeds of its schedule, obstacles times 0.95 to 1.05",
+        ),
+    ],
+)
+def test_an_audit_says_at_which_speeds_it_drove(how: Any, said: str) -> None:
+    few = c2d.audit(SEIZING, STEP, unknown={}, repair=False, **how, **QUIET)
+    assert f"Verdicts: at most 1 run, {said}; intervals of 95 %" in " ".join(str(few).split())
 
 
 def test_terrains_of_a_users_own_keep_their_friction() -> None:

@@ -34,7 +34,7 @@ from crawler2d.audits.subject import (
 )
 from crawler2d.audits.text import head_of, lint_of, rest_of, row_of, text_of
 from crawler2d.audits.verdicts import BELT, OWN, Verdict
-from crawler2d.common.arrays import whole_number
+from crawler2d.common.arrays import read_bool, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.files import write_text
 from crawler2d.common.keywords import takes_keywords
@@ -294,6 +294,7 @@ def audit(
     ('chassis: 5 wheels in place of 4', True)
     """
     extra("xarray", "analysis")  # fail before the runs if it is missing
+    repair, quick = read_bool(repair, "repair"), read_bool(quick, "quick")
     usual = QUICK if quick else SAMPLES
     samples = whole_number(usual if samples is None else samples, "samples", 1, 10**5)
     repeats = whole_number(repeats, "repeats", 1, 10**6)

@@ -139,7 +139,7 @@ def _conclusion(audit: AuditRecord) -> Iterator[str]:
     for sentence in words.conclusion(audit):
         yield from _wrap(sentence, 0)
     if audit.repaired is not None:
-        yield from _wrap(f"Repairs: {words.search_sentence(audit.repaired, audit.vary)}", 0)
+        yield from _wrap(f"Repairs: {words.search_sentence(audit.repaired, audit)}", 0)
         for each in audit.repairs:
             yield from _wrap(words.repair_sentence(each))
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from crawler2d.variation.distributions import (
     Shifted,
     Uniform,
     UniformInt,
+    read_distribution,
 )
 
 if TYPE_CHECKING:
@@ -94,11 +95,11 @@ def population(audit: AuditSetup) -> str:
     """Say over how many runs the rates are rates, and how fast it drove."""
     samples, repeats = audit.call.samples, audit.call.repeats
     each = "1 run" if repeats == 1 else f"{repeats} runs"
-    many = f"{samples} {_what_differs(audit)}, {each} each" if audit.unknown else f"{repeats} runs"
+    many = f"{samples} {_what_differs(audit)}, {each} each" if audit.unknown else each
     levels = audit.vary.get("drive.speed")
     factors = levels.factors if isinstance(levels, Levels) else (1.0,)
     speeds = audit.drive.speed * np.array(factors)
-    text = f"at most {many}, {_speeds_and_sizes(speeds, audit.vary)}; intervals of 95 %"
+    text = f"at most {many}, {_speeds_and_sizes(speeds, audit)}; intervals of 95 %"
     least = least_samples()
     if (samples if audit.unknown else repeats) < least:
         text += f'; "does not seize" takes {least} or more'
@@ -113,11 +114,17 @@ def _what_differs(audit: AuditSetup) -> str:
     return "robots on floors" if True in on_floors else "robots"
 
 
-def _speeds_and_sizes(levels: NDArray[np.float64], vary: Mapping[str, Any]) -> str:
+def _speeds_and_sizes(levels: NDArray[np.float64], audit: AuditSetup) -> str:
     """Say at which speeds [m/s] runs drove, and over which sizes of the obstacles."""
     *slow, fast = (f"{speed:g}" for speed in np.unique(np.round(levels, 3)).tolist())
     speeds = f"{', '.join(slow)} and {fast} m/s in turn" if slow else f"{fast} m/s"
-    sizes = vary.get("terrain.height")
+    drawn = audit.vary.get("drive.speed")
+    if audit.drive.schedule:
+        speeds = "the speeds of its schedule"
+    elif drawn is not None and not isinstance(drawn, Levels):
+        about = range_of("drive.speed", drawn)
+        speeds = f"{speeds}, {about}" if isinstance(drawn, Scaled | Shifted) else about
+    sizes = audit.vary.get("terrain.height")
     if not isinstance(sizes, Scaled):
         return f"at {speeds}"
     return f"at {speeds}, obstacles times {sizes.low:g} to {sizes.high:g}"
@@ -287,9 +294,9 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
     )
 
 
-def search_sentence(search: RepairSearch, vary: Mapping[str, Any]) -> str:
+def search_sentence(search: RepairSearch, audit: AuditSetup) -> str:
     """Say what the search for repairs found, and in which runs."""
-    runs = f"in fresh runs {_speeds_and_sizes(search.table['speed'].values, vary)}"
+    runs = f"in fresh runs {_speeds_and_sizes(search.table['speed'].values, audit)}"
     if any(each.confirmed for each in search.repairs):
         return f"the best of {search.tried} candidates, {runs}"
     return f"none of {search.tried} candidates was confirmed {runs}"
@@ -356,7 +363,7 @@ def range_of(path: str, distribution: Distribution) -> str:
             of = str(distribution.of or "").rpartition(".")[2].replace("_", " ")
             unit = f" of the {of}" if of else own
             return f"{distribution.low:+g} to {distribution.high:+g}{unit}"
-    return str(distribution)
+    return str(read_distribution(distribution, path))  # one of SciPy has no text of its own
 
 
 def unit_after(path: str) -> str:

@@ -197,7 +197,7 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
                 f"{each.speed:.2g} times",
             )
         )
-    text = f"<p>{escape(_sentence(words.search_sentence(found, audit.vary)))}</p>"
+    text = f"<p>{escape(_sentence(words.search_sentence(found, audit)))}</p>"
     drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
     return (
         f'{text}{_grid(head, rows, label="repairs", look="many")}<div class="repairs">{drawn}</div>'
