@@ -68,6 +68,7 @@ def test_the_scenarios_own_ground_is_taken_if_none_is_given() -> None:
     found = found_of(terrains=None)
     assert found["terrain"].values.tolist() == ["flat"]
     assert (found["rate"] == 1.0).all()
+    assert "terrain.seed" not in found.attrs["vary"]  # no field was drawn
 
 
 def test_what_is_no_ground_is_refused_by_name() -> None:

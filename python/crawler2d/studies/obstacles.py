@@ -265,9 +265,9 @@ def success(
     models : mapping of str to track or fields, optional
         As for `compare`; None takes the scenario's own robot.
     **how
-        See `crawler2d.studies`. `vary` is ``of_start() | of_contact() | of_field()`` unless given:
-        every run over a random step field has a field of its own. Each cell is simulated until its
-        rate is known within 0.2, unless `until` says otherwise.
+        See `crawler2d.studies`. Unless `vary` is given, every run on a random step field has a
+        field of its own, too. Each cell is simulated until its rate is known within 0.2, unless
+        `until` says otherwise.
 
     Returns
     -------
@@ -294,7 +294,7 @@ def success(
     check_study(scenario)
     grounds = read_terrains(scenario, terrains)
     fields = read_models(scenario, models)
-    if how.get("vary") is None:
+    if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
         how = {**how, "vary": of_start() | of_contact() | of_field()}
     with campaign(scenario, how, ["terrain", *paths_of(fields)]) as study:
         cells = [
