@@ -146,7 +146,8 @@ def seizure_map(
 
     A run clears, has the outcome that is asked for, or ends otherwise. Every cell of the grid is
     simulated; then the grid is halved, and of the new cells only those are simulated around which
-    not all cells end, for certain, in the same way.
+    not all cells end, for certain, in the same way. With unknowns their commonest ends alone are
+    compared: more cells make no band over the samples certain.
 
     Parameters
     ----------
