@@ -248,6 +248,27 @@ def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     plt.close("all")
 
 
+def test_labels_with_dollars_are_no_formulas_in_a_figure() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    dear, dearer = models = {"for 5 $^$": c2d.BeltTrack(), "for 6 $_$": c2d.LineOfWheels(4)}
+    how: Any = {"models": models, "progress": False}
+    once = c2d.Until(least=1, most=1, confidence=0.995)
+    highest = c2d.studies.max_obstacle(BASE, heights=[0.05], until=once, **how)
+    crossed = c2d.studies.success(BASE, terrains={dear: BASE.terrain}, until=once, **how)
+    ridden = c2d.studies.ride(BASE, repeats=1, **how)
+    for found in (highest, crossed, ridden):
+        ax = found.plot()
+        ax.figure.canvas.draw()
+        legend = ax.get_legend()
+        keys = legend.get_texts() if legend is not None else []
+        names = {text.get_text() for text in (*ax.get_yticklabels(), *ax.texts, *keys)}
+        assert {dear, dearer} <= names
+        if found is highest:
+            assert "sequential intervals, 99.5 %" in ax.get_title(loc="left")
+    plt.close("all")
+
+
 def test_an_obstacle_without_a_result_is_the_limit_of_those_before_it() -> None:
     def tally(outcome: str, error: object = None) -> Tally:
         row: Any = SimpleNamespace(outcome=outcome, error=error)

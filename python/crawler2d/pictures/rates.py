@@ -116,7 +116,7 @@ def populations(attributes: Mapping[str, Any], *, banded: bool, what: str = "rat
         return f"{text};\nmedian and 5 to 95 % over {unknown}"
     kind = attributes.get("interval", "")
     level = attributes.get("confidence_level")
-    return f"{text}\n{kind} intervals, {100 * level:.0f} %" if level else text
+    return f"{text}\n{kind} intervals, {100 * level:.12g} %" if level else text
 
 
 def _field_names(text: str) -> str:
@@ -153,9 +153,10 @@ def plot_outcomes(data: xarray.Dataset, ax: Axes | None) -> Axes:
         text = f"{rate:.2f} ({low:.2f} to {high:.2f}), {count} runs"
         ax.text(1.01, place, text, fontsize="x-small", va="center")
     for index, ground in enumerate(grounds):
-        ax.text(0.0, at[index * len(models)] - 0.6, ground, fontweight="bold", fontsize="small")
+        where = 0.0, at[index * len(models)] - 0.6
+        ax.text(*where, ground, fontweight="bold", fontsize="small", parse_math=False)
     ax.set(xlim=(0.0, 1.32), xticks=np.linspace(0.0, 1.0, 6), ylim=(at[-1] + 0.8, -1.3))
-    ax.set_yticks(at, models * len(grounds))
+    ax.set_yticks(at, models * len(grounds), parse_math=False)
     ax.set_xlabel("share of the runs; at the right the rate of clearing")
     ax.spines[["top", "right"]].set_visible(False)
     ax.legend(
@@ -278,8 +279,8 @@ def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, ba
 
 
 def legend_below(ax: Axes, **options: Any) -> None:
-    """Write the legend below the axes, past ticks and label."""
-    ax.legend(
+    """Write the legend below the axes, past ticks and label; no label is a formula."""
+    legend = ax.legend(
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
         bbox_transform=below_axis(ax, _BELOW),
@@ -287,6 +288,8 @@ def legend_below(ax: Axes, **options: Any) -> None:
         fontsize="small",
         **options,
     )
+    for text in legend.get_texts():
+        text.set_parse_math(False)
 
 
 def one_model(data: xarray.Dataset) -> xarray.Dataset:
@@ -346,7 +349,8 @@ def plot_measured(data: xarray.Dataset, ax: Axes | None, *, of: str | None = Non
     for row in range(len(models)):
         text = "\n".join(_notes(data.isel(model=row), name))
         ax.text(1.01, row, text, transform=place, fontsize="x-small", va="center")
-    ax.set_yticks(range(len(models)), [textwrap.fill(text, _WIDE) for text in models])
+    names = [textwrap.fill(text, _WIDE) for text in models]
+    ax.set_yticks(range(len(models)), names, parse_math=False)
     ax.set(ylim=(len(models) - 0.5, -0.5), xlabel=label)
     _set_scale(ax, data, name)
     ax.grid(axis="x", alpha=0.3)
