@@ -285,6 +285,13 @@ def test_a_chart_that_cannot_be_computed_says_why() -> None:
     assert text.startswith("<p>Not computed: robot.track must have round wheels or a smooth belt")
 
 
+def test_a_repair_without_a_chart_leaves_the_model_its_own(found: c2d.Audit) -> None:
+    gears = found.robot.with_track(c2d.LineOfWheels(5, wheel=c2d.GearWheel()))
+    text = chart_section(found.robot, [("gears <8>", gears)])
+    assert text.startswith(chart_section(found.robot))
+    assert "<p>Not computed for gears &lt;8&gt;: robot.track must have round wheels" in text
+
+
 def test_a_diff_is_shown_with_its_repair(found: c2d.Audit, page: Page) -> None:
     diff = "--- a\n+++ b\n-<radius>0.06</radius>"
     shown = Page(audit_page(found, {found.repairs[0].what: diff}))

@@ -36,11 +36,15 @@ _ABOUT = (
 
 def chart_section(robot: Robot, others: Sequence[tuple[str, Robot]] = ()) -> str:
     """Draw the chart of a robot, and those of other ones with their names."""
-    try:
-        figures = [_figure("the model", robot), *(_figure(name, each) for name, each in others)]
-    except ScenarioError as error:
-        return f"<p>Not computed: {escape(str(error))}.</p>"
-    return f'<p class="about">{_ABOUT}</p><div class="charts">{"".join(figures)}</div>'
+    figures, missing = "", ""
+    for name, each in (("the model", robot), *others):
+        try:
+            figures += _figure(name, each)
+        except ScenarioError as error:
+            whose = "" if each is robot else f" for {escape(name)}"
+            missing += f"<p>Not computed{whose}: {escape(str(error))}.</p>"
+    drawn = f'<p class="about">{_ABOUT}</p><div class="charts">{figures}</div>' if figures else ""
+    return drawn + missing
 
 
 def _figure(name: str, robot: Robot) -> str:
