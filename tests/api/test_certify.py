@@ -98,6 +98,15 @@ def test_regions_of_three_fields_have_no_figure() -> None:
         certify(BASE, over, most_cells=10).plot()
 
 
+def test_where_nothing_is_certified_there_are_no_cells() -> None:
+    found = certify(BASE, OVER, most_cells=1, smallest=1.0, keep_cells=True)
+    assert found.share("undecided") == 1.0
+    assert found.cells is not None
+    shapes = {name: column.shape for name, column in found.cells.items()}
+    ends = (0, 3 + len(OVER))
+    assert shapes == {"low": ends, "high": ends, "exclusion": (0,), "motion": (0, 3)}
+
+
 @pytest.mark.parametrize(
     ("over", "options", "message"),
     [

@@ -285,7 +285,7 @@ def _certificate(
     cells = None
     if keeps_cells:
         columns = found["cells"]
-        ends = [columns[end].reshape(len(columns["exclusion"]), -1) for end in ("low", "high")]
+        ends = [columns[end].reshape(-1, 3 + _MOST_FIELDS) for end in ("low", "high")]
         of_fields = slice(3, 3 + len(names))
         lows, highs = (np.hstack([end[:, :3], scaled(end[:, of_fields])]) for end in ends)
         exclusion = np.array(_EXCLUSIONS)[columns["exclusion"]]
