@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -275,6 +276,16 @@ def test_what_a_user_says_is_unknown_counts() -> None:
 def test_only_what_differs_is_said_to_be_drawn(unknown: Any, many: str) -> None:
     few = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repair=False, **QUIET)
     assert f"Verdicts: at most {many}" in str(few)
+
+
+def test_columns_stand_below_their_heads_whatever_the_obstacles_are_called() -> None:
+    grounds = {"s": c2d.terrains.step(0.02)}
+    few = c2d.audit(SEIZING, grounds, unknown={}, vary={}, repair=False, **QUIET)
+    lines = str(few).splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith("  obstacle"))
+    columns = [(found.start(), found[0]) for found in re.finditer(r"\S+(?: \S+)*", lines[at + 1])]
+    assert columns[1] == (lines[at].index("runs"), "1")
+    assert columns[-1] == (lines[at].index("verdict"), few.verdicts[0].word)
 
 
 @pytest.mark.parametrize(

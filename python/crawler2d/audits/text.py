@@ -121,7 +121,7 @@ def _verdicts(audit: AuditSetup) -> Iterator[str]:
 
 
 def _row(audit: AuditSetup, cells: Sequence[str]) -> str:
-    widths = (max(map(len, (*audit.obstacles, cells[0]))), *map(len, _WIDEST))
+    widths = (max(map(len, (*audit.obstacles, words.VERDICT_HEAD[0]))), *map(len, _WIDEST))
     padded = (cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
     return f"  {'  '.join(padded)}".rstrip()
 
