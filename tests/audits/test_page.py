@@ -238,6 +238,13 @@ def test_wheels_are_numbered_and_have_the_names_and_lines_of_the_file(
     assert [row[5] for row in rows] == [f"cart.urdf:{lines[row[4]]}" for row in rows]
 
 
+def test_a_robot_that_is_slower_than_usual_has_a_page() -> None:
+    slow = dataclasses.replace(SEIZING.drivetrain, max_speed=0.1)
+    robot = dataclasses.replace(SEIZING, drivetrain=slow)
+    few = c2d.audit(robot, STEP, unknown={}, repair=False, **QUIET)
+    assert "side view of the robot" in few.to_html()
+
+
 def test_lint_stands_errors_first(of_file: c2d.Audit, file_page: Page) -> None:
     items = [text for _, text in file_page.all("li") if ": " in text]
     for each in of_file.lint:

@@ -14,6 +14,7 @@ from crawler2d.drawings.scene import Scene, extent_of
 from crawler2d.drawings.svg import MARGIN, Sheet, draw_robot_on, escape
 from crawler2d.errors import ignore_doubts
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Flat
 
 if TYPE_CHECKING:
@@ -54,7 +55,8 @@ def draw_robot(
     `title` is for those who cannot see it, `width` and `height` [px] are the most that it may have.
     """
     with ignore_doubts():  # showing an object must not warn
-        scene = Scene.of_robot(Scenario(robot, Flat()).to_json())
+        # At rest: what is usual may be faster than it is.
+        scene = Scene.of_robot(Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json())
     seen = [each.outline for each in shapes if len(each.outline) > 2]
     extent = extent_of(*scene.outlines(0), *seen, margin=MARGIN)
     sheet = Sheet(extent, width, height)
