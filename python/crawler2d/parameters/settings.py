@@ -52,9 +52,10 @@ class Climb(Parameters, kind="climb", path="drive.gait"):
     whether the flippers touch something beyond their roots. The front ones are held at
     `reach_angle` until they do; then they sweep down to `sweep_angle`. As soon as the chassis is
     raised by more than `level_angle`, the rear ones push down to `push_angle` and lift it from
-    behind. When the chassis is level again and nothing touches the rear ones, all return: the
-    front ones to `reach_angle`, the rear ones to their starting angle. The speed of the tracks is
-    that of the `Drive`; the gait never reverses.
+    behind. When the chassis is level again and nothing touches the rear ones, or when they have
+    stood it on its nose, by more than `level_angle`, for a second, all return: the front ones to
+    `reach_angle`, the rear ones to their starting angle. The speed of the tracks is that of the
+    `Drive`; the gait never reverses.
 
     Parameters
     ----------
@@ -230,7 +231,8 @@ class SeizureCriteria(Parameters, path="criteria"):
     clear_time : float
         [s] How long the robot must stay beyond the goal.
     clear_angle : float
-        [rad] Largest angle between chassis and ground at which the goal counts.
+        [rad] How far the angle between chassis and ground may be off that at which the track stands
+        on level ground, for the goal to count.
     tip_over_angle : float
         [rad] Chassis angle at which the robot has tipped over.
     intrusion_depth : float

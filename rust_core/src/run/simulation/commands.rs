@@ -5,6 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::FlipperCommand;
 use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
+use crate::units::Seconds;
+
+/// [s] A climbing robot that has its nose down for longer, with its rear flippers on the ground, is past the edge.
+const ON_ITS_NOSE: Seconds = Seconds(1.0);
 
 /// What the robot is to do.
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -50,6 +54,8 @@ pub(crate) struct Driver {
     /// Number of past entries of the schedule of speeds.
     entries: usize,
     phase: Phase,
+    /// [s] Since when the nose has been down by more than counts as level, if it is.
+    nose_down_since: Option<f64>,
     /// Commands by hand that override the gait, front and rear.
     by_hand: [Option<FlipperCommand>; 2],
 }
@@ -103,7 +109,10 @@ impl Driver {
     pub(crate) fn fits(&self, drive: &Drive) -> bool {
         let entries = drive.schedule.as_ref().map_or(0, Vec::len);
         let known = |given: &Option<FlipperCommand>| given.is_none_or(|c| c.value().is_finite());
-        self.entries <= entries && self.by_hand.iter().all(known)
+        let since = self.nose_down_since;
+        self.entries <= entries
+            && self.by_hand.iter().all(known)
+            && since.is_none_or(f64::is_finite)
     }
 
     /// Overrides the gait at one end.
@@ -133,12 +142,16 @@ impl Driver {
     fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [FlipperCommand; 2] {
         let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
+        let is_nose_down = sight.chassis_angle < -climb.level_angle;
+        self.nose_down_since = (self.nose_down_since.or(Some(sight.time))).filter(|_| is_nose_down);
+        let since = self.nose_down_since.unwrap_or(f64::INFINITY);
+        let is_on_its_nose = sight.time - since > ON_ITS_NOSE.value();
         self.phase = match self.phase {
             Phase::Reach | Phase::Sweep if raised => Phase::Lift,
             Phase::Reach if front => Phase::Sweep,
             Phase::Sweep if !front => Phase::Reach,
-            // Raising rear flippers that bear would drop the robot.
-            Phase::Lift if !raised && !rear => Phase::Reach,
+            // Raising rear flippers that bear would drop the robot, unless they stand it on its nose.
+            Phase::Lift if !raised && (!rear || is_on_its_nose) => Phase::Reach,
             same => same,
         };
         let swept = FlipperCommand::Level(climb.sweep_angle - sight.chassis_angle);
@@ -374,6 +387,17 @@ mod driver_tests {
         assert_eq!(after(&[(0.2, rear), (0.05, rear)]), push(0.05));
         let reach = [FlipperCommand::Angle(0.7), FlipperCommand::Angle(0.3)];
         assert_eq!(after(&[(0.2, rear), (0.05, nothing)]), reach);
+    }
+
+    /// On level ground they would hold its tail up for ever. The times are whole seconds.
+    #[test]
+    fn rear_arms_that_have_stood_a_robot_on_its_nose_for_a_while_let_it_down() {
+        let rear = [false, true];
+        let [raised, down, level] = [0.2, -0.3, -0.05].map(|angle| (angle, rear));
+        let reach = [FlipperCommand::Angle(0.7), FlipperCommand::Angle(0.3)];
+        assert_eq!(after(&[raised, down, down, down]), reach);
+        assert_ne!(after(&[raised, down]), reach);
+        assert_ne!(after(&[raised, down, down, level, down]), reach);
     }
 }
 
