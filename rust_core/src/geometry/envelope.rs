@@ -165,6 +165,19 @@ impl Envelope {
         self.stretches.iter().filter(is_run).map(ends)
     }
 
+    /// [rad] The angle at which a body of this hull, with its centre of mass there, stands on level ground: on the run that is
+    /// turned least; 0 if it stands on none.
+    pub(crate) fn standing_angle(&self, center_of_mass: Vector) -> f64 {
+        let stands = self.runs().filter_map(|[a, b]| {
+            // Clockwise, its lower runs lead to the rear.
+            let along = a - b;
+            let foot = (center_of_mass - b).dot(along) / along.length_squared();
+            (along.x > 0.0 && (0.0..=1.0).contains(&foot)).then(|| -libm::atan2(along.y, along.x))
+        });
+        let least = stands.min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        least.unwrap_or(0.0)
+    }
+
     /// [rad] How far the hull bends round each of the first `count` discs; 0 if it does not touch it.
     pub(crate) fn bends(&self, count: usize) -> Vec<f64> {
         let mut bends = vec![0.0; count];
@@ -328,6 +341,30 @@ mod tests {
             disc(0.0, 0.0, 0.1),
             disc(0.3, 0.0, 0.1),
         ])
+    }
+
+    #[test]
+    fn a_hull_stands_on_the_run_below_its_centre_of_mass() {
+        assert!(stadium().standing_angle(Vector::ZERO).abs() < 1e-15);
+        // Its front is higher by as much as it is larger.
+        let wedge = [disc(-0.2, 0.0, 0.1), disc(0.3, 0.0, 0.2)];
+        let angle = Envelope::new(&wedge).standing_angle(Vector::ZERO);
+        assert!(
+            (angle - (0.1_f64 / 0.5).asin()).abs() < 1e-12,
+            "{angle} rad"
+        );
+        // Of a trapezoid with raised ends the middle run is level, and the others are where the weight is beyond it.
+        let raised = [(-0.5, 0.1), (-0.2, 0.0), (0.2, 0.0), (0.5, 0.1)];
+        let raised = Envelope::new(&raised.map(|(x, y)| disc(x, y, 0.1)));
+        let slope = (0.1_f64 / 0.3).atan();
+        for (x, expected) in [(-0.35, slope), (0.0, 0.0), (0.35, -slope)] {
+            let angle = raised.standing_angle(Vector::new(x, 0.1));
+            assert!((angle - expected).abs() < 1e-12, "{angle} rad at {x} m");
+        }
+        assert_eq!(
+            Envelope::new(&[disc(0.0, 0.0, 0.1)]).standing_angle(Vector::ZERO),
+            0.0
+        );
     }
 
     #[test]

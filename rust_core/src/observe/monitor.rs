@@ -9,7 +9,7 @@ use super::observations::{Anchor, LOOK, Observations};
 use super::{Event, Outcome, Reading, Signals, Stance};
 use crate::contact::{Contact, TrackEnvelope};
 use crate::dynamics::{ChainReading, DriveState};
-use crate::geometry::{Pose, Vector, end_discs, turned_by};
+use crate::geometry::{Envelope, Pose, Vector, end_discs, outline_discs, turned_by};
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::solver::Effort;
@@ -26,6 +26,8 @@ pub(crate) struct Monitor {
     /// End axles in the chassis frame, the rear one first.
     axles: [Vector; 2],
     rear_radius: f64,
+    /// [rad] Chassis angle at which its track stands on level ground.
+    standing_angle: f64,
     grouser_pitch: f64,
     /// The parts of the robot.
     parts: Vec<Part>,
@@ -50,6 +52,8 @@ impl Monitor {
             half_length: 0.5 * outline.axle_distance(),
             axles: end_discs(outline).map(|disc| disc.center),
             rear_radius: outline.rear_radius(),
+            standing_angle: Envelope::new(&outline_discs(outline))
+                .standing_angle(Vector::from(scenario.robot.center_of_mass)),
             grouser_pitch: outline.grouser_pitch,
             envelopes: (0..ground.tracks)
                 .flat_map(|lane| model.mounts_of_tracks().map(move |mount| (lane, mount)))
@@ -151,7 +155,8 @@ impl Monitor {
             return Some(Outcome::LeftTerrain);
         }
         let is_level = || {
-            let angle = now.chassis_angle - self.ground.angle_at(now.position.x);
+            let ground = self.ground.angle_at(now.position.x);
+            let angle = now.chassis_angle - self.standing_angle - ground;
             angle.abs() < self.criteria.clear_angle
         };
         let beyond = self.beyond(rear);

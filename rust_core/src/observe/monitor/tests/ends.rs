@@ -111,6 +111,27 @@ fn a_goal_is_held_along_the_ground_that_is_there() {
     assert!(!clears(0.0));
 }
 
+/// A track with a larger front stands with its nose up.
+#[test]
+fn a_goal_is_held_at_the_angle_at_which_the_robot_stands() {
+    let clears = |angle: f64| {
+        let mut robot = Watched::with(|s| {
+            s.robot.outline.discs = TrackOutline::two_discs(2.0 * HALF, [RADIUS, 2.5 * RADIUS]);
+        });
+        robot.now.position.x = 3.0;
+        robot.now.chassis_angle = angle;
+        robot.stands_until(0.6);
+        robot.monitor.ended_as() == Some(Outcome::Cleared)
+    };
+    let (stands, limit) = (
+        (0.75 * RADIUS / HALF).asin(),
+        scenario().criteria.clear_angle,
+    );
+    assert!(stands > limit);
+    assert!(clears(stands) && clears(stands + 0.9 * limit) && clears(stands - 0.9 * limit));
+    assert!(!clears(0.0) && !clears(stands + 1.1 * limit));
+}
+
 #[test]
 fn a_chassis_at_the_very_angle_of_clearing_is_not_level() {
     let mut robot = Watched::with(|_| {});
