@@ -5,7 +5,7 @@
 
 use super::local_error::SHORTEST;
 use super::{Dynamics, SetPoint};
-use crate::solver::{Grip, Hold};
+use crate::solver::{Grip, MotorState};
 
 /// No step is cut to more than this share of it.
 const LONGEST_SHARE: f64 = 0.97;
@@ -63,14 +63,14 @@ impl Dynamics {
     pub(super) fn first_arrival(&self, half: f64, accuracy: f64) -> Option<f64> {
         let problem = &self.problem;
         let drives = &problem.motors[self.model.drive_motors()];
-        let of_drives = drives.iter().map(|motor| match motor.hold {
+        let of_drives = drives.iter().map(|motor| match motor.state {
             _ if motor.correction.is_some() => None,
             // A lock bears more than the motor gives.
-            Hold::Holds => Some(Middle::Held(problem.motor_load(motor).min(1.0))),
-            Hold::Pushes | Hold::Brakes => {
+            MotorState::Holds => Some(Middle::Held(problem.motor_load(motor).min(1.0))),
+            MotorState::LimitForwards | MotorState::LimitBackwards => {
                 Some(Middle::Left(problem.motor_speed(motor) - motor.target))
             }
-            Hold::Locked | Hold::Free => None,
+            MotorState::Locked | MotorState::Absent => None,
         });
         let of_contacts = problem.contacts.iter().map(|contact| match contact.grip {
             _ if !contact.friction.resists() => None,

@@ -56,7 +56,7 @@ impl Touch {
 
     /// Whether it did not touch when the step began.
     pub(super) fn was_open(&self) -> bool {
-        self.start > TOUCHING.value()
+        self.gap_before > TOUCHING.value()
     }
 
     /// Its part's motion, where that slips at a speed [m/s].
@@ -134,7 +134,7 @@ impl Touch {
     /// [m] How much deeper in the ground the place was in the middle of the step than at either end, if nothing
     /// bore there: the tip of a wheel that turns fast may come and go within a step.
     pub(super) fn dip(&self, solved: &Contact) -> f64 {
-        let ends = self.start.min(self.gap).min(0.0);
+        let ends = self.gap_before.min(self.gap).min(0.0);
         if solved.normal_impulse > 0.0 {
             0.0
         } else {

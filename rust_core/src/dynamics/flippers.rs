@@ -59,7 +59,7 @@ impl Dynamics {
     pub(super) fn place_flippers(&mut self, state: &State, half: f64) {
         let center = self.model.center_of_mass;
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
-            let angles = [state.moved(half).1, turn.angle + turn.rate * half];
+            let angles = [state.mass_pose_after(half).1, turn.angle + turn.rate * half];
             [arm.pivot, arm.center] = arm.rule.spokes(center, angles);
         }
     }
@@ -73,14 +73,14 @@ impl Dynamics {
                 turn: turn.rate,
             };
         }
-        self.pull_flippers(state, state.angular_velocity, time);
+        self.accelerate_flippers(state, state.angular_velocity, time);
     }
 
     /// Continues for a time [s] under weight and centripetal acceleration: the pivot goes round with the chassis
     /// and the arm round the pivot, which changes no rate. `began` is the angular velocity of the chassis at the
     /// beginning of the step [rad/s]. Half of the step is over, so rates have made half of their change; they
     /// are extrapolated to its end.
-    pub(super) fn pull_flippers(&mut self, state: &State, began: f64, time: f64) {
+    pub(super) fn accelerate_flippers(&mut self, state: &State, began: f64, time: f64) {
         let (center, gravity) = (self.model.center_of_mass, self.gravity);
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
             let [pivot, out] = arm.rule.spokes(center, [state.angle, turn.angle]);
@@ -92,7 +92,7 @@ impl Dynamics {
     }
 
     /// Gives the next solve the arms as they are now, and what their motors can do in a `time` [s].
-    pub(super) fn hang_flippers(&mut self, time: f64) {
+    pub(super) fn add_flippers(&mut self, time: f64) {
         let arms = self.flippers.iter().enumerate();
         let (layout, turn) = (self.problem.layout, self.problem.free[TURN]);
         let inertias = &mut self.problem.inertias;

@@ -9,14 +9,14 @@ use super::chain::{Chain, ChainImpulses};
 use super::identity::Identity;
 use crate::contact::Contact;
 use crate::geometry::plausible;
-use crate::solver::Hold;
+use crate::solver::MotorState;
 use crate::terrain::Profile;
 
 /// The impulses of one robot; part of a snapshot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Impulses {
     push: Option<f64>,
-    motors: Vec<Hold>,
+    motors: Vec<MotorState>,
     pub(super) contacts: Vec<Contact>,
     pub(super) identity: Identity,
     chains: Vec<ChainImpulses>,
@@ -34,7 +34,12 @@ impl Dynamics {
     pub(crate) fn impulses(&self) -> Impulses {
         Impulses {
             push: self.push_force,
-            motors: self.problem.motors.iter().map(|motor| motor.hold).collect(),
+            motors: self
+                .problem
+                .motors
+                .iter()
+                .map(|motor| motor.state)
+                .collect(),
             contacts: self.loaded.clone(),
             identity: self.identity.clone(),
             chains: self.chains.iter().map(Chain::impulses).collect(),
@@ -54,7 +59,7 @@ impl Dynamics {
             && push.is_none_or(|push| plausible(&[push]))
             && motors.len() == self.problem.motors.len()
             && (motors.iter().zip(&self.problem.motors))
-                .all(|(hold, motor)| (*hold == Hold::Free) == motor.is_none())
+                .all(|(hold, motor)| (*hold == MotorState::Absent) == motor.is_none())
             && chains.len() == self.chains.len()
             && chains
                 .iter()
@@ -69,8 +74,8 @@ impl Dynamics {
         self.push_force = impulses.push;
         for (motor, hold) in self.problem.motors.iter_mut().zip(impulses.motors) {
             // A branch may have another torque: there may be a motor in only one of both.
-            if motor.is_none() == (hold == Hold::Free) {
-                motor.hold = hold;
+            if motor.is_none() == (hold == MotorState::Absent) {
+                motor.state = hold;
             }
         }
         self.loaded = impulses.contacts;

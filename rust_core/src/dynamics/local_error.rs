@@ -20,7 +20,7 @@ impl Dynamics {
     /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; and how deep
     /// a tip dips into the ground.
     pub(crate) fn local_error(&self, [before, after]: [&State; 2], h: f64, reach: f64) -> f64 {
-        let moved = &self.moved;
+        let moved = &self.motion;
         let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;
         let off_twist = |ends: [Twist; 2], middle: Twist| Twist {
             velocity: (ends[0].velocity + ends[1].velocity) * 0.5 - middle.velocity,

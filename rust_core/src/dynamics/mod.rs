@@ -91,7 +91,7 @@ pub(crate) struct Dynamics {
     tip_speed: f64,
     loaded: Vec<Contact>,
     /// The state of the last step with the velocities of its motion.
-    moved: State,
+    motion: State,
     identity: Identity,
     /// [m/s] What motors and friction may bring to 0 within the step: of the drives, then of the contacts.
     lags: Vec<f64>,
@@ -106,7 +106,7 @@ impl Dynamics {
         gravity: f64,
         solver: Solver,
     ) -> Self {
-        let moved = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);
+        let motion = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);
         let arms: Vec<Arm> = model.flippers.iter().cloned().map(Arm::new).collect();
         let chains: Vec<Chain> = model.chains.iter().cloned().map(Chain::new).collect();
         Self {
@@ -122,7 +122,7 @@ impl Dynamics {
             gravity,
             solver,
             loaded: Vec::new(),
-            moved,
+            motion,
             identity: Identity::default(),
             lags: Vec::new(),
             outer_force: Vector::ZERO,
@@ -222,7 +222,7 @@ impl Dynamics {
         let before = (!self.model.is_one_body()).then(|| self.momentum_at(state));
         let began = state.angular_velocity;
         self.place_flippers(state, half);
-        self.start(state, half);
+        self.set_free_velocities(state, half);
         self.start_chains(state, h);
         self.close_gaps(h);
         self.guess(half);
@@ -236,11 +236,11 @@ impl Dynamics {
         if let Some(time) = cut_to.and_then(|accuracy| self.first_arrival(half, accuracy)) {
             return Err(time);
         }
-        self.moved.copy(state);
+        self.motion.copy(state);
         self.move_on(state, h);
         self.move_chains(state, h);
         self.fall(half);
-        self.pull_flippers(state, began, half);
+        self.accelerate_flippers(state, began, half);
         self.aim_at_end(state, began);
         self.hold_chains(state, h);
         self.guess_more(strikes);
@@ -350,7 +350,7 @@ impl Dynamics {
     }
 
     /// Starts a step with the velocities after a time [s] in which only weight and external force act.
-    fn start(&mut self, state: &State, time: f64) {
+    fn set_free_velocities(&mut self, state: &State, time: f64) {
         let problem = &mut self.problem;
         problem.free.copy_from_slice(&problem.unknowns);
         self.fall(time);

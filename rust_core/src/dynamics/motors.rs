@@ -9,7 +9,7 @@ use super::Dynamics;
 use super::forces::Forces;
 use super::set_point::SetPoint;
 use super::state::State;
-use crate::solver::{Damper, Hold};
+use crate::solver::{Damper, MotorState};
 
 impl Dynamics {
     /// Has the motors drive to the middle of a step, `half` [s] from its beginning.
@@ -83,7 +83,7 @@ impl Dynamics {
         for k in 0..self.forces.len() {
             let error = set_point.end - state.track_speed(&self.model, k);
             let correction = self.model.motor.correction;
-            if let (Some(rule), Hold::Holds) = (correction, self.problem.motors[k].hold) {
+            if let (Some(rule), MotorState::Holds) = (correction, self.problem.motors[k].state) {
                 let mean = 0.5 * (self.forces[k].error + error);
                 state.drives[k].integral += rule.integral * mean * h;
             }

@@ -11,8 +11,8 @@ impl Dynamics {
     /// Solves for the velocities after a `time` [s] in which motors push.
     pub(super) fn solve(&mut self, state: &mut State, time: f64) {
         self.problem.inertias.clear();
-        self.turn_rotors();
-        self.hang_flippers(time);
+        self.add_rotors();
+        self.add_flippers(time);
         let layout = self.problem.layout;
         for push in &mut self.problem.bilaterals {
             push.row = push_row(&self.model, layout, state.angle);
@@ -23,7 +23,7 @@ impl Dynamics {
     }
 
     /// Gives the next solve the rotors of the drives, which turn with these over the chassis.
-    fn turn_rotors(&mut self) {
+    fn add_rotors(&mut self) {
         let problem = &mut self.problem;
         for (k, motor) in problem.motors.iter().take(self.model.drives).enumerate() {
             let rotor = self.model.rotor_inertia(k);

@@ -195,7 +195,7 @@ impl State {
 
     /// The same after a time [s] at constant velocity.
     pub(crate) fn pose_after(&self, time: f64, model: &Model) -> Pose {
-        let (center, angle) = self.moved(time);
+        let (center, angle) = self.mass_pose_after(time);
         pose_at(center, angle, model)
     }
 
@@ -224,7 +224,7 @@ impl State {
 
     /// The carrier of a part after a time [s] at constant velocity.
     pub(super) fn carrier(&self, mount: Mount, time: f64, model: &Model) -> Carrier {
-        let (center, angle) = self.moved(time);
+        let (center, angle) = self.mass_pose_after(time);
         match mount {
             Mount::Flipper(k) => {
                 let arm = &model.flippers[k];
@@ -279,7 +279,7 @@ impl State {
     }
 
     /// Centre of mass [m] and angle [rad] after a time [s] at constant velocity.
-    pub(crate) fn moved(&self, time: f64) -> (Vector, f64) {
+    pub(crate) fn mass_pose_after(&self, time: f64) -> (Vector, f64) {
         (
             self.center + self.velocity * time,
             self.angle + self.angular_velocity * time,

@@ -105,7 +105,7 @@ impl Touch {
         model: &Model,
         (h, speed): (f64, f64),
     ) -> Option<f64> {
-        let start = self.start;
+        let start = self.gap_before;
         if start <= 0.0 {
             // It is closed already; if it closes further, the error makes the step short.
             return None;

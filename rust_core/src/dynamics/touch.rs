@@ -54,7 +54,7 @@ pub(super) struct Touch {
     /// [m] Current gap.
     pub gap: f64,
     /// [m] Gap at the start of the step.
-    pub start: f64,
+    pub gap_before: f64,
     pub meeting: Meeting,
     /// Its point in the middle of the step.
     pub middle: Place,
@@ -63,7 +63,7 @@ pub(super) struct Touch {
     /// Whether it closes in a step in which something strikes the ground.
     pub strikes: bool,
     /// Index among the shoe's rests.
-    pub place: usize,
+    pub rest_index: usize,
 }
 
 impl Touch {
@@ -93,7 +93,7 @@ impl Touch {
         );
         let (directions, flipper) = match part.mount {
             Mount::Flipper(k) => {
-                let pivot = middle.center - state.moved(start.half).0;
+                let pivot = middle.center - state.mass_pose_after(start.half).0;
                 let on_flipper = [normal, tangent].map(|along| along.on_flipper(pivot));
                 (on_flipper, Some(k))
             }
@@ -118,7 +118,7 @@ impl Touch {
             ..Self::default()
         };
         touch.gap = touch.gap_after(state, model, (part.mount, 0.0));
-        touch.start = touch.gap;
+        touch.gap_before = touch.gap;
         touch.go_on(&mut solved, last);
         (touch, solved)
     }

@@ -4,7 +4,7 @@
 
 use super::damper::{Damper, Inertia};
 use super::motor::Motor;
-use super::{Contact, Hold, Problem};
+use super::{Contact, MotorState, Problem};
 
 impl Problem {
     /// Goes on from the velocities of a solve by a blow, in which no time passes: no weight acts, and motors do nothing, but gears
@@ -66,7 +66,7 @@ impl Problem {
             *inertia = Inertia::new(inertia.row, inertia.damper.damping, free);
         }
         for motor in &mut self.motors {
-            motor.hold = Hold::Free;
+            motor.state = MotorState::Absent;
         }
         for bilateral in &mut self.bilaterals {
             bilateral.impulse = 0.0;
@@ -76,7 +76,7 @@ impl Problem {
     /// Has the gears hold that lock themselves.
     fn lock(&mut self) {
         for motor in self.motors.iter_mut().filter(|motor| motor.locks) {
-            motor.hold = Hold::Holds;
+            motor.state = MotorState::Holds;
         }
     }
 

@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "The problem".
 
 use super::contact::Admittances;
-use super::motor::{Driven, Hold};
+use super::motor::{Driven, MotorState};
 use super::ring::Ring;
 use super::row::Row;
 use super::system::System;
@@ -64,7 +64,7 @@ impl Problem {
         for motor in &self.motors {
             match (motor.on, motor.given()) {
                 (Driven::Ring(k), _) => rings[k].drive(motor),
-                (Driven::Body(at), Some(given)) if motor.hold != Hold::Free => {
+                (Driven::Body(at), Some(given)) if motor.state != MotorState::Absent => {
                     system.add([&Row::over_base(at, motor.lever); 2], given);
                 }
                 (Driven::Body(_), _) => {}

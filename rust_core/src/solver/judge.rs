@@ -108,25 +108,25 @@ pub(crate) fn off_its_law(problem: &Problem, motor: &Motor) -> [f64; 2] {
     let [speed, impulse] = now.map(|x| way * x);
     let (most, far) = (motor.limits[0].at(0.0), motor.target.abs());
     if !motor.locks {
-        return match motor.hold {
-            Hold::Holds => [(speed - far).abs(), (impulse.abs() - most).max(0.0)],
-            Hold::Pushes | Hold::Brakes => {
+        return match motor.state {
+            MotorState::Holds => [(speed - far).abs(), (impulse.abs() - most).max(0.0)],
+            MotorState::LimitForwards | MotorState::LimitBackwards => {
                 let ahead = now[1].signum() * (now[0] - motor.target);
                 [ahead.max(0.0), (impulse.abs() - most).abs()]
             }
-            Hold::Free | Hold::Locked => [0.0; 2],
+            MotorState::Absent | MotorState::Locked => [0.0; 2],
         };
     }
-    match motor.hold {
+    match motor.state {
         // At rest both stops hold it.
-        Hold::Holds if far == 0.0 => [speed.abs(), 0.0],
-        Hold::Holds => [(speed - far).abs(), (impulse - most).max(0.0)],
-        Hold::Locked => [speed.abs(), (most - impulse).max(0.0)],
-        Hold::Pushes | Hold::Brakes => {
+        MotorState::Holds if far == 0.0 => [speed.abs(), 0.0],
+        MotorState::Holds => [(speed - far).abs(), (impulse - most).max(0.0)],
+        MotorState::Locked => [speed.abs(), (most - impulse).max(0.0)],
+        MotorState::LimitForwards | MotorState::LimitBackwards => {
             let beyond = (-speed).max(speed - far).max(0.0);
             [beyond, (impulse - most).abs()]
         }
-        Hold::Free => [f64::INFINITY; 2],
+        MotorState::Absent => [f64::INFINITY; 2],
     }
 }
 

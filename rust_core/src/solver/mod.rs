@@ -25,7 +25,7 @@ mod tests;
 pub(crate) use contact::{Contact, Grip};
 pub(crate) use damper::{Bilateral, Damper, Inertia};
 pub(crate) use effort::Effort;
-pub(crate) use motor::{Driven, Hold, Motor};
+pub(crate) use motor::{Driven, Motor, MotorState};
 pub(crate) use ring::{Grasp, Hinge, Ring, RingSpec};
 pub(crate) use row::{Layout, Link, Row, TURN};
 

@@ -16,17 +16,17 @@ use crate::units::MetresPerSecond;
 
 /// The state of a motor in a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Hold {
+pub(crate) enum MotorState {
     /// Holds the speed, or corrects it.
     Holds,
     /// At its limit, forwards.
-    Pushes,
+    LimitForwards,
     /// At its limit, backwards.
-    Brakes,
+    LimitBackwards,
     /// Its gear, which locks itself, holds it at rest against a load that it cannot move.
     Locked,
     /// There is no motor.
-    Free,
+    Absent,
 }
 
 /// Relative tolerance of the limit; a smaller excess is rounding.
@@ -59,7 +59,7 @@ pub(crate) struct Motor {
     /// Its gear locks itself: its speed stays between 0 and the target whatever the load, as the gear gives what the motor
     /// cannot.
     pub locks: bool,
-    pub hold: Hold,
+    pub state: MotorState,
     /// [N s] By how much its limits are wider on the path to a solution.
     pub(super) relaxed: f64,
 }
@@ -74,21 +74,25 @@ impl Motor {
             limits: [Damper::default(); 2],
             correction: None,
             locks: false,
-            hold: if is_there { Hold::Holds } else { Hold::Free },
+            state: if is_there {
+                MotorState::Holds
+            } else {
+                MotorState::Absent
+            },
             relaxed: 0.0,
         }
     }
 
     /// Whether there is no motor.
     pub(crate) fn is_none(&self) -> bool {
-        self.hold == Hold::Free
+        self.state == MotorState::Absent
     }
 
     /// The same behind a gear that locks itself: that holds it at rest whether the motor has an impulse to give or not.
     pub(crate) fn behind_lock(self) -> Self {
         Self {
             locks: true,
-            hold: Hold::Holds,
+            state: MotorState::Holds,
             ..self
         }
     }
@@ -103,19 +107,19 @@ impl Motor {
     pub(crate) fn turn_to(&mut self, target: f64) {
         self.target = target;
         // Behind a lock a motor gives its limit only the way that it turns.
-        let turns = match self.hold {
-            Hold::Pushes => target > 0.0,
-            Hold::Brakes => target < 0.0,
+        let turns = match self.state {
+            MotorState::LimitForwards => target > 0.0,
+            MotorState::LimitBackwards => target < 0.0,
             _ => true,
         };
         if self.locks && !turns {
-            self.hold = Hold::Holds;
+            self.state = MotorState::Holds;
         }
     }
 
     /// [m/s] The speed that it holds, if it does.
     pub(super) fn held_speed(&self) -> f64 {
-        if self.hold == Hold::Locked {
+        if self.state == MotorState::Locked {
             0.0
         } else {
             self.target
@@ -129,12 +133,12 @@ impl Motor {
 
     /// Its impulse at a speed; none if that is what holds the speed.
     pub(super) fn given(&self) -> Option<Damper> {
-        match self.hold {
-            Hold::Holds => self.correction,
-            Hold::Pushes => Some(self.limits[0]),
-            Hold::Brakes => Some(self.limits[1]),
-            Hold::Locked => None,
-            Hold::Free => Some(Damper::default()),
+        match self.state {
+            MotorState::Holds => self.correction,
+            MotorState::LimitForwards => Some(self.limits[0]),
+            MotorState::LimitBackwards => Some(self.limits[1]),
+            MotorState::Locked => None,
+            MotorState::Absent => Some(Damper::default()),
         }
     }
 
@@ -154,12 +158,14 @@ impl Motor {
     }
 
     /// Its state after a solve in which it gave this impulse [N s] at this speed [m/s].
-    fn next(&self, impulse: f64, speed: f64) -> Hold {
-        let mut next = self.hold;
+    fn next(&self, impulse: f64, speed: f64) -> MotorState {
+        let mut next = self.state;
         self.conditions(impulse, speed, |hold, value| {
             // A smaller excess is rounding.
-            let slack = match (self.hold, self.correction) {
-                (Hold::Holds | Hold::Locked, _) | (_, Some(_)) => AT_LIMIT * impulse.abs(),
+            let slack = match (self.state, self.correction) {
+                (MotorState::Holds | MotorState::Locked, _) | (_, Some(_)) => {
+                    AT_LIMIT * impulse.abs()
+                }
                 _ => PAST.value(),
             };
             if value < -slack {
@@ -171,47 +177,57 @@ impl Motor {
 
     /// Calls `each` with the conditions of its state at an impulse [N s] and a speed [m/s]: the state that follows, and the
     /// value.
-    fn conditions(&self, impulse: f64, speed: f64, mut each: impl FnMut(Hold, f64)) {
+    fn conditions(&self, impulse: f64, speed: f64, mut each: impl FnMut(MotorState, f64)) {
         let [most, least] = self.limits.map(|limit| limit.at(speed));
         let wanted = self.correction.map(|correction| correction.at(speed));
         let ahead = speed - self.held_speed();
-        match self.hold {
-            Hold::Holds => {
+        match self.state {
+            MotorState::Holds => {
                 let impulse = wanted.unwrap_or(impulse);
                 if !self.locks || self.target > 0.0 {
-                    each(Hold::Pushes, most - impulse);
+                    each(MotorState::LimitForwards, most - impulse);
                 }
                 if !self.locks || self.target < 0.0 {
-                    each(Hold::Brakes, impulse - least);
+                    each(MotorState::LimitBackwards, impulse - least);
                 }
             }
-            Hold::Pushes => {
-                each(Hold::Holds, wanted.map_or(-ahead, |wanted| wanted - most));
+            MotorState::LimitForwards => {
+                each(
+                    MotorState::Holds,
+                    wanted.map_or(-ahead, |wanted| wanted - most),
+                );
                 if self.locks {
-                    each(Hold::Locked, speed);
+                    each(MotorState::Locked, speed);
                 }
             }
-            Hold::Brakes => {
-                each(Hold::Holds, wanted.map_or(ahead, |wanted| least - wanted));
+            MotorState::LimitBackwards => {
+                each(
+                    MotorState::Holds,
+                    wanted.map_or(ahead, |wanted| least - wanted),
+                );
                 if self.locks {
-                    each(Hold::Locked, -speed);
+                    each(MotorState::Locked, -speed);
                 }
             }
-            Hold::Locked if self.target > 0.0 => each(Hold::Pushes, impulse - most),
-            Hold::Locked if self.target < 0.0 => each(Hold::Brakes, least - impulse),
-            Hold::Locked | Hold::Free => {}
+            MotorState::Locked if self.target > 0.0 => {
+                each(MotorState::LimitForwards, impulse - most)
+            }
+            MotorState::Locked if self.target < 0.0 => {
+                each(MotorState::LimitBackwards, least - impulse)
+            }
+            MotorState::Locked | MotorState::Absent => {}
         }
     }
 
     /// By how much the condition of its state that leads to the next one is relaxed, with wider limits.
-    pub(super) fn relaxed_by(&self, next: Hold) -> f64 {
+    pub(super) fn relaxed_by(&self, next: MotorState) -> f64 {
         // One impulse tells both whether it reaches its limit and whether it holds again.
         let is_soft = self.correction.is_some();
-        match (self.hold, next) {
-            (Hold::Holds, _) => self.relaxed,
-            (Hold::Locked, _) => -self.relaxed,
-            (_, Hold::Holds) if is_soft => -self.relaxed,
-            (_, Hold::Locked) if is_soft => self.relaxed,
+        match (self.state, next) {
+            (MotorState::Holds, _) => self.relaxed,
+            (MotorState::Locked, _) => -self.relaxed,
+            (_, MotorState::Holds) if is_soft => -self.relaxed,
+            (_, MotorState::Locked) if is_soft => self.relaxed,
             _ => 0.0,
         }
     }
@@ -254,12 +270,12 @@ impl Problem {
     }
 
     /// Calls `each` with the conditions of the state of a motor.
-    pub(super) fn conditions_of(&self, motor: &Motor, each: impl FnMut(Hold, f64)) {
+    pub(super) fn conditions_of(&self, motor: &Motor, each: impl FnMut(MotorState, f64)) {
         motor.conditions(self.motor_impulse(motor), self.motor_speed(motor), each);
     }
 
     /// The state of a motor after a solve.
-    pub(super) fn next_of(&self, motor: &Motor) -> Hold {
+    pub(super) fn next_of(&self, motor: &Motor) -> MotorState {
         motor.next(self.motor_impulse(motor), self.motor_speed(motor))
     }
 
@@ -269,8 +285,8 @@ impl Problem {
         let mut switched = false;
         for k in 0..self.motors.len() {
             let next = self.next_of(&self.motors[k]);
-            switched |= next != self.motors[k].hold;
-            self.motors[k].hold = next;
+            switched |= next != self.motors[k].state;
+            self.motors[k].state = next;
         }
         switched
     }
@@ -282,38 +298,38 @@ mod tests {
 
     use super::*;
 
-    fn behind_lock(hold: Hold) -> Motor {
+    fn behind_lock(hold: MotorState) -> Motor {
         let mut motor = Motor::new(Driven::Body(3), 0.1, true).behind_lock();
-        motor.hold = hold;
+        motor.state = hold;
         motor
     }
 
     #[test]
     fn behind_a_lock_a_motor_gives_its_limit_only_the_way_that_it_turns() {
         for (hold, target, expected) in [
-            (Hold::Pushes, 0.5, Hold::Pushes),
-            (Hold::Pushes, 0.0, Hold::Holds),
-            (Hold::Pushes, -0.5, Hold::Holds),
-            (Hold::Brakes, -0.5, Hold::Brakes),
-            (Hold::Brakes, 0.0, Hold::Holds),
-            (Hold::Brakes, 0.5, Hold::Holds),
-            (Hold::Locked, 0.0, Hold::Locked),
+            (MotorState::LimitForwards, 0.5, MotorState::LimitForwards),
+            (MotorState::LimitForwards, 0.0, MotorState::Holds),
+            (MotorState::LimitForwards, -0.5, MotorState::Holds),
+            (MotorState::LimitBackwards, -0.5, MotorState::LimitBackwards),
+            (MotorState::LimitBackwards, 0.0, MotorState::Holds),
+            (MotorState::LimitBackwards, 0.5, MotorState::Holds),
+            (MotorState::Locked, 0.0, MotorState::Locked),
         ] {
             let mut motor = behind_lock(hold);
             motor.aim(target, 1.0);
-            assert_eq!(motor.hold, expected, "{hold:?} at {target} m/s");
+            assert_eq!(motor.state, expected, "{hold:?} at {target} m/s");
             let mut free = Motor {
                 locks: false,
                 ..behind_lock(hold)
             };
             free.aim(target, 1.0);
-            assert_eq!(free.hold, hold);
+            assert_eq!(free.state, hold);
         }
     }
 
     #[test]
     fn a_lock_bears_what_the_motor_cannot_give() {
-        let mut motor = behind_lock(Hold::Holds);
+        let mut motor = behind_lock(MotorState::Holds);
         motor.aim(0.0, 2.0);
         for (impulse, of_motor) in [(-5.0, -2.0), (-1.0, -1.0), (1.5, 1.5), (7.0, 2.0)] {
             assert_eq!(motor.without_lock(impulse), of_motor);
@@ -326,9 +342,9 @@ mod tests {
         );
         motor.aim(0.0, 2.0);
         // At its limit the motor gives all of it, and without a lock always.
-        motor.hold = Hold::Pushes;
+        motor.state = MotorState::LimitForwards;
         assert_eq!(motor.without_lock(7.0), 7.0);
-        (motor.hold, motor.locks) = (Hold::Holds, false);
+        (motor.state, motor.locks) = (MotorState::Holds, false);
         assert_eq!(motor.without_lock(7.0), 7.0);
     }
 }

@@ -10,7 +10,7 @@
 //! The equations: docs/physics.md, "The path".
 
 use super::contact::Grip;
-use super::motor::{Hold, Motor};
+use super::motor::{Motor, MotorState};
 use super::{AGREEMENT, Problem, Start};
 
 /// Pivots, at most, for each contact and motor, from where all contacts are open, ...
@@ -25,7 +25,7 @@ const ALONE: f64 = 0.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Switch {
     Contact(usize, Grip),
-    Motor(usize, Hold),
+    Motor(usize, MotorState),
 }
 
 /// A condition of the present states: they hold as long as its value is above 0, and the switch is made where it
@@ -52,8 +52,8 @@ impl Problem {
             [TOGETHER, ALONE].into_iter().find_map(|together| {
                 self.bearing().for_each(|contact| contact.grip = Grip::Open);
                 let motors = self.motors.iter_mut();
-                for motor in motors.filter(|motor| motor.hold != Hold::Free) {
-                    motor.hold = Hold::Holds;
+                for motor in motors.filter(|motor| motor.state != MotorState::Absent) {
+                    motor.state = MotorState::Holds;
                 }
                 self.tie();
                 self.pivot(FROM_AIR, together)
@@ -118,13 +118,13 @@ impl Problem {
         let unknowns = &self.unknowns;
         let bearing = self.contacts.iter().filter(|c| c.bears);
         let of_contacts = bearing.fold(0.0, |most: f64, c| most.max(c.violation(unknowns)));
-        let most = of_contacts.max(self.motors_off(|motor| motor.hold == Hold::Holds));
+        let most = of_contacts.max(self.motors_off(|motor| motor.state == MotorState::Holds));
         for contact in self.contacts.iter_mut().filter(|c| c.bears) {
             contact.relax(&self.unknowns, most);
         }
         for motor in &mut self.motors {
             let wider = most / motor.admittance(&self.system);
-            motor.relaxed = if motor.hold == Hold::Holds {
+            motor.relaxed = if motor.state == MotorState::Holds {
                 wider
             } else {
                 0.0
@@ -155,8 +155,8 @@ impl Problem {
         let mut changed = false;
         for k in 0..self.motors.len() {
             let motor = &self.motors[k];
-            if motor.hold != Hold::Holds && self.next_of(motor) != motor.hold {
-                self.motors[k].hold = Hold::Holds;
+            if motor.state != MotorState::Holds && self.next_of(motor) != motor.state {
+                self.motors[k].state = MotorState::Holds;
                 changed = true;
             }
         }
@@ -248,7 +248,7 @@ impl Problem {
                 Switch::Contact(i, back)
             }
             Switch::Motor(k, next) => {
-                let before = std::mem::replace(&mut self.motors[k].hold, next);
+                let before = std::mem::replace(&mut self.motors[k].state, next);
                 self.tie();
                 Switch::Motor(k, before)
             }

@@ -58,7 +58,7 @@ impl Problem {
                 continue;
             }
             let must_stand = is_after_path || solution >= FAR_FROM_JAM;
-            let error = if must_stand { self.moved() } else { off };
+            let error = if must_stand { self.base_change() } else { off };
             // The last error that contacts had says nothing of how the base moves.
             let is_alike = is_after_path || solution != FAR_FROM_JAM;
             let before = before.filter(|_| is_alike);
@@ -152,7 +152,7 @@ impl Problem {
     }
 
     /// [m/s] How far the last solution has moved the base.
-    fn moved(&self) -> f64 {
+    fn base_change(&self) -> f64 {
         let [x, y, turn] = [0, 1, TURN].map(|i| self.change[i]);
         let weights = &self.system.weights;
         x.hypot(y) + turn.abs() * (weights[0] / weights[TURN]).sqrt()

@@ -47,7 +47,7 @@ impl Touch {
     ) -> (Self, Contact) {
         let layout = start.layout;
         let arm = rest.point - start.state.shoes[shoe].after(start.half).center;
-        let center = start.state.moved(start.half).0;
+        let center = start.state.mass_pose_after(start.half).0;
         let borne_at = match rest.on {
             Bearing::Chassis(_) => rest.point,
             Bearing::Tooth(axle) => axle,
@@ -68,7 +68,7 @@ impl Touch {
             on: On::Guide { chain, shoe },
             normal: rest.normal,
             normal_guess: last.force,
-            place: rest.place,
+            rest_index: rest.index,
             gap: rest.gap - rows[0].along(start.unknowns) * start.half,
             ..Self::default()
         };

@@ -121,7 +121,7 @@ impl Chain {
 
     /// The last force and grip of a rest.
     pub(super) fn recall(&self, rest: &Rest) -> RestMemory {
-        self.memory[rest.shoe * of_a_shoe(&self.rule) + rest.place]
+        self.memory[rest.shoe * of_a_shoe(&self.rule) + rest.index]
     }
 
     /// Clears the memory of all rests.
@@ -132,7 +132,7 @@ impl Chain {
     /// Stores the force and grip of a rest of a shoe.
     pub(super) fn remember_rest(&mut self, shoe: usize, rest: &Touch, grip: Grip) {
         let shoe = shoe - self.rule.shoes.start;
-        self.memory[shoe * of_a_shoe(&self.rule) + rest.place] = RestMemory {
+        self.memory[shoe * of_a_shoe(&self.rule) + rest.rest_index] = RestMemory {
             force: rest.normal_guess,
             grip,
         };

@@ -44,7 +44,7 @@ impl Chain {
         let Bushing { stiffness, damping } = self.rule.bushing;
         self.resist(ring, shoes, 0.5 * h, damping + 0.5 * h * stiffness);
         if self.rule.sprocket.is_none() {
-            let (center, _) = state.moved(0.5 * h);
+            let (center, _) = state.mass_pose_after(0.5 * h);
             find_grasps(&mut ring.grasps, &self.rule, &middle, (chassis, center));
         }
         self.middle = middle;

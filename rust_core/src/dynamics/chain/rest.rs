@@ -10,7 +10,7 @@ use crate::robot::ChainOfShoes;
 pub(in crate::dynamics) struct Rest {
     /// Index of the shoe in the chain, and of the rest on the shoe.
     pub shoe: usize,
-    pub place: usize,
+    pub index: usize,
     pub point: Vector,
     /// Unit normal towards the shoe.
     pub normal: Vector,

@@ -59,7 +59,7 @@ impl Chain {
                     self,
                     Rest {
                         shoe,
-                        place: 2 + rule.between.len(),
+                        index: 2 + rule.between.len(),
                         point: stand.chassis.transform_point(corner),
                         normal: stand.chassis.rotation * rule.hull.outward_at(corner),
                         gap,
@@ -74,7 +74,7 @@ impl Chain {
     /// Finds the rest of a plate's inner face on a disc, which may slide with the idler.
     pub(super) fn rest_on_disc(
         &self,
-        (shoe, place): (usize, usize),
+        (shoe, index): (usize, usize),
         (disc, slides): (Disc, Vector),
         stand: ChainPose,
         reach: f64,
@@ -89,7 +89,7 @@ impl Chain {
                 self,
                 Rest {
                     shoe,
-                    place,
+                    index,
                     point: place_now.transform_point(Vector::new(center.x, -below)),
                     normal: place_now.rotation * Vector::Y,
                     gap,

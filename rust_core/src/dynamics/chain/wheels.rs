@@ -59,7 +59,7 @@ impl Chain {
             self,
             Rest {
                 shoe,
-                place: 2 + self.rule.between.len() + wheel,
+                index: 2 + self.rule.between.len() + wheel,
                 point: stand.chassis.transform_point(place.transform_point(corner)),
                 normal: stand.chassis.rotation * (place.rotation * (away / length)),
                 gap: length - disc.radius,
@@ -95,7 +95,7 @@ impl Chain {
                     self,
                     Rest {
                         shoe,
-                        place: 2 * (2 + rule.between.len()) + side,
+                        index: 2 * (2 + rule.between.len()) + side,
                         point: stand.chassis.transform_point(pin),
                         normal: stand.chassis.rotation * (turned * flank.normal),
                         gap: flank.gap,

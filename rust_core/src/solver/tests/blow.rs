@@ -81,7 +81,7 @@ fn a_blow_meets_inertia_and_no_motor() {
         );
         assert_relative_eq!(problem.unknowns[0], blow / 2.0, max_relative = 1e-6);
         assert!(problem.motor_impulses().all(|impulse| impulse.abs() < 1e-9));
-        assert_eq!(problem.motors[0].hold, Hold::Holds);
+        assert_eq!(problem.motors[0].state, MotorState::Holds);
     }
 }
 
@@ -107,7 +107,7 @@ fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
         problem.blow(0.0);
         let found = radius * (problem.unknowns[spin] - problem.unknowns[TURN]);
         assert_relative_eq!(found, expected, epsilon = 1e-6);
-        assert_eq!(problem.motors[0].hold, Hold::Holds);
+        assert_eq!(problem.motors[0].state, MotorState::Holds);
         assert_relative_eq!(problem.motors[0].target, speed);
     }
 }

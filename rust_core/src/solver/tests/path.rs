@@ -34,8 +34,8 @@ fn the_path_from_wrong_states_leads_to_what_right_ones_give() {
     ] {
         let mut problem = driving_off();
         let (right, before) = (impulses(&problem), problem.unknowns.clone());
-        assert_eq!(problem.motors[0].hold, Hold::Pushes);
-        problem.motors[0].hold = Hold::Holds;
+        assert_eq!(problem.motors[0].state, MotorState::LimitForwards);
+        problem.motors[0].state = MotorState::Holds;
         for (contact, grip) in problem.contacts.iter_mut().zip(grips) {
             contact.grip = grip;
         }
@@ -43,7 +43,7 @@ fn the_path_from_wrong_states_leads_to_what_right_ones_give() {
         let mut starts = [Start::LastStates, Start::Air].into_iter();
         let off = starts.find_map(|start| problem.follow_path(start));
         assert!(off.expect("a path ends") < 1e-9, "{off:?} m/s");
-        assert_eq!(problem.motors[0].hold, Hold::Pushes);
+        assert_eq!(problem.motors[0].state, MotorState::LimitForwards);
         for (pivoted, guessed) in impulses(&problem).into_iter().zip(right) {
             assert_relative_eq!(pivoted, guessed, max_relative = 1e-6);
         }

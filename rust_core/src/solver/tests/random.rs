@@ -33,7 +33,7 @@ fn by_interior_point(problem: &Problem) -> DVector<f64> {
     }
     for motor in &problem.motors {
         if let Driven::Body(at) = motor.on
-            && motor.hold != Hold::Free
+            && motor.state != MotorState::Absent
         {
             let mut row = DVector::zeros(dofs);
             (row[TURN], row[at]) = (-motor.lever, motor.lever);
@@ -114,10 +114,10 @@ fn motors_behind_locks_are_solved_as_by_an_interior_point_method() {
         for motor in &problem.motors {
             let of_law = off_its_law(&problem, motor);
             off_law = [0, 1].map(|i| off_law[i].max(of_law[i]));
-            let kind = match motor.hold {
-                Hold::Holds => 0,
-                Hold::Locked => 1,
-                Hold::Pushes | Hold::Brakes | Hold::Free => 2,
+            let kind = match motor.state {
+                MotorState::Holds => 0,
+                MotorState::Locked => 1,
+                MotorState::LimitForwards | MotorState::LimitBackwards | MotorState::Absent => 2,
             };
             holds[kind] += 1;
         }

@@ -50,7 +50,12 @@ fn contact_of(entries: &[f64], layout: Layout) -> Contact {
 }
 
 fn motor_of(entries: &[f64], layout: Layout) -> Motor {
-    const HOLDS: [Hold; 4] = [Hold::Holds, Hold::Pushes, Hold::Brakes, Hold::Free];
+    const HOLDS: [MotorState; 4] = [
+        MotorState::Holds,
+        MotorState::LimitForwards,
+        MotorState::LimitBackwards,
+        MotorState::Absent,
+    ];
 
     let at = entries[1] as usize;
     let on = if entries[0] > 0.0 {
@@ -60,7 +65,7 @@ fn motor_of(entries: &[f64], layout: Layout) -> Motor {
     };
     let mut motor = Motor::new(Driven::Body(on), entries[2], true);
     motor.aim(entries[3], entries[4]);
-    motor.hold = HOLDS[entries[5] as usize];
+    motor.state = HOLDS[entries[5] as usize];
     motor
 }
 
