@@ -2,7 +2,7 @@
 
 use approx::assert_relative_eq;
 
-use super::{Model, MotorRule, start_position};
+use super::{Model, MotorRule, Part, Shape, start_position};
 use crate::geometry::{Rotation, Vector};
 use crate::scenario::{
     ClosedSurface, ClosedTrack, Ends, HybridWheels, Pi, Robot, Scenario, Surface, Terrain, Track,
@@ -174,6 +174,8 @@ fn chassis_and_wheels_are_the_robot() {
             continue;
         }
         let (chassis, wheels) = model.bodies();
+        let turns = |part: &&Part| matches!(part.shape, Shape::Disc { .. } | Shape::Gear { .. });
+        assert_eq!(wheels.len(), model.parts.iter().filter(turns).count());
         let mut sum = Sum::default();
         sum.add(
             chassis.mass,
@@ -192,6 +194,11 @@ fn chassis_and_wheels_are_the_robot() {
             assert_relative_eq!(turning, robot.track_mass, max_relative = 1e-13);
         }
         for wheel in wheels {
+            if let Shape::Disc { .. } = model.parts[wheel.part].shape {
+                // A uniform disc.
+                let of_disc = 0.5 * wheel.mass * wheel.radius * wheel.radius;
+                assert_relative_eq!(wheel.moment_of_inertia, of_disc, max_relative = 1e-13);
+            }
             let side = wheel.clone().of_one_side();
             assert_relative_eq!(2.0 * side.mass, wheel.mass);
             assert_relative_eq!(2.0 * side.moment_of_inertia, wheel.moment_of_inertia);
@@ -274,6 +281,19 @@ fn motors_are_seen_from_the_belt() {
     assert_relative_eq!(rule.rotor_mass, 0.01 * at_belt);
     assert_relative_eq!(correction.gain, 3.0 * at_belt);
     assert_relative_eq!(correction.integral, 40.0 * at_belt);
+    assert!(rule.depends_on_speed());
+    for robot in [robot.clone(), on_all_tracks().remove(0)] {
+        let model = model(&robot);
+        let rotors: f64 = (0..model.drives).map(|k| model.rotor_inertia(k)).sum();
+        // At a speed of the surface a rotor turns with the sprocket, at the belt's radius.
+        let at_surface = rotors / (model.drive_radius * model.drive_radius);
+        let rotors = robot.drivetrain.rotor_inertia * at_belt;
+        assert_relative_eq!(at_surface, rotors, max_relative = 1e-12);
+        assert_eq!(
+            model.motor.depends_on_speed(),
+            robot.drivetrain.controller.is_some()
+        );
+    }
     // The error at the end, and the sum of errors up to there by the rule of the trapezoid.
     let (speed, target, error, sum, time) = (0.35, 0.4, 0.08, 7.0, 1e-3);
     let force = correction.force(target, error, sum, time);
@@ -320,4 +340,32 @@ fn a_closed_track_starts_on_what_is_highest_below_its_hull() {
     let start = start_position(&scenario, &model, &ground).expect("it fits");
     assert!((start.x + 0.3).abs() < 0.15, "its run is above the ridge");
     assert_relative_eq!(start.y, 0.02 + 0.06, max_relative = 1e-12);
+}
+
+#[test]
+fn a_closed_track_has_grousers_as_high_as_the_track_that_it_closes() {
+    for robot in on_all_tracks() {
+        let heights = |surface| {
+            let closed = Robot {
+                track: Track::Closed(ClosedTrack {
+                    of: Box::new(robot.track.clone()),
+                    surface,
+                }),
+                ..robot.clone()
+            };
+            let of_part = |part: &Part| match part.shape {
+                Shape::Hull { grouser_height, .. } => grouser_height,
+                _ => 0.0,
+            };
+            let model = model(&closed);
+            model.parts.iter().map(of_part).fold(0.0, f64::max)
+        };
+        let own = if robot.track.has_grousers() {
+            robot.outline.grouser_height
+        } else {
+            0.0
+        };
+        assert_relative_eq!(heights(ClosedSurface::Own), own, epsilon = 1e-12);
+        assert_eq!(heights(ClosedSurface::Smooth), 0.0);
+    }
 }
