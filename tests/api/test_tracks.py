@@ -37,6 +37,18 @@ def test_a_robot_with_a_servo_a_wheel_gets_a_motor_a_belt(track: Track) -> None:
         assert wheeled.with_track(others).drivetrain.torque_sharing == "wheel"
 
 
+def test_a_belt_in_place_of_wheels_with_a_motor_each_breaks_no_rule() -> None:
+    # As in compare(base, {"wheels": {}, "belt": BeltTrack()}) with a robot from a model file.
+    servos = replace(ROBOT.drivetrain, torque_sharing="wheel")
+    wheeled = replace(ROBOT, track=c2d.LineOfWheels(4), drivetrain=servos)
+    base = Scenario(wheeled, c2d.terrains.step(0.05))
+    belted = base.replace({"robot.track": c2d.BeltTrack()})
+    belted.validate()
+    assert belted.robot == wheeled.with_track(c2d.BeltTrack())
+    both = {"robot.drivetrain.torque_sharing": "wheel", "robot.track": c2d.BeltTrack()}
+    assert refusal(base.replace(both).robot).path == "robot.drivetrain.torque_sharing"
+
+
 # Counts and sizes
 
 

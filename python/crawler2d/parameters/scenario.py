@@ -73,6 +73,7 @@ class Scenario(ScenarioBase):
             New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Elements
             have an index: ``{"terrain.points[3][1]": 0.06}``. Of two fields that exclude each
             other, setting one clears the other; ``"terrain.friction"`` is that of all segments.
+            ``"robot.track"`` sets `torque_sharing` as `Robot.with_track` does.
 
         Returns
         -------
@@ -97,6 +98,9 @@ class Scenario(ScenarioBase):
         given = {path for path, value in fields.items() if value is not None}
         for path, value in fields.items():
             variant = replace_path(variant, path, value, given=given)
+        if "robot.track" in given and "robot.drivetrain.torque_sharing" not in given:
+            robot = variant.robot.with_track(variant.robot.track)
+            variant = replace_path(variant, "robot", robot)
         if _leaves_mass_of_arms(self.robot, variant.robot):
             reason = (
                 "leaves their mass on the robot if replaced alone; to remove the mass, too, replace"
