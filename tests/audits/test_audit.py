@@ -6,6 +6,7 @@ import re
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from scipy import stats  # type: ignore[import-untyped]
 import crawler2d as c2d
 from crawler2d.audits import words
 from crawler2d.audits.candidates import candidates_of, wheel_count
-from crawler2d.audits.record import names_of
+from crawler2d.audits.record import bodies_per_side, names_of
 from crawler2d.audits.runs import LivePrinter, belt_of, raise_flippers, scenario_of
 from crawler2d.audits.subject import standard_obstacles, unknown_of_file
 from crawler2d.audits.text import plain_of
@@ -480,6 +481,33 @@ def test_wheels_have_the_names_of_the_file() -> None:
     for body, x, side in zip(bodies["body"], bodies["x"], bodies["side"], strict=True):
         if side == "left":
             assert x == pytest.approx(places[names[int(body)]], abs=0.002)
+
+
+@pytest.mark.parametrize("flippers", ["wheels", "belts"])
+def test_wheels_on_the_right_have_the_names_of_the_file_where_each_track_has_its_ground(
+    flippers: str,
+) -> None:
+    absolem = quietly(FILES.parent.parent / "robots" / "absolem.sdf")
+    robot = absolem.robot
+    if flippers == "belts":
+        assert robot.flippers is not None
+        robot = replace(robot, flippers=replace(robot.flippers, track=c2d.BeltTrack()))
+    step = c2d.terrains.step(0.02)
+    lanes = c2d.terrains.lanes(c2d.terrains.flat(), step)
+    run = c2d.simulate(robot, lanes, duration=0.01)
+    right = run.bodies["body"][run.bodies["lane"] == c2d.Lane.RIGHT].tolist()
+    first = right[0]
+    assert bodies_per_side(robot) == first
+    names = names_of(robot, absolem)
+    assert names[first] == "right_track_wheel8"
+    assert names.keys() <= {*range(first), *right}
+    audit: Any = SimpleNamespace(
+        robot=robot, reading=absolem, verdicts=[SimpleNamespace(where=f"1-{first + 1}")]
+    )
+    assert words.wheel_names(audit) == (
+        f"on the left, wheel 1 is left_track_wheel7; on the right, wheel {first + 1} is"
+        " right_track_wheel7"
+    )
 
 
 # How it is driven

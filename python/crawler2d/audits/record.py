@@ -14,9 +14,12 @@ from crawler2d.audits.repairs import Repair, RepairSearch
 from crawler2d.audits.runs import Belt
 from crawler2d.audits.sampling import Assumption
 from crawler2d.audits.verdicts import Verdict
+from crawler2d.common.bodies import BodyKind, bodies_of
+from crawler2d.errors import ignore_doubts
 from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive
-from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.terrain import Flat, Terrain
 from crawler2d.reading.reading import Reading
 
 if TYPE_CHECKING:
@@ -29,6 +32,7 @@ __all__ = [
     "AuditSetup",
     "Call",
     "as_options",
+    "bodies_per_side",
     "command_of",
     "names_of",
 ]
@@ -48,9 +52,19 @@ OPTIONS = {
 _FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
 
 
-def names_of(robot: Robot, reading: Reading | None) -> dict[int, str]:
-    """Return the name in the file of each left wheel, by the number of its body.
+def bodies_per_side(robot: Robot) -> int:
+    """Count the bodies of one side, flippers included: the number of the first on the right."""
+    with ignore_doubts():
+        # At rest: what is usual may be faster than it is.
+        bodies = bodies_of(Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json())
+    return int(((bodies["body"] >= 0) & (bodies["kind"] != BodyKind.BELLY)).sum())
 
+
+def names_of(robot: Robot, reading: Reading | None) -> dict[int, str]:
+    """Return the name in the file of each wheel, by the number of its body.
+
+    Those on the right are numbered after all on the left, as where each track has its own ground.
+    Where both have the same, a number is that of a pair, which has the name of its left wheel.
     Where a carrier has another number of wheels than the file, as one that stands on the roots of
     its flippers, its bodies have no names; without a file none has.
     """
@@ -58,14 +72,18 @@ def names_of(robot: Robot, reading: Reading | None) -> dict[int, str]:
         return {}
     bodies, links = robot.wheels(), reading.wheels
     names: dict[int, str] = {}
-    for carrier in ("chassis", "front flipper", "rear flipper"):
-        here, there = (
-            (table["side"] == "left") & (table["carrier"] == carrier) for table in (bodies, links)
-        )
-        if here.sum() == there.sum():
-            own = sorted(zip(bodies["x"][here], bodies["body"][here], strict=True))
-            named = sorted(zip(links["x"][there], links["name"][there], strict=True))
-            names |= {int(body): str(name) for (_, body), (_, name) in zip(own, named, strict=True)}
+    for side, first in (("left", 0), ("right", bodies_per_side(robot))):
+        for carrier in ("chassis", "front flipper", "rear flipper"):
+            here, there = (
+                (table["side"] == side) & (table["carrier"] == carrier) for table in (bodies, links)
+            )
+            if here.sum() == there.sum():
+                own = sorted(zip(bodies["x"][here], bodies["body"][here], strict=True))
+                named = sorted(zip(links["x"][there], links["name"][there], strict=True))
+                names |= {
+                    first + int(body): str(name)
+                    for (_, body), (_, name) in zip(own, named, strict=True)
+                }
     return names
 
 

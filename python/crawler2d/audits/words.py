@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d.audits.record import names_of
+from crawler2d.audits.record import bodies_per_side, names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.parameters.robot import Robot
@@ -172,8 +172,13 @@ def wheel_names(audit: AuditRecord) -> str:
     """Say what the file calls the wheels between which it is jammed; "" if there are none."""
     names = names_of(audit.robot, audit.reading)
     bodies = {int(body) for each in audit.verdicts if each.where for body in each.where.split("-")}
-    called = [f"{body} is {names[body]}" for body in sorted(bodies) if body in names]
-    return f"on the left, wheel {', '.join(called)}" if called else ""
+    count = bodies_per_side(audit.robot)
+    left: list[str] = []
+    right: list[str] = []
+    for body in sorted(bodies & names.keys()):
+        (left if body < count else right).append(f"{body} is {names[body]}")
+    parts = (("on the left", left), ("on the right", right))
+    return "; ".join(f"{side}, wheel {', '.join(called)}" for side, called in parts if called)
 
 
 def reservation(audit: AuditSetup) -> str:
