@@ -101,7 +101,7 @@ def test_the_belt_does_not_drive_where_the_robot_clears() -> None:
     assert (found.table["outcome"].sel(model="model") == "cleared").all()
     row = next(line for line in str(found).splitlines() if line.startswith("  step of 75 mm"))
     assert row.split()[-5:] == ["-", "cleared", "does", "not", "seize"]
-    assert "it clears 1 of 1 obstacles itself in 95 %" in found.in_words
+    assert "it clears 1 of 1 obstacles in at least 95 %" in found.in_words
 
 
 def test_what_is_known_before_the_runs_is_told_before_them() -> None:
@@ -216,7 +216,7 @@ def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
         "It seizes on 1 of 1 obstacles where the belt clears: step of 75 mm.",
         "confirmed: chassis: 5 wheels in place of 4",
         "Lint: nothing found",
-        "no verdict",
+        "not a verdict",
     ):
         assert part in text
     assert text == str(found) == found.in_words

@@ -196,7 +196,7 @@ def test_a_repair_that_seizes_in_more_than_5_percent_of_the_runs_is_not_confirme
     assert repair.seized["gap"].low < 0.05
     assert repair.seized_at["gap"][0.04].rate == slow / 13
     assert worst_rates(repair)[2] == "gap at 0.04 m/s"
-    assert "most on gap at 0.04 m/s" in repair_sentence(repair)
+    assert ", on gap at 0.04 m/s" in repair_sentence(repair)
 
 
 def test_without_a_seizure_there_is_no_place() -> None:

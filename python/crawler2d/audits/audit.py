@@ -66,7 +66,7 @@ class Audit(AuditRecord):
     robot, reading : Robot, and Reading or None
         What was audited, and what was read if it was a file.
     lint, pockets : tuple of Finding, tuple of Pocket
-        Probable mistakes in the model, and a screen of its geometry.
+        Probable mistakes in the model, and a check of its geometry.
     belt : Belt
         The robot on belts that it was compared with; its `reason` says which belts, and why.
     obstacles, verdicts : mapping of str to terrain, tuple of Verdict

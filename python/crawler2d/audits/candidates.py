@@ -55,8 +55,8 @@ Circle = tuple[float, float, float]
 class Pocket:
     """The space between two neighbouring wheels, above the belt that would run under them.
 
-    It is a screen, no verdict: whether ground stays in a pocket depends on the whole robot, and
-    robots have seized in pockets that these figures call harmless.
+    It is a check of the geometry, not a verdict: whether ground stays in a pocket depends on the
+    whole robot, and robots have seized in pockets that these figures call harmless.
 
     Parameters
     ----------

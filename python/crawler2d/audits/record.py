@@ -181,7 +181,7 @@ class AuditSetup:
     lint : tuple of Finding
         Probable mistakes in the model, errors first.
     pockets : tuple of Pocket
-        The spaces between its wheels: a screen, no verdict.
+        The spaces between its wheels: a check of the geometry, not a verdict.
     belt : Belt
         The robot on belts for comparison, and the reason for the kind of belt.
     obstacles : mapping of str to terrain

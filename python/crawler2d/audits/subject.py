@@ -281,8 +281,8 @@ def unknown_of_file(
             ranges["terrain.friction"] = about, f"{stated['friction']}; a tenth"
         else:
             source = (
-                f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no file of a robot states,"
-                f" combined by the rule of {reading.engine} with {stated['friction']}"
+                f"that of the floor, which no model file states, is taken as {FLOORS[0]:g} to"
+                f" {FLOORS[1]:g}; {reading.engine} combines it with {stated['friction']}"
             )
             ranges["terrain.friction"] = uniform(low, high), source
     return Ranges.with_sources(ranges)

@@ -95,7 +95,7 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
     if not pockets:
         yield "Pockets: none, because there are no neighbouring wheels"
         return
-    yield "Pockets and slots between wheels: a screen of geometry, no verdict"
+    yield "Pockets and slots between wheels: a check of the geometry, not a verdict"
     groups: dict[tuple[str, bool], list[Pocket]] = {}
     for each in pockets:
         groups.setdefault((each.carrier, each.is_slot), []).append(each)
@@ -108,7 +108,7 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
         else:
             holds = words.holding_friction([p.friction for p in alike])
             deep = words.span([1e3 * p.depth for p in alike], ".1f")
-            text = f"{deep} mm deep, between their walls they hold {holds}"
+            text = f"{deep} mm deep; the walls alone hold an edge {holds}"
         yield from _wrap(f"{carrier}: {what}, {text}")
 
 
@@ -226,7 +226,7 @@ class LintResult:
     lint : tuple of Finding
         Probable mistakes in the model, errors first.
     pockets : tuple of Pocket
-        The spaces between its wheels: a screen, no verdict.
+        The spaces between its wheels: a check of the geometry, not a verdict.
     verdicts : tuple of Verdict
         None: nothing was simulated.
     """

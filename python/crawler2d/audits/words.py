@@ -213,10 +213,10 @@ def conclusion(audit: AuditRecord) -> list[str]:
         sentences.append(f"{text}: {', '.join(map(_seizing, seized))}.")
     else:
         clears = sum(each.cleared.rate >= CLEARS for each in audit.verdicts)
-        own = f"it clears {clears} of {count} obstacles itself in 95 % of its runs"
+        own = f"it clears {clears} of {count} obstacles in at least 95 % of its runs"
         failing = [each for each in audit.verdicts if each.cleared.rate < CLEARS]
         also = sum(each.belt_cleared.rate >= CLEARS for each in failing)
-        belt = f", and the belt {also} of the other {len(failing)}" if failing else ""
+        belt = f"; of the other {len(failing)} the belt clears {also}" if failing else ""
         sentences.append(f"It was not found to seize where the belt clears; {own}{belt}.")
     sentences += list(_under_assumptions(audit.assumed))
     if others:
@@ -249,8 +249,9 @@ def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
         own = [each for each in assumed if each.assumption == name]
         if own:
             runs = ", ".join(f"{each.obstacle} {each.seized} of {each.made}" for each in own)
-            loose = ", ".join(each.obstacle for each in own if not each.holds)
-            effect = f"the verdicts on {loose} may depend" if loose else "no verdict depends"
+            loose = [each.obstacle for each in own if not each.holds]
+            verdicts = f"the verdict{'s' * (len(loose) > 1)} on {', '.join(loose)}"
+            effect = f"{verdicts} may depend" if loose else "no verdict depends"
             drawn = ", ".join(
                 f"{_in_words(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
             )
@@ -325,9 +326,9 @@ def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:
 def repair_sentence(repair: Repair) -> str:
     """Say what a repair changes, and with what result."""
     _, seized, name = worst_rates(repair)
-    where = f", most on {name}" if name else ""
+    where = f", on {name}" if name else ""
     return (
-        f"{confirmation(repair)}: {repair.what}; {comparison(repair)}; seizes at most"
+        f"{confirmation(repair)}: {repair.what}; {comparison(repair)}; seizes at worst in"
         f" {rate(seized)}{where}; {wheels_per_side(repair)}; simulated {repair.speed:.2g} times as"
         " fast"
     )
@@ -337,7 +338,7 @@ def comparison(repair: Repair) -> str:
     """Say how a repair compares with the belt where the robot seized, if the belt clears there."""
     cleared, _, _ = worst_rates(repair)
     if cleared.runs:
-        return f"clears at least {rate(cleared)} of the runs that the belt clears where it seized"
+        return f"clears at worst {rate(cleared)} of the runs that the belt clears where it seized"
     alone = [name for name, each in repair.cleared_beside.items() if not each.runs]
     return f"the belt clears none of the fresh runs on {', '.join(alone)} (0 to compare with)"
 

@@ -47,14 +47,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="print plain data; progress goes to standard error"
     )
-    samples = f"at most so many draws of the unknowns (default: {SAMPLES}, with --quick {QUICK};"
+    samples = f"draws of the unknowns, at most (default: {SAMPLES}, with --quick {QUICK};"
     samples += f" fewer than {least_samples()} cannot show that it does not seize)"
     parser.add_argument("--samples", type=int, help=samples)
     repeats = f"runs of each sample (default: {REPEATS})"
     parser.add_argument("--repeats", type=int, default=REPEATS, help=repeats)
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
-    parser.add_argument("--store", type=Path, help="a file that keeps every run")
-    parser.add_argument("--threads", type=int, help="default: all cores")
+    parser.add_argument(
+        "--store",
+        type=Path,
+        help="a file that keeps every run: the same command continues from there",
+    )
+    parser.add_argument("--threads", type=int, help="how many to use (default: all cores)")
     page = parser.add_mutually_exclusive_group()
     page.add_argument(
         "--html", type=Path, help="where to write the page (default: out/audit-NAME.html)"
@@ -89,23 +93,60 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
     reading.add_argument(
-        "--engine", choices=sorted(ENGINES), help="whose rules of friction and motors apply"
+        "--engine",
+        choices=sorted(ENGINES),
+        help="whose rules of friction and motors apply (default: mujoco for MJCF, else gz)",
     )
-    reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
+    reading.add_argument(
+        "--forward",
+        choices=["+x", "-x", "+y", "-y"],
+        help="which way the model faces; write --forward=-x (default: the side of the links called"
+        " front, else +x)",
+    )
     reading.add_argument("--model", help="name of the model in a world")
-    reading.add_argument("--mesh", choices=get_args(MeshRule), default="hull")
-    reading.add_argument("--missing", choices=["leave_out", "refuse"], default="leave_out")
     reading.add_argument(
-        "--track", action="append", default=[], help="a link that moves as a track; repeatable"
+        "--mesh",
+        choices=get_args(MeshRule),
+        default="hull",
+        help="what to do with collision meshes (default: hull)",
     )
-    reading.add_argument("--ground-friction", type=float, help="of the floor's own surface")
     reading.add_argument(
-        "--tolerance", type=float, default=TOLERANCE, help="difference between sides, in m"
+        "--missing",
+        choices=["leave_out", "refuse"],
+        default="leave_out",
+        help="what to do with includes, macros and links that cannot be found (default: leave_out)",
+    )
+    reading.add_argument(
+        "--track",
+        action="append",
+        default=[],
+        help="a link whose surface moves as a track; repeatable",
+    )
+    reading.add_argument(
+        "--ground-friction", type=float, help="coefficient of the floor's own surface"
+    )
+    reading.add_argument(
+        "--tolerance",
+        type=float,
+        default=TOLERANCE,
+        help="by how much the two sides may differ, in m",
     )
     reading.add_argument("--scale", type=float, help="multiply every length, as in 0.001 for mm")
     reading.add_argument("--trusted", action="store_true", help="let xacro evaluate anything")
-    reading.add_argument("--package", action="append", default=[], metavar="NAME=FOLDER")
-    reading.add_argument("--argument", action="append", default=[], metavar="NAME=VALUE")
+    reading.add_argument(
+        "--package",
+        action="append",
+        default=[],
+        metavar="NAME=FOLDER",
+        help="where a package is that is not found; repeatable",
+    )
+    reading.add_argument(
+        "--argument",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="value of an argument of a xacro file; repeatable",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

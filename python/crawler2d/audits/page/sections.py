@@ -176,9 +176,9 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
     head = (
         "repair",
         "in fresh runs",
-        "clears at least, of what the belt clears where it seized",
-        "seizes at most",
-        "most on",
+        "clears at worst, of what the belt clears where it seized",
+        "seizes at worst",
+        "on",
         "wheels a side",
         "simulated speed",
     )
