@@ -1,6 +1,7 @@
 """What every study refuses before anything runs."""
 
 import importlib
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -100,3 +101,17 @@ def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
         c2d.rate(c2d.simulate(scenario))  # type: ignore[arg-type]
     with pytest.raises(c2d.ScenarioError, match="runs must be several"):
         c2d.table(c2d.simulate(scenario))  # type: ignore[arg-type]
+
+
+def test_fields_that_differ_in_their_seed_alone_are_doubted_where_runs_draw_it() -> None:
+    # Each row of the result is the same: every run on either has a field of its own.
+    base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
+    fields = {f"field {seed}": c2d.terrains.random_stepfield(seed) for seed in (1, 2)}
+    few: Any = {"until": c2d.Until(least=1, most=1), "progress": False}
+    with pytest.warns(c2d.ScenarioWarning, match="their seed.*got field 1, field 2$"):
+        c2d.studies.success(base, terrains=fields, **few)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", c2d.ScenarioWarning)
+        c2d.studies.success(base, terrains=fields, vary=c2d.variability.of_start(), **few)
+        lower = c2d.terrains.random_stepfield(rise=0.01)
+        c2d.studies.success(base, terrains={**fields, "field 2": lower}, **few)

@@ -25,9 +25,9 @@ from crawler2d.studies.tables import (
     read_models,
     read_numbers,
     read_terrains,
+    vary_fields,
 )
 from crawler2d.sweeps.axes import field_attributes
-from crawler2d.variation.variability import of_contact, of_field, of_start
 
 if TYPE_CHECKING:
     from crawler2d.sweeps.figure_dataset import FigureDataset
@@ -282,6 +282,11 @@ def success(
     ScenarioError
         If `terrains` has something else in it, or an argument breaks a rule.
 
+    Warns
+    -----
+    ScenarioWarning
+        If random step fields differ in their seed alone, and `vary` is not given.
+
     Examples
     --------
     >>> import crawler2d as c2d
@@ -295,7 +300,7 @@ def success(
     grounds = read_terrains(scenario, terrains)
     fields = read_models(scenario, models)
     if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
-        how = {**how, "vary": of_start() | of_contact() | of_field()}
+        how = {**how, "vary": vary_fields(grounds)}
     with campaign(scenario, how, ["terrain", *paths_of(fields)]) as study:
         cells = [
             Cell((f"model={label}", f"terrain={name}"), scenario.replace({"terrain": each, **own}))

@@ -22,11 +22,10 @@ from crawler2d.studies.candidates import (
     ranked,
     search_table,
 )
-from crawler2d.studies.tables import Models, check_study, paths_of, read_terrains
+from crawler2d.studies.tables import Models, check_study, paths_of, read_terrains, vary_fields
 from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.sweep import variants
 from crawler2d.variation.draws import Variation
-from crawler2d.variation.variability import of_contact, of_field, of_start
 
 if TYPE_CHECKING:
     from crawler2d.sweeps.figure_dataset import FigureDataset
@@ -145,7 +144,7 @@ def search(
     fields = variants(space, "space")
     swept = ["terrain", *paths_of(fields)]
     if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
-        how = {**how, "vary": of_start() | of_contact() | of_field()}
+        how = {**how, "vary": vary_fields(grounds)}
     with campaign(scenario, how, swept, repeats=whole_number(first, "first", 1, 10**6)) as study:
         candidates, refusals = _candidates(study, fields, grounds, objective)
         study.settings += len(candidates) * len(grounds)

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, warn
 from crawler2d.parameters.scenario import Scenario, check_scenario
-from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.terrain import RandomStepfield, Terrain
 from crawler2d.sweeps.axes import Label, read_labels
 from crawler2d.sweeps.rates import quantile_band
 from crawler2d.sweeps.sweep import Variant, variants
 from crawler2d.sweeps.tabulate import Column, dataset_of, draw_columns, row_columns
+from crawler2d.variation.variability import of_contact, of_field, of_start
 
 if TYPE_CHECKING:
     import xarray
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
     from crawler2d.studies.campaign import Campaign, Tally
     from crawler2d.sweeps.figure_dataset import FigureDataset
+    from crawler2d.variation.distributions import Ranges
+
 __all__ = [
     "Dims",
     "Measure",
@@ -37,6 +40,7 @@ __all__ = [
     "read_numbers",
     "read_terrains",
     "summary",
+    "vary_fields",
 ]
 
 Models = Mapping[Any, Variant] | Sequence[Variant]
@@ -77,6 +81,28 @@ def read_terrains(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
     return by_label
 
 
+def vary_fields(terrains: Mapping[Label, Terrain]) -> Ranges:
+    """Return what varies if terrains have a seed: that, too.
+
+    Warns
+    -----
+    ScenarioWarning
+        If terrains differ in their seed alone, which leaves no difference.
+    """
+    labels: dict[Terrain, list[str]] = {}
+    for label, terrain in terrains.items():
+        if isinstance(terrain, RandomStepfield):
+            labels.setdefault(replace(terrain, seed=0), []).append(str(label))
+    for alike in labels.values():
+        if len(alike) > 1:
+            reason = (
+                "should differ in more than their seed, which is drawn anew for every run; with"
+                " vary= each keeps its own"
+            )
+            warn("terrains", ", ".join(alike), reason)
+    return of_start() | of_contact() | of_field()
+
+
 def read_numbers(values: object, place: str) -> list[float]:
     """Return the numbers of an argument that takes one or more.
 
@@ -100,7 +126,7 @@ Dims = Mapping[str, tuple[Sequence[Any], Mapping[str, str]]]
 """Labels and attributes of each dimension of the cells of a study."""
 
 _LONG_NAMES = {
-    "rate": "rate",
+    "rate": "rate of clearing",
     "low": "lower bound",
     "high": "upper bound",
     "count": "number of runs",
