@@ -286,6 +286,17 @@ def test_where_it_can_jam_is_drawn_for_the_model_and_its_best_repair(
     assert "between wheels 1 and 2" in chart_section(found.robot)
 
 
+def test_numbers_of_a_chart_end_within_it() -> None:
+    # A radius of 70 mm has the last number, 140, at the right end; a digit is 0.6 of 12 px wide.
+    outline = dataclasses.replace(SEIZING.outline, front_radius=0.07, rear_radius=0.07)
+    wheels = dataclasses.replace(SEIZING, outline=outline, track=c2d.LineOfWheels(4))
+    text = chart_section(wheels)
+    (width,) = set(map(float, re.findall(r'viewBox="0 0 ([\d.]+)', text)))
+    labels = re.findall(r'<text x="([\d.]+)"[^>]*text-anchor="middle">(\d+)<', text)
+    assert labels[-1][1] == "140"
+    assert all(float(x) + 0.5 * 0.6 * 12.0 * len(number) < width for x, number in labels)
+
+
 def test_a_chart_that_cannot_be_computed_says_why() -> None:
     gears = c2d.robots.engineer(track=c2d.LineOfWheels(5, wheel=c2d.GearWheel()))
     text = chart_section(gears)

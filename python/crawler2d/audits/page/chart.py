@@ -22,7 +22,7 @@ __all__ = ["chart_section"]
 
 _HEIGHTS = 60
 _WIDTH, _HEIGHT = 460.0, 240.0  # [px] of the axes
-_LEFT, _BELOW, _AROUND = 46.0, 42.0, 10.0  # [px] round them
+_LEFT, _BELOW, _AROUND = 46.0, 42.0, 16.0  # [px] round them
 _MOST = 1.5  # friction
 _SHADES = 6  # of pairs of wheels
 
