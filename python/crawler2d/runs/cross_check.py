@@ -89,11 +89,10 @@ class Agreement:
         """Say how often they ended alike, and which way they differ."""
         if not self.models:
             return "How often both end alike with such a model was not studied"
-        kind = " or ".join(self.models)
         text = (
-            f"With {kind} in the seizure study both got over or neither did in"
-            f" {self.alike} of {self.runs} runs; {self.own} got over in crawler2d's own dynamics,"
-            f" {self.rapier} in rapier"
+            f"In the seizure study, with tracks of this kind ({'; '.join(self.models)}), both got"
+            f" over or neither did in {self.alike} of {self.runs} runs; {self.own} got over in"
+            f" crawler2d's own dynamics, {self.rapier} in rapier"
         )
         directions = [_DIRECTIONS[model] for model in self.models if model in _DIRECTIONS]
         return "; ".join([text, *directions])
