@@ -206,4 +206,4 @@ def test_pictures_show_both_lanes() -> None:
     legend = run.plot().get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]
-    assert "left lane" in labels
+    assert labels[:2] == ["ground of the left track", "ground of the right track"]

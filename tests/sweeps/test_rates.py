@@ -42,7 +42,7 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
         "varied": "",
         "unknown": "",
     }
-    spoken = {"rate": "rate of cleared", "low": "lower bound", "high": "upper bound"}
+    spoken = {"rate": "rate of clearing", "low": "lower bound", "high": "upper bound"}
     for name, long_name in {**spoken, "count": "number of runs"}.items():
         assert found[name].attrs == {"units": "1", "long_name": long_name}
 
@@ -64,7 +64,7 @@ def test_all_stops_can_be_counted_together() -> None:
     found = rate(TABLE, "stopped")
     assert found["rate"].values[:2].tolist() == [2 / 4, 1 / 3]
     assert found.attrs["outcome"] == "stopped"
-    assert found["rate"].attrs["long_name"] == "rate of stopped"
+    assert found["rate"].attrs["long_name"] == "rate of stopping"
     names = [outcome for outcome in c2d.Outcome if outcome.is_stop]
     assert rate(names, "stopped")["rate"].item() == 1.0
     assert rate([o for o in c2d.Outcome if not o.is_stop], "stopped")["rate"].item() == 0.0

@@ -99,7 +99,7 @@ def scene_canvas(
     Of two lanes the left one shows through behind the right one.
     """
     canvas = Canvas(ax, extent, figure)
-    is_far = len(scene.lanes) > 1
+    is_far = has_two = len(scene.lanes) > 1
     alpha = 0.6 if is_far else 1.0
     bottom = min(extent[2], *(float(profile[:, 1].min()) for _, profile in scene.lanes)) - 1.0
     for _, profile in scene.lanes:
@@ -107,7 +107,9 @@ def scene_canvas(
         canvas.ax.fill_between(profile[:, 0], profile[:, 1], bottom, **fill)
         look: Any = {"linestyle": "-", "linewidth": 1.2}
         if is_far:
-            look = {"linestyle": "--", "linewidth": 0.8, "label": "left lane"}
+            look = {"linestyle": "--", "linewidth": 0.8, "label": "ground of the left track"}
+        elif has_two:
+            look["label"] = "ground of the right track"
         canvas.ax.plot(*profile.T, color=BLACK, zorder=1, **look)
         is_far = False
     return canvas

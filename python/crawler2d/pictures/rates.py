@@ -123,6 +123,7 @@ def _field_names(text: str) -> str:
     """Name the fields of ``path: distribution; path: distribution``."""
     paths = [part.partition(":")[0] for part in text.split("; ") if part]
     names = [re.sub(r"\[[^\]]*\]", "", path.rpartition(".")[2]) for path in paths]
+    names = [name.replace("center_of_mass", "centre of mass") for name in names]
     return ", ".join(dict.fromkeys(name.replace("_", " ") for name in names))
 
 
@@ -273,7 +274,7 @@ def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, ba
         text = f"hatched: {text}"
         handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_HATCH, label=text))
     if guessed:
-        text = f"dotted: not simulated, all around it {'' if banded else 'certainly '}end so"
+        text = f"dotted: not simulated; all cells around it {'' if banded else 'certainly '}end so"
         handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_DOTS, label=text))
     legend_below(ax, handles=handles)
 

@@ -159,7 +159,7 @@ def _indices(data: xarray.Dataset, ax: Axes) -> None:
         own, low, high = (data[key].to_numpy() for key in (name, f"{name}_low", f"{name}_high"))
         ax.barh(at + down, own, _BAR, color=color, label=label)
         ax.hlines(at + down, low, high, color=BLACK, linewidth=1.2)
-    ax.set_yticks(at, [name.replace("_", " ") for name in data["unknown"].to_numpy()])
+    ax.set_yticks(at, [_spoken(name) for name in data["unknown"].to_numpy()])
     bounds = data[["first_low", "first_high", "total_high"]].to_array().to_numpy()
     left, right = np.nanmin([0.0, *bounds.flat]), np.nanmax([1.0, *bounds.flat])
     ax.set(xlim=(left - 0.02, right + 0.02), ylim=(order.size - 0.4, -0.6))
@@ -212,7 +212,7 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
             style: dict[str, Any] = {"fontsize": "x-small", "va": "center", "ha": side}
             ax.annotate(text, (x, k), (step, 0.0), textcoords="offset points", **style)
     count = data.sizes["unknown"]
-    names = [name.replace("_", " ") for name in data["unknown"].to_numpy()]
+    names = [_spoken(name) for name in data["unknown"].to_numpy()]
     units = [_readable(data.isel(unknown=k))[1] for k in range(count)]
     pairs = zip(names, units, strict=True)
     ax.set_yticks(range(count), [f"{name} [{unit}]" if unit else name for name, unit in pairs])
@@ -242,6 +242,20 @@ def _parts(row: xarray.Dataset) -> list[tuple[float, float]]:
     edges = np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1]), values[-1:]])
     changes = np.flatnonzero(np.diff(often, prepend=False, append=False))
     return [(edges[begin], edges[end]) for begin, end in changes.reshape(-1, 2)]
+
+
+def _spoken(name: str) -> str:
+    """Write a column's name in words.
+
+    Examples
+    --------
+    >>> _spoken("max_torque"), _spoken("center_of_mass_1"), _spoken("belly_1")
+    ('max torque', 'centre of mass, y', 'belly, y')
+    """
+    place, _, axis = name.rpartition("_")
+    if place in ("center_of_mass", "belly") and axis in ("0", "1"):
+        name = f"{place}, {'xy'[int(axis)]}"
+    return name.replace("center_of_mass", "centre of mass").replace("_", " ")
 
 
 def _readable(row: xarray.Dataset) -> tuple[float, str]:

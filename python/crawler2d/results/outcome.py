@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from crawler2d import _core
 
-__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "glossary_text"]
+__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "glossary_text", "rate_in_words"]
 
 OUTCOMES = {
     "detracked": "a chain of shoes came off its guide or its wheels",
@@ -21,6 +21,18 @@ OUTCOMES = {
     "timed_out": "the time was over while the robot was moving, or in a passing stop",
 }
 """How a run can end; if several apply, the first."""
+
+_ENDING = {
+    "detracked": "throwing the track",
+    "tipped_over": "tipping over",
+    "left_terrain": "leaving the terrain",
+    "cleared": "clearing",
+    "seized": "seizing",
+    "hung_up": "hanging up",
+    "stalled": "stalling",
+    "timed_out": "timing out",
+    "stopped": "stopping",
+}
 
 MECHANISMS = {
     "fouled": "the guide or the wheels that a chain of shoes runs on rest on it",
@@ -51,6 +63,17 @@ TRIALS = {
     "flippers level": "the flippers turn to angle 0",
 }
 """What is changed at a stop, one thing at a time."""
+
+
+def rate_in_words(outcome: str) -> str:
+    """Name the rate of an outcome, for labels.
+
+    Examples
+    --------
+    >>> rate_in_words("cleared"), rate_in_words("slipping")
+    ('rate of clearing', 'rate of slipping')
+    """
+    return f"rate of {_ENDING.get(outcome, outcome)}"
 
 
 def glossary_text(words: dict[str, str], indent: str = "") -> str:

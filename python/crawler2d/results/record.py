@@ -322,7 +322,7 @@ class Record:
 
 def _kind(part: object) -> str:
     # An invalid scenario may hold anything.
-    return str(getattr(part, "kind", type(part).__name__))
+    return str(getattr(part, "kind", type(part).__name__)).replace("_", " ")
 
 
 NO_RESULT = ("diverged", "refused", "failed")
