@@ -1,7 +1,11 @@
 """Simulate tracked robots in side view, with any model of their tracks.
 
-One body in the plane; its track a belt, a set of wheels, a chain of shoes or a mere force.
-Units are SI, angles radians, x forward, y up.
+A track is a belt, a set of wheels, a chain of shoes or a mere force. Units are SI, angles radians,
+x forward, y up.
+
+`simulate` drives a robot, of `robots` or from `read_robot`, over a ground of `terrains`. `sweep`,
+`rate`, `compare` and `studies` say how often it gets over. `audit` says where a model file seizes:
+stops with an edge between two wheels that stand for a track.
 
 >>> import crawler2d as c2d
 >>> robot = c2d.robots.engineer(flippers=None).with_track(c2d.BeltTrack())
