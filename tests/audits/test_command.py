@@ -322,6 +322,7 @@ def test_a_file_that_is_none_is_refused_in_one_line(capsys: Any, what: str) -> N
     assert (status, out) == (2, "")
     assert len(err.strip().splitlines()) == 1
     assert path.name in err
+    assert ("crawler2d atlas" in err) == (what == "folder")
 
 
 WITHOUT_OPTION = {"obstacles", "vary", "unknown", "drive", "duration", "executor", "progress"}

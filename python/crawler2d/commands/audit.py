@@ -238,6 +238,9 @@ def _read_baseline(options: argparse.Namespace) -> dict[str, Any] | None:
 
 def _audit_file(file: Path, options: argparse.Namespace, live: LivePrinter) -> Audit | LintResult:
     """Audit a file, or only lint it, and show what was found."""
+    if file.is_dir():
+        rule = "must be a file, not a folder (crawler2d atlas audits every model in a folder)"
+        raise ScenarioError("FILE", str(file), rule)
     if options.lint:
         alone = lint_only(file, **_reading(options))
         live.print(alone.in_words)

@@ -332,7 +332,8 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
 def _numbers(shown: xarray.DataArray) -> list[str]:
     numeric = [str(d) for d in shown.dims if d in shown.coords and shown[d].dtype.kind in "iuf"]
     if not numeric:
-        raise ScenarioError("plot", "labels only", "must have a dimension of numbers")
+        rule = "must have a dimension of numbers (studies.success draws bars, one for each model)"
+        raise ScenarioError("plot", "labels only", rule)
     return numeric
 
 
