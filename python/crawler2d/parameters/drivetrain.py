@@ -14,15 +14,16 @@ __all__ = ["PI", "Drivetrain"]
 class PI(Parameters, kind="pi", path="robot.drivetrain.controller"):
     """A controller of the speed of each sprocket: proportional and integral.
 
-    The torque is the gain times the error of the rate, plus the integral gain times the sum of that
-    error over time, within the torque that the motor has at its speed. While the motor is at that
-    limit nothing is added to the sum, so it does not wind up. A gain alone is what physics engines
-    call a velocity motor: `kv` of MuJoCo's velocity actuator, the damping of Isaac's drive.
+    The torque is the gain times the error of the angular velocity, plus the integral gain times the
+    sum of that error over time, within the torque that the motor has at its speed. While the motor
+    is at that limit nothing is added to the sum, so it does not wind up. A gain alone is what
+    physics engines call a velocity motor: `kv` of MuJoCo's velocity actuator, the damping of
+    Isaac's drive.
 
     Parameters
     ----------
     gain : float
-        [N m s/rad] Torque of one sprocket for an error of its rate.
+        [N m s/rad] Torque of one sprocket for an error of its angular velocity.
     integral : float
         [N m/rad] Torque of one sprocket for the sum of those errors, which is an angle.
 
@@ -68,7 +69,7 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
         is limited. "wheel": each of the N driven wheels of a model that has some, on flippers,
         too, has its own servo with 1/N of the torque, the rotor inertia and the controller's gains.
     rotor_inertia : float
-        [kg m^2] Of the motor of one track as its sprocket feels it: the rotor's own times the
+        [kg m^2] Of the motor of one track, reflected to its sprocket: the rotor's own times the
         square of the gear's ratio, MuJoCo's `armature`; at most 100,000 times the moment of inertia
         of the robot. It turns with the drive over the chassis and holds the track's speed through a
         blow, which no torque limit can.
@@ -84,12 +85,12 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
         How motors correct the speed of their sprocket. None: they hold the commanded speed as long
         as their torque suffices.
     self_locking : bool
-        Whether the gear locks itself, as a worm does. The load then turns no motor back, and none
-        faster than the commanded speed or, where the torque ends before that, its speed without
-        load. At rest the gear holds with any torque, also where the motor is too weak or off. What
-        drives is limited by `max_torque` as ever. A gear that does not lock is taken to turn back
-        without loss, while `max_torque` is what is left after losses. Neither with a `controller`
-        nor on a `ForceTrack`.
+        Whether the gear cannot be back-driven, as a worm gear. The load then turns no motor back,
+        and none faster than the commanded speed or, where the torque ends before that, its speed
+        without load. At rest the gear holds with any torque, also where the motor is too weak or
+        off. What drives is limited by `max_torque` as ever. A gear that does not lock is taken to
+        turn back without loss, while `max_torque` is what is left after losses. Neither with a
+        `controller` nor on a `ForceTrack`.
 
     Examples
     --------

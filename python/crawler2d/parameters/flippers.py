@@ -48,13 +48,13 @@ class Flippers(Parameters, path="robot.flippers"):
         [N m] Largest torque of the motor of one arm; under more load the arm gives way, unless its
         gear locks itself.
     rotor_inertia : float
-        [kg m^2] Of the motor of one arm as the pivot feels it: the rotor's own times the square of
-        the gear's ratio; at most 100,000 times the moment of inertia of the robot. It turns with
+        [kg m^2] Of the motor of one arm, reflected to the pivot: the rotor's own times the square
+        of the gear's ratio; at most 100,000 times the moment of inertia of the robot. It turns with
         the arm over the chassis.
     self_locking : bool
-        Whether the gear locks itself, as a worm does: then no load turns an arm back, or on faster
-        than its motor turns it, whatever the torque limit; that limits what turns the arm. A gear
-        that does not lock is taken to turn back without loss.
+        Whether the gear cannot be back-driven, as a worm gear: then no load turns an arm back, or
+        on faster than its motor turns it, whatever the torque limit; that limits what turns the
+        arm. A gear that does not lock is taken to turn back without loss.
     track : Track, optional
         How their tracks are modelled: any model but a chain of shoes or a closed one, and a
         `ForceTrack` exactly if that of the robot is one. The placements of

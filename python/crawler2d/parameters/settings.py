@@ -177,11 +177,12 @@ class Solver(Parameters, path="solver"):
         [m] Gap up to which contacts are searched for, at least; in a fast or long step, as far as
         the robot moves in it.
     restitution : float
-        [-] Fraction of the impulses of a blow that contacts return, 0 to 1 (Poisson's hypothesis,
-        for normal and friction impulses alike). With 0, the default, a blow against edges that
-        jam each other stops the robot at once; with 1 contacts give all of it back, as springs
-        without dampers would. Where an outcome differs between the two, it hangs on what blows
-        give back, which rigid bodies leave open. Not for chains, nor in rapier.
+        [-] Coefficient of restitution: the fraction of the impulses of an impact that contacts
+        return, 0 to 1 (Poisson's hypothesis, for normal and friction impulses alike). With 0, the
+        default, an impact against edges that jam each other stops the robot at once; with 1
+        contacts give all of it back, as springs without dampers would. Where an outcome differs
+        between the two, it depends on what impacts give back, which rigid bodies leave open. Not
+        for chains, nor in rapier.
 
     Examples
     --------

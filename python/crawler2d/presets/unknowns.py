@@ -134,7 +134,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
 
 
 def of_blows(robot: Robot) -> Ranges:
-    """List what is not known of impacts on the ground: the restitution of contacts.
+    """List what is not known of impacts on the ground: the coefficient of restitution.
 
     Parameters
     ----------

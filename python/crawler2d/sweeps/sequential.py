@@ -27,7 +27,7 @@ _MOST = 10**6
 
 @takes_keywords
 def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval:
-    r"""Estimate a rate with an interval that stays valid however often one looks.
+    r"""Estimate a rate with a confidence sequence: its interval holds however often one looks.
 
     Whatever the rate, the probability that its interval fails to hold it after *any* number of runs
     is at most 1 - `confidence`. So one may look after every run, and stop whenever the interval
@@ -99,7 +99,7 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Until(TakesKeywords):
-    """When to stop simulating a cell: its rate, or the side of a threshold, is known well enough.
+    """A stopping rule: simulate a cell until its rate, or its side of a threshold, is known.
 
     It may be asked after every run, or after any number of them: the interval is `sequential`'s.
 
