@@ -256,3 +256,23 @@ def test_more_cells_than_memory_holds_are_refused(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setenv("CRAWLER2D_MEMORY", "1")
     with pytest.raises(c2d.LimitError, match=r"cells of a region \(most_cells\) needs about"):
         certify(BASE, OVER, most_cells=10_000_000)
+
+
+def test_a_jam_at_an_end_of_a_range_is_found_from_either_side() -> None:
+    wheels = (
+        (-0.0734362765, -0.0264620700, 0.0384768006),
+        (0.0890996027, -0.0257243830, 0.0447247213),
+        (0.1662377896, -0.0061532912, 0.0458796288),
+    )
+    found = []
+    for sign in (1, -1):
+        placed = c2d.HybridWheels([(sign * x, y, r) for x, y, r in wheels[::sign]])
+        robot = dataclasses.replace(
+            ROBOT.with_track(placed), center_of_mass=(sign * 0.0302745366, 0.0331594164)
+        )
+        barrier = c2d.terrains.barrier(0.06, thickness=0.0967634700, friction=0.8)
+        base = c2d.Scenario(robot, barrier, drive=c2d.Drive(speed=0.3 * sign))
+        over = {"terrain.height": (0.0518101879, 0.0718101879)}
+        found.append(certify(base, over, smallest=0.125, most_cells=10_000))
+    assert found[0].status.tolist() == found[1].status.tolist()
+    assert "undecided" not in found[0].status

@@ -161,3 +161,25 @@ def test_a_chart_of_one_height_has_a_line_for_each_way_to_jam() -> None:
     assert left < 100.0 < right
     part = studies.jam_chart(c2d.Scenario(WHEELS, STEP), values=[0.05, 0.1]).sel(height=0.1).plot()
     assert part.get_xlim() == (left, right)
+
+
+def test_a_jam_is_as_stable_from_the_other_side() -> None:
+    center, y = -0.028990373280418303, 0.02925526974438475
+    wheels = (
+        (-0.14664876062346033, -0.019300167459467738, 0.04553320202455023),
+        (-0.07496518035974212, -0.009734779148554345, 0.020302882621384438),
+        (0.12021449155323499, -0.019955941886126337, 0.03919373903204299),
+    )
+    height, end, friction = 0.09598035740925721, 0.20155079961909686, 0.789920881293209
+    corners = [(-3.0, 0.0), (0.0, 0.0), (0.0, height), (end, height), (end, 0.0), (3.0, 0.0)]
+    found = []
+    for sign in (1, -1):
+        placed = c2d.HybridWheels([(sign * x, y, r) for x, y, r in wheels[::sign]])
+        robot = c2d.robots.engineer(flippers=None).without_rotors().with_track(placed)
+        robot = replace(robot, center_of_mass=(sign * center, y), belly=None)
+        points = [(sign * x, y) for x, y in corners[::sign]]
+        ground = c2d.terrains.from_points(points, goal=0.0, friction=friction)
+        jams = c2d.jams(robot, ground, drive=c2d.Drive(speed=0.3 * sign))
+        found.append({round(sign * jam.position[0], 6): jam.stable for jam in jams})
+    assert len(found[0]) > 1
+    assert found[0] == found[1]

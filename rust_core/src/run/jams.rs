@@ -129,7 +129,7 @@ fn deepest(robot: &Simulation) -> Option<Intrusion> {
 }
 
 fn stays(mut robot: Simulation, jam: &Jam, cancel: &Cancel) -> Result<bool, Error> {
-    let push = PUSH * robot.weight();
+    let push = robot.direction() * PUSH * robot.weight();
     for force in [0.0, push, -push, 0.0] {
         robot.set_push(force)?;
         robot.advance(SPELL.value())?;

@@ -80,7 +80,14 @@ impl Pair {
                 }
                 Found::Left(left) => shares = left,
             }
-            jam = self.jam(&shares, cancel)?;
+            // The search stops at the first cell that is left; a jam may as well be at an end of the range.
+            for tried in std::iter::once(shares).chain(self.corners(cell)) {
+                jam = self.jam(&tried, cancel)?;
+                if jam.is_some() {
+                    shares = tried;
+                    break;
+                }
+            }
         }
         let stands = self.belt.stands(&cell.shares(), cancel)?;
         if self.belt.is_held(cell, &stands) {
@@ -109,16 +116,23 @@ impl Pair {
         if is_held || !matches!(status, RegionStatus::Jams(..)) {
             return Ok(true);
         }
-        for corner in 0..1_u32 << self.wheels.parameters {
-            let shares = std::array::from_fn(|k| {
-                let ends = [cell.low[3 + k], cell.high[3 + k]];
-                ends[(corner >> k & 1) as usize]
-            });
+        for shares in self.corners(cell) {
             if self.jam(&shares, cancel)?.is_none() {
                 return Ok(true);
             }
         }
         Ok(false)
+    }
+
+    /// The shares at all corners of a range.
+    fn corners(&self, cell: &Cell) -> impl Iterator<Item = Shares> {
+        let (low, high) = (cell.low, cell.high);
+        (0..1_u32 << self.wheels.parameters).map(move |corner| {
+            std::array::from_fn(|k| {
+                let ends = [low[3 + k], high[3 + k]];
+                ends[(corner >> k & 1) as usize]
+            })
+        })
     }
 
     /// A jam on three contacts with ground that deep inside the track, at shares of the parameters' ranges.
