@@ -22,9 +22,9 @@ pub(crate) struct Simulation {
     /// What it was asked to do; held by the thread that advances: of two at once, one would count the other's steps as
     /// its own.
     turn: Turns<Log>,
-    /// Its steps take so long that Ctrl-C must not have to wait for one, ...
+    /// The last steps took so long that Ctrl-C must not wait for the next one.
     is_slow: AtomicBool,
-    /// ... or may come to.
+    /// By its size, any step may take that long.
     may_be_slow: bool,
     /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
     outcome: Mutex<Option<Outcome>>,
@@ -331,8 +331,11 @@ impl PreparedScenario {
     ) -> PyResult<Bound<'py, PyList>> {
         let numbers = rows.as_slice()?.to_vec();
         let (count, width) = (rows.shape()[0], rows.shape()[1]);
-        let rows = (0..count).map(|row| &numbers[row * width..(row + 1) * width]);
-        let found = calls::guarded(|| Ok(self.checked.varied(&fields, rows)))?;
+        let own = self.checked.clone();
+        let found = calls::run_interruptible(py, move |cancel| {
+            let rows = (0..count).map(|row| &numbers[row * width..(row + 1) * width]);
+            own.varied(&fields, rows, cancel)
+        })?;
         let list = PyList::empty(py);
         for each in found {
             match each {

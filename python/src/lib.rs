@@ -237,8 +237,7 @@ mod _core {
         PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed; also returns how
-    /// many starts later the run began that is told of.
+    /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed; also returns how many starts after the stop the reported run began.
     #[pyfunction]
     fn what_if(
         py: Python<'_>,

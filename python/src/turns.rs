@@ -2,7 +2,7 @@
 //! that only the parent has.
 
 use std::ops::{Deref, DerefMut};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use std::{process, thread};
@@ -19,6 +19,8 @@ const BETWEEN_ATTEMPTS: Duration = Duration::from_micros(100);
 pub(crate) struct Turns<T> {
     /// The process whose thread has it; 0 if none has. A fork copies this number, and has another one of its own.
     holder: AtomicU32,
+    /// The number of that thread; 0 if none has it.
+    thread: AtomicU64,
     /// Taken by the holder alone.
     value: Mutex<T>,
 }
@@ -44,10 +46,11 @@ impl<T> DerefMut for Turn<'_, T> {
     }
 }
 
-struct End<'a>(&'a AtomicU32);
+struct End<'a>(&'a AtomicU32, &'a AtomicU64);
 
 impl Drop for End<'_> {
     fn drop(&mut self) {
+        self.1.store(0, Ordering::Relaxed);
         self.0.store(0, Ordering::Release);
     }
 }
@@ -56,6 +59,7 @@ impl<T> Turns<T> {
     pub(crate) fn new(value: T) -> Self {
         Self {
             holder: AtomicU32::new(0),
+            thread: AtomicU64::new(0),
             value: Mutex::new(value),
         }
     }
@@ -69,7 +73,8 @@ impl<T> Turns<T> {
         let (taken, failed) = (Ordering::Acquire, Ordering::Relaxed);
         match self.holder.compare_exchange(0, own, taken, failed) {
             Ok(_) => {
-                let end = End(&self.holder);
+                self.thread.store(own_thread(), Ordering::Relaxed);
+                let end = End(&self.holder, &self.thread);
                 let value = self.value.lock().unwrap_or_else(PoisonError::into_inner);
                 Ok(Some(Turn { value, _end: end }))
             }
@@ -95,11 +100,16 @@ impl<T> Turns<T> {
         }
     }
 
-    /// Waits for the turn; Ctrl-C is answered meanwhile.
+    /// Waits for the turn; Ctrl-C is answered meanwhile. A signal handler that this thread runs while it has the turn itself
+    /// would wait for ever, and is refused.
     pub(crate) fn take(&self, py: Python<'_>) -> PyResult<Turn<'_, T>> {
         loop {
             if let Some(turn) = self.attempt().map_err(calls::to_python)? {
                 return Ok(turn);
+            }
+            if self.thread.load(Ordering::Relaxed) == own_thread() {
+                let rule = "must not be used by a signal handler that interrupts its own advance";
+                return Err(calls::argument("simulation", "a signal handler", rule));
             }
             pause(py)?;
         }
@@ -128,6 +138,13 @@ impl<T> Turns<T> {
             pause(py)?;
         }
     }
+}
+
+/// The number of this thread, above 0.
+fn own_thread() -> u64 {
+    static THREADS: AtomicU64 = AtomicU64::new(1);
+    thread_local!(static NUMBER: u64 = THREADS.fetch_add(1, Ordering::Relaxed));
+    NUMBER.with(|number| *number)
 }
 
 fn pause(py: Python<'_>) -> PyResult<()> {

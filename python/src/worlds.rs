@@ -26,7 +26,9 @@ impl Worlds {
     #[new]
     fn new(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<Self> {
         let scenarios = checked(&scenarios);
-        let worlds = run_interruptible(py, move |_| Ok(crawler2d_core::Worlds::new(scenarios)))?;
+        let worlds = run_interruptible(py, move |cancel| {
+            crawler2d_core::Worlds::new(scenarios, cancel)
+        })?;
         Ok(Self {
             inner: Arc::new(Turns::new(worlds)),
             turn: Turns::new(()),
@@ -42,13 +44,15 @@ impl Worlds {
     ) -> PyResult<()> {
         let _turn = self.turn.take(py)?;
         let mut scenarios = scenarios.map(|given| checked(&given).into_iter());
-        self.inner.with(py, |worlds| {
-            for index in which {
-                let next = scenarios.as_mut().and_then(Iterator::next);
+        for index in which {
+            let next = scenarios.as_mut().and_then(Iterator::next);
+            self.inner.with(py, |worlds| {
                 worlds.reset(index, next);
-            }
-            Ok(())
-        })
+                Ok(())
+            })?;
+            py.check_signals()?;
+        }
+        Ok(())
     }
 
     /// Commands speeds, angles and rates of flippers, shape (n, 2), of which those that are NaN leave things as they are.
@@ -125,7 +129,7 @@ impl Worlds {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (count, flat) = self
             .inner
-            .with(py, |worlds| Ok((worlds.count(), worlds.heights(&offsets))))?;
+            .with(py, |worlds| Ok((worlds.count(), worlds.heights(&offsets)?)))?;
         rows(py, (count, offsets.len()), flat)
     }
 

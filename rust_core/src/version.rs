@@ -1,6 +1,6 @@
 //! What this core is made of.
 
-/// The engine that finds the contacts, with its exact version.
+/// The physics library of the reference contacts and the second backend, with its exact version.
 pub const ENGINE: &str = "rapier2d-f64 0.36.1";
 
 /// Names the sources that this core was built from.

@@ -146,3 +146,21 @@ def test_another_rounding_mode_is_refused(mode: int) -> None:
         check=True,
     )
     assert done.stdout.split() == ["5", "5", "True"]
+
+
+def test_planned_runs_on_more_ground_than_there_is_memory_for_are_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    x = np.linspace(-50.0, 50.0, 20_000)
+    rough = np.column_stack([x, 0.01 * np.random.default_rng(0).random(len(x))])
+    ground = c2d.terrains.from_points(rough, goal=40.0, friction=0.8)
+    scenario = c2d.Scenario(c2d.robots.engineer(flippers=None), ground, duration=0.01)
+    monkeypatch.setenv("CRAWLER2D_MEMORY", "0.05")
+    with pytest.raises(c2d.LimitError, match="grounds of planned runs"):
+        c2d.sweep(scenario, {"terrain.friction": np.linspace(0.5, 1.0, 20)}, progress=False)
+
+
+@pytest.mark.parametrize("interval", [1e-17, 1e-18, 1e-20, 1e-300])
+def test_a_record_of_any_number_of_samples_is_refused_before_the_run(interval: float) -> None:
+    with pytest.raises(c2d.LimitError, match="sampled every"):
+        c2d.simulate(STEP, duration=0.2, sample_interval=interval)

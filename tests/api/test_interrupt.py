@@ -206,3 +206,29 @@ def test_the_handler_of_a_signal_may_look_at_what_it_interrupts(begun: Callable[
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
     assert 0.0 < seen[0] <= np.max(running.state().time)
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs timers")
+def test_a_handler_that_uses_the_simulation_that_it_interrupts_is_refused() -> None:
+    track = c2d.CircumferentialWheels(24, wheel_radius=0.016)
+    robot = c2d.robots.engineer(flippers=None, track=track)
+    scenario = c2d.Scenario(robot, c2d.terrains.step(0.1), duration=500.0)
+    sim = c2d.Simulation(scenario.replace({"solver.accuracy": None, "solver.time_step": 1e-4}))
+    refused = []
+
+    def handler(*_: object) -> None:
+        with pytest.raises(c2d.ScenarioError, match="must not be used by a signal handler"):
+            sim.command(speed=0.1)
+        refused.append(True)
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            sim.advance(500.0)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert refused
+    sim.command(speed=0.1)

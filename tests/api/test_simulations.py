@@ -87,7 +87,7 @@ def test_heights_are_those_of_the_ground() -> None:
     ("given", "message"),
     [
         ({"speed": [0.1, 0.2]}, r"speed must be one for each of the 4"),
-        ({"speed": "fast"}, r"speed must be numbers"),
+        ({"speed": "fast"}, r"speed must be real numbers"),
         ({"speed": 100.0}, r"drive\.speed"),
         ({"flipper_angle": 7.0}, r"flipper_angle must be"),
     ],
@@ -185,3 +185,35 @@ def test_those_of_a_mask_advance_and_the_others_stand() -> None:
     for wrong in ([4], [True], [0.5]):
         with pytest.raises(c2d.ScenarioError, match="which"):
             many.advance(0.1, wrong)
+
+
+@pytest.mark.parametrize(
+    ("given", "rule"),
+    [
+        ("0.2", "must be real numbers"),
+        (["0.1", "0.2"], "must be real numbers"),
+        ([True, False], "must be real numbers"),
+        (np.array([0.1 + 2.0j, 0.1]), "must be real numbers"),
+        (np.ma.array([0.3, 0.1], mask=[True, False]), "must not be masked"),
+    ],
+)
+def test_what_numpy_would_take_as_a_number_is_no_command(given: Any, rule: str) -> None:
+    robot = c2d.robots.engineer(flippers=None)
+    two = c2d.Simulations([c2d.Scenario(robot, c2d.terrains.flat())] * 2)
+    for use in (lambda: two.command(speed=given), lambda: two.heights(given)):
+        with pytest.raises(c2d.ScenarioError, match=rule):
+            use()
+
+
+def test_simulations_and_heights_for_which_there_is_no_memory_are_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    robot = c2d.robots.engineer(flippers=None)
+    flat = c2d.Scenario(robot, c2d.terrains.flat())
+    two = c2d.Simulations([flat] * 2)
+    monkeypatch.setenv("CRAWLER2D_MEMORY", "0.05")
+    assert two.heights(np.zeros(1000)).shape == (2, 1000)
+    with pytest.raises(c2d.LimitError, match="heights of the ground"):
+        two.heights(np.zeros(2_000_000))
+    with pytest.raises(c2d.LimitError, match="simulations side by side"):
+        c2d.Simulations([flat] * 1000)

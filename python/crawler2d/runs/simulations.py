@@ -245,10 +245,7 @@ class Simulations(TakesKeywords):
         ScenarioError
             If an offset is no number, or not finite.
         """
-        try:
-            array = np.asarray(offsets, float).ravel()
-        except (TypeError, ValueError):
-            raise ScenarioError("offsets", offsets, "must be numbers") from None
+        array = _numbers(offsets, "offsets").ravel()
         if not np.isfinite(array).all():
             raise ScenarioError("offsets", array[~np.isfinite(array)][0], "must be finite")
         return self._core.heights(array.tolist())
@@ -307,10 +304,7 @@ class Simulations(TakesKeywords):
     def _column(self, values: ArrayLike | None, name: str) -> NDArray[np.float64]:
         if values is None:
             return np.full(len(self), np.nan)
-        try:
-            array = np.asarray(values, float)
-        except (TypeError, ValueError):
-            raise ScenarioError(name, values, "must be numbers") from None
+        array = _numbers(values, name)
         return self._shaped(np.broadcast_to(array, len(self)) if array.ndim == 0 else array, name)
 
     def _shaped(self, array: NDArray[Any], name: str) -> NDArray[Any]:
@@ -318,6 +312,19 @@ class Simulations(TakesKeywords):
             rule = f"must be one for each of the {len(self)} simulations"
             raise ScenarioError(name, array.shape, rule)
         return np.ascontiguousarray(array)
+
+
+def _numbers(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Read real numbers: no texts, no masked ones, which NumPy would take as numbers."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise ScenarioError(name, values, "must not be masked")
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError):
+        raise ScenarioError(name, values, "must be real numbers") from None
+    if array.size and array.dtype.kind not in "iuf":
+        raise ScenarioError(name, values, "must be real numbers")
+    return array.astype(float)
 
 
 def _prepared(scenarios: Sequence[Scenario | _core.Passed]) -> list[_core.Passed]:

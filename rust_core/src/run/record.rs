@@ -46,7 +46,7 @@ impl Record {
 
     /// Number of samples of a run of full duration.
     pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
-        (scenario.duration / self.sample_interval).ceil() as u64 + 2
+        ((scenario.duration / self.sample_interval).ceil() as u64).saturating_add(2)
     }
 }
 
@@ -148,7 +148,7 @@ table! {
 pub(crate) struct Recorder<'a> {
     /// [s] Time between two samples.
     every: f64,
-    /// Number of the last multiple of that of which there is a sample; 0 is that of time 0.
+    /// Number of the last multiple of `every` that has been sampled; 0 is time 0.
     taken: u64,
     /// [s] Time up to which forces have been added.
     until: f64,
@@ -374,7 +374,7 @@ pub(crate) const STACK: usize = 2 << 20;
 /// Bytes per corner that the edges of a run take, including their copy as table columns.
 const BYTES_AN_EDGE: u64 = 128;
 /// Bytes of everything else that a run builds and returns.
-const BYTES_A_RUN: u64 = 64 << 10;
+pub(super) const BYTES_A_RUN: u64 = 64 << 10;
 
 /// Checks that the memory for a batch is available, and returns the budget for its records.
 ///
@@ -391,14 +391,16 @@ pub(crate) fn batch_budget(
     let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
     let given_back = corners.map(|corners| BYTES_A_RUN + corners * BYTES_AN_EDGE);
     let kept = built + given_back.sum::<u64>();
-    let mut recorded = 0;
+    let mut recorded: u64 = 0;
     if record.history {
         for checked in scenarios {
-            recorded += record.samples(checked.scenario()) * bytes_of_sample(checked.model());
+            let bytes = bytes_of_sample(checked.model());
+            let of_run = record.samples(checked.scenario()).saturating_mul(bytes);
+            recorded = recorded.saturating_add(of_run);
         }
     }
     let budget = Budget::new()?;
-    budget.check(&described(scenarios, record), kept + recorded)?;
+    budget.check(&described(scenarios, record), kept.saturating_add(recorded))?;
     budget.take("a batch", kept)?;
     Ok(budget)
 }

@@ -132,7 +132,9 @@ impl StepControl {
 
     /// Whether steps can have led to it.
     pub(super) fn fits(&self) -> bool {
-        (0.0..=LONGEST.value()).contains(&self.wanted) && self.last.is_finite() && self.last > 0.0
+        (SHORTEST.value()..=LONGEST.value()).contains(&self.wanted)
+            && self.last.is_finite()
+            && self.last > 0.0
     }
 }
 
@@ -247,7 +249,10 @@ mod tests {
         assert!(!StepControl::never().fits());
         let control = |wanted: f64, last: f64| StepControl { wanted, last };
         assert!(control(LONGEST.value(), LEAST).fits());
-        assert!(!control(1.1 * LONGEST.value(), 1.0).fits());
+        assert!(control(SHORTEST.value(), 1.0).fits());
+        for wanted in [1.1 * LONGEST.value(), 0.9 * SHORTEST.value(), 0.0, f64::NAN] {
+            assert!(!control(wanted, 1.0).fits());
+        }
         for last in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(!control(1e-3, last).fits());
         }

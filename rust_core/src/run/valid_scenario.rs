@@ -8,7 +8,8 @@ use super::step_length::{FARTHEST_TURN, fastest_turn};
 use crate::engine;
 use crate::error::Error;
 use crate::geometry::{Vector, end_discs, turned_by};
-use crate::limits::memory;
+use crate::limits::Cancel;
+use crate::limits::memory::{self, Budget};
 use crate::robot::{Model, Part, start_position};
 use crate::scenario::{Doubt, Scenario, ScenarioError, Terrain, Track, parse};
 use crate::terrain::Ground;
@@ -73,19 +74,22 @@ impl ValidScenario {
     ///
     /// A field is a JSON pointer such as `/robot/center_of_mass/0`, and whether it takes whole numbers.
     ///
-    /// # Errors
     /// Each may break a rule, as in [`Self::from_json`].
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] once `cancel` is asked; their grounds need more memory than there may be.
     pub fn varied<'a>(
         &self,
         fields: &[(String, bool)],
         rows: impl IntoIterator<Item = &'a [f64]>,
-    ) -> Vec<Result<Self, Error>> {
+        cancel: &Cancel,
+    ) -> Result<Vec<Result<Self, Error>>, Error> {
         let mut value = to_value(&self.scenario);
         // Texts have another form for two discs.
         if fields.iter().any(|(pointer, _)| pointer.starts_with(DISCS)) {
             value["robot"]["outline"] = self.scenario.robot.outline.with_discs();
         }
-        let vary = |row: &[f64]| {
+        let mut vary = |row: &[f64]| {
             for ((pointer, whole), number) in fields.iter().zip(row) {
                 let Some(place) = place_of(&mut value, pointer) else {
                     let error = ScenarioError::new(pointer, number, "must be a known field");
@@ -95,7 +99,24 @@ impl ValidScenario {
             }
             Self::of_value(&value, Some(self))
         };
-        rows.into_iter().map(vary).collect()
+        let (mut found, mut budget) = (Vec::new(), None);
+        for row in rows {
+            cancel.check()?;
+            let varied = vary(row);
+            if let Ok(own) = &varied
+                && !Arc::ptr_eq(&own.ground, &self.ground)
+            {
+                let budget = match &budget {
+                    Some(budget) => budget,
+                    None => budget.insert(Budget::new()?),
+                };
+                let points = own.ground.lanes.iter().map(|lane| lane.points.len() as u64);
+                let bytes = points.sum::<u64>() * BYTES_A_KEPT_CORNER;
+                budget.take("the grounds of planned runs", bytes)?;
+            }
+            found.push(varied);
+        }
+        Ok(found)
     }
 
     /// The scenario.
@@ -240,6 +261,8 @@ fn place_of<'a>(text: &'a mut Value, pointer: &str) -> Option<&'a mut Value> {
 /// Bytes per corner of the ground and its index during a run; measured: 250, and as much again while they are
 /// built.
 pub(super) const BYTES_A_CORNER: u64 = 600;
+/// Bytes per corner of a ground that is kept for a run.
+const BYTES_A_KEPT_CORNER: u64 = 300;
 /// Largest number of bytes per character that a parsed text takes: `[0],` is a row of one number.
 const BYTES_A_CHARACTER: u64 = 40;
 

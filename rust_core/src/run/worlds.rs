@@ -4,10 +4,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, ScopedJoinHandle};
 
-use super::record::STACK;
+use super::record::{BYTES_A_RUN, STACK};
+use super::valid_scenario::{BYTES_A_CORNER, corners};
 use super::{ByHand, Log, Simulation, ValidScenario};
 use crate::error::{Error, caught};
 use crate::limits::Cancel;
+use crate::limits::memory::ask;
 use crate::observe::{Outcome, Reading};
 use crate::scenario::{End, Flippers};
 
@@ -35,7 +37,7 @@ pub struct WorldState {
     pub flipper_rates: [f64; 2],
     /// \[N m\] Torques of their motors, upwards > 0.
     pub flipper_torques: [f64; 2],
-    /// \[m\] How far the rear of the robot still has to the goal; below 0 beyond it.
+    /// \[m\] Distance from the rear of the robot to the goal; below 0 beyond it.
     pub to_goal: f64,
     /// \[J\] Work of the motors of its tracks so far.
     pub drive_work: f64,
@@ -49,11 +51,23 @@ pub struct WorldState {
 
 impl Worlds {
     /// One world for each scenario, at its start.
-    pub fn new(scenarios: Vec<ValidScenario>) -> Self {
-        let of = |scenario| Mutex::new(World::new(scenario));
-        Self {
-            worlds: scenarios.into_iter().map(of).collect(),
-        }
+    ///
+    /// # Errors
+    /// They need more memory than there may be; [`Error::Interrupted`] once `cancel` is asked.
+    pub fn new(scenarios: Vec<ValidScenario>, cancel: &Cancel) -> Result<Self, Error> {
+        let bytes = |scenario: &ValidScenario| {
+            BYTES_A_RUN + corners(&scenario.scenario().terrain) * BYTES_A_CORNER
+        };
+        ask(
+            "simulations side by side",
+            scenarios.iter().map(bytes).sum(),
+        )?;
+        let of = |scenario| {
+            cancel.check()?;
+            Ok(Mutex::new(World::new(scenario)))
+        };
+        let worlds: Result<_, Error> = scenarios.into_iter().map(of).collect();
+        Ok(Self { worlds: worlds? })
     }
 
     /// How many there are.
@@ -148,7 +162,13 @@ impl Worlds {
     }
 
     /// \[m\] Heights of the ground at distances from each robot along x, one row for each world.
-    pub fn heights(&self, offsets: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// They need more memory than there may be.
+    pub fn heights(&self, offsets: &[f64]) -> Result<Vec<f64>, Error> {
+        // While rows are joined there are up to two copies.
+        let bytes = 2 * size_of::<f64>() * self.worlds.len() * offsets.len();
+        ask("heights of the ground", bytes as u64)?;
         let of = |world: &Mutex<World>| {
             let world = lock(world);
             let x = world.simulation.reading().position.x;
@@ -156,7 +176,7 @@ impl Worlds {
             let heights = offsets.iter().map(|offset| ground.height(x + offset));
             heights.collect::<Vec<f64>>()
         };
-        self.worlds.iter().flat_map(of).collect()
+        Ok(self.worlds.iter().flat_map(of).collect())
     }
 
     /// Number of points of the ground of a world, and of parts of its robot.
@@ -207,7 +227,7 @@ impl World {
         end
     }
 
-    /// Takes steps up to a time [s], unless it cannot go on, or until `cancel` is asked; returns whether that is all.
+    /// Takes steps up to a time [s], unless it cannot go on, or until `cancel` is asked; returns whether it will come no further.
     fn go_on(&mut self, end: f64, cancel: &Cancel) -> bool {
         if self.error.is_some() {
             return true;
@@ -263,7 +283,8 @@ mod tests {
     fn one_that_cannot_go_on_stands_still_until_it_is_reset_and_the_others_go_on() {
         let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
         let scenario = ValidScenario::from_json(text).expect("the shared scenario is valid");
-        let mut worlds = Worlds::new(vec![scenario; 2]);
+        let worlds = Worlds::new(vec![scenario; 2], &Cancel::default());
+        let mut worlds = worlds.expect("there is room");
         let failed = worlds.worlds[1].get_mut().expect("nobody panicked");
         failed.error = Some(Error::Internal("a fault".to_owned()));
         let times = |worlds: &Worlds| -> Vec<f64> {

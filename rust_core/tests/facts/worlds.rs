@@ -17,7 +17,8 @@ fn each_world_is_bit_by_bit_what_it_is_alone() {
     let of = |track| checked(&engineer_on(track));
     let scenarios = [belt(), line(4), line_of(3, paper_gear())].map(of);
     for threads in [1, 4] {
-        let mut worlds = Worlds::new(scenarios.to_vec());
+        let worlds = Worlds::new(scenarios.to_vec(), &Cancel::default());
+        let mut worlds = worlds.expect("there is room");
         worlds.command(&[at_speed(0.3); 3]).expect("it is valid");
         for _ in 0..20 {
             let advanced = worlds.advance(&[0, 1, 2], 0.1, threads, &Cancel::default());
@@ -41,7 +42,8 @@ fn each_world_is_bit_by_bit_what_it_is_alone() {
 fn an_interrupt_ends_all_threads() {
     let cancel = Cancel::default();
     cancel.ask();
-    let worlds = Worlds::new(vec![checked(&engineer()); 8]);
+    let worlds = Worlds::new(vec![checked(&engineer()); 8], &Cancel::default());
+    let worlds = worlds.expect("there is room");
     let all: Vec<usize> = (0..8).collect();
     let ended = worlds.advance(&all, 1.0, 3, &cancel);
     assert!(matches!(ended, Err(Error::Interrupted)));

@@ -85,7 +85,7 @@ fn turn(from: Vector, to: Vector) -> f64 {
     libm::atan2(cross(to, from), from.dot(to))
 }
 
-/// The corners of a profile from left to right, both ends included. Two that fraction a point have no face between them.
+/// The corners of a profile from left to right, both ends included. Two that share a point have no face between them.
 pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
     let bends = profile.bends();
     let mut edges = profile.edges.iter().peekable();

@@ -70,12 +70,12 @@ impl Chord {
         rises[0].max(rises[1])
     }
 
-    /// Whether that holds for a corner.
+    /// Whether a corner lies between the ends of the chord and no higher than it.
     pub(super) fn hides_corner(&self, corner: &Corner) -> bool {
         self.hides(corner.center + self.up * corner.radius)
     }
 
-    /// Whether it holds for everything below a roof.
+    /// Whether everything below a roof does.
     pub(super) fn hides_all(&self, roof: &Roof) -> bool {
         roof.iter().all(|end| self.hides(*end))
     }

@@ -11,6 +11,15 @@ fn engineer() -> Scenario {
     Scenario::from_json(text).expect("the shared scenario is valid")
 }
 
+fn varied<'a>(
+    first: &ValidScenario,
+    fields: &[(String, bool)],
+    rows: impl IntoIterator<Item = &'a [f64]>,
+) -> Vec<Result<ValidScenario, Error>> {
+    let found = first.varied(fields, rows, &Cancel::default());
+    found.expect("there is room")
+}
+
 fn opened(scenario: &Scenario, like: Option<&ValidScenario>) -> ValidScenario {
     ValidScenario::from_json_like(&scenario.to_json(), like).expect("it is valid")
 }
@@ -43,7 +52,7 @@ fn a_varied_scenario_is_the_one_that_is_read_with_these_numbers() {
     let field = |pointer: &str| (pointer.to_owned(), false);
     let fields = [field("/robot/center_of_mass/1"), field("/terrain/friction")];
     let rows: [&[f64]; 3] = [&[0.03, 0.7], &[0.02, f64::NAN], &[0.02, 0.9]];
-    let found = first.varied(&fields, rows);
+    let found = varied(&first, &fields, rows);
     let mut variant = engineer();
     variant.robot.center_of_mass[1] = 0.03;
     if let Terrain::Step { surface, .. } = &mut variant.terrain {
@@ -66,14 +75,14 @@ fn a_field_that_texts_leave_out_can_be_varied() {
     let first = opened(&engineer(), None);
     let pointer = "/robot/drivetrain/rotor_inertia".to_owned();
     let rows: [&[f64]; 2] = [&[0.02], &[0.0]];
-    let found = first.varied(&[(pointer, false)], rows);
+    let found = varied(&first, &[(pointer, false)], rows);
     let inertias = found.into_iter().map(|each| {
         let varied = each.expect("it is valid");
         varied.scenario.robot.drivetrain.rotor_inertia
     });
     assert_eq!(inertias.collect::<Vec<_>>(), [0.02, 0.0]);
     for unknown in ["/robot/drivetrain/rotor", "/robot/rotors/inertia"] {
-        let found = first.varied(&[(unknown.to_owned(), false)], rows);
+        let found = varied(&first, &[(unknown.to_owned(), false)], rows);
         let error = found[0].as_ref().expect_err("there is no such field");
         assert!(
             error.to_string().contains("must be a known field"),
