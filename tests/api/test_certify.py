@@ -266,7 +266,7 @@ def test_a_jam_at_an_end_of_a_range_is_found_from_either_side() -> None:
     )
     found = []
     for sign in (1, -1):
-        placed = c2d.HybridWheels([(sign * x, y, r) for x, y, r in wheels[::sign]])
+        placed = c2d.HybridWheels(tuple((sign * x, y, r) for x, y, r in wheels[::sign]))
         robot = dataclasses.replace(
             ROBOT.with_track(placed), center_of_mass=(sign * 0.0302745366, 0.0331594164)
         )

@@ -174,7 +174,7 @@ def test_a_jam_is_as_stable_from_the_other_side() -> None:
     corners = [(-3.0, 0.0), (0.0, 0.0), (0.0, height), (end, height), (end, 0.0), (3.0, 0.0)]
     found = []
     for sign in (1, -1):
-        placed = c2d.HybridWheels([(sign * x, y, r) for x, y, r in wheels[::sign]])
+        placed = c2d.HybridWheels(tuple((sign * x, y, r) for x, y, r in wheels[::sign]))
         robot = c2d.robots.engineer(flippers=None).without_rotors().with_track(placed)
         robot = replace(robot, center_of_mass=(sign * center, y), belly=None)
         points = [(sign * x, y) for x, y in corners[::sign]]

@@ -210,10 +210,10 @@ impl Motor {
                 }
             }
             MotorState::Locked if self.target > 0.0 => {
-                each(MotorState::LimitForwards, impulse - most)
+                each(MotorState::LimitForwards, impulse - most);
             }
             MotorState::Locked if self.target < 0.0 => {
-                each(MotorState::LimitBackwards, least - impulse)
+                each(MotorState::LimitBackwards, least - impulse);
             }
             MotorState::Locked | MotorState::Absent => {}
         }
