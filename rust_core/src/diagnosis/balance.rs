@@ -77,7 +77,7 @@ pub(crate) fn balance(scene: &Scene, stance: &Stance, tolerance: f64) -> Option<
 /// The interval nearest to 1 in which something holds.
 fn around(holds: &dyn Fn(f64) -> bool) -> Option<[f64; 2]> {
     let (first, last) = FACTORS;
-    let at = |k: u32| first * (last / first).powf(f64::from(k) / f64::from(TRIED));
+    let at = |k: u32| first * libm::pow(last / first, f64::from(k) / f64::from(TRIED));
     let mut factors: Vec<f64> = (0..=TRIED).map(at).chain([1.0]).collect();
     factors.sort_by(f64::total_cmp);
     let is: Vec<bool> = factors.iter().map(|factor| holds(*factor)).collect();

@@ -24,8 +24,9 @@ enum Middle {
 fn arrival(lag: f64, middle: Middle, half: f64, accuracy: f64) -> Option<f64> {
     let step = 2.0 * half;
     let (time, off) = match middle {
+        // A lock bears more than its motor gives, and holds from the middle on at the latest.
         Middle::Held(share) => {
-            let time = half * share;
+            let time = if share > 1.0 { half } else { half * share };
             (time, 0.5 * lag.abs() * time)
         }
         Middle::Left(left) => {
@@ -65,8 +66,7 @@ impl Dynamics {
         let drives = &problem.motors[self.model.drive_motors()];
         let of_drives = drives.iter().map(|motor| match motor.state {
             _ if motor.correction.is_some() => None,
-            // A lock bears more than the motor gives.
-            MotorState::Holds => Some(Middle::Held(problem.motor_load(motor).min(1.0))),
+            MotorState::Holds => Some(Middle::Held(problem.motor_load(motor))),
             MotorState::LimitForwards | MotorState::LimitBackwards => {
                 Some(Middle::Left(problem.motor_speed(motor) - motor.target))
             }

@@ -62,7 +62,7 @@ pub(super) fn zeros(
 /// A range in pieces that grow away from an angle, for a function that turns sharply within `least` of it.
 pub(super) fn graded([low, high]: [f64; 2], at: f64, least: f64) -> Vec<[f64; 2]> {
     let far = [low, high].map(|end| (end - at).abs());
-    let steps = (far[0].max(far[1]) / least).log2().ceil().max(0.0) as i32;
+    let steps = libm::log2(far[0].max(far[1]) / least).ceil().max(0.0) as i32;
     let away = (0..=steps).map(|k| least * 2.0_f64.powi(k));
     let mut ends: Vec<f64> = away.flat_map(|step| [at - step, at + step]).collect();
     ends.extend([low, at, high]);

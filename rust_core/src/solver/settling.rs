@@ -155,7 +155,7 @@ impl Problem {
     fn base_change(&self) -> f64 {
         let [x, y, turn] = [0, 1, TURN].map(|i| self.change[i]);
         let weights = &self.system.weights;
-        x.hypot(y) + turn.abs() * (weights[0] / weights[TURN]).sqrt()
+        libm::hypot(x, y) + turn.abs() * (weights[0] / weights[TURN]).sqrt()
     }
 }
 

@@ -4,6 +4,8 @@
 #![allow(clippy::print_stdout)]
 // A helper that fails fails its test; samples of one instant have exactly one time.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
+// Nor need what facts compare with be the same to the last digit on each system.
+#![allow(clippy::disallowed_methods)]
 
 mod common;
 mod judge;
