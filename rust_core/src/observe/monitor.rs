@@ -267,7 +267,7 @@ impl Monitor {
         self.observed.ended
     }
 
-    /// +1 or -1 as commanded when it last looked; 0 in a pause.
+    /// +1 or -1 as commanded in the last step; 0 in a pause, and while it brakes from the other direction.
     pub(crate) fn direction(&self) -> f64 {
         self.observed.progress.direction
     }

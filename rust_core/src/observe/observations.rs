@@ -119,7 +119,7 @@ pub(super) struct Anchor {
 /// How far the robot has come, and since when it has been stopped.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
-    /// +1 or -1 as commanded; 0 in a pause.
+    /// +1 or -1 as commanded; 0 in a pause, and while the drives brake from the other direction.
     pub(super) direction: f64,
     history: VecDeque<Look>,
     best_advance: f64,
