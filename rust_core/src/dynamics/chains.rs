@@ -65,13 +65,8 @@ impl Dynamics {
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64, travel: f64) {
         let pose = state.pose_after(half, &self.model);
         let problem = &mut self.problem;
-        let start = Start {
-            state,
-            unknowns: &problem.unknowns,
-            layout: problem.layout,
-            model: &self.model,
-            half,
-        };
+        let velocities = (problem.layout, problem.unknowns.as_slice());
+        let start = Start::new((state, &self.model), velocities, half);
         for chain in &mut self.chains {
             let first = chain.rule.shoes.start;
             let place_of = |i: usize| state.shoes[first + i].after(half).pose();

@@ -184,13 +184,8 @@ impl Dynamics {
         let problem = &mut self.problem;
         problem.contacts.clear();
         state.write_velocities(problem.layout, &mut problem.unknowns);
-        let start = Start {
-            state,
-            unknowns: &problem.unknowns,
-            layout: problem.layout,
-            model: &self.model,
-            half,
-        };
+        let velocities = (problem.layout, problem.unknowns.as_slice());
+        let start = Start::new((state, &self.model), velocities, half);
         let mut last = Numbered::new(&self.loaded);
         for contact in contacts {
             let last = last.get(contact.number);

@@ -38,6 +38,22 @@ pub(super) struct Start<'a> {
     pub half: f64,
 }
 
+impl<'a> Start<'a> {
+    pub(super) fn new(
+        (state, model): (&'a State, &'a Model),
+        (layout, unknowns): (Layout, &'a [f64]),
+        half: f64,
+    ) -> Self {
+        Self {
+            state,
+            unknowns,
+            layout,
+            model,
+            half,
+        }
+    }
+}
+
 /// What a step knows of a contact besides what its solves do.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {

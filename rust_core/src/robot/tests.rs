@@ -104,6 +104,15 @@ fn on_two_lanes(robot: &Robot) -> Model {
     Model::on(robot, &ground).expect("it is valid")
 }
 
+/// With its track closed.
+fn closed(robot: &Robot, surface: ClosedSurface) -> Robot {
+    let of = Box::new(robot.track.clone());
+    Robot {
+        track: Track::Closed(ClosedTrack { of, surface }),
+        ..robot.clone()
+    }
+}
+
 fn model(robot: &Robot) -> Model {
     Model::new(robot).expect("it is valid")
 }
@@ -128,13 +137,7 @@ fn all_bodies_together_are_the_robot() {
 fn a_closed_track_has_mass_and_force_of_the_one_that_it_closes() {
     for robot in on_all_tracks() {
         let open = model(&robot);
-        let closed = Robot {
-            track: Track::Closed(ClosedTrack {
-                of: Box::new(robot.track.clone()),
-                surface: ClosedSurface::Own,
-            }),
-            ..robot.clone()
-        };
+        let closed = closed(&robot, ClosedSurface::Own);
         for model in [model(&closed), on_two_lanes(&closed)] {
             whole(&model).check(&robot);
             assert_relative_eq!(force(&model), force(&open), max_relative = 1e-14);
@@ -346,13 +349,7 @@ fn a_closed_track_starts_on_what_is_highest_below_its_hull() {
 fn a_closed_track_has_grousers_as_high_as_the_track_that_it_closes() {
     for robot in on_all_tracks() {
         let heights = |surface| {
-            let closed = Robot {
-                track: Track::Closed(ClosedTrack {
-                    of: Box::new(robot.track.clone()),
-                    surface,
-                }),
-                ..robot.clone()
-            };
+            let closed = closed(&robot, surface);
             let of_part = |part: &Part| match part.shape {
                 Shape::Hull { grouser_height, .. } => grouser_height,
                 _ => 0.0,
