@@ -42,6 +42,13 @@ def kinds_in(node: Any) -> Iterator[str]:
             yield from kinds_in(value)
 
 
+def kinds_below(cls: type[Parameters]) -> Iterator[type[Parameters]]:
+    """Yield the classes that a class is the base of."""
+    for each in cls.__subclasses__():
+        yield each
+        yield from kinds_below(each)
+
+
 def section(name: str) -> str:
     """Return a section of the conventions, the next heading of its level excluded."""
     return CONVENTIONS.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
@@ -77,6 +84,12 @@ def test_every_outcome_and_mechanism_is_in_the_tables_of_the_conventions() -> No
     assert [each for each in c2d.Outcome if not re.search(rf"^\|.*`{each}`", told, re.M)] == []
     told = section("Why a run stopped")
     assert [each for each in c2d.Mechanism if f"| `{each}` |" not in told] == []
+
+
+def test_every_key_that_a_scenario_file_may_lack_is_in_the_conventions() -> None:
+    told = section("Scenario files").partition("; only ")[2].partition("may be left out")[0]
+    optional = {name for cls in kinds_below(Parameters) for name in cls.omitted_defaults}
+    assert set(re.findall(r"`(\w+)`", told)) == optional
 
 
 def test_every_metric_is_in_the_conventions_with_its_unit() -> None:
