@@ -3,7 +3,7 @@ Rates with intervals
 ====================
 
 A single run can be luck. `sweep` simulates each combination many times, here from other starts on
-ten floors of unknown friction, and `rate` says how often a run clears: a rate with an interval on
+six floors of unknown friction, and `rate` says how often a run clears: a rate with an interval on
 each floor, a band over the floors.
 """
 

@@ -134,7 +134,7 @@ class Robot(Parameters, path="robot"):
         Raises
         ------
         ScenarioError
-            If mass, length or `ends` of the arms is invalid.
+            If mass or length of the arms is not a number, or `ends` is none of the three.
 
         Examples
         --------

@@ -116,7 +116,7 @@ class Scenario(ScenarioBase):
         Parameters
         ----------
         text : str
-            What `to_json` wrote, or any JSON object with the same keys, all of them present.
+            What `to_json` wrote, or any JSON object with the same keys.
 
         Returns
         -------

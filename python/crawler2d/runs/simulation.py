@@ -356,7 +356,7 @@ class Simulation(TakesKeywords):
         Returns
         -------
         bytes
-            For `from_snapshot` of the same build of crawler2d: about 10 kB plus the scenario.
+            For `from_snapshot` of the same build of crawler2d: 3 to 40 kB plus the scenario.
 
         Raises
         ------
