@@ -117,6 +117,21 @@ def test_wheels_that_do_not_help_are_not_written(helped: c2d.Audit) -> None:
     assert change.label.startswith("confirmed: belts moved by a track plugin")
 
 
+def test_of_confirmed_wheels_the_first_are_written_even_if_others_seize_less(
+    audited: c2d.Audit,
+) -> None:
+    assert audited.repaired is not None
+    first = audited.repairs[0]
+    assert first.kind == "wheels"
+    assert first.confirmed
+    seldom = {name: replace(each, rate=0.04) for name, each in first.seized.items()}
+    six = audited.robot.with_track(c2d.LineOfWheels(6, wheel_radius=0.0608))
+    repairs = (replace(first, seized=seldom), replace(first, what="six wheels", robot=six))
+    change = best_change(replace(audited, repaired=audited.repaired._replace(repairs=repairs)))
+    assert change is not None
+    assert change.label.startswith(f"confirmed: {first.what};")
+
+
 def test_what_can_be_written_neither_on_wheels_nor_on_belts_is_refused_with_both_reasons(
     helped: c2d.Audit,
 ) -> None:

@@ -69,9 +69,11 @@ def best_change(audit: AuditRecord) -> Change | None:
     if not audit.seizes:
         return None
     wheels = [each for each in audit.repairs if each.kind != "belt"]
-    better = [each for each in wheels if each.confirmed or _after(audit, each) < _before(audit)]
+    confirmed = [each for each in wheels if each.confirmed]
+    unsure = [each for each in wheels if not each.confirmed]
+    helping = [each for each in unsure if _after(audit, each) < _before(audit)]
     refused = []
-    for repair in sorted(better, key=lambda each: (not each.confirmed, _after(audit, each))):
+    for repair in (*confirmed, *sorted(helping, key=lambda each: _after(audit, each))):
         try:
             return change_of(audit, repair)
         except ScenarioError as error:
