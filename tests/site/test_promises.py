@@ -23,6 +23,15 @@ def names_in(path: Path) -> set[str]:
     return {node.name for node in functions if node.name.startswith("test_")}
 
 
+def is_long(path: Path, name: str) -> bool:
+    """Whether all of a test of Python is left to `make soak`."""
+    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if path.suffix == ".py" else ()
+    own = (node for node in nodes if isinstance(node, ast.FunctionDef) and node.name == name)
+    return any(
+        ast.unparse(each) == "pytest.mark.soak" for node in own for each in node.decorator_list
+    )
+
+
 @pytest.mark.parametrize(("file", "name"), NAMED)
 def test_a_test_that_is_named_is_there(file: str, name: str) -> None:
     assert name in names_in(ROOT / file)
@@ -33,3 +42,12 @@ def test_every_promise_has_a_test_in_every_line(promise: str) -> None:
     rows = [line for line in promise.splitlines() if line.startswith("| ")][1:]
     assert bool(rows) == (promise.splitlines()[0] not in NONE)
     assert [row for row in rows if not re.search(r"\.(?:py|rs)::\w+`", row)] == []
+
+
+def test_what_is_tried_usually_is_not_left_to_the_long_tests() -> None:
+    rows = [line.split(" | ") for line in PAGE.splitlines() if "::" in line]
+    usual = [
+        re.findall(r"`([\w/.]+)::(\w+)`", test) for _, test, often, *_ in rows if often.strip()
+    ]
+    assert len(usual) > 30
+    assert [name for ((file, name),) in usual if is_long(ROOT / file, name)] == []
