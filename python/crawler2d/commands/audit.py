@@ -138,7 +138,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=FOLDER",
-        help="where a package is that is not found; repeatable",
+        help="the folder of a package, if it is not to be searched for; repeatable",
     )
     reading.add_argument(
         "--argument",

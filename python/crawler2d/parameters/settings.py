@@ -151,9 +151,9 @@ class Solver(Parameters, path="solver"):
         given. All other settings but the time step keep their defaults, and drives have no rotors,
         no torque that falls with speed, no controllers and no gears that lock.
     contact : {"own", "reference"}
-        How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
-        queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,
-        and is there for comparison.
+        How contacts are found: "own" uses our own exact geometry; "reference" takes those of wheels
+        from rapier's queries of convex pieces on one polyline. It is slower, cuts rounded edges
+        into facets, and is there for comparison.
     accuracy : float, optional
         [m] Local error of a step: the difference between its motion and the mean of the velocities
         at its ends times its length, the largest over all points of the robot and all driven
@@ -263,7 +263,8 @@ class SeizureCriteria(Parameters, path="criteria"):
     escape_distance : float
         [m] Advance that counts as escaping from a stop.
     escape_time : float
-        [s] Time that a closed belt has to escape from a stop.
+        [s] Time that a robot has in a trial to escape from a stop, besides that in which it would
+        drive `escape_distance` as commanded.
     """
 
     stop_window: float = 1.0

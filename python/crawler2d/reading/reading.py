@@ -189,10 +189,8 @@ def read_robot(
         Whether a xacro file may evaluate expressions of any kind, and see the environment. Without
         that, only plain data, operators and known functions are evaluated: enough for most files.
     packages : mapping of str to path, optional
-        Folders of packages that ``$(find ...)``, ``package://`` and ``model://`` name and that are
-        not found: by ``package.xml`` or ``model.config`` in the repository round the file, by
-        ``AMENT_PREFIX_PATH``, ``COLCON_PREFIX_PATH``, ``ROS_PACKAGE_PATH``,
-        ``GZ_SIM_RESOURCE_PATH``, ``GAZEBO_MODEL_PATH`` or ``SDF_PATH``, or by the path of the file.
+        Folders of packages that ``$(find ...)``, ``package://`` and ``model://`` name. They come
+        before those that are found: ``docs/conventions.md`` has where they are searched for.
     arguments : mapping of str to str, optional
         Values for the arguments of a xacro file; they come before settings of its package.
 
