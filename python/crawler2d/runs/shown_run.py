@@ -33,8 +33,9 @@ class ShownRun(Record):
         Returns
         -------
         xarray.Dataset
-            One variable per array, dimensions `time`, `axis` ("x", "y") and `drive`, units in the
-            attributes; outcome, metrics and scenario are attributes of the dataset.
+            One variable per array, units in the attributes; outcome, metrics and scenario are
+            attributes of the dataset. Dimensions: `time`, `axis` ("x", "y") and `drive`; `flipper`,
+            and of a chain `shoe` and `pose` ("x", "y", "angle").
 
         Raises
         ------
