@@ -3,7 +3,8 @@ Write a model and a world
 =========================
 
 A robot on wheels or smooth belts becomes a model in three dimensions, for Gazebo or MuJoCo, by
-itself or before an obstacle. What is read back is the same robot.
+itself or before an obstacle. It can be read back, but for what the format has no place for, such as
+rotors in SDF.
 """
 
 import tempfile

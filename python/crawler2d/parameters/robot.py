@@ -280,10 +280,10 @@ class Robot(Parameters, path="robot"):
 
         In three dimensions, with both sides: wheels on joints that turn, gear wheels as cylinders
         with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
-        joints, the belly. `read_robot` reads this robot back from the file; the robot itself is in
-        a comment. ``docs/conventions.md``, "Writing a model file", says what each
-        format holds and which figures are estimates. SDF has no place for rotor inertias,
-        controllers and curves of torque: they are left out, and the comment says so.
+        joints, the belly. `read_robot` reads back what the file states; all of the robot is in a
+        comment. ``docs/conventions.md``, "Writing a model file", says what each format holds and
+        which figures are estimates. SDF has no place for rotor inertias, controllers and curves of
+        torque: they are left out, and the comment says so.
 
         Parameters
         ----------
