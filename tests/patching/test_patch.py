@@ -365,3 +365,16 @@ def test_lengths_have_no_digits_of_rounding_and_inertias_every_bit() -> None:
 @pytest.mark.parametrize("label", ["a--b", "on a---b", "-----", "--"])
 def test_a_label_with_any_number_of_hyphens_leaves_the_file_well_formed(label: str) -> None:
     assert ElementTree.fromstring(add_label("<robot/>", label)).tag == "robot"
+
+
+@pytest.mark.parametrize("name", CARTS)
+def test_a_file_that_begins_with_a_mark_of_its_byte_order_gets_a_label(
+    name: str, tmp_path: Path
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(b"\xef\xbb\xbf" + (FILES / name).read_bytes())
+    reading = quietly(path)
+    text = patch_file(reading, on_chassis(reading, 4), "four wheels").text
+    assert text.startswith("\ufeff<")
+    assert text.count("<!-- four wheels -->") == text.count("\ufeff") == 1
+    assert reread(reading, text, tmp_path).robot.track == c2d.LineOfWheels(4)

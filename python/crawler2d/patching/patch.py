@@ -122,8 +122,9 @@ def add_label(text: str, label: str) -> str:
     >>> add_label("<?xml version='1.0'?>\n<robot/>", "five -- not four, on a---b")
     "<?xml version='1.0'?>\n<!-- five - - not four, on a- - -b -->\n<robot/>"
     """
-    declaration = re.match(r"\s*<\?xml.*?\?>\s*", text, re.DOTALL)
-    end = declaration.end() if declaration else 0
+    # A mark of the byte order, which editors of Windows write, must stay the first character.
+    begin = re.match(r"\ufeff?(?:\s*<\?xml.*?\?>\s*)?", text, re.DOTALL)
+    end = begin.end() if begin else 0
     line = "\r\n" if "\r\n" in text else "\n"
     return f"{text[:end]}<!-- {re.sub('-(?=-)', '- ', label)} -->{line}{text[end:]}"
 
