@@ -60,19 +60,20 @@ def test_a_name_that_xml_cannot_hold_is_refused(name: str) -> None:
     assert (error.path, error.value) == ("robot.name", "a\x07b")
 
 
-@pytest.mark.parametrize("name", ["a::b", "__a__"])
+@pytest.mark.parametrize("name", ["a::b", "__a__", "world"])
 def test_a_name_that_sdf_reserves_is_refused_there_alone(name: str) -> None:
     odd = dataclasses.replace(WHEELS, name=name)
     assert refused(odd.to_sdf).path == "robot.name"
     assert f'name="{name}"' in odd.to_urdf()
-    assert 'name="a__b"' in dataclasses.replace(WHEELS, name="a__b").to_sdf()
+    for other in ("a__b", "world_", "worlds"):
+        assert f'name="{other}"' in dataclasses.replace(WHEELS, name=other).to_sdf()
 
 
 def test_a_reserved_name_does_not_stand_in_the_middle_of_its_rule() -> None:
     odd = dataclasses.replace(WHEELS, name="a::b")
     assert str(refused(odd.to_sdf)) == (
-        "robot.name must not be a name that SDF reserves (with :: in it, or between pairs of _),"
-        " got a::b"
+        "robot.name must not be a name that SDF reserves (world, with :: in it, or between"
+        " pairs of _), got a::b"
     )
 
 

@@ -307,9 +307,8 @@ def refuse_unsupported(robot: dict[str, Any], carriers: Iterable[Carrier], targe
     if not all(letter >= " " and letter not in "\x7f\ufffe\uffff" for letter in name):
         raise ScenarioError("robot.name", name, "must have only characters that XML allows")
     if target.reserved and re.fullmatch(target.reserved, name):
-        rule = (
-            f"must not be a name that {target.name} reserves (with :: in it, or between pairs of _)"
-        )
+        rule = f"must not be a name that {target.name} reserves"
+        rule += " (world, with :: in it, or between pairs of _)"
         raise ScenarioError("robot.name", name, rule)
 
 

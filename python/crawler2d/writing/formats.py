@@ -37,7 +37,7 @@ SDF = Format(
     moves_surfaces=True,
     has_hulls=False,
     has_rotors=False,
-    reserved=".*::.*|__.*__",
+    reserved="world|.*::.*|__.*__",
 )
 """SDF has meshes in separate files only. Only extensions of Drake have a rotor inertia."""
 
