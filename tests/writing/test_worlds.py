@@ -132,6 +132,13 @@ def test_the_robot_is_read_back_from_a_world(tmp_path: Path, terrain: Any) -> No
     assert there.friction == getattr(terrain, "friction", 0.7)
 
 
+@pytest.mark.parametrize("name", ["sun", "ground", "sun_sun", "crawler2d"])
+def test_no_two_parts_of_a_world_have_one_name(tmp_path: Path, name: str) -> None:
+    found = world(tmp_path, dataclasses.replace(WHEELS, name=name), TERRAINS["step"])
+    names = [part.get("name") for part in found if part.get("name") is not None]
+    assert len(set(names)) == len(names) == 3
+
+
 def test_each_lane_has_its_own_friction(tmp_path: Path) -> None:
     _, found = pieces(world(tmp_path, WHEELS, TERRAINS["lanes"]))
     assert {friction for _, (right, left), friction in found if right > 0.0 < left} == {0.5}

@@ -399,8 +399,9 @@ def _placed(piece: Piece) -> tuple[Pose, np.ndarray[Any, Any]]:
 def _add_to_sdf(root: XML, ground: Ground, gravity: float) -> XML:
     """Put the model of an SDF file into a world with a ground and light."""
     (model,) = root
-    # The model may have any name but this one.
-    static = element("model", *texts(static="true"), name=f"{model.get('name')}_ground")
+    # The model may have any name but these.
+    ground_name, sun_name = (f"{model.get('name')}_{part}" for part in ("ground", "sun"))
+    static = element("model", *texts(static="true"), name=ground_name)
     link = element("link", name="ground")
     static.append(link)
     plane = element("plane", *texts(normal="0 0 1", size=(_PLANE, _PLANE)))
@@ -414,7 +415,7 @@ def _add_to_sdf(root: XML, ground: Ground, gravity: float) -> XML:
                 part.append(surface(Friction(first=friction, second=friction)))
             link.append(part)
     light = texts(pose="0 0 10 0 0 0", direction="-0.3 0.4 -0.9")
-    sun = element("light", *light, name="sun", type="directional")
+    sun = element("light", *light, name=sun_name, type="directional")
     down = texts(gravity=(0.0, 0.0, -gravity))
     root[:] = [element("world", *down, sun, static, model, name="crawler2d")]
     return root
