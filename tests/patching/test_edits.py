@@ -161,6 +161,35 @@ def test_each_name_of_a_size_in_a_plugin_is_known(setting: str, tmp_path: Path) 
     assert f"<{setting}>0.1</{setting}>" in text
 
 
+UNLIKE = {
+    "some that stay": ((-0.2, 0.0, 0.08), (0.0, 0.0, 0.06), (0.2, 0.0, 0.08)),
+    "one that is new": ((-0.2, 0.0, 0.08), (0.0, 0.0, 0.08), (0.1, -0.02, 0.06), (0.2, 0.0, 0.08)),
+    "two new sizes": ((-0.2, 0.0, 0.07), (0.0, 0.0, 0.06), (0.2, 0.0, 0.07)),
+}
+
+
+@pytest.mark.parametrize("placements", UNLIKE.values(), ids=UNLIKE)
+def test_a_size_in_a_plugin_stays_where_its_wheels_become_unlike(
+    placements: tuple[tuple[float, float, float], ...], tmp_path: Path
+) -> None:
+    joints = "".join(
+        f"<joint>{side}_{name}_joint</joint>"
+        for side in ("left", "right")
+        for name in ("rear", "middle", "front")
+    )
+    plugin = f"""<gazebo><plugin name="d" filename="d.so">{joints}
+<wheel_radius>0.08</wheel_radius></plugin></gazebo>"""
+    reading = read(tmp_path, urdf(WHEELS, pair("middle", 0.0), plugin, mass="80"), "urdf")
+    assert reading.robot.track == c2d.LineOfWheels(3)
+    patch = patch_file(reading, reading.robot.with_track(c2d.HybridWheels(placements)))
+    assert "<wheel_radius>0.08</wheel_radius>" in patch.text
+    line = 1 + reading.text[: reading.text.index("<wheel_radius>")].count("\n")
+    left = f"wheel_radius in line {line} is still 0.08, for wheels of several sizes"
+    assert patch.left == (left,)
+    hint = " (there are 2 wheels more)" if len(placements) == 4 else ""
+    assert patch.summary.endswith(f"; to be set by hand{hint}: {left}")
+
+
 @pytest.mark.parametrize("setting", ["num_wheel_pairs", "wheel_torque", "max_wheel_torque"])
 def test_each_setting_that_counts_wheels_is_left_by_name(setting: str, tmp_path: Path) -> None:
     blank = 200 * "\n"  # a line is found by what all before it take

@@ -7,7 +7,7 @@ import difflib
 import itertools
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
@@ -44,6 +44,7 @@ _SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
 _COUNTS = ("num_wheel_pairs", "wheel_torque", "max_wheel_torque")
 """Settings of plugins that hold for a certain number of wheels, and are not changed."""
 
+_ALIKE = 1e-3  # [-] Sizes of wheels for which one setting of a plugin stands differ by less.
 _MASS = 1e-4  # of the whole: far above what rounding leaves
 _MOTORS = 0.01  # [-] of torques, rotors and gains
 _CENTER = 0.01  # of the axle distance: the masses of unequal wheels are redistributed
@@ -101,13 +102,13 @@ def patch_file(reading: Reading, robot: Robot, label: str = "") -> Patch:
     if not changes:
         raise ScenarioError("robot.track", robot.track, "must have other wheels than the file")
     document = Document(reading.text)
-    _edit(document, changes, reading.tree)
+    unlike = _edit(document, changes, reading)
     text = add_label(document.text, label) if label else document.text
     _check(reading, robot, text)
     old, new = (each.splitlines(keepends=True) for each in (reading.text, text))
     name = reading.tree.file
     lines = list(difflib.unified_diff(old, new, name, f"{name} (other wheels)"))
-    left = _left(changes, document.root, reading.text)
+    left = _left(changes, document.root, reading.text, unlike)
     summary = _summary(changes, lines, left)
     if reading.how.scale is not None:
         summary += f"; all lengths times {reading.how.scale:g}"
@@ -129,8 +130,9 @@ def add_label(text: str, label: str) -> str:
     return f"{text[:end]}<!-- {re.sub('-(?=-)', '- ', label)} -->{line}{text[end:]}"
 
 
-def _edit(document: Document, changes: list[Change], tree: Tree) -> None:
-    """Make all changes in a text."""
+def _edit(document: Document, changes: list[Change], reading: Reading) -> list[Span]:
+    """Make all changes in a text; return settings of plugins that hold for several sizes now."""
+    tree = reading.tree
     change_wheel = _EDITORS[tree.format.split()[0]]
     scope = document.root
     if scope.tag == "sdf":  # its model, of perhaps several
@@ -160,7 +162,8 @@ def _edit(document: Document, changes: list[Change], tree: Tree) -> None:
         texts = copy_elements(document, items, _new_names(names, taken), change_copies)
         for item, text in zip(items, texts, strict=True):
             document.insert_after(item, text)
-    _change_plugins(document, scope, changes)
+    joints = [tree.joints[name].name for name in reading.wheels["name"].tolist()]
+    return _change_plugins(document, scope, _factors(changes, joints))
 
 
 def _new_names(names: set[str], taken: set[str]) -> dict[str, str]:
@@ -174,16 +177,40 @@ def _new_names(names: set[str], taken: set[str]) -> dict[str, str]:
     return new
 
 
-def _change_plugins(document: Document, scope: Span, changes: list[Change]) -> None:
-    """Change the radius with which a plugin converts a speed to that of wheels."""
-    sizes = {change.joint.name: change.size for change in changes if change.action == "changed"}
+def _factors(changes: list[Change], joints: Iterable[str]) -> dict[str, set[float]]:
+    """Return the factors of the sizes of each wheel of the file and of its copies, by its joint."""
+    factors = {name: {1.0} for name in joints}
+    for change in changes:
+        if change.action != "added":
+            factors[change.joint.name] = {change.size} if change.action == "changed" else set()
+    for change in changes:
+        if change.action == "added":
+            factors[change.joint.name].add(change.size)
+    return factors
+
+
+def _change_plugins(
+    document: Document, scope: Span, factors: Mapping[str, set[float]]
+) -> list[Span]:
+    """Change the radius with which a plugin converts a speed to that of wheels.
+
+    A radius of wheels that become unlike is right for some of them at most. It stays, and is
+    returned.
+    """
+    unlike = []
     for plugin in scope.within():
         if plugin.tag != "plugin":
             continue
-        factors = {sizes[each.text] for each in plugin.within() if each.text in sizes}
+        driven = [factors[each.text] for each in plugin.within() if each.text in factors]
+        sizes = sorted(set().union(*driven))
         for setting in plugin.within():
-            if setting.tag in _SIZES and len(factors) == 1:
-                document.multiply(setting, list(factors))
+            if setting.tag not in _SIZES or not sizes:
+                continue
+            if sizes[-1] - sizes[0] > _ALIKE:
+                unlike.append(setting)
+            else:
+                document.multiply(setting, sizes[-1:])
+    return unlike
 
 
 def _check(reading: Reading, robot: Robot, text: str) -> None:
@@ -238,20 +265,37 @@ def _fail(what: str, value: object, rule: str) -> NoReturn:
     raise ScenarioError(f"the changed file, read again: {what}", value, rule)
 
 
-def _left(changes: list[Change], root: Span, text: str) -> tuple[str, ...]:
-    """List the settings of plugins that may be wrong for another number of wheels."""
+def _left(
+    changes: list[Change], root: Span, text: str, unlike: Collection[Span] = ()
+) -> tuple[str, ...]:
+    """List the settings of plugins that may be wrong for another number of wheels, or unlike ones.
+
+    Parameters
+    ----------
+    changes : list of Change
+        Those of the wheels.
+    root : Span
+        The text that was read.
+    text : str
+        That text.
+    unlike : collection of Span
+        Sizes in it that stand for wheels of several sizes now.
+    """
     counts = _counts(changes)
-    if counts["added"] == counts["removed"]:
-        return ()
     lines = text.encode().splitlines(keepends=True)
     ends = list(itertools.accumulate(map(len, lines)))
-    return tuple(
-        f"{setting.tag} in line {bisect.bisect(ends, setting.start) + 1} is still {setting.text}"
-        for plugin in root.within()
-        if plugin.tag == "plugin"
-        for setting in plugin.within()
-        if setting.tag in _COUNTS
-    )
+    plugins = [each for each in root.within() if each.tag == "plugin"]
+    left = []
+    for setting in (each for plugin in plugins for each in plugin.within()):
+        line = bisect.bisect(ends, setting.start) + 1
+        if setting in unlike:
+            why = ", for wheels of several sizes"
+        elif setting.tag in _COUNTS and counts["added"] != counts["removed"]:
+            why = ""
+        else:
+            continue
+        left.append(f"{setting.tag} in line {line} is still {setting.text}{why}")
+    return tuple(left)
 
 
 def _counts(changes: list[Change]) -> Counter[str]:
@@ -266,5 +310,5 @@ def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> s
     marks = Counter(line[0] for line in diff[2:])
     text = f"wheels: {', '.join(parts)}; lines: {marks['+']} new, {marks['-']} gone"
     more = counts["added"] - counts["removed"]
-    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})"
+    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})" if more else ""
     return f"{text}; to be set by hand{hint}: {', '.join(left)}" if left else text
