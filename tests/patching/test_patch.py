@@ -1,6 +1,8 @@
 """A file with other wheels: it reads as the other robot, and nothing else in it is changed."""
 
 import re
+import shutil
+import subprocess
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -240,6 +242,35 @@ def test_a_diff_names_the_file_and_applies_to_it() -> None:
     assert removed
     assert set(added) <= kept
     assert set(removed) <= set(reading.text.splitlines())
+
+
+@pytest.mark.parametrize("name", ["absolem.sdf", "marv.sdf"])
+def test_a_diff_of_a_long_file_has_the_lines_of_changed_wheels_alone(name: str) -> None:
+    reading = quietly(ROBOTS / name)
+    arms = reading.robot.flippers
+    assert arms is not None
+    assert isinstance(arms.track, c2d.LineOfWheels)
+    longer = replace(
+        reading.robot, flippers=replace(arms, track=c2d.LineOfWheels(arms.track.count + 1))
+    )
+    patch = patch_file(reading, longer)
+    gone = [line[1:].strip() for line in patch.diff.splitlines()[2:] if line.startswith("-")]
+    assert gone
+    assert all(re.match(r"<(pose|mass|i[xyz]{2}|radius|effort|velocity)>", line) for line in gone)
+
+
+def test_a_diff_applies_to_its_file(tmp_path: Path) -> None:
+    patch = shutil.which("patch")
+    if patch is None:
+        pytest.skip("needs patch")
+    for name in CARTS:
+        reading = quietly(FILES / name)
+        for count in (2, 7):
+            found = patch_file(reading, on_chassis(reading, count), "a label")
+            path = tmp_path / name
+            path.write_text(reading.text, encoding="utf-8")
+            subprocess.run([patch, "-s", path], input=found.diff, text=True, timeout=60, check=True)
+            assert path.read_text(encoding="utf-8") == found.text
 
 
 def test_what_drives_a_wheel_drives_its_copy(tmp_path: Path) -> None:

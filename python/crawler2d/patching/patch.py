@@ -105,9 +105,7 @@ def patch_file(reading: Reading, robot: Robot, label: str = "") -> Patch:
     unlike = _edit(document, changes, reading)
     text = add_label(document.text, label) if label else document.text
     _check(reading, robot, text)
-    old, new = (each.splitlines(keepends=True) for each in (reading.text, text))
-    name = reading.tree.file
-    lines = list(difflib.unified_diff(old, new, name, f"{name} (other wheels)"))
+    lines = _diff(reading.text, text, reading.tree.file)
     left = _left(changes, document.root, reading.text, unlike)
     summary = _summary(changes, lines, left)
     if reading.how.scale is not None:
@@ -263,6 +261,40 @@ def _read_figure(robot: Robot, name: str) -> float:
 
 def _fail(what: str, value: object, rule: str) -> NoReturn:
     raise ScenarioError(f"the changed file, read again: {what}", value, rule)
+
+
+def _diff(old: str, new: str, name: str) -> list[str]:
+    """List the lines of a unified diff of two texts of a file."""
+    before, after = (text.splitlines(keepends=True) for text in (old, new))
+    # Lines that stand in every link are told apart, so that no wheel is taken for another.
+    matcher = difflib.SequenceMatcher(None, _placed(before), _placed(after), autojunk=False)
+    lines = [f"--- {name}\n", f"+++ {name} (other wheels)\n"]
+    for group in matcher.get_grouped_opcodes():
+        (_, start, _, at, _), (_, _, end, _, to) = group[0], group[-1]
+        lines.append(f"@@ -{_range(start, end)} +{_range(at, to)} @@\n")
+        for kind, first, last, begin, until in group:
+            if kind == "equal":
+                lines += [f" {line}" for line in before[first:last]]
+            else:
+                lines += [f"-{line}" for line in before[first:last]]
+                lines += [f"+{line}" for line in after[begin:until]]
+    return lines
+
+
+def _placed(lines: list[str]) -> list[tuple[str, str]]:
+    """Pair each line with the last name above or in it."""
+    name, placed = "", []
+    for line in lines:
+        named = re.search(r"""\bname\s*=\s*["']([^"']*)""", line)
+        name = named[1] if named else name
+        placed.append((name, line))
+    return placed
+
+
+def _range(start: int, end: int) -> str:
+    """Write a range of lines as a unified diff does; one without lines follows its first number."""
+    count = end - start
+    return f"{start + 1 if count else start},{count}"
 
 
 def _left(
