@@ -188,6 +188,14 @@ def test_a_map_draws_one_model_with_its_unit_and_its_populations() -> None:
     plt.close("all")
 
 
+def test_the_figure_of_a_part_of_a_map_with_one_value_of_a_field_is_refused() -> None:
+    found = map_of(refine=0, until=c2d.Until(threshold=0.5, most=10))
+    for part in ({"angle": [0]}, {"friction": [0]}, {"angle": [0], "friction": [0]}):
+        error = refused(found.isel(part).plot)
+        assert error.path == "plot"
+        assert error.rule == "must have both fields of the map, with two values of each or more"
+
+
 @pytest.mark.parametrize(
     ("given", "path"),
     [

@@ -180,8 +180,9 @@ def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw how most runs of every cell end: hatched if not certain, dotted if not simulated."""
     data = one_model(data)
     ending = data["ending"]
-    if ending.ndim != 2:
-        raise ScenarioError("plot", str(ending.dims), "must have both fields of the map")
+    if ending.ndim != 2 or min(ending.shape) < 2:
+        rule = "must have both fields of the map, with two values of each or more"
+        raise ScenarioError("plot", str(dict(ending.sizes)), rule)
     y, x = map(str, ending.dims)
     ax = axes_or_new(ax, (8.0, 6.0))
     (scale_x, label_x), (scale_y, label_y) = readable(data[x]), readable(data[y])
