@@ -62,7 +62,7 @@ def test_what_a_file_cannot_hold_of_rotors_is_in_its_comment() -> None:
         assert "armature" not in text
     assert left_out(wheeled.to_mjcf()) == []
     belted = with_rotors(c2d.robots.engineer()).to_mjcf()
-    assert left_out(belted) == ["drivetrain.rotor_inertia"]
+    assert left_out(belted) == ["drivetrain.max_torque", "drivetrain.rotor_inertia"]
 
 
 def test_without_rotors_files_are_as_before() -> None:
@@ -117,8 +117,20 @@ def test_the_rotor_of_a_belt_is_in_the_comment_of_wheels_on_flippers() -> None:
     assert arms is not None
     arms = dataclasses.replace(arms, track=c2d.LineOfWheels(3))
     belted = c2d.robots.engineer(flippers=arms, track=c2d.BeltTrack())
-    assert left_out(belted.to_mjcf()) == ["drivetrain.rotor_inertia"]
+    named = ["drivetrain.max_torque", "drivetrain.rotor_inertia"]
+    assert left_out(belted.to_mjcf()) == named
+    held = with_motors(belted, controller=c2d.PI(gain=4.0))
+    assert left_out(held.to_mjcf()) == [*named, "drivetrain.controller"]
     assert left_out(belted.with_track(c2d.LineOfWheels(3)).to_mjcf()) == []
+
+
+def test_the_torque_of_a_belt_is_in_the_comment_as_left_out() -> None:
+    """No format has a limit of force for a surface that moves."""
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
+    for text in (robot.to_sdf(), robot.to_mjcf()):
+        assert left_out(text) == ["drivetrain.max_torque"]
+    free = with_motors(robot, max_torque=0.0)
+    assert left_out(free.to_sdf()) == []
 
 
 def with_motors(robot: c2d.Robot, **motors: Any) -> c2d.Robot:

@@ -282,8 +282,8 @@ class Robot(Parameters, path="robot"):
         with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
         joints, the belly. `read_robot` reads back what the file states; all of the robot is in a
         comment. ``docs/conventions.md``, "Writing a model file", says what each format holds and
-        which figures are estimates. SDF has no place for rotor inertias, controllers and curves of
-        torque: they are left out, and the comment says so.
+        which figures are estimates. SDF has no place for rotor inertias, controllers, curves of
+        torque and the torque of belts: they are left out, and the comment says so.
 
         Parameters
         ----------
@@ -359,9 +359,9 @@ class Robot(Parameters, path="robot"):
         As `to_sdf`, with the same parameters, result and errors. Wheels have servos of their speed,
         flippers of their rate, both with the rotor inertia as ``armature``; the wheels of a track
         divide it, and the gain of its controller. Without a controller, servos are firm. Curves of
-        torque are left out. The surfaces of belts move at the largest speed; at run time
-        ``MjModel.geom_surfacevel`` sets another one. Gear wheels and belly may have any shape. The
-        `friction` applies whatever the ground has. The file has no ground.
+        torque and the torque of belts are left out. Surfaces of belts move at the largest speed; at
+        run time ``MjModel.geom_surfacevel`` sets another one. Gear wheels and belly may have any
+        shape. The `friction` applies whatever the ground has. The file has no ground.
 
         Examples
         --------

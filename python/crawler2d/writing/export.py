@@ -37,7 +37,7 @@ from crawler2d.writing.formats import (
     texts,
     urdf_of,
 )
-from crawler2d.writing.model import Limits, model_of
+from crawler2d.writing.model import CHASSIS, Limits, model_of
 from crawler2d.writing.shapes import in_space, lowest
 
 __all__ = ["export_robot", "export_world"]
@@ -244,14 +244,16 @@ def _build_model(
 
 
 def _left_out(robot: dict[str, Any], tree: Tree, target: Format) -> list[str]:
-    """Return what the file cannot represent of the motors, such as rotors of belts."""
-    motors = [joint for joint in tree.joints.values() if joint.is_unlimited]
+    """Return what the file cannot represent of the motors, such as torque and rotors of belts."""
+    wheels = [joint for joint in tree.joints.values() if joint.is_unlimited]
+    motors = [joint for joint in wheels if joint.parent == CHASSIS]
     has_motors = target.has_rotors and bool(motors)
     drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
     given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
     given |= {f"flippers.{name}": value for name, value in flippers.items()}
     given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
     is_held = {
+        "drivetrain.max_torque": bool(motors),
         "drivetrain.rotor_inertia": has_motors and any(joint.armature for joint in motors),
         "drivetrain.no_load_speed": False,
         "drivetrain.torque_curve": False,

@@ -26,7 +26,7 @@ from crawler2d.writing.carriers import (
 )
 from crawler2d.writing.shapes import Solids, belly_shapes, belt_shapes, gear_shapes, in_space
 
-__all__ = ["Limits", "flipper_joints", "model_of", "moved_links", "wheels_by_radius"]
+__all__ = ["CHASSIS", "Limits", "flipper_joints", "model_of", "moved_links", "wheels_by_radius"]
 
 CHASSIS = "chassis"
 """The root link; its frame is the chassis frame."""
