@@ -79,6 +79,22 @@ def test_a_repository_without_a_licence_says_so(tmp_path: Path) -> None:
     assert licence_of(tmp_path) == "licence: none found"
 
 
+def test_a_folder_of_too_many_model_files_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("crawler2d.commands.atlas._MOST", 3)
+    for place in ("a/1", "a/2", "b/3"):
+        (tmp_path / place).parent.mkdir(exist_ok=True)
+        (tmp_path / place).with_suffix(".urdf").write_text(
+            '<robot name="r"><link name="l"/></robot>'
+        )
+    assert len(list(main_files(tmp_path))) == 3
+    (tmp_path / "c").mkdir()
+    (tmp_path / "c" / "4.urdf").write_text('<robot name="r"><link name="l"/></robot>')
+    assert main(["atlas", str(tmp_path)]) == 2
+    assert "FOLDER must have at most 3 model files" in capsys.readouterr().err
+
+
 def test_a_licence_that_cannot_be_read_does_not_end_the_atlas(
     tmp_path: Path, monkeypatch: Any
 ) -> None:

@@ -33,7 +33,7 @@ _SAMPLES = 40
 
 _KINDS = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".mjcf")
 _LARGEST = 4_000_000  # [bytes] as for any model file
-_MOST = 5000  # files that are looked at
+_MOST = 5000  # model files: all are kept in memory
 _ROOTS = re.compile(rb"<\s*(sdf|robot|mujoco)[\s>]")
 _NAMED = re.compile(rb"""(?:filename|file)\s*=\s*["']([^"']+\.(?:xacro|urdf|xml|sdf))["']""")
 _MACROS = re.compile(rb"<xacro:macro\b.*?</xacro:macro>|<!--.*?-->", re.DOTALL)
@@ -113,6 +113,11 @@ def main_files(folder: Path) -> Iterator[Path]:
     ------
     Path
         From the folder, in order.
+
+    Raises
+    ------
+    ScenarioError
+        If there are too many.
     """
     found: dict[Path, bytes] = {}
     unread: list[Path] = []
@@ -129,8 +134,8 @@ def main_files(folder: Path) -> Iterator[Path]:
                     continue
                 if len(data) <= _LARGEST and _ROOTS.search(data):
                     found[path.relative_to(folder)] = data
-            if len(found) >= _MOST:
-                break
+            if len(found) > _MOST:
+                raise ScenarioError("FOLDER", str(folder), f"must have at most {_MOST} model files")
     named = {
         (_repository(path), Path(each.decode(errors="replace")).name)
         for path, data in found.items()
