@@ -204,6 +204,25 @@ def test_each_setting_that_counts_wheels_is_left_by_name(setting: str, tmp_path:
     assert patch_file(reading, fewer).left == ()
 
 
+@pytest.mark.parametrize("count", [2, 4])
+@pytest.mark.parametrize("names", ["{0}, left_rear_joint", "[{0}]", "'left_rear_joint' '{0}'"])
+def test_a_list_in_a_plugin_of_wheels_that_come_or_go_is_left_by_name(
+    names: str, count: int, tmp_path: Path
+) -> None:
+    """As that of libgazebo_ros_joint_state_publisher."""
+    listed, blank = names.format("left_middle_joint"), "\n  "
+    plugin = f"""<gazebo><plugin name="p" filename="p.so"><rate>left_middle_joints</rate>
+<jointName>{listed.replace(" ", blank)}</jointName><one>left_middle_joint</one></plugin></gazebo>"""
+    reading = read(tmp_path, urdf(WHEELS, pair("middle", 0.0), plugin), "urdf")
+    patch = patch_file(reading, on_chassis(reading, count))
+    line = 1 + reading.text[: reading.text.index("<jointName>")].count("\n")
+    left = (
+        f"jointName in line {line} is still {listed}, a list with wheels that are added or removed"
+    )
+    assert patch.left == (left,)
+    assert patch_file(reading, on_chassis(reading, 3, 0.1)).left == ()
+
+
 def test_a_summary_counts_wheels_and_lines(tmp_path: Path) -> None:
     reading = read(tmp_path, CART["urdf"], "urdf")
     patch = patch_file(reading, on_chassis(reading, 2))

@@ -377,8 +377,9 @@ def test_a_patch_warns_of_nothing() -> None:
 def test_a_count_of_wheels_in_a_plugin_is_named_when_wheels_are_added() -> None:
     text = "<model>\n<plugin>\n<num_wheel_pairs>4</num_wheel_pairs></plugin>\n</model>"
     root = spans_of(text.encode())
-    added: Any = SimpleNamespace(action="added", is_none=False)
-    changed: Any = SimpleNamespace(action="changed", is_none=False)
+    named: Any = {"joint": SimpleNamespace(name="j"), "links": ("l",), "is_none": False}
+    added: Any = SimpleNamespace(action="added", **named)
+    changed: Any = SimpleNamespace(action="changed", **named)
     left = _left([added, added], root, text)
     assert left == ("num_wheel_pairs in line 3 is still 4",)
     assert "by hand (there are 2 wheels more): num_wheel" in _summary([added, added], [], left)

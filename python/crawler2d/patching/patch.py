@@ -314,6 +314,8 @@ def _left(
         Sizes in it that stand for wheels of several sizes now.
     """
     counts = _counts(changes)
+    other = [change for change in changes if change.action != "changed"]
+    names = {name for change in other for name in (change.joint.name, *change.links)}
     lines = text.encode().splitlines(keepends=True)
     ends = list(itertools.accumulate(map(len, lines)))
     plugins = [each for each in root.within() if each.tag == "plugin"]
@@ -324,10 +326,19 @@ def _left(
             why = ", for wheels of several sizes"
         elif setting.tag in _COUNTS and counts["added"] != counts["removed"]:
             why = ""
+        elif _lists(setting, names):
+            why = ", a list with wheels that are added or removed"
         else:
             continue
-        left.append(f"{setting.tag} in line {line} is still {setting.text}{why}")
+        value = " ".join(setting.text.split())
+        left.append(f"{setting.tag} in line {line} is still {value}{why}")
     return tuple(left)
+
+
+def _lists(setting: Span, names: set[str]) -> bool:
+    """Whether one of these names is in the text of a setting, beside others."""
+    is_one = setting.children or setting.text in names
+    return not is_one and not names.isdisjoint(re.split(r"""[\s,;'"()[\]]+""", setting.text))
 
 
 def _counts(changes: list[Change]) -> Counter[str]:
