@@ -145,6 +145,23 @@ def test_each_lane_has_its_own_friction(tmp_path: Path) -> None:
     assert {friction for _, (right, left), friction in found if right < 0.0 > left} == {0.7}
 
 
+def test_a_lane_on_the_level_of_the_plane_has_its_own_friction(tmp_path: Path) -> None:
+    level = c2d.terrains.flat(friction=0.2)
+    terrain = c2d.terrains.lanes(level, c2d.terrains.step(0.05, friction=0.7))
+    for robot in ROBOTS.values():
+        mujoco, model, data = scene(tmp_path, robot, terrain)
+        found = set()
+        for _ in range(20):
+            mujoco.mj_step(model, data)
+            for contact in data.contact:
+                names = "".join(model.geom(each).name for each in contact.geom)
+                found.add(("left" in names, round(contact.friction[0], 9)))
+        assert found == {(True, 0.2), (False, 0.7)}
+    height, parts = pieces(world(tmp_path, WHEELS, terrain))
+    assert height < -0.01
+    assert {friction for _, (right, left), friction in parts if right > 0.0 < left} == {0.2}
+
+
 def test_the_robot_stands_where_a_scenario_starts_it(tmp_path: Path) -> None:
     outline = dataclasses.replace(WHEELS.outline, front_radius=0.08)
     robot = dataclasses.replace(WHEELS, outline=outline, track=c2d.BeltTrack())

@@ -386,9 +386,9 @@ class Robot(Parameters, path="robot"):
 
         It stands where a `Scenario` starts it. The ground is the profile of the terrain, extruded
         across twice the width of the robot, under each track its own if the two differ: boxes and,
-        where it slopes, convex prisms on a plane at the lowest height. The robot is that of
-        `to_sdf` or `to_mjcf`, with the friction of the terrain between the two, however the engine
-        combines it. Gravity is 9.81 m/s^2.
+        where it slopes, convex prisms on a plane at the lowest height, or below that where the
+        tracks have unlike friction. The robot is that of `to_sdf` or `to_mjcf`, with the friction
+        of the terrain between the two, however the engine combines it. Gravity is 9.81 m/s^2.
 
         ``gz sim -r world.sdf`` runs the world: its wheels and belts obey the topic
         ``/model/NAME/cmd_vel``; ``python -m mujoco.viewer --mjcf=scene.xml`` runs the scene.

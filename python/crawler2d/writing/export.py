@@ -59,6 +59,11 @@ _FORMATS: dict[str, Name] = {".sdf": "sdf", ".world": "sdf", ".xml": "mjcf"}
 # In lengths of the robot: the visible ground behind its start and beyond the goal.
 _BEHIND, _BEYOND = 2.0, 4.0
 
+# In track widths: how far the ground of a track reaches inwards of it, where its rim stood on two.
+_BESIDE = 0.1
+
+_BELOW = 0.1  # In gauges: depth of the plane below lanes of unlike friction.
+
 _PLANE = 100.0  # [m] Visible size of an endless plane.
 
 
@@ -136,7 +141,7 @@ class Ground:
     Parameters
     ----------
     level : float
-        [m] Height of a plane: that of the lowest ground.
+        [m] Height of a plane: that of the lowest ground, or less.
     friction : float
         [-] Of the plane.
     pieces : tuple of Piece
@@ -303,8 +308,11 @@ def _ground_of(
     """
     profiles = [(lane, _between(points, *ends), each) for (lane, points), each in lanes]
     level = min(float(points[:, 1].min()) for _, points, _ in profiles)
+    if len({friction for _, friction in lanes}) > 1:
+        level -= _BELOW * across.gauge  # else a lane at that height had the friction of the plane
     half = 0.5 * _WIDTH * (across.gauge + across.track_width)
     inner = 0.5 * (across.gauge - across.track_width)
+    inner -= min(_BESIDE * across.track_width, 0.5 * inner)
     strips = {
         Lane.BOTH: (-half, half),
         Lane.LEFT: (inner, half),
