@@ -97,9 +97,10 @@ class Audit(AuditRecord):
         Only wheels are changed in the file. All wheels of a carrier together keep their mass, and
         torque and rotors of their motors; a new one is a copy of its neighbour, with all that
         drives it. The result is read again, and refused if it is not the repaired robot. Settings
-        of plugins that may no longer be right for so many wheels are left as they are, with a
-        `ScenarioWarning` each. With belts the robot is written as a new file, as by `Robot.to_sdf`
-        and `to_mjcf`. The first comment of the file says what was changed, and with what result.
+        of plugins that may no longer be right for so many or such wheels are left as they are, with
+        a `ScenarioWarning` each; meshes that are only seen keep their size. With belts
+        the robot is written as a new file, as by `Robot.to_sdf` and `to_mjcf`. The first comment of
+        the file says what was changed, and with what result.
 
         Parameters
         ----------
