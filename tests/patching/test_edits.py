@@ -231,6 +231,23 @@ def test_a_summary_counts_wheels_and_lines(tmp_path: Path) -> None:
     assert patch.summary == f"wheels: 2 removed, 4 changed; lines: {new} new, {gone} gone"
 
 
+KEY = '<keyframe><key name="home" qpos="{qpos}"/></keyframe></mujoco>'
+
+
+def with_key(folder: Path) -> c2d.Reading:
+    """The cart with a keyframe, whose numbers count all joints."""
+    qpos = " ".join(["0"] * 19)
+    return read(folder, CART["xml"].replace("</mujoco>", KEY.format(qpos=qpos)), "xml")
+
+
+def test_an_error_of_the_new_file_is_not_one_of_the_old(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    reading = with_key(tmp_path)
+    with pytest.raises(c2d.ScenarioError, match="keyframe 'home': invalid qpos size") as caught:
+        patch_file(reading, on_chassis(reading, 2))
+    assert caught.value.path == "the changed file, read again: cart.xml"
+
+
 def test_the_new_file_is_compared_with_the_robot(tmp_path: Path) -> None:
     reading = read(tmp_path, CART["urdf"], "urdf")
     count = len(reading.robot.wheels())

@@ -216,7 +216,10 @@ def _check(reading: Reading, robot: Robot, text: str) -> None:
     path = reading.path
     if path.suffix == ".xacro":  # its expansion was changed
         path = path.with_suffix("") if path.stem.endswith(".urdf") else path.with_suffix(".urdf")
-    again, _ = read_text(text.encode(), path, replace(reading.how, scale=None))
+    try:
+        again, _ = read_text(text.encode(), path, replace(reading.how, scale=None))
+    except ScenarioError as error:  # of a text that its author has not seen
+        _fail(error.path, error.value, error.rule)
     got, asked = again.robot.wheels(), robot.wheels()
     if len(got) != len(asked) or (got["carrier"] != asked["carrier"]).any():
         _fail("wheels", f"{len(got)} wheels", f"must have {len(asked)}")
