@@ -248,6 +248,16 @@ def test_an_error_of_the_new_file_is_not_one_of_the_old(tmp_path: Path) -> None:
     assert caught.value.path == "the changed file, read again: cart.xml"
 
 
+def test_a_keyframe_is_left_by_name_where_wheels_are_added(tmp_path: Path) -> None:
+    """MuJoCo takes it as it is: all joints behind the new one get the numbers of others."""
+    pytest.importorskip("mujoco")
+    reading = with_key(tmp_path)
+    line = 1 + reading.text[: reading.text.index("<key ")].count("\n")
+    left = f"key in line {line} still has numbers for the joints of before"
+    assert patch_file(reading, on_chassis(reading, 4)).left == (left,)
+    assert patch_file(reading, on_chassis(reading, 3, 0.1)).left == ()
+
+
 def test_the_new_file_is_compared_with_the_robot(tmp_path: Path) -> None:
     reading = read(tmp_path, CART["urdf"], "urdf")
     count = len(reading.robot.wheels())

@@ -303,7 +303,7 @@ def _range(start: int, end: int) -> str:
 def _left(
     changes: list[Change], root: Span, text: str, unlike: Collection[Span] = ()
 ) -> tuple[str, ...]:
-    """List the settings of plugins that may be wrong for another number of wheels, or unlike ones.
+    """List settings of plugins and keyframes that may be wrong for more, fewer or unlike wheels.
 
     Parameters
     ----------
@@ -322,7 +322,11 @@ def _left(
     lines = text.encode().splitlines(keepends=True)
     ends = list(itertools.accumulate(map(len, lines)))
     plugins = [each for each in root.within() if each.tag == "plugin"]
+    frames = [each for frame in root.all("keyframe") for each in frame.all("key") if names]
     left = []
+    for frame in frames:
+        line = bisect.bisect(ends, frame.start) + 1
+        left.append(f"key in line {line} still has numbers for the joints of before")
     for setting in (each for plugin in plugins for each in plugin.within()):
         line = bisect.bisect(ends, setting.start) + 1
         if setting in unlike:
