@@ -1,5 +1,7 @@
 """Ground whose friction differs from segment to segment."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,29 @@ def test_twice_the_friction_doubles_that_of_every_segment() -> None:
     scaled = trial.run.scenario.terrain
     assert isinstance(scaled, Points)
     assert scaled.segment_friction == twice.segment_friction
+
+
+def test_a_belly_between_two_lanes_slides_with_the_friction_at_its_place() -> None:
+    belly = ((-0.18, -0.08), (0.18, -0.08), (0.18, 0.05), (-0.18, 0.05))
+    robot = replace(ROBOT, belly=belly)
+    speeds = []
+    for lower in (0.0, 1e-3):
+        points = [[[x, y] for x, _ in LEVEL] for y in (0.0, -lower)]
+        grounds = (
+            c2d.terrains.from_points(each, goal=1.0, segment_friction=[0.0, 0.0, 0.9])
+            for each in points
+        )
+        scenario = Scenario(
+            robot,
+            c2d.terrains.lanes(*grounds),
+            drive=c2d.Drive(speed=0.0),
+            start=c2d.Start(approach=1.0),
+        )
+        sim = c2d.Simulation(scenario)
+        sim.command(push=40.0)
+        sim.advance(1.0)
+        speeds.append(sim.state().velocity[0])
+    assert speeds == pytest.approx([40.0 / robot.mass] * 2)
 
 
 def test_lanes_may_differ_in_their_segments() -> None:

@@ -65,6 +65,12 @@ impl GroundFriction {
         }
     }
 
+    /// [m] The x at which it may change; none if it is the same everywhere.
+    pub(super) fn changes(&self) -> impl Iterator<Item = f64> + '_ {
+        let segments = self.segments.iter();
+        segments.flat_map(|segment| [segment.left.x, segment.right.x])
+    }
+
     /// The largest anywhere.
     pub fn most(&self) -> Friction {
         self.most

@@ -251,7 +251,7 @@ fn described(path: &str, terrain: &Terrain) -> Result<(Profile, f64), ScenarioEr
 }
 
 /// The upper envelope of two profiles over their common stretch of x. Arcs become polylines as fine as theirs;
-/// friction is the larger of the two.
+/// friction is the larger of the two, at each place if it differs along one of them.
 ///
 /// # Errors
 /// They have no common stretch of x.
@@ -263,8 +263,12 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
         let rule = "must have lanes with a common stretch of x";
         return Err(ScenarioError::new(path, value, rule));
     }
+    let changes = || a.friction.changes().chain(b.friction.changes());
     let corners = a.points.iter().chain(&b.points).map(|p| p.x);
-    let mut places: Vec<f64> = corners.filter(|x| (low..=high).contains(x)).collect();
+    let within = corners
+        .chain(changes())
+        .filter(|x| (low..=high).contains(x));
+    let mut places: Vec<f64> = within.collect();
     places.extend([low, high]);
     places.sort_unstable_by(f64::total_cmp);
     places.dedup();
@@ -291,7 +295,29 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
         edge_radius: 0.0,
         friction: a.friction.most().or_larger(b.friction.most()),
     };
-    Profile::new(path, &points, surface, true)
+    let mut profile = Profile::new(path, &points, surface, true)?;
+    if changes().next().is_some() {
+        let pieces = points.windows(2);
+        let frictions = pieces.map(|ends| larger_friction([a, b], [ends[0], ends[1]]));
+        let frictions: Vec<f64> = frictions.collect();
+        profile.friction = GroundFriction::of_segments(&points, &frictions, 0.0);
+    }
+    Ok(profile)
+}
+
+/// The larger coefficient of two profiles at a piece of their envelope, below it if they lie there.
+fn larger_friction(profiles: [&Profile; 2], ends: [[f64; 2]; 2]) -> f64 {
+    let [x, y] = [0, 1].map(|i| 0.5 * (ends[0][i] + ends[1][i]));
+    let is_face = (ends[1][0] - ends[0][0]).abs() < COLLINEAR.value();
+    let found = profiles.map(|profile| {
+        let height = if is_face {
+            y
+        } else {
+            heights_at(profile, x)[0]
+        };
+        profile.friction.at(Vector::new(x, height))
+    });
+    found[0].or_larger(found[1]).coefficient
 }
 
 /// [m] Heights of a profile just before and just behind an x.
@@ -308,6 +334,8 @@ fn heights_at(profile: &Profile, x: f64) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_relative_eq;
+
     use super::*;
     use crate::scenario::{FieldPattern, Stepfield};
 
@@ -317,6 +345,21 @@ mod tests {
 
     fn points(profile: &Profile) -> Vec<[f64; 2]> {
         profile.points.iter().map(|p| [p.x, p.y]).collect()
+    }
+
+    #[test]
+    fn between_two_lanes_each_place_has_the_larger_friction_there() {
+        let with = |frictions: &[f64]| {
+            let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1], [2.0, 0.1]];
+            let mut profile = profile(&points);
+            profile.friction = GroundFriction::of_segments(&points, frictions, 0.0);
+            profile
+        };
+        let (a, b) = (with(&[0.1, 0.2, 0.3, 0.9]), with(&[0.0, 0.4, 0.0, 0.0]));
+        let found = upper_envelope("terrain", &a, &b).expect("they overlap");
+        let places = [(-0.5, 0.0), (0.0, 0.05), (0.5, 0.1), (1.5, 0.1)];
+        let found = places.map(|(x, y)| found.friction.at(Vector::new(x, y)).coefficient);
+        assert_relative_eq!(found.as_slice(), [0.1, 0.4, 0.3, 0.9].as_slice());
     }
 
     #[test]
