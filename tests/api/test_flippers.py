@@ -96,6 +96,23 @@ def test_every_model_stands_on_its_flippers(track: Any) -> None:
     assert lift[last].sum() / samples == pytest.approx(weight, rel=5e-3)
 
 
+@pytest.mark.parametrize(("ends", "angle"), [("front", -2.9), ("rear", -2.9), ("rear", 3.1)])
+@pytest.mark.parametrize(
+    "track", [c2d.BeltTrack(), c2d.GrouserBeltTrack()], ids=["belt", "grousers"]
+)
+def test_a_robot_whose_arms_are_folded_back_starts_on_the_ground(
+    track: Any, ends: Any, angle: float
+) -> None:
+    robot = replace(ENGINEER.with_track(track), flippers=replace(ARMS, ends=ends, angle=angle))
+    for place in np.arange(-0.6, -0.05, 0.06):
+        spike = [(-6.0, 0.0), (place - 0.02, 0.0), (place, 0.1), (place + 0.02, 0.0)]
+        ground = c2d.terrains.from_points([*spike, (0.3, 0.0), (0.3, 0.01), (3.0, 0.01)], goal=2.0)
+        start = c2d.Start(approach=0.3)  # from the edge at 0.3 m
+        sim = c2d.Simulation(Scenario(robot, ground, drive=c2d.Drive(speed=0.0), start=start))
+        sim.advance(2e-5)
+        assert sim.state().contacts["penetration"].max() < 1e-6
+
+
 def test_same_bits_in_a_batch_and_from_a_snapshot() -> None:
     robot = c2d.robots.absolem(track=c2d.LineOfWheels(5, wheel=c2d.GearWheel()))
     scenario = Scenario(

@@ -92,6 +92,10 @@ impl Touching {
                         .windows(2)
                         .map(|pair| lower_tangent(pair[0], pair[1])),
                 );
+                // An arm that is folded back has its other side below.
+                if let [root, tip] = placed {
+                    segments.push(lower_tangent(*tip, *root));
+                }
             }
             Shape::Gear { center, gear } => {
                 let start = -run / gear.radius;
