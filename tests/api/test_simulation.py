@@ -70,6 +70,20 @@ def test_a_command_is_followed_within_the_limits_of_the_drivetrain(scenario: Sce
     assert sim.state().velocity[0] == pytest.approx(-0.1, rel=1e-3)
 
 
+@pytest.mark.parametrize("at", [0.0, 0.5])
+def test_a_command_at_the_instant_of_an_entry_takes_its_place(
+    scenario: Scenario, at: float
+) -> None:
+    drive = replace(scenario.drive, schedule=[(at, 0.3), (1.5, 0.2)])
+    sim = c2d.Simulation(replace(scenario, drive=drive))
+    sim.advance(at)
+    sim.command(speed=0.1)
+    sim.advance(0.5)
+    assert sim.state().commanded_speed == 0.1
+    sim.advance(1.6)
+    assert sim.state().commanded_speed == 0.2
+
+
 def test_an_outcome_is_reported_and_does_not_end_the_simulation(scenario: Scenario) -> None:
     sim = c2d.Simulation(scenario)
     sim.advance(6.0)

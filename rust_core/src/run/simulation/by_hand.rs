@@ -33,6 +33,9 @@ impl Simulation {
             gait: None,
         };
         drive.check(&self.scenario.robot.drivetrain)?;
+        // An entry that is due now is no later one.
+        let scheduled = &self.scenario.drive;
+        self.commands.driver.speed(scheduled, self.time);
         self.commands.speed = speed;
         self.commands.follow_scenario = false;
         Ok(())
