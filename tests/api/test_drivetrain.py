@@ -12,6 +12,7 @@ from tests.judges.judge import Judge
 from tests.shared import refusal
 
 ENGINEER = c2d.robots.engineer().without_flippers().without_rotors()
+RADIUS = 0.052  # [m] Of its sprockets.
 
 
 def driven(**fields: Any) -> c2d.Robot:
@@ -93,6 +94,22 @@ def test_what_limits_a_motor_with_a_curve_is_found() -> None:
         found.append((table["speed_with"].values, table["limit"].item()))
     assert found[0][0] == pytest.approx(found[1][0], rel=1e-6)
     assert found[0][1] == found[1][1] == "torque"
+
+
+@pytest.mark.parametrize("end", [0.3001, 0.31])
+@pytest.mark.parametrize("acceleration", [2.0, 1e4])
+def test_a_motor_does_not_drive_beyond_the_end_of_its_curve(
+    end: float, acceleration: float
+) -> None:
+    curve = ((0.0, 6.0), (0.3, 6.0), (end, 0.0))
+    robot = driven(torque_curve=curve, max_acceleration=acceleration)
+    run = c2d.simulate(
+        c2d.Scenario(robot, c2d.terrains.flat(), drive=c2d.Drive(speed=1.2), duration=1.0)
+    )
+    # After the shortest step, of 20 us, under the force of a motor at rest.
+    force = 2.0 * 6.0 / RADIUS
+    assert run.track_speed.max() < end + 20e-6 * force / robot.mass + 5e-4
+    assert run.track_speed[-1] > 0.3
 
 
 def test_texts_leave_out_what_motors_do_not_have() -> None:

@@ -1,5 +1,5 @@
-//! When, within a step, a motor comes to its speed or a contact ceases to slide: its force jumps then, and the step is
-//! to end there.
+//! When, within a step, a motor comes to its speed or to the end of a piece of its curve, or a contact ceases to slide: its
+//! force or the slope of it jumps then, and the step is to end there.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -38,6 +38,23 @@ fn arrival(lag: f64, middle: Middle, half: f64, accuracy: f64) -> Option<f64> {
     (is_within && off > accuracy).then_some(time)
 }
 
+/// [s] When a speed [m/s] under a constant force leaves a range that it is in, from its middle, as above; at the shortest
+/// step where that is sooner, so that the next step begins outside.
+fn departure(speed: [f64; 2], [low, high]: [f64; 2], half: f64, accuracy: f64) -> Option<f64> {
+    let step = 2.0 * half;
+    let [begin, middle] = speed;
+    let gain = middle - begin;
+    let last = begin + 2.0 * gain;
+    let (end, past) = if last > high {
+        (high, last - high)
+    } else {
+        (low, low - last)
+    };
+    let time = (half * (end - begin) / gain).max(SHORTEST.value());
+    let off = 0.5 * past * (step - time);
+    (time < LONGEST_SHARE * step && off > accuracy).then_some(time)
+}
+
 impl Dynamics {
     /// Notes what motors and friction may bring to 0 within a step: by how much the drives are off their set-points, and
     /// how fast contacts slide.
@@ -59,8 +76,8 @@ impl Dynamics {
         self.lags.extend(of_drives.chain(of_contacts));
     }
 
-    /// [s] When the first of these comes to 0, from the middle of a step, `half` [s] after its beginning; none if the
-    /// whole step is off by no more than `accuracy` [m].
+    /// [s] When the first of these comes to 0, or a motor leaves the piece of its curve that limits it, from the middle of a
+    /// step, `half` [s] after its beginning; none if the whole step is off by no more than `accuracy` [m].
     pub(super) fn first_arrival(&self, half: f64, accuracy: f64) -> Option<f64> {
         let problem = &self.problem;
         let drives = &problem.motors[self.model.drive_motors()];
@@ -84,7 +101,21 @@ impl Dynamics {
         let middles = of_drives.chain(of_contacts);
         let arrivals = (self.lags.iter().zip(middles))
             .filter_map(|(lag, middle)| arrival(*lag, middle?, half, accuracy));
-        arrivals.reduce(f64::min)
+        let departures = drives
+            .iter()
+            .zip(&self.forces)
+            .filter_map(|(motor, forces)| {
+                let [[low, high], [lower, upper]] = forces.ends;
+                let ends = match motor.state {
+                    MotorState::LimitForwards => [low, high],
+                    MotorState::LimitBackwards => [lower, upper],
+                    MotorState::Holds => [low.max(lower), high.min(upper)],
+                    MotorState::Locked | MotorState::Absent => return None,
+                };
+                let speeds = [forces.speed, problem.motor_speed(motor)];
+                departure(speeds, ends, half, accuracy)
+            });
+        arrivals.chain(departures).reduce(f64::min)
     }
 }
 
@@ -103,6 +134,28 @@ mod tests {
         assert_relative_eq!(held.expect("it is within"), time, max_relative = 1e-12);
         let left = arrival(lag, Middle::Left(lag + loss * 5e-4), 5e-4, 1e-7);
         assert_relative_eq!(left.expect("it is within"), time, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_speed_leaves_a_range_at_its_share_of_the_time_or_after_the_shortest_step() {
+        let within =
+            |begin: f64, gain: f64| departure([begin, begin + gain], [0.1, 0.3], 5e-3, 1e-7);
+        // 20 m/s^2 over 10 ms.
+        assert_relative_eq!(
+            within(0.2, 0.1).expect("upwards"),
+            5e-3,
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(
+            within(0.2, -0.1).expect("downwards"),
+            5e-3,
+            max_relative = 1e-12
+        );
+        assert_eq!(within(0.3, 0.1), Some(SHORTEST.value()));
+        assert_eq!(
+            [within(0.2, 0.04), within(0.2, 0.0), within(0.1, 0.0)],
+            [None; 3]
+        );
     }
 
     #[test]

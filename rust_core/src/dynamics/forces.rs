@@ -9,7 +9,10 @@ use crate::solver::Damper;
 #[derive(Clone, Copy, Default)]
 pub(super) struct Forces {
     pub limits: [Damper; 2],
-    /// [m/s] Error of the speed at the beginning.
+    /// [m/s] Between which speeds these are its limits.
+    pub ends: [[f64; 2]; 2],
+    /// [m/s] The speed at the beginning, and its error.
+    pub speed: f64,
     pub error: f64,
 }
 

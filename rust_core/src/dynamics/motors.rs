@@ -23,8 +23,11 @@ impl Dynamics {
         self.forces.clear();
         for (k, motor) in motors.iter_mut().enumerate() {
             let speed = state.track_speed(&self.model, k);
+            let limits = rule.limits(speed);
             let forces = Forces {
-                limits: rule.limits(speed).map(Damper::from),
+                limits: limits.map(|limit| limit.line.into()),
+                ends: limits.map(|limit| limit.ends),
+                speed,
                 error: set_point.start() - speed,
             };
             let [most, least] = forces.limits.map(|limit| limit.at(speed));

@@ -37,6 +37,29 @@ pub(crate) struct Line {
     pub slope: f64,
 }
 
+/// A largest force near a speed: that of one piece of a curve.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    pub line: Line,
+    /// [m/s] The lowest and the highest speed of the piece.
+    pub ends: [f64; 2],
+}
+
+impl Piece {
+    /// The same of a motor that turns the other way.
+    fn reversed(self) -> Self {
+        let [low, high] = self.ends;
+        let at_rest = -self.line.at_rest;
+        Self {
+            line: Line {
+                at_rest,
+                ..self.line
+            },
+            ends: [-high, -low],
+        }
+    }
+}
+
 impl Correction {
     /// Its force at a speed, a `time` [s] after the error of that was `error` [m/s] and the sum of errors made `integral` [N].
     pub(crate) fn force(&self, target: f64, error: f64, integral: f64, time: f64) -> Line {
@@ -114,36 +137,36 @@ impl MotorRule {
     }
 
     /// Its largest forces near a speed [m/s] of the surface, forwards and backwards.
-    pub(crate) fn limits(&self, speed: f64) -> [Line; 2] {
-        let (forwards, backwards) = (self.limit(speed), self.limit(-speed));
-        let at_rest = -backwards.at_rest;
-        [
-            forwards,
-            Line {
-                at_rest,
-                ..backwards
-            },
-        ]
+    pub(crate) fn limits(&self, speed: f64) -> [Piece; 2] {
+        [self.limit(speed), self.limit(-speed).reversed()]
     }
 
     /// Its largest force forwards near a speed. Against its motion it has the force that it has at rest.
-    fn limit(&self, speed: f64) -> Line {
-        let mut pieces = self.curve.iter().zip(self.curve.iter().skip(1));
-        let piece = pieces.find(|(_, [to, _])| (0.0..*to).contains(&speed));
-        let Some((&[from, share], &[to, next])) = piece else {
-            let share = match self.curve.last() {
-                Some([_, last]) if speed >= 0.0 => *last,
-                _ => 1.0,
-            };
-            return Line {
+    fn limit(&self, speed: f64) -> Piece {
+        let level = |share: f64, ends: [f64; 2]| Piece {
+            line: Line {
                 at_rest: share * self.force,
                 slope: 0.0,
-            };
+            },
+            ends,
+        };
+        let Some(&[fastest, last]) = self.curve.last() else {
+            return level(1.0, [f64::NEG_INFINITY, f64::INFINITY]);
+        };
+        if speed < 0.0 {
+            return level(1.0, [f64::NEG_INFINITY, 0.0]);
+        }
+        let mut pieces = self.curve.iter().zip(self.curve.iter().skip(1));
+        let Some((&[from, share], &[to, next])) = pieces.find(|(_, [to, _])| speed < *to) else {
+            return level(last, [fastest, f64::INFINITY]);
         };
         let slope = (share - next) / (to - from) * self.force;
-        Line {
-            at_rest: share * self.force + slope * from,
-            slope,
+        Piece {
+            line: Line {
+                at_rest: share * self.force + slope * from,
+                slope,
+            },
+            ends: [from, to],
         }
     }
 
@@ -201,7 +224,7 @@ mod tests {
     #[test]
     fn a_motor_without_a_curve_has_its_force_at_any_speed() {
         for speed in [-3.0, 0.0, 3.0] {
-            let [most, least] = rule(&[]).limits(speed).map(|limit| limit.at(speed));
+            let [most, least] = rule(&[]).limits(speed).map(|limit| limit.line.at(speed));
             assert!(is(most, 100.0) && is(least, -100.0));
         }
     }
@@ -217,11 +240,11 @@ mod tests {
             (2.0, 0.0),
             (5.0, 0.0),
         ] {
-            let [most, least] = rule.limits(speed).map(|limit| limit.at(speed));
+            let [most, least] = rule.limits(speed).map(|limit| limit.line.at(speed));
             assert!(is(most, expected), "{most} N at {speed} m/s");
             let brakes = if speed > 0.0 { -100.0 } else { -expected };
             assert!(is(least, brakes), "{least} N at {speed} m/s");
-            let [forwards, backwards] = rule.limits(-speed).map(|limit| limit.at(-speed));
+            let [forwards, backwards] = rule.limits(-speed).map(|limit| limit.line.at(-speed));
             assert!(is(forwards, -least) && is(backwards, -most));
         }
     }
