@@ -88,7 +88,7 @@ class Simulation:
 
 def branch(
     text: str,
-    at: tuple[float, int],
+    at: tuple[float, int | None],
     variant: str,
     push: tuple[float, float],
     sample_interval: float,

@@ -201,12 +201,12 @@ mod _core {
         }
     }
 
-    /// Simulates up to a time, or so many starts of trials later, then continues as another scenario.
+    /// Simulates up to a time, and of a trial so many starts later, then continues as another scenario.
     #[pyfunction]
     fn branch<'py>(
         py: Python<'py>,
         text: PyBackedStr,
-        at: (f64, usize),
+        at: (f64, Option<usize>),
         variant: PyBackedStr,
         push: (f64, f64),
         sample_interval: f64,

@@ -133,6 +133,60 @@ def test_a_change_of_ones_own_is_tried_in_the_same_way(seized: c2d.Run) -> None:
     assert pushed.run.position[:, 0].max() > 0.05
 
 
+def test_what_a_schedule_has_after_the_stop_changes_no_trial_and_not_its_run() -> None:
+    drive = SEIZING.drive
+    later = [(drive, 8.0), (replace(drive, schedule=[(7.0, -drive.speed)]), 7.0 - 1e-9)]
+    stops = [c2d.simulate(replace(SEIZING, drive=each, duration=end)) for each, end in later]
+    (one, other) = (stop.what_if(track=c2d.BeltTrack()) for stop in stops)
+    assert other.freed
+    assert other.outcome is one.outcome is c2d.Outcome.CLEARED
+    assert other.distance == pytest.approx(one.distance, abs=1e-4)
+    assert other.run.outcome is c2d.Outcome.CLEARED
+    ahead = other.run.position[:, 0].max() - stops[1].position[:, 0].max()
+    assert other.distance == pytest.approx(ahead, abs=0.01)  # of a step
+
+
+def test_what_a_gait_has_after_the_stop_changes_no_trial() -> None:
+    robot = c2d.robots.engineer().with_track(c2d.LineOfWheels(4))
+    assert robot.flippers is not None
+    robot = replace(robot, flippers=replace(robot.flippers, ends="both", angle=0.3))
+    stands = c2d.Scenario(
+        robot,
+        c2d.terrains.step(0.12, friction=0.9),
+        drive=c2d.Drive(speed=0.3, gait=c2d.Hold(0.3)),
+        start=c2d.Start(approach=0.1),
+        duration=8.0,
+    )
+    lowers = replace(
+        stands, drive=replace(stands.drive, gait=c2d.Hold(0.3, schedule=[(8.0, -0.8)]))
+    )
+    stops = [c2d.simulate(each) for each in (stands, lowers)]
+    assert stops[0].outcome is stops[1].outcome
+    freed = [{trial.name: trial.freed for trial in stop.trials()} for stop in stops]
+    assert freed[0] == freed[1]
+
+
+@pytest.mark.filterwarnings("ignore:terrain.*friction")
+@pytest.mark.parametrize(
+    "track",
+    [c2d.BeltTrack(), c2d.LineOfWheels(4), c2d.SegmentalTrack()],
+    ids=["belt", "line", "chain"],
+)
+def test_a_trial_can_make_the_ground_of_two_tracks_alike(track: Any) -> None:
+    walls = [c2d.terrains.step(0.3, friction=friction) for friction in (60.0, 80.0)]
+    stop = c2d.Scenario(
+        ROBOT.with_track(track),
+        c2d.terrains.lanes(*walls),
+        drive=c2d.Drive(speed=0.3),
+        start=c2d.Start(approach=0.1),
+        duration=4.0,
+    )
+    # Friction is at most 100.
+    trial = c2d.simulate(stop, trials=["friction x 2"]).what_if("friction x 2")
+    assert not trial.freed
+    assert trial.run.scenario.terrain.left == trial.run.scenario.terrain.right
+
+
 def test_the_time_of_a_trial_follows_the_criteria_and_the_command() -> None:
     for changes, expected in (
         ({"criteria.escape_time": 0.02}, 0.02 + 0.05 / 0.4),

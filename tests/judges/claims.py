@@ -240,7 +240,7 @@ class Claims:
         lasts = criteria.escape_time + criteria.escape_distance / speed
         variant = dataclasses.replace(variant, duration=lasts)
         text, changed = self.run.scenario.to_json(), variant.to_json()
-        result = _core.branch(text, (at, 0), changed, (0.0, 0.0), 0.01, "full")
+        result = _core.branch(text, (at, None), changed, (0.0, 0.0), 0.01, "full")
         return c2d.Run(variant, result, trunk=(self.run.scenario, at))
 
     def ahead(self, run: c2d.Run) -> float:

@@ -240,9 +240,9 @@ def simulate_branch(
     push: tuple[float, float] | None,
     record: RecordMode,
     sample_interval: float,
-    start: int = 0,
+    start: int | None = None,
 ) -> dict[str, Any]:
-    """Repeat the run up to a time, or to a start after a stop, and continue as another scenario."""
+    """Repeat the run up to a time, or to the start of a trial, and continue as another scenario."""
     kept = check_recording(sample_interval, record)
     text, place = variant.to_json(), (time, start)
     return _core.branch(run.scenario.to_json(), place, text, read_push(push), *kept)

@@ -293,7 +293,7 @@ class Run(ShownRun):
         *,
         record: RecordMode = "full",
         sample_interval: float = 0.01,
-        start: int = 0,
+        start: int | None = None,
     ) -> Run:
         how: Any = {"push": push, "record": record, "sample_interval": sample_interval}
         result = simulate_branch(self, time, variant, start=start, **how)

@@ -35,14 +35,14 @@ pub(crate) fn simulate_within(
 }
 
 /// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration, with a push that
-/// rises to a force [N] in a time [s]. Of a stop it begins so many starts later as [`what_if`](crate::what_if) says, a
-/// fifth of a stop window each.
+/// rises to a force [N] in a time [s]. A run of a trial begins so many starts later as [`what_if`](crate::what_if) says, a
+/// fifth of a stop window each, and like the trial it ignores the schedules.
 ///
 /// # Errors
 /// As [`simulate`], [`Error::Scenario`] if the push is out of range, and [`Error::Interrupted`] once `cancel` is asked.
 pub fn branch(
     scenario: &ValidScenario,
-    (at, later): (f64, usize),
+    (at, trial): (f64, Option<usize>),
     (variant, push): (&ValidScenario, (f64, f64)),
     record: Record,
     cancel: &Cancel,
@@ -50,8 +50,11 @@ pub fn branch(
     let clock = Clock::start();
     let budget = batch_budget(std::slice::from_ref(variant), record, 1)?;
     let mut trunk = Simulation::replayed(scenario, at, cancel)?;
-    for _ in 0..later {
-        trunk = trials::next_start(&trunk, cancel)?;
+    if let Some(later) = trial {
+        trunk = trunk.copy();
+        for _ in 0..later {
+            trunk = trials::next_start(&trunk, cancel)?;
+        }
     }
     let mut simulation = trunk.branch(variant);
     simulation.raise_push(push.0, push.1)?;

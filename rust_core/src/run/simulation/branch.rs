@@ -23,7 +23,9 @@ impl Simulation {
     pub fn branch(&self, variant: &ValidScenario) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
         let variant = variant.scenario();
-        if self.engine.is_none() && has_the_same_parts(&self.scenario.robot, &variant.robot) {
+        let has_same_parts = self.ground.has_lanes_of(&ground)
+            && has_the_same_parts(&self.scenario.robot, &variant.robot);
+        if has_same_parts && self.engine.is_none() {
             self.continued(variant, ground, model)
         } else {
             self.rebuilt(variant, ground, model)
@@ -80,7 +82,8 @@ impl Simulation {
         let mut copy = self.continued(&self.scenario, Arc::clone(&self.ground), model);
         copy.engine.clone_from(&self.engine);
         copy.commands.follow_scenario = self.commands.follow_scenario;
-        copy.commands.driver.ignore_schedule(&self.scenario.drive);
+        let driver = &mut copy.commands.driver;
+        driver.ignore_schedules(&self.scenario.drive, self.time);
         copy
     }
 
@@ -95,7 +98,9 @@ impl Simulation {
             Arc::new(Ground::new(&variant.terrain, variant.robot.gauge)?)
         };
         let model = Model::on(&variant.robot, &ground)?;
-        Ok(if rebuilt || self.engine.is_some() {
+        // Twice the friction can make two tracks' ground alike, and two tracks one.
+        let is_like = self.ground.has_lanes_of(&ground);
+        Ok(if rebuilt || !is_like || self.engine.is_some() {
             self.rebuilt(variant, ground, model)
         } else {
             self.continued(variant, ground, model)

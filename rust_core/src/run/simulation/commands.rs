@@ -53,6 +53,8 @@ pub(crate) struct DriverView {
 pub(crate) struct Driver {
     /// Number of past entries of the schedule of speeds.
     entries: usize,
+    /// How many entries of the schedule of angles count, if later ones do not.
+    angles: Option<usize>,
     phase: Phase,
     /// [s] Since when the nose has been down by more than counts as level, if it is.
     nose_down_since: Option<f64>,
@@ -82,9 +84,13 @@ impl Driver {
         speed
     }
 
-    /// Drives on at the present speed, whatever the schedule has yet.
-    pub(crate) fn ignore_schedule(&mut self, drive: &Drive) {
+    /// Drives on at the speed and the angles before a time [s], whatever the schedules have from then on.
+    pub(crate) fn ignore_schedules(&mut self, drive: &Drive, now: f64) {
         self.entries = drive.schedule.as_ref().map_or(0, Vec::len);
+        if let Some(Gait::Hold(hold)) = &drive.gait {
+            let past = hold.entries().partition_point(|[from, _]| *from < now);
+            self.angles.get_or_insert(past);
+        }
     }
 
     /// The same driver with another command; what the commands have in common goes on.
@@ -130,7 +136,7 @@ impl Driver {
         let of_gait = match &drive.gait {
             None => [FlipperCommand::Angle(start); 2],
             Some(Gait::Hold(hold)) => {
-                let angle = hold.angle_at(sight.time);
+                let angle = hold.angle_at(sight.time, self.angles);
                 [hold.front, hold.rear].map(|end| FlipperCommand::Angle(end.unwrap_or(angle)))
             }
             Some(Gait::Climb(climb)) => self.climb(climb, start, sight),
@@ -175,9 +181,15 @@ pub(crate) fn has_the_same_speeds(one: &Drive, other: &Drive) -> bool {
 }
 
 impl Hold {
-    fn angle_at(&self, time: f64) -> f64 {
-        let entries = self.schedule.as_deref().unwrap_or_default();
+    fn entries(&self) -> &[[f64; 2]] {
+        self.schedule.as_deref().unwrap_or_default()
+    }
+
+    /// [rad] The angle at a time [s], if no more entries than these count.
+    fn angle_at(&self, time: f64, most: Option<usize>) -> f64 {
+        let entries = self.entries();
         let past = entries.partition_point(|[from, _]| *from <= time);
+        let past = past.min(most.unwrap_or(entries.len()));
         past.checked_sub(1)
             .map_or(self.angle, |last| entries[last][1])
     }
