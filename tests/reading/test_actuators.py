@@ -118,6 +118,25 @@ def test_dynamics_of_sdf_are_read(tmp_path: Path) -> None:
     assert any("0.15 of 15 N m" in note for note in read(tmp_path, text, "cart.sdf").notes)
 
 
+@pytest.mark.parametrize("name", ["acceleration", "linear_acceleration"])
+def test_accelerations_are_those_of_a_differential_drive(tmp_path: Path, name: str) -> None:
+    limits = f"<max_{name}>0.2</max_{name}><min_{name}>-0.5</min_{name}>"
+    limits += "<max_angular_acceleration>0.1</max_angular_acceleration>"
+    plugin = f'<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="x">{limits}</plugin>'
+    reading = read(tmp_path, stated(f"{plugin}</gazebo>"))
+    found = reading.robot.drivetrain
+    assert (found.max_acceleration, found.max_deceleration) == (0.2, 0.5)
+    assert reading.sources["robot.drivetrain.max_acceleration"].startswith("cart.urdf:")
+    usual = read(tmp_path, stated())
+    assert usual.robot.drivetrain.max_acceleration == 1.0
+    assert "estimate" in usual.sources["robot.drivetrain.max_deceleration"]
+
+
+def test_a_note_says_what_wheels_on_flippers_leave_to_those_of_the_chassis(tmp_path: Path) -> None:
+    notes = read(tmp_path, (FILES / "cart.sdf").read_text(), "cart.sdf").notes
+    assert any("each wheel of the chassis has 3/5" in note for note in notes)
+
+
 def test_a_differential_drive_of_gazebo_classic_limits_the_torque(tmp_path: Path) -> None:
     joints = "".join(
         f"<{side}_joint>{side}_{end}_joint</{side}_joint>"

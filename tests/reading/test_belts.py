@@ -175,13 +175,20 @@ def test_a_belt_of_a_flipper_that_does_not_run_round_its_pivot_is_refused(tmp_pa
     refused(tmp_path, beside, "must have a belt from the pivot to the tip", "tank.sdf")
 
 
-def test_the_speed_of_a_vehicle_with_tracks_is_that_of_its_plugin(tmp_path: Path) -> None:
+def test_speed_and_acceleration_of_a_vehicle_with_tracks_are_those_of_its_plugin(
+    tmp_path: Path,
+) -> None:
     """Gazebo's TrackedVehicle has limits within limits, that of turning among them."""
     plugin = """<plugin name="gz::sim::systems::TrackedVehicle" filename="x">
       <left_track><link>left</link></left_track><right_track><link>right</link></right_track>
-      <linear_velocity><max_velocity>0.4</max_velocity></linear_velocity>
-      <angular_velocity><max_velocity>0.2</max_velocity></angular_velocity></plugin>"""
+      <linear_velocity><max_velocity>0.4</max_velocity>
+        <max_acceleration>0.3</max_acceleration><min_acceleration>-2</min_acceleration>
+      </linear_velocity>
+      <angular_velocity><max_velocity>0.2</max_velocity><max_acceleration>0.1</max_acceleration>
+      </angular_velocity></plugin>"""
     text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
     reading = read(tmp_path, text.replace("</model>", f"{plugin}</model>"), "tank.sdf")
-    assert reading.robot.drivetrain.max_speed == 0.4
+    drivetrain = reading.robot.drivetrain
+    assert drivetrain.max_speed == 0.4
+    assert (drivetrain.max_acceleration, drivetrain.max_deceleration) == (0.3, 2.0)
     assert reading.sources["robot.drivetrain.max_speed"].startswith("tank.sdf:")

@@ -126,6 +126,8 @@ class Assembly:
         flippers = flippers_of(log, by_end, mass)
         if flippers is not None and isinstance(flippers.track, BeltTrack):
             drivetrain = replace(drivetrain, torque_sharing="track")
+        if drivetrain.torque_sharing == "wheel":
+            self.note_shares(len(pairs), sum(len(end.pair.pairs) for end in by_end.values()))
         self.list_runners(pairs, by_end)
         return Robot(
             tree.name or "robot",
@@ -140,6 +142,15 @@ class Assembly:
             drivetrain=drivetrain,
             track=track,
         )
+
+    def note_shares(self, on_chassis: int, on_arms: int) -> None:
+        """Note what wheels on flippers leave of the torque to those of the chassis."""
+        if on_chassis and on_arms:
+            share = f"{on_chassis}/{on_chassis + on_arms}"
+            self.log.notes.append(
+                "the torque is that of the wheels of the chassis, and those on flippers have equal"
+                f" shares of it: each wheel of the chassis has {share} of what the file gives it"
+            )
 
     @property
     def frame(self) -> Pose:

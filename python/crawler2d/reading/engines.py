@@ -54,6 +54,11 @@ _UNITS = {
 _SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity")
 """Of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
 
+_RATES = ("_acceleration", "_linear_acceleration")
+"""Behind "max" and "min", of the same; that of TrackedVehicle is within ``linear_velocity``."""
+
+_QUICKEST = 1e6  # [m/s^2]
+
 _WITHIN_A_STEP = "the commanded speed within one step, as far as the torque limit allows"
 _AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (read in its source)"
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
@@ -367,9 +372,11 @@ def drivetrain_of(
         is_each = len(motors) == len(wheels) and len(set(efforts)) == 1
         if isinstance(track, LineOfWheels) and is_each:
             sharing = "wheel"
-    of_simple, none = estimate("that of Robot.simple"), f"{tree.at}: none"
+    none = f"{tree.at}: none"
+    gaining, gaining_source = _acceleration(tree, "max", _ACCELERATION)
+    slowing, slowing_source = _acceleration(tree, "min", _DECELERATION)
     log.cite("robot.drivetrain", max_speed=speed_source)
-    log.cite("robot.drivetrain", max_acceleration=of_simple, max_deceleration=of_simple)
+    log.cite("robot.drivetrain", max_acceleration=gaining_source, max_deceleration=slowing_source)
     log.cite("robot.drivetrain", max_torque=torque_source, torque_sharing=sharing_source)
     log.cite("robot.drivetrain", no_load_speed=none, torque_curve=none, self_locking=none)
     warn_ignored(log, joints)
@@ -388,8 +395,8 @@ def drivetrain_of(
         log.doubt(path, value, "is too soft for the torque limit, even at full speed")
     return Drivetrain(
         max_speed=speed,
-        max_acceleration=_ACCELERATION,
-        max_deceleration=_DECELERATION,
+        max_acceleration=gaining,
+        max_deceleration=slowing,
         max_torque=torque,
         torque_sharing=sharing,
         rotor_inertia=rotor_inertia(log, "robot.drivetrain.rotor_inertia", inertias, joints),
@@ -429,22 +436,41 @@ def _states(joint: Joint, *names: str) -> bool:
 
 def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
     """[m/s] Return the largest speed of the track: the slowest of its wheels sets it."""
-    limits: list[tuple[float, Where]] = []
+    limits = _of_plugins(tree, _SPEEDS)
     for runner in (each for pair in pairs for each in pair.both):
         if runner.joint is None:
             limits.append((runner.shape.surface_speed, runner.shape.at))
         elif runner.joint.velocity:
             limits.append((runner.joint.velocity * runner.radius, runner.joint.velocity_at))
-    for plugin in tree.plugins:
-        if "track" in plugin.name.lower() or "diff" in plugin.name.lower():
-            for text, where in plugin.values(*_SPEEDS):
-                with contextlib.suppress(ValueError):
-                    limits.append((float(text), where))
     limits = [(speed, where) for speed, where in limits if 0.0 < speed <= FASTEST]
     if not limits:
         return _SPEED, estimate("that of Robot.simple: the file has no limit")
-    speed = min(speed for speed, _ in limits)
-    return speed, lines([where for each, where in limits if each == speed])
+    return _least(limits)
+
+
+def _acceleration(tree: Tree, which: str, usual: float) -> tuple[float, str]:
+    """[m/s^2] Return how fast the track gains speed ("max") or loses it ("min", stated below 0)."""
+    names = [f"{which}{name}" for name in _RATES]
+    stated = _of_plugins(tree, [*names, f"linear_velocity/{names[0]}"])
+    limits = [(abs(rate), where) for rate, where in stated if 0.0 < abs(rate) <= _QUICKEST]
+    return _least(limits) if limits else (usual, estimate("that of Robot.simple"))
+
+
+def _of_plugins(tree: Tree, names: Sequence[str]) -> list[tuple[float, Where]]:
+    """List the numbers that plugins of drives state under some names."""
+    found = []
+    for plugin in tree.plugins:
+        if "track" in plugin.name.lower() or "diff" in plugin.name.lower():
+            for text, where in plugin.values(*names):
+                with contextlib.suppress(ValueError):
+                    found.append((float(text), where))
+    return found
+
+
+def _least(limits: Sequence[tuple[float, Where]]) -> tuple[float, str]:
+    """Return the smallest limit, and where it stands."""
+    least = min(limit for limit, _ in limits)
+    return least, lines([where for each, where in limits if each == least])
 
 
 def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[tuple[Joint, float]]:
