@@ -166,7 +166,8 @@ impl Problem {
         let beside = (BASE..).zip(bodies).filter(|(at, _)| !is_of_ring(*at));
         let of_bodies: f64 = beside.map(|(_, body)| of_body(body)).sum();
         let of_inertias: f64 = self.inertias.iter().map(Inertia::energy).sum();
-        given > of_base + of_bodies + of_inertias
+        let of_rings: f64 = self.rings.iter().map(|ring| ring.energy(&self.free)).sum();
+        given > of_base + of_bodies + of_inertias + of_rings
     }
 
     /// Sets all offsets to 0: contacts that jam cannot all open or slide on their own. Returns whether that changes

@@ -327,6 +327,71 @@ mod tests {
         }
     }
 
+    /// The conditions of a state at an impulse of 3 N s and a speed of 0.5 m/s, with limits of 2 and -1 N s.
+    fn conditions(motor: &Motor) -> Vec<(MotorState, f64)> {
+        let mut found = Vec::new();
+        let limits = [2.0, -1.0].map(Damper::constant);
+        let motor = Motor { limits, ..*motor };
+        motor.conditions(3.0, 0.5, |state, value| found.push((state, value)));
+        found
+    }
+
+    #[test]
+    fn a_motor_stays_in_its_state_by_conditions() {
+        use MotorState::{Holds, LimitBackwards, LimitForwards, Locked};
+        let mut motor = Motor::new(Driven::Body(3), 0.1, true);
+        motor.target = 0.2;
+        for (state, expected) in [
+            (Holds, vec![(LimitForwards, -1.0), (LimitBackwards, 4.0)]),
+            (LimitForwards, vec![(Holds, -0.3)]),
+            (LimitBackwards, vec![(Holds, 0.3)]),
+            (MotorState::Absent, vec![]),
+        ] {
+            assert_eq!(conditions(&Motor { state, ..motor }), expected);
+        }
+        // It would give 2.5 N s: that is held against its limits, whatever it gives.
+        motor.correction = Some(Damper::constant(2.5));
+        for (state, expected) in [
+            (Holds, vec![(LimitForwards, -0.5), (LimitBackwards, 3.5)]),
+            (LimitForwards, vec![(Holds, 0.5)]),
+            (LimitBackwards, vec![(Holds, -3.5)]),
+        ] {
+            assert_eq!(conditions(&Motor { state, ..motor }), expected);
+        }
+        motor.correction = None;
+        for (target, of_hold, of_lock) in [
+            (0.2, vec![(LimitForwards, -1.0)], vec![(LimitForwards, 1.0)]),
+            (0.0, vec![], vec![]),
+            (
+                -0.2,
+                vec![(LimitBackwards, 4.0)],
+                vec![(LimitBackwards, -4.0)],
+            ),
+        ] {
+            let locks = Motor {
+                target,
+                ..motor.behind_lock()
+            };
+            assert_eq!(
+                conditions(&Motor {
+                    state: Holds,
+                    ..locks
+                }),
+                of_hold
+            );
+            assert_eq!(
+                conditions(&Motor {
+                    state: Locked,
+                    ..locks
+                }),
+                of_lock
+            );
+            let at_limit = |state| conditions(&Motor { state, ..locks })[1];
+            assert_eq!(at_limit(LimitForwards), (Locked, 0.5));
+            assert_eq!(at_limit(LimitBackwards), (Locked, -0.5));
+        }
+    }
+
     #[test]
     fn a_lock_bears_what_the_motor_cannot_give() {
         let mut motor = behind_lock(MotorState::Holds);

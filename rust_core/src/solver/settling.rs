@@ -152,7 +152,7 @@ impl Problem {
     }
 
     /// [m/s] How far the last solution has moved the base.
-    fn base_change(&self) -> f64 {
+    pub(super) fn base_change(&self) -> f64 {
         let [x, y, turn] = [0, 1, TURN].map(|i| self.change[i]);
         let weights = &self.system.weights;
         libm::hypot(x, y) + turn.abs() * (weights[0] / weights[TURN]).sqrt()

@@ -2,6 +2,7 @@
 
 mod blow;
 mod interior_point;
+mod offsets;
 mod path;
 mod random;
 mod rings;
@@ -148,7 +149,6 @@ fn a_narrow_wedge_holds_what_a_wide_one_lets_go() {
     }
 }
 
-/// A belt, without torque, between floor and ceiling that pull it opposite ways: its drive takes the difference only.
 /// Two walls that are almost parallel hold what falls between them. Each solution comes nearer to rest by a ratio of
 /// 1 / (1 + 2 a^2 / 1e-6) for walls at an angle a from vertical.
 #[test]
@@ -167,6 +167,7 @@ fn what_falls_into_a_narrow_gap_stands_there() {
     }
 }
 
+/// A belt, without torque, between floor and ceiling that pull it opposite ways: its drive takes the difference only.
 #[test]
 fn opposed_contacts_on_one_belt_share_its_motor() {
     let (radius, friction) = (0.1, 0.5);
@@ -198,6 +199,31 @@ fn opposed_contacts_on_one_belt_share_its_motor() {
             assert!(c.friction_impulse.abs() <= friction * c.normal_impulse * (1.0 + 1e-9));
         }
     }
+}
+
+/// A turn counts at the radius of gyration.
+#[test]
+fn a_change_of_the_base_is_that_of_a_point_on_it() {
+    let mut problem = body(Vector::ZERO, 0.0);
+    problem.tie();
+    problem.change[..BASE].copy_from_slice(&[3.0, -4.0, -2.0]);
+    let expected = 5.0 + 2.0 * (0.1_f64 / 2.0).sqrt();
+    assert_relative_eq!(problem.base_change(), expected, max_relative = 1e-12);
+}
+
+#[test]
+fn friction_is_a_share_of_the_most_under_its_load_and_gives_way_like_a_constraint() {
+    let mut held = contact(Vector::ZERO, Vector::Y, 0.8);
+    held.set_impulses([0.5, -0.3]);
+    assert_relative_eq!(held.friction_load(), 0.75);
+    let mut problem = body(Vector::ZERO, 0.0);
+    problem.contacts.push(held);
+    problem.tie();
+    problem.center();
+    let [_, grip] = problem.contacts[0].dampers;
+    assert_relative_eq!(grip.at(0.0), -0.3);
+    // The body has 2 kg.
+    assert_relative_eq!(grip.at(-1e-6), -0.3 + 2.0, max_relative = 1e-12);
 }
 
 #[test]

@@ -75,6 +75,13 @@ impl Ring {
         &unknowns[self.first..][..BASE * self.hinges.len()]
     }
 
+    /// [J] Kinetic energy of its links at these velocities.
+    pub(super) fn energy(&self, unknowns: &[f64]) -> f64 {
+        let links = self.links(unknowns).iter();
+        let of_entry = |(v, weight): (&f64, &f64)| 0.5 * v * v / weight;
+        links.zip(self.weights.iter().cycle()).map(of_entry).sum()
+    }
+
     /// Sets the velocities of the links without constraints, from those of all unknowns, and the moments of inertia with
     /// which they turn from there [kg m^2].
     pub(crate) fn start(&mut self, inertias: &[f64], free: &[f64]) {
