@@ -200,7 +200,7 @@ impl Row {
         self.along(unknowns) + self.offset
     }
 
-    /// The sum of this and a share of another row on the same bodies.
+    /// This with a share of the levers of another row on the same bodies.
     pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
         debug_assert_eq!((self.at, self.link), (other.at, other.link));
         let mut sum = *self;
@@ -210,7 +210,6 @@ impl Row {
         for (lever, more) in sum.on_link.iter_mut().zip(other.on_link) {
             *lever += more * share;
         }
-        sum.offset += other.offset * share;
         sum
     }
 
