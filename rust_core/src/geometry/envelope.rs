@@ -84,8 +84,13 @@ impl Envelope {
 
     /// The stretch at a distance [m] along the hull, from 0 to its length.
     pub(super) fn stretch_at(&self, position: f64) -> &Stretch {
+        &self.stretches[self.number_at(position)]
+    }
+
+    /// Its place in the list of stretches.
+    pub(super) fn number_at(&self, position: f64) -> usize {
         let next = self.stretches.partition_point(|p| p.start <= position);
-        &self.stretches[next.saturating_sub(1)]
+        next.saturating_sub(1)
     }
 
     /// [m] Position of the next point, along belt travel, at a straight distance from the point at `position`; one

@@ -238,6 +238,20 @@ mod tests {
             .collect()
     }
 
+    #[test]
+    fn the_outline_of_a_picture_has_the_area_of_the_wheel() {
+        let gear = gear(0.1, 0.02, 9, 0.006, 0.012);
+        let whole = gear.area();
+        let [coarse, fine] = [8, 80].map(|points| whole - moments(&gear.outline(points)).0);
+        // Chords cut off what falls with the square of their number.
+        assert!(
+            0.0 < fine && fine < 1e-5 * whole,
+            "{fine} m^2 of {whole} m^2"
+        );
+        assert!((coarse / fine - (79.0_f64 / 7.0).powi(2)).abs() < 1.0);
+        assert_eq!(gear.outline(8).len(), 9 * 10);
+    }
+
     fn moments(polygon: &[Vector]) -> (f64, f64) {
         let n = polygon.len();
         (0..n).fold((0.0, 0.0), |(area, polar), i| {

@@ -165,6 +165,30 @@ mod tests {
     }
 
     #[test]
+    fn pins_fit_between_the_teeth_of_a_picture_and_tips_are_as_high_as_teeth() {
+        for count in [7, 11, 14] {
+            let teeth = Teeth::new(count, 0.04, 0.0);
+            let pin = 0.1 * teeth.pitch;
+            let outline = teeth.outline(pin);
+            assert_eq!(outline.len(), 12 * count);
+            let farthest = outline.iter().map(|point| point.length());
+            let tip = teeth.tip_radius - pin;
+            assert!((farthest.fold(0.0, f64::max) - tip).abs() < 1e-12);
+            for seat in 0..count {
+                let pinned = seated(&teeth, seat as f64 * TAU / count as f64);
+                let nearest = outline.iter().map(|point| (*point - pinned).length());
+                let nearest = nearest.fold(f64::INFINITY, f64::min);
+                // The flanks leave half the play on either side.
+                let room = nearest - pin;
+                assert!(
+                    (0.0..PLAY * teeth.pitch).contains(&room),
+                    "{room} m of {pin} m"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn a_pin_in_its_seat_touches_the_flank_that_drives_it() {
         for count in [7, 11, 14] {
             let teeth = Teeth::new(count, 0.04, 0.0);

@@ -349,17 +349,40 @@ mod tests {
 
     #[test]
     fn between_two_lanes_each_place_has_the_larger_friction_there() {
-        let with = |frictions: &[f64]| {
-            let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1], [2.0, 0.1]];
-            let mut profile = profile(&points);
-            profile.friction = GroundFriction::of_segments(&points, frictions, 0.0);
+        let with = |points: &[[f64; 2]], frictions: &[f64]| {
+            let mut profile = profile(points);
+            profile.friction = GroundFriction::of_segments(points, frictions, 0.0);
             profile
         };
-        let (a, b) = (with(&[0.1, 0.2, 0.3, 0.9]), with(&[0.0, 0.4, 0.0, 0.0]));
+        let step = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [0.2, 0.1], [2.0, 0.1]];
+        let ditch = [
+            [-1.0, -0.1],
+            [0.0, -0.1],
+            [0.0, -0.4],
+            [1.0, -0.4],
+            [2.0, -0.4],
+        ];
+        let a = with(&step, &[0.2, 0.05, 0.3, 0.9]);
+        let b = with(&ditch, &[0.25, 0.8, 0.1, 0.0]);
         let found = upper_envelope("terrain", &a, &b).expect("they overlap");
-        let places = [(-0.5, 0.0), (0.0, 0.05), (0.5, 0.1), (1.5, 0.1)];
+        // The face of the step is 0.1 m above that of the ditch, and 0.4 m above its floor.
+        let places = [(-0.5, 0.0), (0.0, 0.05), (0.1, 0.1), (0.6, 0.1), (1.5, 0.1)];
         let found = places.map(|(x, y)| found.friction.at(Vector::new(x, y)).coefficient);
-        assert_relative_eq!(found.as_slice(), [0.1, 0.4, 0.3, 0.9].as_slice());
+        assert_relative_eq!(found.as_slice(), [0.25, 0.8, 0.3, 0.9, 0.9].as_slice());
+    }
+
+    #[test]
+    fn a_face_between_two_lanes_has_its_own_friction() {
+        let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+        let [a, b] = [0.05, 0.04].map(|of_face| {
+            let mut profile = profile(&points);
+            let frictions = [0.9, of_face, 0.8];
+            profile.friction = GroundFriction::of_segments(&points, &frictions, 0.0);
+            profile
+        });
+        let found = upper_envelope("terrain", &a, &b).expect("they overlap");
+        let on_face = found.friction.at(Vector::new(0.0, 0.05)).coefficient;
+        assert_relative_eq!(on_face, 0.05);
     }
 
     #[test]
