@@ -104,3 +104,11 @@ def test_a_goal_that_no_robot_clears_on_the_ground_is_doubted() -> None:
     ends = scenario.replace({"terrain": c2d.terrains.from_points(points, goal=2.0)})
     with pytest.warns(c2d.ScenarioWarning, match=r"terrain\.goal cannot be cleared: beyond 1\."):
         ends.validate()
+
+
+def test_the_reason_of_a_stop_tells_of_trials_that_were_made_after_it_was_first_read() -> None:
+    stopped = c2d.simulate(ROBOT, c2d.terrains.step(0.3, friction=0.3), trials=None)
+    before = stopped.reason
+    stopped.what_if("torque x 2")
+    assert "twice the torque" not in before
+    assert stopped.reason == str(stopped.diagnosis) != before

@@ -90,7 +90,7 @@ class Record:
         self._trace = {name: freeze_array(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
 
-    @cached_property
+    @property
     def reason(self) -> str:
         """Why the robot did not clear, in a sentence; empty if it did.
 
@@ -105,8 +105,13 @@ class Record:
         """
         if self.error is not None:
             return str(self.error)
-        if self.diagnosis is not None:
+        if self.diagnosis is not None:  # to which further trials are added
             return str(self.diagnosis)
+        return self._reason_without_stop
+
+    @cached_property
+    def _reason_without_stop(self) -> str:
+        """Why a run that has a result and did not stop did not clear."""
         metrics, after, text = self.metrics, f"after {self.metrics['time']:.2f} s", ""
         match self.outcome:
             case Outcome.TIPPED_OVER:
