@@ -437,3 +437,31 @@ def test_environments_side_by_side_step_after_a_reset_in_a_mode_of_gymnasium() -
     mode: Any = "never"
     with pytest.raises(c2d.ScenarioError, match=r"^autoreset_mode must be one of \['NextStep'"):
         FlipperVectorEnv(2, autoreset_mode=mode)
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+def test_an_episode_ends_at_its_duration_whatever_the_time_between_actions(mode: Any) -> None:
+    scenario = WHEELED.replace({"duration": 2.0})
+    env = FlipperEnv(scenario, randomize={}, dt=1.5)
+    env.reset()
+    env.step([1.0])
+    *_, truncated, info = env.step([1.0])
+    assert truncated
+    assert info["outcome"] == "timed_out" == str(c2d.simulate(scenario).outcome)
+    assert env.state.time.tolist() == [2.0]
+    many = FlipperVectorEnv(2, scenario, randomize={}, dt=1.5, autoreset_mode=mode)
+    many.reset()
+    many.step(np.ones((2, 1)))
+    assert many.step(np.ones((2, 1)))[3].tolist() == [True, True]
+
+
+def test_a_drawn_duration_is_that_of_the_episode() -> None:
+    env = FlipperEnv(WHEELED, randomize={"duration": c2d.uniform(0.3, 0.9)}, dt=0.1)
+    lengths = []
+    for seed in range(3):
+        env.reset(seed=seed)
+        while not env.step([1.0])[3]:
+            pass
+        lengths.append(env.state.time.item())
+        assert env.run.scenario.duration == pytest.approx(lengths[-1])
+    assert 0.3 <= min(lengths) < max(lengths) <= 0.9

@@ -50,6 +50,15 @@ def test_a_policy_that_does_what_a_gait_does_gains_nothing_and_loses_nothing() -
     assert found.attrs["summary"].startswith("no gain over the baseline on belt")
 
 
+def test_both_drivers_have_the_duration_of_their_obstacle() -> None:
+    obstacles = {label: {"duration": float(label), "terrain": STEPS[0.1]} for label in (1, 2)}
+    env = FlipperVectorEnv(1, flipper_command="angle", dt=0.4)
+    found = audited(holding, env, obstacles=obstacles, baseline=c2d.Hold(START), repeats=1)
+    assert (found.outcome == "timed_out").all()
+    for duration in (1, 2):
+        assert found.time.sel(obstacle=duration).values == pytest.approx(duration)
+
+
 def test_its_runs_are_those_of_the_environment() -> None:
     found = audited(climbing)
     cell = found.sel(driver="policy", model="skids", obstacle=0.2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -71,6 +72,7 @@ class Episodes:
     def __init__(self, task: Task, scenarios: Sequence[_core.Passed], threads: int | None) -> None:
         self._task, self._many = task, Simulations(scenarios, threads=threads)
         self._full_speeds = np.array([each.speed for each in scenarios])
+        self._durations = np.array(_durations_of(scenarios))
         self._states = self._many.state()
         self._starts = _places_of(self._states)
 
@@ -83,6 +85,7 @@ class Episodes:
         """Begin new episodes at some places."""
         self._many.reset(places, scenarios)
         self._full_speeds[places] = [each.speed for each in scenarios]
+        self._durations[places] = _durations_of(scenarios)
         self._states = self._many.state()
         self._starts[places] = _places_of(self._states)[places]
 
@@ -91,7 +94,7 @@ class Episodes:
         return self._task.observe(self._many, self._states)
 
     def step(self, actions: ArrayLike, which: NDArray[np.bool_] | None = None) -> Step:
-        """Command and advance the episodes, or those of a mask.
+        """Command and advance the episodes, or those of a mask, but not beyond their durations.
 
         Raises
         ------
@@ -105,9 +108,17 @@ class Episodes:
         kind = "angle" if task.commands_angles else "rate"
         names = ("speed", f"flipper_{kind}", f"rear_flipper_{kind}")
         self._many.command(**dict(zip(names, given.T, strict=True)))
-        self._many.advance(task.dt, driven)
+        self._advance(driven)
         after = self._states = self._many.state()
         return self._judged(task.rewards(before, after), after)
+
+    def _advance(self, driven: NDArray[np.bool_]) -> None:
+        """Advance by `dt`, or to the end of the duration if that comes before."""
+        left = self._durations - self._states.time
+        whole = driven & (left > self._task.dt - _SAME_TIME)
+        self._many.advance(self._task.dt, whole)
+        for rest in np.unique(left[driven & ~whole]).tolist():
+            self._many.advance(rest, driven & (left == rest))
 
     def _judged(self, rewards: Rewards, states: States) -> Step:
         """Say which episodes have ended, and how."""
@@ -116,7 +127,7 @@ class Episodes:
         terminated[states.ended] = True
         failed[states.failed] = True
         terminated &= ~failed
-        truncated = failed | (states.time >= self._task.scenario.duration - _SAME_TIME)
+        truncated = failed | (states.time >= self._durations - _SAME_TIME)
         if self._task.ends_when_stopped:
             truncated |= states.stopped
         truncated &= ~terminated
@@ -177,6 +188,11 @@ class Episodes:
         ax.set(xlim=(left, right), ylim=(bottom, bottom + _HIGH * (right - left)))
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _durations_of(scenarios: Sequence[_core.Passed]) -> list[float]:
+    """[s] Return how long episodes last, which models, obstacles and draws may set."""
+    return [json.loads(each.text)["duration"] for each in scenarios]
 
 
 def _places_of(states: States) -> NDArray[np.float64]:

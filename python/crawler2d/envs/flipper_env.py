@@ -200,7 +200,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Drive on for `dt`.
+        """Drive on for `dt`, or to the end of the duration if that comes before.
 
         Parameters
         ----------

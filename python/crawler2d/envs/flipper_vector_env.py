@@ -188,7 +188,7 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         NDArray[np.bool_],
         dict[str, Any],
     ]:
-        """Drive on for `dt`.
+        """Drive on for `dt`, or to the end of the duration if that comes before.
 
         Parameters
         ----------

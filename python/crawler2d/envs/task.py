@@ -81,7 +81,7 @@ class Task:
     planner, world : Planner, World
         What is drawn for each episode, and what it is drawn about.
     dt : float
-        [s] Between two actions.
+        [s] Between two actions; the last one may have less.
     sees_heights : bool
         Whether a policy sees the ground.
     commands_angles : bool
@@ -236,7 +236,7 @@ class Task:
         work = after.drive_work - before.drive_work
         if self.ends:
             power = after.flipper_torques[:, self.ends] * after.flipper_rates[:, self.ends]
-            work += np.abs(power).sum(axis=1) * self.dt
+            work += np.abs(power).sum(axis=1) * (after.time - before.time)
         ending = np.zeros(len(work))
         for place in after.ended:
             ending[place] = ENDING if after.outcome[place] == Outcome.CLEARED else -ENDING
