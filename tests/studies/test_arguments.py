@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
+from tests.shared import refused
 
 ROBOT: Any = c2d.robots.engineer(flippers=None)
 STUDIES: dict[str, Callable[[Any], Any]] = {
@@ -115,3 +116,25 @@ def test_fields_that_differ_in_their_seed_alone_are_doubted_where_runs_draw_it()
         c2d.studies.success(base, terrains=fields, vary=c2d.variability.of_start(), **few)
         lower = c2d.terrains.random_stepfield(rise=0.01)
         c2d.studies.success(base, terrains={**fields, "field 2": lower}, **few)
+
+
+MEASURES = ("acceleration", "braking_distance", "max_speed", "odometry", "ride")
+
+
+@pytest.mark.parametrize("argument", ["vary", "unknown"])
+@pytest.mark.parametrize("name", MEASURES)
+def test_draws_do_not_take_the_place_of_what_models_set(name: str, argument: str) -> None:
+    models = {"wet": {"terrain.friction": 0.3}, "dry": {"terrain.friction": 0.9}}
+    drawn: Any = {argument: {"terrain.friction": c2d.uniform(0.5, 0.6)}}
+    base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=1.0)
+    study: Any = getattr(c2d.studies, name)
+    error = refused(lambda: study(base, models=models, repeats=1, progress=False, **drawn))
+    assert error.path == f"{argument}['terrain.friction']"
+
+
+def test_an_approach_that_models_set_is_not_drawn() -> None:
+    models = {str(each): {"start.approach": each} for each in (0.1, 0.3)}
+    base = c2d.Scenario(ROBOT, c2d.terrains.step(0.05), duration=1.0)
+    found = c2d.studies.ride(base, models=models, repeats=2, progress=False)
+    assert "drawn_approach" not in found
+    assert "drawn_speed" in found

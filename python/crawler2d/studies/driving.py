@@ -15,7 +15,15 @@ from crawler2d.parameters.fields import read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import Sampling, campaign
 from crawler2d.studies.steady import Halt, RunUp, drive, on_plane
-from crawler2d.studies.tables import Dims, Measure, Models, check_study, measure_table, read_models
+from crawler2d.studies.tables import (
+    Dims,
+    Measure,
+    Models,
+    check_study,
+    measure_table,
+    paths_of,
+    read_models,
+)
 from crawler2d.variation.distributions import Ranges
 from crawler2d.variation.draws import fields_at
 from crawler2d.variation.variability import of_contact, of_start
@@ -181,7 +189,8 @@ def _limiting_study(
     for label, own in fields.items():
         _check_fields(own, f"models[{label!r}]")
     changes = (UNCHANGED, figure.command, TORQUE, FRICTION)
-    with campaign(on_plane(scenario, given), _sampling(how), repeats=repeats) as study:
+    plane, swept = on_plane(scenario, given), paths_of(fields)
+    with campaign(plane, _sampling(how), swept, repeats=repeats) as study:
         run_ups = [
             RunUp(
                 (f"model={label}", f"change={change.label}"),

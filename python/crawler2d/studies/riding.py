@@ -27,6 +27,7 @@ from crawler2d.studies.tables import (
     Models,
     check_study,
     measure_table,
+    paths_of,
     read_models,
     summary,
 )
@@ -118,8 +119,8 @@ def ride(
             lambda row: row.metrics["path_length"] / row.metrics["time"],
         ),
     }
-    with campaign(scenario, how, repeats=repeats) as study:
-        fields = read_models(scenario, models)
+    fields = read_models(scenario, models)
+    with campaign(scenario, how, paths_of(fields), repeats=repeats) as study:
         cells = [Cell((f"model={label}",), scenario.replace(own)) for label, own in fields.items()]
         tallies = study.repeat(cells)
         table = measure_table(
@@ -184,8 +185,8 @@ def odometry(
     """
     check_study(scenario)
     changes: tuple[Change, ...] = (UNCHANGED, FRICTION)
-    with campaign(scenario, how, repeats=repeats) as study:
-        fields = read_models(scenario, models)
+    fields = read_models(scenario, models)
+    with campaign(scenario, how, paths_of(fields), repeats=repeats) as study:
         cells = [
             Cell(
                 (f"model={label}", f"change={change.label}"),
