@@ -226,6 +226,15 @@ def test_where_nothing_varies_the_unknowns_decide_everything() -> None:
     plt.close("all")
 
 
+def test_the_range_of_whole_numbers_is_from_the_least_to_the_greatest() -> None:
+    from scipy import stats  # noqa: PLC0415
+
+    wheels, path = SLOPE.replace({"robot.track": c2d.LineOfWheels(4)}), "robot.track.count"
+    for given in (c2d.uniform_int(3, 5), stats.randint(3, 6)):
+        unknowns = Variation.read(wheels, {path: given}, [])
+        assert range_of(unknowns, path, wheels).first == (3.0, 5.0)
+
+
 def test_all_elements_of_a_path_move_together_along_its_range() -> None:
     path = "robot.belly[*][1]"
     unknowns = Variation.read(SLOPE, {path: c2d.shifted(-0.01, 0.02)}, [])

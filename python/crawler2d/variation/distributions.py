@@ -179,7 +179,8 @@ class UniformInt(TakesKeywords, Distribution):
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
-        return self.low + np.floor((self.high - self.low + 1) * numbers)
+        steps = np.floor((self.high - self.low + 1) * numbers)
+        return self.low + np.minimum(steps, self.high - self.low)  # also at 1, the end of the range
 
 
 @dataclass(frozen=True, slots=True)
@@ -323,7 +324,10 @@ class SciPyDistribution(Distribution):
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values: the quantiles."""
-        return np.asarray(self.scipy.ppf(numbers), dtype=np.float64)
+        values = np.asarray(self.scipy.ppf(numbers), dtype=np.float64)
+        if self.is_whole:  # at 0 SciPy returns the number below the least one
+            values = np.maximum(values, self.scipy.support()[0])
+        return values
 
     def __repr__(self) -> str:
         """Write the call that makes it."""
