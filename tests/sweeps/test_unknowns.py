@@ -105,7 +105,8 @@ def test_what_is_unknown_is_not_replaced_by_what_varies() -> None:
     over = {"terrain.friction": [0.5]}
     assert refusal(BRIEF, over, unknown=FRICTION).path == "unknown['terrain.friction']"
     assert refusal(BRIEF, {}, unknown=FRICTION, samples=0).path == "samples"
-    assert refusal(BRIEF, {}, unknown=["terrain.friction"]).path == "unknown"
+    for given in (["terrain.friction"], [], 0, False, ""):
+        assert refusal(BRIEF, {}, unknown=given).path == "unknown"
 
 
 @pytest.mark.parametrize("name", PRESETS)

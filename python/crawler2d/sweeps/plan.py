@@ -125,7 +125,8 @@ class Planner:
         ScenarioError
             If one of them breaks a rule.
         """
-        unknowns = Variation.read(scenario, unknown or {}, swept, "unknown")
+        given = {} if unknown is None else unknown
+        unknowns = Variation.read(scenario, given, swept, "unknown")
         return cls(
             Variation.read(scenario, vary, [*swept, *unknowns.distributions]),
             unknowns,
