@@ -63,6 +63,29 @@ def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
     assert first.robot.track.placements[2] == pytest.approx((0.06, 0.0, 0.064))  # type: ignore[union-attr]
 
 
+def test_the_deepest_pocket_is_that_of_the_changed_carrier_also_on_arms_at_both_ends() -> None:
+    # The rear arm is seen from its tip on: its pockets are in the other order.
+    placed = c2d.HybridWheels(((0.05, 0, 0.05), (0.12, 0, 0.045), (0.2, 0, 0.04)))
+    built = c2d.robots.engineer().flippers
+    assert built is not None
+    arms = replace(built, ends="both", track=placed)
+    robot = c2d.robots.engineer(flippers=arms, track=c2d.LineOfWheels(4))
+    first = next(each for each in candidates_of(robot, ["flippers"]) if each.kind == "wheels")
+    assert first.what == "flippers: one wheel more, between wheels 1 and 2"
+    assert first.robot.flippers is not None
+    assert isinstance(first.robot.flippers.track, c2d.HybridWheels)
+    new = set(first.robot.flippers.track.placements) - set(placed.placements)
+    assert [x for x, _, _ in new] == [pytest.approx(0.16)]
+
+
+@pytest.mark.parametrize("inner", [(-0.06, 0.0, 0.064), (-0.06, 0.01, 0.03)])
+def test_a_wheel_inside_another_one_has_no_pocket_with_it(inner: tuple[float, ...]) -> None:
+    placed = ((-0.18, 0, 0.064), (-0.06, 0, 0.064), inner, (0.18, 0, 0.064))
+    robot = replace(c2d.robots.engineer(flippers=None), track=c2d.HybridWheels(placed))
+    first = next(each for each in candidates_of(robot, ["chassis"]) if each.kind == "wheels")
+    assert first.what.endswith("and 3")
+
+
 @pytest.mark.parametrize("count", [2, 4, 9])
 def test_every_number_up_to_one_more_wheel_between_every_two_is_a_candidate(count: int) -> None:
     robot = SEIZING.with_track(c2d.LineOfWheels(count))

@@ -317,10 +317,14 @@ def _with(robot: Robot, carrier: str, track: Track) -> Robot:
     return robot.with_track(track)
 
 
-def _more_wheels(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[str, Track]]:
+def _more_wheels(
+    robot: Robot,
+    carrier: str,  # noqa: ARG001 - gear wheels depend on it
+    track: Wheeled,
+) -> Iterator[tuple[str, Track]]:
     """Yield other numbers, sizes and places of the wheels of a carrier."""
     if isinstance(track, HybridWheels):
-        yield from _between(robot, carrier, track)
+        yield from _between(track)
         return
     count = track.count
     # One between every two has twice as many but one, two between every two three times but two.
@@ -340,23 +344,31 @@ def _more_wheels(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[s
                 yield text, replace(track, wheel_radius=radius, count=count + 1)
 
 
-def _between(robot: Robot, carrier: str, track: HybridWheels) -> Iterator[tuple[str, Track]]:
-    """Yield placed wheels with one more in the deepest pocket, and with one in every pocket."""
+def _between(track: HybridWheels) -> Iterator[tuple[str, Track]]:
+    """Yield placed wheels with one more in the deepest pocket, and with one in every pocket.
+
+    Wheels are named by their numbers in the order given, as the bodies of the chassis are.
+    """
     if len(track.placements) < 2:
         return
-    order = sorted(track.placements)
-    between = [
-        tuple(0.5 * (a + b) for a, b in zip(rear, front, strict=True))
-        for rear, front in itertools.pairwise(order)
-    ]
-    own = [p for p in pockets(robot) if carrier.removesuffix("s") in p.carrier]
-    deepest = max(range(len(between)), key=lambda k: own[k].friction if k < len(own) else 0.0)
+    numbers = sorted(range(len(track.placements)), key=track.placements.__getitem__)
+    order = [track.placements[number] for number in numbers]
+    pairs = list(itertools.pairwise(order))
+    between = [tuple(0.5 * (a + b) for a, b in zip(*pair, strict=True)) for pair in pairs]
+    deepest = max(range(len(pairs)), key=lambda k: _holding_friction(*pairs[k]))
+    first, second = sorted(numbers[deepest : deepest + 2])
     for what, more in (
-        (f"one wheel more, between wheels {deepest} and {deepest + 1}", [between[deepest]]),
+        (f"one wheel more, between wheels {first} and {second}", [between[deepest]]),
         ("one wheel more between every two", between),
     ):
         placed = sorted([*order, *((x, y, radius) for x, y, radius in more)])
         yield what, replace(track, placements=tuple(placed))
+
+
+def _holding_friction(rear: Circle, front: Circle) -> float:
+    """[-] Below which two wheels hold an edge, see `Pocket`; 0 if one is inside the other."""
+    is_inside = math.dist(rear[:2], front[:2]) <= abs(rear[2] - front[2])
+    return 0.0 if is_inside else pocket_between(rear, front)[-1]
 
 
 def _gears(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[str, Track]]:
