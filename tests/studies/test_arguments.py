@@ -138,3 +138,32 @@ def test_an_approach_that_models_set_is_not_drawn() -> None:
     found = c2d.studies.ride(base, models=models, repeats=2, progress=False)
     assert "drawn_approach" not in found
     assert "drawn_speed" in found
+
+
+STEP = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
+GROUNDS = {"low": c2d.terrains.step(0.03), "high": c2d.terrains.step(0.3)}
+OF_HEIGHT: dict[str, Callable[[Any], Any]] = {
+    "critical": lambda models: c2d.studies.critical(
+        STEP, "terrain.height", (0.03, 0.1), models=models
+    ),
+    "jam_chart": lambda models: c2d.studies.jam_chart(STEP, models=models, values=[0.05]),
+    "max_obstacle": lambda models: c2d.studies.max_obstacle(STEP, models=models),
+    "seizure_map": lambda models: c2d.studies.seizure_map(
+        STEP, ("terrain.friction", [0.3, 0.6]), ("terrain.height", [0.1, 0.2]), models=models
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OF_HEIGHT)
+def test_a_model_does_not_set_the_field_of_the_study(name: str) -> None:
+    error = refused(lambda: OF_HEIGHT[name]({"as it is": {}, "low": {"terrain.height": 0.03}}))
+    assert error.path == "models['low']"
+    assert error.rule == "must not have terrain.height, which the study sets"
+
+
+def test_a_model_does_not_replace_the_terrains_that_are_asked_for() -> None:
+    model = {"on another": {"terrain": c2d.terrains.step(0.05)}}
+    error = refused(lambda: c2d.studies.success(STEP, terrains=GROUNDS, models=model))
+    assert error.path == "models['on another']"
+    error = refused(lambda: c2d.studies.search(STEP, model, terrains=GROUNDS))
+    assert error.path == "space['on another']"

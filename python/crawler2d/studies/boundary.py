@@ -126,7 +126,7 @@ def critical(
         raise ScenarioError("tolerance", width, "must be > 0")
     count = whole_number(points, "points", 2, 1000)
     read_number_path(scenario, path, "path")
-    fields = read_models(scenario, models)
+    fields = read_models(scenario, models, [path])
     name = short_names([path])[path]
     with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
         lines: list[Line] = []

@@ -115,7 +115,7 @@ def jam_chart(
     if not 0.0 < most <= 100.0:
         raise ScenarioError("most_friction", most, "must be > 0 and <= 100")
     along = _values(scenario, x, values)
-    labels = read_models(scenario, models)
+    labels = read_models(scenario, models, [x])
     own, belts = [], []
     for fields in labels.values():
         model = scenario.replace(fields)

@@ -214,7 +214,7 @@ def seizure_map(
     if path_x == path_y:
         raise ScenarioError("y", path_y, "must differ from x")
     names = short_names([path_x, path_y])
-    fields = read_models(scenario, models)
+    fields = read_models(scenario, models, [path_x, path_y])
     swept = [path_x, path_y, *paths_of(fields)]
     values_x, values_y = _halved(coarse_x, halvings), _halved(coarse_y, halvings)
     with campaign(scenario, how, swept, threshold=0.5) as study:

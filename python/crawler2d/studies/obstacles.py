@@ -165,7 +165,7 @@ def _find_greatest(
         rule = f"must be a terrain with {'an' if name == 'angle' else 'a'} {name}"
         raise ScenarioError("terrain", scenario.terrain, rule) from None
     tried = sorted(set(read_numbers(values, f"{name}s")))
-    fields = read_models(scenario, models)
+    fields = read_models(scenario, models, [path])
     with campaign(scenario, how, [path, *paths_of(fields)], threshold=0.5) as study:
         cells = [
             Cell((f"model={label}", f"{name}={value:g}"), scenario.replace({**own, path: value}))
@@ -298,7 +298,7 @@ def success(
     """
     check_study(scenario)
     grounds = read_terrains(scenario, terrains)
-    fields = read_models(scenario, models)
+    fields = read_models(scenario, models, ["terrain"] if terrains is not None else [])
     if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
         how = {**how, "vary": vary_fields(grounds)}
     with campaign(scenario, how, ["terrain", *paths_of(fields)]) as study:

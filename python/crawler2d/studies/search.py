@@ -22,7 +22,14 @@ from crawler2d.studies.candidates import (
     ranked,
     search_table,
 )
-from crawler2d.studies.tables import Models, check_study, paths_of, read_terrains, vary_fields
+from crawler2d.studies.tables import (
+    Models,
+    check_study,
+    paths_of,
+    read_terrains,
+    refuse_own,
+    vary_fields,
+)
 from crawler2d.sweeps.axes import Label
 from crawler2d.sweeps.sweep import variants
 from crawler2d.variation.draws import Variation
@@ -142,6 +149,7 @@ def search(
     fresh = whole_number(confirm, "confirm", 1, 10**6)
     grounds = read_terrains(scenario, terrains)
     fields = variants(space, "space")
+    refuse_own(fields, ["terrain"] if terrains is not None else [], "space")
     swept = ["terrain", *paths_of(fields)]
     if how.get("vary") is None and any(hasattr(ground, "seed") for ground in grounds.values()):
         how = {**how, "vary": vary_fields(grounds)}

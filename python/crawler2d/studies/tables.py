@@ -39,6 +39,7 @@ __all__ = [
     "read_models",
     "read_numbers",
     "read_terrains",
+    "refuse_own",
     "summary",
     "vary_fields",
 ]
@@ -61,11 +62,36 @@ def check_study(scenario: object) -> None:
     extra("xarray", "analysis")
 
 
-def read_models(scenario: Scenario, models: Models | None) -> dict[Any, Mapping[str, Any]]:
-    """Return the fields that each model replaces, by label; None is the scenario's own track."""
+def read_models(
+    scenario: Scenario, models: Models | None, own: Sequence[str] = ()
+) -> dict[Any, Mapping[str, Any]]:
+    """Return the fields that each model replaces, by label; None is the scenario's own track.
+
+    Raises
+    ------
+    ScenarioError
+        If something else is given, or a model replaces one of the study's `own` paths.
+    """
     if models is None:
         return {scenario.robot.track.in_words: {}}
-    return variants(models)
+    fields = variants(models)
+    refuse_own(fields, own, "models")
+    return fields
+
+
+def refuse_own(fields: Mapping[Any, Mapping[str, Any]], own: Sequence[str], place: str) -> None:
+    """Refuse models that replace what the study sets, one of which would have no effect.
+
+    Raises
+    ------
+    ScenarioError
+        For the first of them; `place` names the argument.
+    """
+    for label, model in fields.items():
+        for path in own:
+            if path in model:
+                rule = f"must not have {path}, which the study sets"
+                raise ScenarioError(f"{place}[{label!r}]", model[path], rule)
 
 
 def read_terrains(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
