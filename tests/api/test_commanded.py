@@ -5,6 +5,7 @@ import copy
 import pickle
 import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -163,6 +164,24 @@ def test_a_gait_may_be_a_function() -> None:
     assert front == pytest.approx(0.495, abs=0.01)
     assert rear == pytest.approx(-0.3, abs=0.01)
     assert np.array_equal(sim.to_run().position[-1], sim.state().position)
+
+
+@pytest.mark.parametrize("gait", [c2d.Hold(0.4), lambda _: (0.4, 0.4)])
+def test_a_command_overrides_the_gait_of_its_end_until_a_reset(gait: Any) -> None:
+    drive = c2d.Drive(speed=0.0, gait=gait)
+    sim = c2d.Simulation(Scenario(TWO_ENDS, c2d.terrains.flat(), drive=drive))
+    sim.command(rear_flipper_angle=0.1)
+    sim.advance(1.5)
+    assert sim.state().flipper_angles == pytest.approx([0.4, 0.1], abs=0.01)
+    sim.command(flipper_rate=0.0)
+    sim.command(rear_flipper_rate=-0.2)
+    sim.advance(0.5)
+    assert sim.state().flipper_angles == pytest.approx([0.4, 0.0], abs=0.02)
+    with pytest.raises(c2d.ScenarioError):
+        sim.command(flipper_angle=100.0)
+    sim.reset()
+    sim.advance(1.5)
+    assert sim.state().flipper_angles == pytest.approx([0.4, 0.4], abs=0.01)
 
 
 def test_a_function_is_asked_again_after_a_reset() -> None:

@@ -21,7 +21,7 @@ from crawler2d.runs.branch import Trials, check_recording, trial_names
 from crawler2d.runs.run import Run
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
@@ -38,6 +38,12 @@ _LONGEST = 1e5
 
 _SAME_TIME = 1e-9
 """[s] Times that differ by less differ by rounding."""
+
+_ANGLES = {"front": "flipper_angle", "rear": "rear_flipper_angle"}
+"""Commands of a gait by the end of the flippers."""
+
+_COMMANDS = ("drive.speed", *_ANGLES.values(), "flipper_rate", "rear_flipper_rate", "push")
+"""Paths of all commands."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -133,6 +139,7 @@ class Simulation(TakesKeywords):
         self._core = _core.Simulation(simulated.to_json())
         self.scenario, self._simulated = scenario, simulated
         self._since, self._gait, self._decisions = 0.0, function, 0
+        self._by_hand: frozenset[str] = frozenset()
 
     @property
     def time(self) -> float:
@@ -182,10 +189,15 @@ class Simulation(TakesKeywords):
         if len(both) != 2:
             rule = "must return an angle, a pair of angles (front, rear), or None"
             raise ScenarioError("drive.gait", angles, rule)
-        names = {"front": "flipper_angle", "rear": "rear_flipper_angle"}
-        given = zip(names.items(), both, strict=True)
-        at = flippers.ends
-        self.command(**{name: angle for (end, name), angle in given if at in (end, "both")})
+        given = zip(("front", "rear"), both, strict=True)
+        at, by_hand = flippers.ends, self._by_hand
+        self._give(
+            {
+                _ANGLES[end]: angle
+                for end, angle in given
+                if at in (end, "both") and end not in by_hand
+            }
+        )
 
     @takes_keywords
     def command(
@@ -230,10 +242,20 @@ class Simulation(TakesKeywords):
             "rear_flipper_rate": rear_flipper_rate,
             "push": push,
         }
-        numbers = [
-            None if value is None else real_number(value, name) for name, value in given.items()
-        ]
-        speed, front, rear, front_rate, rear_rate, push = numbers
+        self._give(given)
+        fronts, rears = (flipper_angle, flipper_rate), (rear_flipper_angle, rear_flipper_rate)
+        self._by_hand |= {
+            end
+            for end, commands in (("front", fronts), ("rear", rears))
+            if any(each is not None for each in commands)
+        }
+
+    def _give(self, given: Mapping[str, Any]) -> None:
+        """Check commands by the path of each, and pass them on."""
+        speed, front, rear, front_rate, rear_rate, push = (
+            None if given.get(name) is None else real_number(given[name], name)
+            for name in _COMMANDS
+        )
         for name, angle, rate in (("", front, front_rate), ("rear_", rear, rear_rate)):
             if angle is not None and rate is not None:
                 rule = f"must not be given together with {name}flipper_angle"
@@ -412,7 +434,7 @@ class Simulation(TakesKeywords):
         core = _core.Simulation.from_snapshot(bytes(snapshot))
         simulation.scenario = simulation._simulated = Scenario.from_json(core.scenario())
         simulation._core, simulation._since = core, core.time
-        simulation._gait, simulation._decisions = None, 0
+        simulation._gait, simulation._decisions, simulation._by_hand = None, 0, frozenset()
         return simulation
 
     def __reduce__(self) -> tuple[Any, ...]:
