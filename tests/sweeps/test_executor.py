@@ -92,6 +92,13 @@ class Poisoned(Executor):
         return future
 
 
+def test_the_error_of_equal_runs_names_the_first_of_them_alone() -> None:
+    lost = Unreliable(losses=10**6)
+    with pytest.raises(c2d.errors.InternalError, match="none of 3 attempts") as caught:
+        quiet(BASE, {}, vary={}, repeats=4, executor=lost)
+    assert caught.value.__notes__ == ["in cell[repeat=0]"]
+
+
 def test_runs_that_kill_their_workers_take_no_others_with_them(
     plain: xr.Dataset, tmp_path: Path
 ) -> None:

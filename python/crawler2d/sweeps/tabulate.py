@@ -158,6 +158,10 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
     return dataset.assign_attrs(build_attributes())
 
 
+def _notes(error: Exception) -> list[str]:
+    return getattr(error, "__notes__", [])
+
+
 OnError = Literal["raise", "record"]
 
 
@@ -232,7 +236,8 @@ class Tabulation:
             raise interrupt.as_batch(self._store) from None
         for index, row in zip(indices, rows, strict=True):
             self._rows[index] = row
-            if row.error is not None and row.identity:
+            # Equal scenarios share a row, and so its error.
+            if row.error is not None and row.identity and not _notes(row.error):
                 plan, repeat = self._plans[index // self._repeats], index % self._repeats
                 row.error.add_note(f"in {plan.path(repeat)}")
 
