@@ -289,6 +289,9 @@ def test_a_baseline_is_a_line_for_each_thing(made: Made, tmp_path: Path) -> None
         {"verdicts": {"step": {"word": "seizes"}}},
         {"verdicts": {"step": {"word": "seizes", "seized": []}}},
         {"verdicts": {"step": {"word": "seizes", "seized": [[1, 9]]}}},
+        {"verdicts": {"step": {"word": "seizes", "seized": [[1, 9, "0.0", 0.5]]}}},
+        {"lint": [["error", "size", 3]]},
+        {"robot": None},
     ],
 )
 def test_an_entry_that_lacks_a_part_is_refused_before_anything_is_compared(
@@ -299,7 +302,7 @@ def test_an_entry_that_lacks_a_part_is_refused_before_anything_is_compared(
     file.write_text(json.dumps({"baseline": 1, "models": {"a.sdf": entry}}), encoding="utf-8")
     assert "must have whole entries" in refused(lambda: read_baseline(file)).rule
     whole = {"word": "seizes", "seized": [[1, 9, 0.0, 0.5]]}
-    entry |= {"lint": [["note", "sides", "differ"]], "verdicts": {"step": whole}}
+    entry |= {"robot": {}, "lint": [["note", "sides", "differ"]], "verdicts": {"step": whole}}
     file.write_text(json.dumps({"baseline": 1, "models": {"a.sdf": entry}}), encoding="utf-8")
     assert read_baseline(file)["models"]["a.sdf"] == entry
 

@@ -153,10 +153,21 @@ def _is_whole(kept: Plain) -> bool:
     verdicts = kept.get("verdicts", {}).values()
     return (
         kept.keys() >= _ENTRY
-        and all(len(each) == 3 and each[0] in SEVERITIES for each in kept["lint"])
+        and isinstance(kept["robot"], Mapping)
+        and all(_is_finding(each) for each in kept["lint"])
         and all(each.keys() >= _VERDICT and each["seized"] for each in verdicts)
-        and all(len(rate) == 4 for each in verdicts for rate in each["seized"])
+        and all(_is_rate(rate) for each in verdicts for rate in each["seized"])
     )
+
+
+def _is_finding(kept: Sequence[object]) -> bool:
+    """Whether it is what is kept of a finding of lint: severity, rule and words."""
+    return len(kept) == 3 and all(isinstance(each, str) for each in kept) and kept[0] in SEVERITIES
+
+
+def _is_rate(kept: Sequence[object]) -> bool:
+    """Whether it is what is kept of a rate: how often, of how many, and the interval."""
+    return len(kept) == 4 and all(isinstance(each, (int, float)) for each in kept)
 
 
 def _name(path: Path, baseline: Path) -> str:
