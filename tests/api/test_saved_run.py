@@ -318,3 +318,11 @@ def test_threads_that_write_to_one_path_leave_one_of_their_files_whole(tmp_path:
             list(pool.map(partial(write_text, tmp_path / "page.html"), texts))
             assert (tmp_path / "page.html").read_text() in texts
     assert [each.name for each in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_a_number_is_no_place_of_a_run(tmp_path: Path) -> None:
+    with (tmp_path / "other").open("wb") as file:
+        with pytest.raises(TypeError):
+            c2d.load(file.fileno())  # type: ignore[arg-type]
+        file.write(b"still open")
+        file.flush()

@@ -102,7 +102,8 @@ def read_run(path: str | os.PathLike[str], make: Callable[..., R]) -> R:
         If the file cannot be read, or is no run, damaged or of a newer format.
     """
     try:
-        file = open(path, "rb")  # noqa: SIM115 - what fails later is another fault
+        # A number would be an open file of this process, which would be closed.
+        file = open(os.fspath(path), "rb")  # noqa: SIM115 - what fails later is another fault
     except OSError as error:
         raise StoreError(f"{path} cannot be read: {error.strerror or error}") from None
     with file:
