@@ -96,6 +96,20 @@ def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks(every: int, m
     assert sum(run.what_if("closed track").freed for run in runs) > smooth + more
 
 
+def test_the_friction_of_a_branch_is_that_of_all_lanes_and_segments() -> None:
+    def lanes(friction: float) -> Any:
+        step, flat = c2d.terrains.step(0.1, friction=friction), c2d.terrains.flat(friction=friction)
+        return c2d.terrains.lanes(step, flat, middle=flat)
+
+    def points(*frictions: float) -> Any:
+        places = [(-3.0, 0.0), (0.0, 0.0), (3.0, 0.0)]
+        return c2d.terrains.from_points(places, goal=1.0, segment_friction=frictions)
+
+    for before, after in ((lanes(0.9), lanes(0.3)), (points(0.9, 0.5), points(0.3, 0.3))):
+        run = c2d.simulate(c2d.Scenario(ROBOT, before, duration=0.2))
+        assert run.branch(at=0.1, friction=0.3, duration=0.1).scenario.terrain == after
+
+
 def test_friction_and_command_can_be_changed(seized: c2d.Run) -> None:
     slippery = seized.branch(at=0.5, friction=0.05, duration=3.0)
     assert slippery.scenario.terrain == c2d.terrains.step(0.10, friction=0.05)
@@ -284,15 +298,6 @@ def test_an_impossible_change_is_refused_by_name(
     seized: c2d.Run, changes: dict[str, Any], path: str
 ) -> None:
     assert refused(lambda: seized.branch(at=1.0, **changes)).path == path
-
-
-def test_the_friction_of_lanes_is_not_one_value() -> None:
-    step = c2d.terrains.step(0.05)
-    scenario = c2d.Scenario(ROBOT, c2d.terrains.lanes(step, step, middle=step), duration=0.5)
-    run = c2d.simulate(scenario, record="summary")
-    error = refused(lambda: run.branch(at=0.2, friction=0.5))
-    assert error.path == "terrain.friction"
-    assert "left, right, middle" in error.rule
 
 
 def test_a_branch_goes_on_while_its_push_rises(seized: c2d.Run) -> None:

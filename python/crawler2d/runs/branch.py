@@ -16,6 +16,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.track import ClosedTrack
 from crawler2d.results.findings import TrialResult
 from crawler2d.results.record import Record
+from crawler2d.variation.draws import fields_at
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -123,7 +124,7 @@ class EscapeForce(NamedTuple("_Levels", [("low", float), ("high", float)])):
         Whether that push tipped it over within two seconds.
     """
 
-    tips: bool
+    tips: bool = False
 
     def __new__(cls, low: float, high: float, tips: bool = False) -> Self:
         """Keep the two levels as a tuple."""
@@ -217,9 +218,10 @@ def branch_scenario(
     if track == "closed":
         own = robot.track
         track = own if isinstance(own, ClosedTrack) else ClosedTrack(own)
+    grounds = fields_at(run.scenario, "terrain.friction")
     changes = {
         "robot": None if track is None else robot.with_track(track),
-        "terrain.friction": friction,
+        **dict.fromkeys(grounds, friction),
         "robot.drivetrain.max_torque": max_torque,
         "drive": drive,
         "duration": duration,

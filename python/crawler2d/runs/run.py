@@ -138,7 +138,7 @@ class Run(ShownRun):
         track : track model or "closed", optional
             Another model of the robot's track; "closed" is `ClosedTrack` of its own.
         friction : float, optional
-            [-] Another friction of the ground.
+            [-] Another friction of the ground, of all its lanes and segments.
         max_torque : float, optional
             [N m] Another torque of one sprocket, see `Drivetrain`.
         belly : array_like, optional
