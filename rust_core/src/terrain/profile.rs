@@ -452,3 +452,6 @@ pub(crate) fn facet_along(points: &[Vector], facets: Range<usize>, fraction: f64
     }
     facet
 }
+
+#[cfg(test)]
+mod tests;

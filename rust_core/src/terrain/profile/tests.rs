@@ -1,0 +1,128 @@
+//! Heights, edges and arcs of a lane.
+
+use approx::assert_relative_eq;
+
+use super::*;
+
+fn profile(points: &[[f64; 2]], edge_radius: f64) -> Result<Profile, ScenarioError> {
+    let surface = Surface {
+        edge_radius,
+        ..Surface::sharp(0.5)
+    };
+    Profile::new("terrain", points, surface, true)
+}
+
+/// A hill with sides of 45 degrees, and a block whose faces are 0.2 m high.
+fn hill_and_block() -> Profile {
+    let points = [
+        [-2.0, 0.0],
+        [1.0, 0.0],
+        [1.5, 0.5],
+        [2.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 0.2],
+        [4.5, 0.2],
+        [4.5, 0.0],
+        [6.0, 0.0],
+    ];
+    profile(&points, 0.0).expect("it is ground")
+}
+
+#[test]
+fn ground_rises_above_a_segment_by_its_farthest_corner() {
+    let ground = hill_and_block();
+    for (a, b, rise) in [
+        ([0.5, 0.0], [2.5, 0.0], 0.5),
+        ([0.5, 0.1], [2.5, 0.5], 0.2),
+        ([1.2, 0.0], [1.3, 0.0], 0.3),
+        ([0.0, -0.5], [0.5, 1.0], 0.5),
+        ([3.0, 0.5], [5.0, 1.0], -0.5),
+    ] {
+        let found = ground.rise_over_segment(a.into(), b.into());
+        assert_relative_eq!(found, rise, epsilon = 1e-12);
+    }
+}
+
+#[test]
+fn a_disc_is_clear_of_ground_that_ends_below_it() {
+    let ground = hill_and_block();
+    let is_clear = |x: f64, y: f64| ground.is_clear_of(Vector::new(x, y), 0.3);
+    assert!(is_clear(0.0, 0.31) && !is_clear(0.0, 0.29));
+    assert!(is_clear(1.5, 0.81) && !is_clear(1.5, 0.79));
+    // The block is 0.25 m ahead of its centre.
+    assert!(is_clear(3.75, 0.51) && !is_clear(3.75, 0.49));
+}
+
+#[test]
+fn a_point_at_a_corner_touches_its_edge_and_one_beside_it_the_face() {
+    let ground = hill_and_block();
+    let facet = (ground.points.iter()).position(|p| (*p - Vector::new(4.0, 0.2)).length() < 1e-9);
+    let facet = facet.expect("it has that corner");
+    let edge = ground.edge_of_point[facet];
+    assert!(edge >= 0);
+    let at = |facet: usize, x: f64| ground.edge_at(facet, Vector::new(x, 0.2));
+    assert_eq!([at(facet, 4.0 + 5e-8), at(facet, 4.0 + 2e-7)], [edge, -1]);
+    assert_eq!(at(facet, 4.5 - 5e-8), ground.edge_of_point[facet + 1]);
+    let on_face = ground.edge_at(facet - 1, Vector::new(4.0, 0.2 - 5e-8));
+    assert_eq!(on_face, edge);
+    let rounded = profile(&[[-1.0, 0.0], [0.0, 0.0], [0.0, 0.2], [1.0, 0.2]], 0.05);
+    let rounded = rounded.expect("it is ground");
+    let of_arc = rounded
+        .edge_of_point
+        .iter()
+        .filter(|id| **id == rounded.edges.len() as i32 - 1);
+    assert!(of_arc.count() > 10);
+    for facet in 0..rounded.points.len() - 1 {
+        let ids = [0, 1].map(|i| rounded.edge_of_point[facet + i]);
+        if ids[0] == ids[1] && ids[0] >= 0 {
+            let middle = (rounded.points[facet] + rounded.points[facet + 1]) * 0.5;
+            assert_eq!(rounded.edge_at(facet, middle), ids[0]);
+        }
+    }
+}
+
+/// Arcs of 90 degrees take their radius of each face.
+#[test]
+fn two_arcs_fit_on_a_face_of_twice_their_radius() {
+    let block = |width: f64| {
+        let points = [
+            [-1.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 0.3],
+            [width, 0.3],
+            [width, 0.0],
+            [2.0, 0.0],
+        ];
+        profile(&points, 0.1)
+    };
+    assert!(block(0.201).is_ok());
+    let error = block(0.199).expect_err("the second arc has no room");
+    assert_eq!(error.path, "terrain.edge_radius");
+    assert!(error.rule.contains("(0.199, 0.3)"), "{}", error.rule);
+}
+
+#[test]
+fn an_edge_with_a_radius_below_a_nanometre_is_sharp() {
+    let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.2], [1.0, 0.2]];
+    let [sharp, rounded] = [9e-10, 1e-4].map(|radius| profile(&points, radius).expect("ground"));
+    assert_eq!(sharp.points.len(), 4);
+    assert!(sharp.edges.iter().all(|edge| edge.radius <= 0.0));
+    assert!(rounded.points.len() > 50);
+}
+
+#[test]
+fn a_spike_is_refused_and_a_wall_in_two_pieces_is_not() {
+    let with = |top: f64| {
+        profile(
+            &[[-1.0, 0.0], [0.0, 0.0], [0.0, 0.3], [0.0, top], [1.0, top]],
+            0.0,
+        )
+    };
+    assert!(with(0.5).is_ok());
+    let error = with(0.1).expect_err("it goes up and down again");
+    assert!(
+        error.rule.starts_with("must not be a spike"),
+        "{}",
+        error.rule
+    );
+}
