@@ -107,6 +107,22 @@ FINER: Ladders = {"pymunk": ("Chipmunk", _ladder("iterations", *_SHORT_STEPS))}
 """Those for stops that a robot is carried past."""
 
 
+_STOPS = {"stopped", *(str(outcome) for outcome in Outcome if outcome.is_stop)}
+
+
+def both_stop(one: Run, other: Run) -> bool:
+    """Whether both runs end with a stop, in crawler2d or in an engine.
+
+    Examples
+    --------
+    >>> both_stop({"end": "seized"}, {"end": "stopped"})
+    True
+    >>> both_stop({"end": "seized"}, {"end": "tipped over"})
+    False
+    """
+    return {one["end"], other["end"]} <= _STOPS
+
+
 def cleared(runs: Iterable[Run]) -> int:
     """Count the runs that clear.
 
@@ -188,7 +204,7 @@ def compare_predictions(path: Path, kept: Path = PREDICTIONS) -> str:
         ]
         clears = sum((one["end"] == "cleared") != (two["end"] == "cleared") for one, two in both)
         ends = sum(one["end"] != two["end"] for one, two in both)
-        stops = [pair for pair in both if all(Outcome(run["end"]).is_stop for run in pair)]
+        stops = [pair for pair in both if both_stop(*pair)]
         far = sum(distance(one, two) > _NEAR for one, two in stops)
         lines.append(
             f"{wheels}, {len(both)} runs: {clears} clear in one of both, {ends} have another "

@@ -15,6 +15,7 @@ from benches.engines.runs import (
     SPEEDS,
     Run,
     Runs,
+    both_stop,
     cleared,
     distance,
     hash_of,
@@ -164,7 +165,7 @@ def _poses(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
             kind = [cell for cell in cells if (_GEARS in cell.model) == is_gear]
             away, turned = [], []
             for _, one, other in pairs(kind, predicted, runs):
-                if other["end"] != "cleared" and one["end"] not in ("cleared", "tipped_over"):
+                if both_stop(one, other):
                     away.append(1e3 * distance(one, other))
                     turned.append(np.degrees(abs(one["angle"] - other["angle"])))
             row.append(str(len(away)))
@@ -240,7 +241,7 @@ def _convergence(found: dict[str, Any]) -> str:
                 1e3 * distance(one, other)
                 for label, runs in cells.items()
                 for one, other in zip(predicted[label], runs, strict=False)
-                if "cleared" not in (one["end"], other["end"])
+                if both_stop(one, other)
             ]
             cost = np.median([run["cost"] for runs in cells.values() for run in runs])
             median = f"{np.median(away):.2f}" if away else ""

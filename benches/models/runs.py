@@ -236,7 +236,7 @@ def stops(results: dict[str, dict[str, Any]]) -> list[list[str]]:
             there = of = 0
             for key, own in runs.items():
                 if key.startswith(f"{name} | public | "):
-                    stopped = [each["x"] for each in own if each["end"] != "cleared"]
+                    stopped = [each["x"] for each in own if each["end"] == "stopped"]
                     of += len(stopped)
                     is_near = [any(abs(x - jam) < _NEAR for jam in places[key]) for x in stopped]
                     there += sum(is_near)

@@ -291,6 +291,18 @@ def test_rates_have_their_intervals_and_pairs_the_same_draw() -> None:
     assert not apart([stops] * 2, [clears] * 1)
 
 
+def test_only_runs_that_stop_in_both_say_how_far_apart_stops_are() -> None:
+    def runs(*ends: str, x: float) -> dict[str, list[dict[str, object]]]:
+        return {CELL.label: [{"end": end, "x": x, "y": 0.0, "angle": 0.0} for end in ends]}
+
+    predicted = runs("seized", "slipping", "timed_out", "tipped_over", "cleared", x=0.0)
+    found = runs("stopped", "tipped over", "stopped", "stopped", "stopped", x=0.5)
+    found[CELL.label][0]["x"] = 0.002
+    *_, row = table._poses([CELL], predicted, {"ode": found}).splitlines()
+    kinds = row.count("| 1 | 2.00, 2.00 | 0.00, 0.00 |"), row.count("| 0 |  |  |")
+    assert kinds == (1, 1)
+
+
 @pytest.mark.parametrize(
     "left_out",
     [
