@@ -89,7 +89,7 @@ def boxes_of(profile: NDArray[np.float64]) -> list[Box]:
 
     Examples
     --------
-    >>> [box.center[2] + 0.5 * box.size[2] for box in boxes_of(profile_of(Step(0.1)))]
+    >>> [round(box.center[2] + 0.5 * box.size[2], 9) for box in boxes_of(profile_of(Step(0.1)))]
     [0.0, 0.1]
     """
     boxes = []
