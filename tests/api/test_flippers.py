@@ -135,22 +135,31 @@ def test_shoes_and_arms_that_leave_the_chassis_no_inertia_are_refused() -> None:
 
 def test_stops_with_flippers_are_certified_and_a_belt_is_never_seized() -> None:
     heights = (0.06, 0.10, 0.14, 0.18)
-    models = (c2d.LineOfWheels(3), c2d.CircumferentialWheels(24), c2d.BeltTrack())
+    # With more friction belts clear, or tip over.
+    models: dict[Any, float] = {
+        c2d.LineOfWheels(3): 0.9,
+        c2d.CircumferentialWheels(24): 0.9,
+        c2d.BeltTrack(): 0.4,
+    }
     for make in (c2d.robots.engineer, c2d.robots.absolem):
         scenarios = [
-            Scenario(make(track=model), c2d.terrains.step(height), drive=c2d.Drive(gait=gait))
-            for model in models
+            Scenario(
+                make(track=model),
+                c2d.terrains.step(height, friction=friction),
+                drive=c2d.Drive(gait=gait),
+            )
+            for model, friction in models.items()
             for height in heights
             for gait in (None, c2d.Climb())
         ]
         runs = c2d.simulate_many(scenarios, record="summary", progress=False)
         stops = [run for run in runs if run.diagnosis is not None]
-        assert len(stops) >= 2
+        of_belts = [run for run in stops if run.scenario.robot.track == c2d.BeltTrack()]
+        assert min(len(of_belts), len(stops) - len(of_belts)) >= 2
         for run in stops:
             assert run.diagnosis is not None
             assert run.diagnosis.certified, run.scenario.to_json()
-            if run.scenario.robot.track == c2d.BeltTrack():
-                assert run.outcome != "seized"
+        assert "seized" not in [run.outcome for run in of_belts]
 
 
 def test_ground_between_wheels_of_a_flipper_is_a_pocket() -> None:
