@@ -123,8 +123,9 @@ def test_the_page_can_be_written_elsewhere_or_nowhere(made: Path, capsys: Any) -
 def test_with_json_nothing_else_is_on_the_standard_output(made: Path, capsys: Any) -> None:
     _, out, err = run(capsys, "any.sdf", "--json")
     assert json.loads(out)["seizes"] is True
-    assert "out" in err
-    assert (made / "out").is_dir()
+    page = Path("out/audit-any.html")
+    assert err.strip().endswith(f"The page is in {page}")
+    assert (made / page).is_file()
 
 
 @pytest.mark.usefixtures("made")
