@@ -74,7 +74,7 @@ def test_what_is_no_axes_is_refused(run: c2d.Run, ax: Any) -> None:
     assert (error.path, error.rule) == ("ax", "must be an Axes of matplotlib")
 
 
-def test_trials_are_drawn_or_not(run: c2d.Run) -> None:
+def test_what_says_neither_to_draw_trials_nor_not_to_is_refused(run: c2d.Run) -> None:
     given: Any = "no"
     assert refused(lambda: run.plot(trials=given)).path == "trials"
 
