@@ -73,7 +73,7 @@ def test_the_rest_is_scaled_and_moved() -> None:
 def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> None:
     loops = [
         {"setting": name, "wall": wall, "simulated": 3.0, "as_finest": same, "as_ours": same}
-        for name, wall, same in (("coarse", 0.01, 90), ("fine", 0.05, 99), ("finest", 1.0, 100))
+        for name, wall, same in (("coarse", 0.01, 45), ("fine", 0.05, 50), ("finest", 1.0, 50))
     ]
     machine = {"date": "d", "processor": "p", "cores": 2, "load": 0.1, "system": "s", "python": "3"}
     found = {
@@ -87,7 +87,8 @@ def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> 
         "in_core": 0.97,
         "simulated": 3.0,
         "outcomes": {"cleared": 100},
-        "looped": 100,
+        "looped": 50,
+        "own": 0.02,
         "loops": loops,
         "agrees": 0.99,
     }
@@ -97,4 +98,20 @@ def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> 
     text = " ".join(" ".join(parts.values()).split())
     assert "100 runs a second" in text
     assert "3.0 % of the time" in text
-    assert "is fine: 50.0 ms a run, **5.0 times** crawler2d's 10.0 ms" in text
+    assert "99 % of 50 of these runs is fine: 50.0 ms a run, **2.5 times** crawler2d's" in text
+    assert "crawler2d's 20.0 ms for the same runs" in text
+
+
+def test_the_loop_has_runs_of_all_robots_and_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    looped: list[Scenario] = []
+
+    def loops(_: Scenario, texts: list[str]) -> dict[Any, list[maps.Ended]]:
+        looped.extend(map(Scenario.from_json, texts))
+        return {maps._FINEST: [maps.Ended(0.01, 1.0, cleared=True)] * len(texts)}
+
+    monkeypatch.setattr(maps, "_loops", loops)
+    found = maps.maps(samples=2, repeats=3, every=7, cells=3)
+    assert len(looped) == found["looped"] == 8  # of 9 cells with 6 runs each
+    assert len({scenario.robot.drivetrain.max_torque for scenario in looped}) == 2
+    assert len({scenario.drive.speed for scenario in looped}) >= 5
+    assert 0.0 < found["own"] < 10.0 * found["wall"] / found["runs"]
