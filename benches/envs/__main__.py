@@ -166,7 +166,7 @@ def report(name: str, jobs: Mapping[str, Job], rounds: int) -> None:
     for k in range(rounds):
         progress(f"{name}: round {k + 1} of {rounds}")
         found.append([job() for job in jobs.values()])
-    best = np.max(found, axis=0)
+    best = [max(rates) for rates in zip(*found, strict=True)]
     say(f"\n{name}: steps of {_DT} s a second")
     for job, (rate, share) in zip(jobs, best, strict=True):
         physics = "" if np.isnan(share) else f"   {share:.0%} of it in the physics"
