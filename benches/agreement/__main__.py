@@ -29,7 +29,7 @@ def main() -> None:
     cells.add_argument("--repeats", type=int, default=8)
     again = verbs.add_parser("one-by-one", help="repeat those of round wheels whose ends differ")
     many = verbs.add_parser("ensembles", help="run cells with unequal ends over many starts")
-    many.add_argument("--starts", type=int, default=24)
+    many.add_argument("--starts", type=int, default=12)
     edge = verbs.add_parser("pinched", help="run 24 wheels on a knife edge")
     edge.add_argument("--starts", type=int, default=12)
     third = verbs.add_parser("third", help="run those with unequal ends in Chipmunk, too")
