@@ -9,6 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.pictures.scenes import scene_of
+from tests.shared import ROBOT
 from tests.trials.robots import draw
 
 pymunk = pytest.importorskip("pymunk")
@@ -94,6 +95,16 @@ def finish(shape: Any, kind: int, friction: float, space: Any) -> None:
     """Give a shape its friction; the engine multiplies that of two, so the robot's is 1."""
     shape.friction, shape.filter = friction, FILTERS[kind]
     space.add(shape)
+
+
+def test_a_robot_that_nothing_holds_drives_on_in_the_other_engine() -> None:
+    track = c2d.LineOfWheels(3)
+    run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.05), duration=0.3)
+    space, chassis = set_at_rest(run)
+    begin = chassis.position.x
+    for _ in range(round(0.5 / STEP)):
+        space.step(STEP)
+    assert chassis.position.x - begin == pytest.approx(0.5 * run.track_speed[-1], rel=0.1)
 
 
 def test_what_is_jammed_here_is_jammed_in_another_engine(say: Callable[[str], None]) -> None:
