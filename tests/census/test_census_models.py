@@ -68,6 +68,7 @@ def test_contact_forces_balance_where_the_pose_does_not_change(
     lines, shares = certificates(census)
     judged = [case.opinion.imbalance for case in stopped(census) if case.opinion is not None]
     say("\n  ".join([*lines, f"the judge's own: largest {np.max(judged):.1e}"]))
+    assert len(shares) > 3
     assert {family for family, share in shares.items() if share < 0.99} <= {"gears"}
 
 
