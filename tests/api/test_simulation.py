@@ -74,7 +74,7 @@ def test_a_command_is_followed_within_the_limits_of_the_drivetrain(scenario: Sce
 def test_a_command_at_the_instant_of_an_entry_takes_its_place(
     scenario: Scenario, at: float
 ) -> None:
-    drive = replace(scenario.drive, schedule=[(at, 0.3), (1.5, 0.2)])
+    drive = replace(scenario.drive, schedule=((at, 0.3), (1.5, 0.2)))
     sim = c2d.Simulation(replace(scenario, drive=drive))
     sim.advance(at)
     sim.command(speed=0.1)

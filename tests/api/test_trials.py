@@ -135,7 +135,7 @@ def test_a_change_of_ones_own_is_tried_in_the_same_way(seized: c2d.Run) -> None:
 
 def test_what_a_schedule_has_after_the_stop_changes_no_trial_and_not_its_run() -> None:
     drive = SEIZING.drive
-    later = [(drive, 8.0), (replace(drive, schedule=[(7.0, -drive.speed)]), 7.0 - 1e-9)]
+    later = [(drive, 8.0), (replace(drive, schedule=((7.0, -drive.speed),)), 7.0 - 1e-9)]
     stops = [c2d.simulate(replace(SEIZING, drive=each, duration=end)) for each, end in later]
     (one, other) = (stop.what_if(track=c2d.BeltTrack()) for stop in stops)
     assert other.freed
@@ -158,7 +158,7 @@ def test_what_a_gait_has_after_the_stop_changes_no_trial() -> None:
         duration=8.0,
     )
     lowers = replace(
-        stands, drive=replace(stands.drive, gait=c2d.Hold(0.3, schedule=[(8.0, -0.8)]))
+        stands, drive=replace(stands.drive, gait=c2d.Hold(0.3, schedule=((8.0, -0.8),)))
     )
     stops = [c2d.simulate(each) for each in (stands, lowers)]
     assert stops[0].outcome is stops[1].outcome
@@ -184,7 +184,8 @@ def test_a_trial_can_make_the_ground_of_two_tracks_alike(track: Any) -> None:
     # Friction is at most 100.
     trial = c2d.simulate(stop, trials=["friction x 2"]).what_if("friction x 2")
     assert not trial.freed
-    assert trial.run.scenario.terrain.left == trial.run.scenario.terrain.right
+    ground: Any = trial.run.scenario.terrain
+    assert ground.left == ground.right
 
 
 def test_the_time_of_a_trial_follows_the_criteria_and_the_command() -> None:
