@@ -222,6 +222,7 @@ fn drawn_robots_move_alike_however_their_ground_is_given() {
         }
     }
     println!("{farther} of {compared} led farther, {mirrors} in a mirror");
+    assert!(mirrors > 0);
     // Six twins do not show all ways in which a path may part.
     assert!(farther * 100 <= compared);
 }

@@ -239,6 +239,7 @@ fn worked_case_of_oracle_ten_is_seized_and_astride() {
     assert_eq!(d.outcome, Outcome::Seized);
     // Wheel 3 stands where the pocket ends, so that both its walls bear.
     assert_eq!(d.mechanism, Some(Mechanism::Straddled));
+    assert_eq!(d.contacts.len(), 3);
     let shares = d.contacts.iter().map(|c| c.normal_force / (21.2 * G));
     for (share, statics) in shares.zip([0.184, 0.569, 0.069]) {
         assert!(
