@@ -1,6 +1,7 @@
 """What an audit drives beside the robot: the belt for comparison, and candidates for a repair."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -79,8 +80,8 @@ def test_the_deepest_pocket_is_that_of_the_changed_carrier_also_on_arms_at_both_
 
 
 @pytest.mark.parametrize("inner", [(-0.06, 0.0, 0.064), (-0.06, 0.01, 0.03)])
-def test_a_wheel_inside_another_one_has_no_pocket_with_it(inner: tuple[float, ...]) -> None:
-    placed = ((-0.18, 0, 0.064), (-0.06, 0, 0.064), inner, (0.18, 0, 0.064))
+def test_a_wheel_inside_another_one_has_no_pocket_with_it(inner: Any) -> None:
+    placed = ((-0.18, 0.0, 0.064), (-0.06, 0.0, 0.064), inner, (0.18, 0.0, 0.064))
     robot = replace(c2d.robots.engineer(flippers=None), track=c2d.HybridWheels(placed))
     first = next(each for each in candidates_of(robot, ["chassis"]) if each.kind == "wheels")
     assert first.what.endswith("and 3")

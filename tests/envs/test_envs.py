@@ -22,6 +22,7 @@ COMMANDS = ("rate", "angle")
 MODES = list(AutoresetMode)
 
 WHEELED = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05), duration=4.0)
+AHEAD = np.ones(1, np.float32)
 """A robot without flippers that gets over in time."""
 
 
@@ -444,15 +445,15 @@ def test_an_episode_ends_at_its_duration_whatever_the_time_between_actions(mode:
     scenario = WHEELED.replace({"duration": 2.0})
     env = FlipperEnv(scenario, randomize={}, dt=1.5)
     env.reset()
-    env.step([1.0])
-    *_, truncated, info = env.step([1.0])
+    env.step(AHEAD)
+    *_, truncated, info = env.step(AHEAD)
     assert truncated
     assert info["outcome"] == "timed_out" == str(c2d.simulate(scenario).outcome)
     assert env.state.time.tolist() == [2.0]
     many = FlipperVectorEnv(2, scenario, randomize={}, dt=1.5, autoreset_mode=mode)
     many.reset()
-    many.step(np.ones((2, 1)))
-    assert many.step(np.ones((2, 1)))[3].tolist() == [True, True]
+    many.step(np.ones((2, 1), np.float32))
+    assert many.step(np.ones((2, 1), np.float32))[3].tolist() == [True, True]
 
 
 def test_a_drawn_duration_is_that_of_the_episode() -> None:
@@ -460,7 +461,7 @@ def test_a_drawn_duration_is_that_of_the_episode() -> None:
     lengths = []
     for seed in range(3):
         env.reset(seed=seed)
-        while not env.step([1.0])[3]:
+        while not env.step(AHEAD)[3]:
             pass
         lengths.append(env.state.time.item())
         assert env.run.scenario.duration == pytest.approx(lengths[-1])

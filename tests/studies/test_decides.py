@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d.studies.boundary import range_of
@@ -227,8 +228,6 @@ def test_where_nothing_varies_the_unknowns_decide_everything() -> None:
 
 
 def test_the_range_of_whole_numbers_is_from_the_least_to_the_greatest() -> None:
-    from scipy import stats  # noqa: PLC0415
-
     wheels, path = SLOPE.replace({"robot.track": c2d.LineOfWheels(4)}), "robot.track.count"
     for given in (c2d.uniform_int(3, 5), stats.randint(3, 6)):
         unknowns = Variation.read(wheels, {path: given}, [])
@@ -251,8 +250,6 @@ def test_all_elements_of_a_path_move_together_along_its_range() -> None:
 
 
 def test_the_range_of_an_unbounded_distribution_is_1_to_99_percent() -> None:
-    from scipy import stats  # type: ignore[import-untyped] # noqa: PLC0415
-
     given = {
         "robot.mass": stats.norm(21.0, 1.0),
         "robot.center_of_mass[0]": c2d.scaled(0.5, 2.0),
