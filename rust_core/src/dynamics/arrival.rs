@@ -156,6 +156,12 @@ mod tests {
             [within(0.2, 0.04), within(0.2, 0.0), within(0.1, 0.0)],
             [None; 3]
         );
+        // 0.04 m/s beyond either end after the 20 / 7 ms that are left: 57 um, if evenly gained.
+        for middle in [0.27, 0.13] {
+            let speeds = [0.2, middle];
+            let [coarse, fine] = [6e-5, 5e-5].map(|off| departure(speeds, [0.1, 0.3], 5e-3, off));
+            assert!(coarse.is_none() && fine.is_some());
+        }
     }
 
     #[test]
