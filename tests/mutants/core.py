@@ -5,7 +5,8 @@
 cargo-mutants lists the faults, and `.cargo/mutants.toml` says which of them no test can tell from
 the core. A sample is built at once, each fault behind a switch. Each unit test and each fact runs
 once by itself, which gives the faults that it reaches and its time; then a fault meets the tests
-that reach it, the quickest first, until one fails, or their times add up to `--seconds`.
+that reach it until one fails, or their times add up to `--seconds`: first those that are quick and
+have noticed others.
 Printed are the survivors, and of each group how many were noticed, with Wilson's interval at 95 %.
 The exit status is 1 if there are survivors. Tests of the Python package are not met.
 """
@@ -16,7 +17,7 @@ import random
 import subprocess
 import sys
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -76,7 +77,8 @@ def tried(name: str, size: int, seed: int, seconds: float) -> int:
         for test, numbers in pool.map(traced, tests_of(programs)):
             for number in numbers:
                 reached[number].append(test)
-        verdicts = pool.map(lambda fault: met(fault, reached[fault.number], seconds), faults)
+        kills: Counter[Test] = Counter()
+        verdicts = pool.map(lambda fault: met(fault, reached[fault.number], seconds, kills), faults)
         survivors = []
         for fault, (noticed, tests) in zip(faults, verdicts, strict=True):
             if not noticed:
@@ -115,21 +117,29 @@ def traced(test: tuple[Path, str]) -> tuple[Test, list[int]]:
     trace.parent.mkdir(exist_ok=True)
     trace.unlink(missing_ok=True)
     begun = time.monotonic()
-    if not passes(program, [name], None, {"CRAWLER2D_TRACE": str(trace)}):
+    if failing([Test(program, name, 0.0)], None, {"CRAWLER2D_TRACE": str(trace)}):
         raise SystemExit(f"{name} fails without a fault")
     found = trace.read_text().split() if trace.exists() else []
     return Test(program, name, time.monotonic() - begun), [int(number) for number in found]
 
 
-def met(fault: Fault, tests: list[Test], seconds: float) -> tuple[bool, int]:
-    """Return whether a test notices a fault, and how many have met it."""
+def met(
+    fault: Fault, tests: list[Test], seconds: float, noticed: Counter[Test]
+) -> tuple[bool, int]:
+    """Return whether a test notices a fault, and how many have met it.
+
+    How many faults each test has `noticed` is counted.
+    """
     count = 0
-    for batch in batches(sorted(tests, key=lambda test: test.seconds), seconds):
+    promising = sorted(tests, key=lambda test: test.seconds / (1 + noticed[test]))
+    for batch in batches(promising, seconds):
         count += len(batch)
-        limit = PATIENCE + 10.0 * sum(test.seconds for test in batch)
         for program in {test.program for test in batch}:
-            names = [test.name for test in batch if test.program == program]
-            if not passes(program, names, limit, {"CRAWLER2D_FAULT": str(fault.number)}):
+            own = [test for test in batch if test.program == program]
+            limit = PATIENCE + 10.0 * sum(test.seconds for test in own)
+            failed = failing(own, limit, {"CRAWLER2D_FAULT": str(fault.number)})
+            if failed:
+                noticed.update(failed)
                 return True, count
     return False, count
 
@@ -138,9 +148,9 @@ def batches(tests: list[Test], seconds: float) -> Iterator[list[Test]]:
     """Yield tests that run together; those beyond `seconds` in all are left out."""
     batch: list[Test] = []
     for test in tests:
+        if test.seconds > seconds:
+            continue
         seconds -= test.seconds
-        if seconds < 0.0:
-            break
         if batch and sum(each.seconds for each in batch) + test.seconds > BATCH:
             yield batch
             batch = []
@@ -149,20 +159,25 @@ def batches(tests: list[Test], seconds: float) -> Iterator[list[Test]]:
         yield batch
 
 
-def passes(program: Path, names: list[str], limit: float | None, variables: dict[str, str]) -> bool:
+def failing(tests: list[Test], limit: float | None, variables: dict[str, str]) -> list[Test]:
+    """Run tests of one program; return those that fail, or all if that does not say which."""
     try:
         ended = subprocess.run(
-            [program, "--exact", "--test-threads=1", *names],
+            [tests[0].program, "--exact", "--test-threads=1", *(test.name for test in tests)],
             check=False,
             cwd=TREE / "rust_core",
             env=os.environ | variables,
             timeout=limit,
-            stdout=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            text=True,
         )
     except subprocess.TimeoutExpired:
-        return False
-    return ended.returncode == 0
+        return tests
+    if ended.returncode == 0:
+        return []
+    lines = set(ended.stdout.splitlines())
+    return [test for test in tests if f"test {test.name} ... FAILED" in lines] or tests
 
 
 if __name__ == "__main__":
