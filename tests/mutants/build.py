@@ -20,6 +20,7 @@ FOLDER = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "
 TREE = FOLDER / "tree"
 PROFILE = "profile.release.package.crawler2d-core.codegen-units=16"
 NOT_SOURCES = shutil.ignore_patterns("target", ".*", "out", "dist", "docs", "__pycache__")
+SWITCH = re.compile(rb"crate::switch::on\((\d+)\)")
 MORE = 1.5
 """So many times the faults that are asked for are drawn, for some cannot be compiled."""
 
@@ -59,8 +60,11 @@ def uncompiled() -> Iterator[int]:
             continue
         for span in message["message"]["spans"]:
             if span["is_primary"]:
-                text = (TREE / span["file_name"]).read_bytes()[: span["byte_start"]].decode()
-                yield int(re.findall(r"switch::on\((\d+)\)", text)[-1])
+                source = (TREE / span["file_name"]).read_bytes()
+                # Of what encloses the place, or begins there.
+                before = SWITCH.findall(source[: span["byte_start"]])
+                at = SWITCH.match(source[span["byte_start"] :])
+                yield int(at[1] if at else before[-1])
 
 
 def programs() -> Iterator[Path]:

@@ -104,7 +104,7 @@ def can_ask(node: Node, fault: Fault) -> bool:
         if given is not None and b"impl " in (given.text or b""):
             return False
     above: Node | None = node
-    while above is not None and above.type not in CONSTANTS:
+    while above is not None and above.type not in CONSTANTS and not is_length(above):
         words = [
             child.text or b"" for child in above.children if child.type == "function_modifiers"
         ]
@@ -112,6 +112,12 @@ def can_ask(node: Node, fault: Fault) -> bool:
             return False
         above = above.parent
     return above is None
+
+
+def is_length(node: Node) -> bool:
+    """Whether it is the length of an array, which the compiler computes."""
+    array = node.parent
+    return array is not None and array.child_by_field_name("length") == node
 
 
 def rendered(node: Node, source: bytes, held: dict[int, Any]) -> str:
