@@ -419,8 +419,9 @@ def test_an_unknown_keyword_is_refused_with_the_nearest_name() -> None:
             "options['reset_mask']",
             "must be a mask of shape (2,) with at least one True",
         ),
+        (lambda env: env.reset(options=[1]), "options", "must be a mapping, or None"),
     ],
-    ids=["seeds", "NumPy", "half", "nothing", "three"],
+    ids=["seeds", "NumPy", "half", "nothing", "three", "list"],
 )
 def test_two_environments_are_reset_by_two_seeds_or_a_mask_of_two(
     call: Any, path: str, rule: str

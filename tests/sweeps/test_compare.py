@@ -194,3 +194,6 @@ def test_a_reference_that_is_none_of_the_models_is_refused_with_their_labels() -
     rule = "^reference must be a label of the models, got tracks: belt, line of 3, skids$"
     with pytest.raises(c2d.ScenarioError, match=rule):
         quiet(MODELS, reference="tracks")
+    for reference in (np.array(["belt", "skids"]), True, ["belt"]):
+        with pytest.raises(c2d.ScenarioError, match=r"^reference must be a label"):
+            quiet(MODELS, reference=reference)

@@ -169,6 +169,8 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
                 raise ScenarioError("seed", len(seeds), f"must be one or {self.num_envs}")
         elif seed is not None:
             raise ScenarioError("seed", seed, "must be an int, or one each")
+        if options is not None and not isinstance(options, Mapping):
+            raise ScenarioError("options", options, "must be a mapping, or None")
         mask = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)))
         if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
             rule = f"must be a mask of shape ({self.num_envs},) with at least one True"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.arrays import read_scalar
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError
@@ -315,7 +316,9 @@ def compare(
     if len(named) < 2:
         raise ScenarioError("models", models, "must hold at least two models")
     labels = list(named)
-    if reference is not None and reference not in labels:
+    reference = read_scalar(reference, whole=True)
+    is_label = type(reference) in (str, int, float) and reference in labels
+    if reference is not None and not is_label:
         names = ", ".join(map(str, labels))
         raise ScenarioError("reference", reference, f"must be a label of the models: {names}")
     table = tabulate(
