@@ -105,15 +105,17 @@ impl Dynamics {
             .iter()
             .zip(&self.forces)
             .filter_map(|(motor, forces)| {
-                let [[low, high], [lower, upper]] = forces.ends;
-                let ends = match motor.state {
-                    MotorState::LimitForwards => [low, high],
-                    MotorState::LimitBackwards => [lower, upper],
-                    MotorState::Holds => [low.max(lower), high.min(upper)],
-                    MotorState::Locked | MotorState::Absent => return None,
-                };
+                if matches!(motor.state, MotorState::Locked | MotorState::Absent) {
+                    return None;
+                }
+                let pushes_back = problem.motor_impulse(motor) < 0.0;
                 let speeds = [forces.speed, problem.motor_speed(motor)];
-                departure(speeds, ends, half, accuracy)
+                departure(
+                    speeds,
+                    forces.ends[usize::from(pushes_back)],
+                    half,
+                    accuracy,
+                )
             });
         arrivals.chain(departures).reduce(f64::min)
     }

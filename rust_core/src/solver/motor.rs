@@ -248,7 +248,7 @@ impl Problem {
     }
 
     /// [N s] Impulse of a motor so far.
-    pub(super) fn motor_impulse(&self, motor: &Motor) -> f64 {
+    pub(crate) fn motor_impulse(&self, motor: &Motor) -> f64 {
         if let Some(given) = motor.given() {
             return given.at(self.motor_speed(motor));
         }
