@@ -148,7 +148,7 @@ def test_a_link_restores_the_state(page: Page, open_page: Open, html: str) -> No
     page.fill("[id='field-robot.track.count']", "5")
     page.fill("[id='field-terrain.friction']", "0.5")
     settled(page)
-    page.wait_for_function("location.hash.includes('terrain.friction=0.5')")
+    page.wait_for_function("() => location.hash.includes('terrain.friction=0.5')")
     expected, ending = state(page), part(page, "ending")
     other = open_page(html)
     other.evaluate("hash => { location.hash = hash; }", page.evaluate("location.hash"))
@@ -190,7 +190,10 @@ def test_a_broken_rule_is_named(page: Page) -> None:
     page.evaluate(
         "location.hash = 'robot.track.kind=circumferential&robot.track.wheel_radius=0.09'"
     )
-    page.wait_for_function("document.querySelector('.ending').textContent === 'not simulated'")
+    # A function: the page lets no text be evaluated, which waiting for one does again and again.
+    page.wait_for_function(
+        "() => document.querySelector('.ending').textContent === 'not simulated'"
+    )
     with pytest.raises(c2d.ScenarioError) as caught:
         begin().replace(
             {"robot.track": c2d.CircumferentialWheels(24, wheel_radius=0.09)}

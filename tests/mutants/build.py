@@ -60,11 +60,17 @@ def uncompiled() -> Iterator[int]:
             continue
         for span in message["message"]["spans"]:
             if span["is_primary"]:
-                source = (TREE / span["file_name"]).read_bytes()
-                # Of what encloses the place, or begins there.
-                before = SWITCH.findall(source[: span["byte_start"]])
-                at = SWITCH.match(source[span["byte_start"] :])
-                yield int(at[1] if at else before[-1])
+                yield fault_at((TREE / span["file_name"]).read_bytes(), span)
+
+
+def fault_at(source: bytes, span: Any) -> int:
+    """Return the number of the fault that begins at a place, or is in its line before, or in it."""
+    begin, end = span["byte_start"], span["byte_end"]
+    line = source.rfind(b"\n", 0, begin) + 1
+    at = SWITCH.match(source, begin)
+    found = [at[1]] if at else SWITCH.findall(source[line:begin])[-1:]
+    found += SWITCH.findall(source[begin:end]) + SWITCH.findall(source[:begin])[::-1]
+    return int(found[0])
 
 
 def programs() -> Iterator[Path]:
