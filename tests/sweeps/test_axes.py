@@ -1,7 +1,6 @@
 """The axes of a sweep: order, labels, names of the dimensions."""
 
 import json
-import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -185,7 +184,6 @@ def test_no_axis_takes_the_name_of_a_column_of_the_table_or_of_its_rates() -> No
         ({"terrain.height": {True: 0.1}}, "over['terrain.height']", "strings or numbers"),
         ({"terrain.height": [0.1, 0.2, 0.1]}, "over['terrain.height'][2]", "labels, not 0.1 twice"),
         ({"terrain.height": {"1": 0.1, 1: 0.2}}, "over['terrain.height'][1]", "not 1 twice"),
-        ({"terrain.height": [0.1, math.nan]}, "over['terrain.height'][1]", "a number or a text"),
         ({"robot.track": [c2d.BeltTrack()] * 2}, "over['robot.track'][1]", "unique"),
         ({"robot": [ROBOT]}, "over['robot'][0]", "give a mapping"),
         ({("terrain.height", "gravity"): [0.1]}, "over[('terrain.height', 'gravity')]", "2 values"),
