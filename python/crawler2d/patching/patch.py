@@ -44,6 +44,7 @@ _SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
 _COUNTS = ("num_wheel_pairs", "wheel_torque", "max_wheel_torque")
 """Settings of plugins that hold for a certain number of wheels, and are not changed."""
 
+_MARK = "\0"  # that no file has, between a name and a line
 _ALIKE = 1e-3  # [-] Sizes of wheels for which one setting of a plugin stands differ by less.
 _MASS = 1e-4  # of the whole: far above what rounding leaves
 _MOTORS = 0.01  # [-] of torques, rotors and gains
@@ -268,36 +269,20 @@ def _fail(what: str, value: object, rule: str) -> NoReturn:
 
 def _diff(old: str, new: str, name: str) -> list[str]:
     """List the lines of a unified diff of two texts of a file."""
-    before, after = (text.splitlines(keepends=True) for text in (old, new))
     # Lines that stand in every link are told apart, so that no wheel is taken for another.
-    matcher = difflib.SequenceMatcher(None, _placed(before), _placed(after), autojunk=False)
-    lines = [f"--- {name}\n", f"+++ {name} (other wheels)\n"]
-    for group in matcher.get_grouped_opcodes():
-        (_, start, _, at, _), (_, _, end, _, to) = group[0], group[-1]
-        lines.append(f"@@ -{_range(start, end)} +{_range(at, to)} @@\n")
-        for kind, first, last, begin, until in group:
-            if kind == "equal":
-                lines += [f" {line}" for line in before[first:last]]
-            else:
-                lines += [f"-{line}" for line in before[first:last]]
-                lines += [f"+{line}" for line in after[begin:until]]
-    return lines
+    before, after = (_marked(text.splitlines(keepends=True)) for text in (old, new))
+    lines = difflib.unified_diff(before, after, name, f"{name} (other wheels)")
+    return [line[0] + line.partition(_MARK)[2] if _MARK in line else line for line in lines]
 
 
-def _placed(lines: list[str]) -> list[tuple[str, str]]:
-    """Pair each line with the last name above or in it."""
-    name, placed = "", []
+def _marked(lines: list[str]) -> list[str]:
+    """Put the last name above or in a line before it."""
+    name, marked = "", []
     for line in lines:
         named = re.search(r"""\bname\s*=\s*["']([^"']*)""", line)
         name = named[1] if named else name
-        placed.append((name, line))
-    return placed
-
-
-def _range(start: int, end: int) -> str:
-    """Write a range of lines as a unified diff does; one without lines follows its first number."""
-    count = end - start
-    return f"{start + 1 if count else start},{count}"
+        marked.append(f"{name}{_MARK}{line}")
+    return marked
 
 
 def _left(
