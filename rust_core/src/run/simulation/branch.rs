@@ -23,12 +23,22 @@ impl Simulation {
     pub fn branch(&self, variant: &ValidScenario) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
         let variant = variant.scenario();
-        let has_same_parts = self.ground.has_lanes_of(&ground)
-            && has_the_same_parts(&self.scenario.robot, &variant.robot);
-        if has_same_parts && self.engine.is_none() {
-            self.continued(variant, ground, model)
+        let rebuilt = !has_the_same_parts(&self.scenario.robot, &variant.robot);
+        self.carried_over(variant, (ground, model), rebuilt)
+    }
+
+    /// The same instant of another scenario: rebuilt if that is asked for, another engine moves this one, or the robot has
+    /// other lanes under it. Twice the friction can make two tracks' ground alike, and two tracks one.
+    fn carried_over(
+        &self,
+        scenario: &Scenario,
+        (ground, model): (Arc<Ground>, Model),
+        rebuilt: bool,
+    ) -> Self {
+        if rebuilt || self.engine.is_some() || !self.ground.has_lanes_of(&ground) {
+            self.rebuilt(scenario, ground, model)
         } else {
-            self.rebuilt(variant, ground, model)
+            self.continued(scenario, ground, model)
         }
     }
 
@@ -98,13 +108,7 @@ impl Simulation {
             Arc::new(Ground::new(&variant.terrain, variant.robot.gauge)?)
         };
         let model = Model::on(&variant.robot, &ground)?;
-        // Twice the friction can make two tracks' ground alike, and two tracks one.
-        let is_like = self.ground.has_lanes_of(&ground);
-        Ok(if rebuilt || !is_like || self.engine.is_some() {
-            self.rebuilt(variant, ground, model)
-        } else {
-            self.continued(variant, ground, model)
-        })
+        Ok(self.carried_over(variant, (ground, model), rebuilt))
     }
 
     /// Takes over the time and what is commanded then, unless its scenario has another command.
