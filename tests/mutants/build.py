@@ -22,7 +22,7 @@ PROFILE = "profile.release.package.crawler2d-core.codegen-units=16"
 NOT_SOURCES = shutil.ignore_patterns("target", ".*", "out", "dist", "docs", "__pycache__")
 SWITCH = re.compile(rb"crate::switch::on\((\d+)\)")
 MORE = 1.5
-"""So many times the faults that are asked for are drawn, for some cannot be compiled."""
+"""This many times as many faults are tried as are asked for, because some do not compile."""
 
 
 def built(faults: list[Fault], size: int) -> tuple[list[Fault], list[Path]]:

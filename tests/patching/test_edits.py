@@ -9,9 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.edits import copy_elements, items_about
 from crawler2d.patching.patch import _check, patch_file
-from crawler2d.writing.document import Document
 from tests.patching.test_patch import on_chassis
 from tests.reading.carts import ACROSS, FILES, ROUND, WHEELS, link, pair, quietly, urdf
 
@@ -573,32 +571,3 @@ def test_wheels_of_mjcf_that_are_not_found_or_moved_are_named(tmp_path: Path) ->
         c2d.ScenarioError, match=r"must have a name, to be found in the text, got no"
     ):
         patch_file(nameless, on_chassis(nameless, 4))
-
-
-def copies(text: str, names: dict[str, str]) -> list[str]:
-    document = Document(text)
-    items = items_about(document.root, set(names))
-    return copy_elements(document, items, names, lambda *_: None)
-
-
-@pytest.mark.parametrize("key", ["class", "childclass", "material", "mesh", "type", "filename"])
-def test_an_attribute_that_names_no_part_may_hold_its_name(key: str) -> None:
-    text = f'<m><body name="w"><geom {key}="w"/></body><other {key}="w"/></m>'
-    assert copies(text, {"w": "w2"}) == [f'<body name="w2"><geom {key}="w"/></body>']
-
-
-@pytest.mark.parametrize("holder", ["actuator", "sensor", "contact", "tendon", "equality"])
-def test_what_mjcf_names_one_by_one_has_a_name_of_its_own_as_a_copy(holder: str) -> None:
-    text = f'<m><{holder}><part name="p" joint="w"/></{holder}><other name="w"/></m>'
-    assert copies(text, {"w": "w2"}) == ['<part name="p2" joint="w2"/>', '<other name="w2"/>']
-    assert copies('<m><other name="p" joint="w"/></m>', {"w": "w2"}) == [
-        '<other name="p" joint="w2"/>'
-    ]
-
-
-def test_a_transmission_and_its_actuator_have_names_of_their_own_as_copies() -> None:
-    text = '<m><transmission name="t"><joint name="w"/><actuator name="a"/></transmission></m>'
-    assert copies(text, {"w": "w2"}) == [
-        text[3:-4].replace('"t"', '"t2"').replace('"w"', '"w2"').replace('"a"', '"a2"')
-    ]
-    assert copies(text, {"other": "other2"}) == []
