@@ -176,6 +176,10 @@ mod tests {
             assert_eq!(cut(0.9 * off), Some(0.25 * half));
             assert_eq!(cut(1.1 * off), None);
         }
+        // 0.3 m/s at 400 m/s^2 have gone after 0.75 of 1 ms, and then grow the other way.
+        let left = |accuracy| arrival(-0.3, Middle::Left(-0.1), 5e-4, accuracy);
+        let off = 0.5 * 400.0 * 2.5e-4 * 2.5e-4;
+        assert!(left(0.9 * off).is_some() && left(1.1 * off).is_none());
     }
 
     #[test]

@@ -142,3 +142,157 @@ impl Touch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::contact;
+    use crate::dynamics::Dynamics;
+    use crate::dynamics::touch::Start;
+    use crate::geometry::{Rotation, direction};
+    use crate::robot::Shape;
+    use crate::scenario::Scenario;
+    use crate::solver::Row;
+
+    /// A robot that whirls through the air with all that moves on it.
+    fn whirling(text: &str) -> (Dynamics, State) {
+        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let model = Model::new(&scenario.robot).expect("the robot can be built");
+        let mut state = State::at_rest(&model, Vector::new(0.3, 1.0), 0.2, 0.0);
+        state.velocity = Vector::new(0.4, -0.3);
+        state.angular_velocity = 1.3;
+        for drive in &mut state.drives {
+            drive.spin = -4.0;
+        }
+        for (flipper, rate) in state.flippers.iter_mut().zip([2.1, -1.7]) {
+            flipper.rate = rate;
+        }
+        (
+            Dynamics::new(model, Vec::new(), 0.0, scenario.solver),
+            state,
+        )
+    }
+
+    /// The same after a time [s] at these velocities.
+    fn after(state: &State, model: &Model, time: f64) -> State {
+        let mut then = state.clone();
+        (then.center, then.angle) = state.mass_pose_after(time);
+        for k in 0..state.drives.len() {
+            then.drives[k].position += state.track_speed(model, k) * time;
+        }
+        for flipper in &mut then.flippers {
+            flipper.angle += flipper.rate * time;
+        }
+        then
+    }
+
+    /// Checks the acceleration of a point of each part against the place where it is before and after.
+    fn check(text: &str) {
+        const TIME: f64 = 1e-4;
+        let (mut dynamics, state) = whirling(text);
+        let (layout, unknowns) = (dynamics.problem.layout, &mut dynamics.problem.unknowns);
+        state.write_velocities(layout, unknowns);
+        let (model, unknowns) = (&dynamics.model, &dynamics.problem.unknowns);
+        let start = Start::new((&state, model), (layout, unknowns), 0.0);
+        for (i, part) in model.parts.iter().enumerate() {
+            let point = state.center + Vector::new(0.21, -0.07);
+            let contact = contact::Contact::new(i, (0, -1), (point, direction(1.9)), 0.0);
+            let (mut touch, solved) = Touch::new(&contact, None, &start);
+            // Its normal stays as it is, so its gap and slip are those of the point.
+            touch.meeting = Meeting::Point;
+            let moved = |time: f64| {
+                let then = after(&state, model, time);
+                touch.moved(&then, model, (part.mount, 0.0))
+            };
+            let way = |time: f64| touch.along(moved(time).way);
+            let slip = solved.tangent.along(unknowns);
+            let swing = touch.swing(slip, &state, model, (part.mount, &moved(0.0)));
+            let gains = touch.meeting.gains(swing);
+            let (back, on) = (way(-TIME), way(TIME));
+            for axis in [0, 1] {
+                let bend = (on[axis] + back[axis]) / (TIME * TIME);
+                assert_relative_eq!(gains[axis], bend, max_relative = 1e-4, epsilon = 1e-5);
+            }
+            // The surface of a belt or disc moves over the point, which counts for the normal alone.
+            let slides = (on[1] - back[1]) / (2.0 * TIME);
+            assert_relative_eq!(swing.slip, slides, max_relative = 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_points_of_gears_accelerate_with_chassis_and_axle() {
+        check(include_str!(
+            "../../../tests/scenarios/engineer_gear3_step.json"
+        ));
+    }
+
+    #[test]
+    fn grousers_accelerate_along_their_belt_and_round_its_ends() {
+        let text = include_str!("../../../tests/scenarios/engineer_grouser_belt_step.json");
+        let (dynamics, _) = whirling(text);
+        assert!(
+            dynamics
+                .model
+                .parts
+                .iter()
+                .any(|part| matches!(part.shape, Shape::Grouser(_)))
+        );
+        check(text);
+    }
+
+    #[test]
+    fn the_points_of_arms_accelerate_with_pivot_and_arm() {
+        check(include_str!(
+            "../../../tests/scenarios/engineer_flippers_step.json"
+        ));
+    }
+
+    #[test]
+    fn an_arc_rolls_by_the_way_of_its_centre() {
+        let touch = Touch {
+            normal: Vector::Y,
+            meeting: Meeting::Arc(0.05),
+            ..Touch::default()
+        };
+        let rolled = |way: f64, turned: f64| {
+            let of_part = Rotation::new(turned);
+            let moved = Moved {
+                arm: Vector::ZERO,
+                spoke: Vector::ZERO,
+                way: Vector::new(way, 0.0),
+                of_carrier: of_part,
+                of_part,
+            };
+            touch.rolled(&moved)
+        };
+        assert_relative_eq!(rolled(0.01, 0.0), 0.01);
+        assert_relative_eq!(
+            rolled(0.0, -0.2),
+            0.05 * 0.2_f64.sin(),
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(
+            rolled(0.01, 0.2),
+            0.01 - 0.05 * 0.2_f64.sin(),
+            max_relative = 1e-12
+        );
+    }
+
+    #[test]
+    fn a_tip_dips_by_what_it_is_deeper_than_at_either_end_unless_something_bears_it() {
+        let mut solved = Contact::new([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]].map(Row::on_base));
+        let dip = |[before, middle, now]: [f64; 3], solved: &Contact| {
+            let mut touch = Touch::default();
+            (touch.gap_before, touch.middle.gap, touch.gap) = (before, middle, now);
+            touch.dip(solved)
+        };
+        assert_relative_eq!(dip([1e-3, -2e-3, 3e-3], &solved), 2e-3);
+        assert_relative_eq!(dip([-1e-3, -5e-3, -2e-3], &solved), 3e-3);
+        assert_relative_eq!(dip([-1e-3, -5e-3, 2e-3], &solved), 4e-3);
+        assert_relative_eq!(dip([-3e-3, -2e-3, 1e-3], &solved), 0.0);
+        solved.normal_impulse = 1e-6;
+        assert_relative_eq!(dip([1e-3, -2e-3, 3e-3], &solved), 0.0);
+    }
+}

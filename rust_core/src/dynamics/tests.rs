@@ -115,6 +115,80 @@ fn a_step_ends_when_a_drive_in_the_air_has_its_speed_back() {
 }
 
 #[test]
+fn a_step_ends_when_a_robot_that_slides_comes_to_rest() {
+    let (mut dynamics, mut state) = setup(|s| {
+        s.robot.drivetrain.max_torque = 1e3;
+        s.robot.center_of_mass = [0.0, 0.0];
+        s.solver.accuracy = Some(3e-7);
+    });
+    state.velocity.x = 0.05;
+    let at = |x: f64| {
+        let point = state.center + Vector::new(x, -0.064);
+        Contact::new(0, (0, -1), (point, Vector::Y), 0.0)
+    };
+    let mut contacts = [-0.18, 0.18].map(at);
+    // The contacts slide until friction, of 0.5, has braked it.
+    let expected = 0.05 / (0.5 * 9.81);
+    let h = 1.3 * expected;
+    dynamics.recognise(&mut contacts, 0.0);
+    dynamics.prepare(&state, &contacts, (h, TRAVEL));
+    let advanced = dynamics.advance(&mut state, SetPoint::constant(0.0), (h, false));
+    let time = advanced.expect_err("friction jumps");
+    // Contacts bear a little less than the weight while they give way.
+    assert_relative_eq!(time, expected, max_relative = 1e-3);
+}
+
+#[test]
+fn the_traction_of_a_tooth_is_what_slows_its_drive() {
+    let text = include_str!("../../../tests/scenarios/engineer_gear3_step.json");
+    let (mut dynamics, mut state) = setup(|s| {
+        *s = Scenario::from_json(text).expect("the shared scenario is valid");
+        s.solver.accuracy = None;
+        s.robot.drivetrain.max_torque = 0.0;
+        s.robot.drivetrain.rotor_inertia = 0.0;
+    });
+    state.velocity = Vector::new(0.1, -0.3);
+    state.drives[0].spin = -6.0;
+    // Neither normal nor tangent leads past the axle.
+    let point = state.center + Vector::new(0.03, -0.05);
+    let contact = Contact::new(0, (0, -1), (point, direction(1.8)), 0.0);
+    let before = state.drives[0].spin;
+    dynamics.take(&mut state, &[contact], 0.0, STEP);
+    let m = dynamics.model();
+    let drive = state.drives[0];
+    assert_relative_eq!(
+        m.drive_inertia(0) * (drive.spin - before),
+        drive.traction * m.drive_radius * STEP,
+        max_relative = 1e-9
+    );
+    assert!(drive.traction.abs() > 10.0);
+}
+
+/// What an open gap lets a shoe do is to close it in the step, whatever is left of a penetration.
+#[test]
+fn a_soft_contact_closes_its_gap_or_pushes_out_of_the_ground() {
+    let (h, most) = (2e-3, 0.5);
+    let soft = Softness::new(1000.0, 5.0, h);
+    for (gap, bias) in [
+        (1e-4, 1e-4 / h),
+        (0.0, 0.0),
+        (-1e-4, -1e-4 * soft.push_rate),
+        (-0.1, -most),
+    ] {
+        let mut solved = crate::solver::Contact::new([crate::solver::Row::default(); 2]);
+        let touch = Touch {
+            gap,
+            ..Touch::default()
+        };
+        touch.close_softly(&mut solved, (h, h), soft, most);
+        assert_relative_eq!(solved.bias, bias);
+        let mut solved = crate::solver::Contact::new([crate::solver::Row::default(); 2]);
+        touch.close(&mut solved, h, soft, most);
+        assert_relative_eq!(solved.bias, bias);
+    }
+}
+
+#[test]
 fn rotor_in_the_air_resists_only_what_turns_over_the_chassis() {
     let rotor = 0.05;
     let (mut dynamics, mut state) = setup(|s| {

@@ -8,6 +8,8 @@ mod pin;
 mod pull;
 mod rest;
 mod rests;
+#[cfg(test)]
+mod tests;
 mod wheels;
 
 use pin::Pin;

@@ -128,7 +128,7 @@ impl Chain {
 
     /// Spring and damper of the idler at a travel [m], with the impulse of a `time` [s], at the end of a motion of
     /// `h` [s]; its stops are stiff.
-    fn tensioner(&self, travel: f64, h: f64, time: f64) -> Damper {
+    pub(super) fn tensioner(&self, travel: f64, h: f64, time: f64) -> Damper {
         let Tensioner {
             pre_tension,
             stiffness,

@@ -1,8 +1,12 @@
 //! A chain that whirls freely in the air, off its guide.
 
+use approx::assert_relative_eq;
+
 use super::*;
+use crate::contact::Contact;
+use crate::dynamics::Shoe;
 use crate::geometry::{Rotation, Twist, cross, left_of};
-use crate::robot::{Bushing, Model};
+use crate::robot::{Bushing, Model, Mount};
 use crate::scenario::{Friction, Scenario};
 use crate::terrain::GroundFriction;
 
@@ -115,4 +119,98 @@ fn keeps_momentum_and_energy(bushing: Bushing) {
         // Half the step leaves a quarter of the error.
         assert!(coarse < 1e-3 && fine < 0.3 * coarse, "{losses:?}");
     }
+}
+
+#[test]
+fn a_shoe_that_is_no_number_or_too_fast_is_seen() {
+    let (_, state) = whirling(Bushing::default());
+    assert!(state.is_finite());
+    let spoils: [fn(&mut Shoe); 4] = [
+        |shoe| shoe.center.x = f64::NAN,
+        |shoe| shoe.angle = f64::INFINITY,
+        |shoe| shoe.twist.turn = f64::NAN,
+        |shoe| shoe.twist.velocity.y = 4e8,
+    ];
+    for spoil in spoils {
+        let mut state = state.clone();
+        spoil(&mut state.shoes[5]);
+        assert!(!state.is_finite());
+    }
+}
+
+#[test]
+fn the_fastest_point_of_a_shoe_is_at_its_end() {
+    let (dynamics, mut state) = whirling(Bushing::default());
+    state.shoes[7].twist = Twist {
+        velocity: Vector::new(3.0, 4.0),
+        turn: -200.0,
+    };
+    let pitch = dynamics.chains[0].rule.path.pitch;
+    assert_relative_eq!(dynamics.fastest(&state, 0.3), 5.0 + 200.0 * pitch);
+}
+
+#[test]
+fn a_step_is_off_by_a_tenth_of_what_its_pins_are() {
+    let (mut dynamics, state) = whirling(Bushing::default());
+    let moving = |speed: f64, turn: f64| {
+        let mut state = state.clone();
+        state.shoes[7].twist = Twist {
+            velocity: Vector::new(0.0, speed),
+            turn,
+        };
+        state
+    };
+    dynamics.motion = moving(1.0, 2.0);
+    let ends = [moving(3.0, -5.0), moving(0.0, 4.0)];
+    let half_pitch = 0.5 * dynamics.chains[0].rule.path.pitch;
+    let error = dynamics.local_error(ends.each_ref(), 2e-3, 0.3);
+    let expected = 2e-3 * 0.1 * (0.5 + half_pitch * 2.5);
+    assert_relative_eq!(error, expected, max_relative = 1e-12);
+}
+
+#[test]
+fn a_shoe_meets_the_ground_with_its_own_speed_and_drives() {
+    let (mut dynamics, mut state) = whirling(Bushing::default());
+    let (shoe, half) = (7, 1e-3);
+    state.shoes[shoe].twist = Twist {
+        velocity: Vector::new(0.2, -0.3),
+        turn: 0.0,
+    };
+    let (layout, unknowns) = (dynamics.problem.layout, &mut dynamics.problem.unknowns);
+    state.write_velocities(layout, unknowns);
+    let part = dynamics
+        .model
+        .parts
+        .iter()
+        .position(|part| part.mount == Mount::Shoe(shoe));
+    let part = part.expect("it has a plate");
+    let point = state.shoes[shoe].center + Vector::new(0.01, -0.02);
+    let contact = Contact::new(part, (0, -1), (point, Vector::Y), 1e-4);
+    let start = Start::new((&state, &dynamics.model), (layout, unknowns), half);
+    let (touch, _) = Touch::of_shoe(&contact, None, shoe, &start);
+    assert_eq!((touch.on, touch.drive), (On::Shoe, Some(0)));
+    // The contact was found in the middle of the step, half a step ahead.
+    assert_relative_eq!(touch.gap, 1e-4 + 0.3 * half, max_relative = 1e-12);
+    let travel = state.shoes[shoe].along();
+    let levers = [travel.y, travel.x].map(|along| -dynamics.model.drive_radius * along);
+    assert_relative_eq!(touch.spin_levers[0], levers[0], max_relative = 1e-12);
+    assert_relative_eq!(touch.spin_levers[1], levers[1], max_relative = 1e-12);
+}
+
+#[test]
+fn chains_report_the_deepest_shoe_in_their_guide() {
+    let (mut dynamics, _) = whirling(Bushing::default());
+    let at = |on: On, gap: f64| Touch {
+        on,
+        gap,
+        ..Touch::default()
+    };
+    let guide = On::Guide { chain: 0, shoe: 1 };
+    dynamics.touches = vec![
+        at(guide, 2e-3),
+        at(guide, -3e-4),
+        at(guide, -1e-4),
+        at(On::Shoe, -0.1),
+    ];
+    assert_relative_eq!(dynamics.chain_reading().guide_penetration, 3e-4);
 }

@@ -176,6 +176,49 @@ fn arms_that_are_to_keep_level_get_there_at_their_full_rate() {
 }
 
 #[test]
+fn arms_that_keep_level_are_aimed_at_the_chassis_in_the_middle_of_the_step() {
+    let (mut dynamics, mut state) = built(&scenario(5.0));
+    let mut before = state.clone();
+    (before.angular_velocity, state.angular_velocity) = (0.3, 0.5);
+    let level = [0, 1].map(|k| {
+        let sign = dynamics.flippers[k].rule.sign();
+        FlipperCommand::Level(sign * state.over_chassis(k))
+    });
+    let trend = Trend::since(&before, 0.02);
+    dynamics.command_flippers(&state, level, 0.01, trend);
+    // It gains 10 rad/s^2.
+    for arm in &dynamics.flippers {
+        assert_relative_eq!(arm.rate, -0.55, max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn the_fastest_point_is_at_the_end_of_what_turns_fastest() {
+    let (_, mut state) = built(&scenario(5.0));
+    state.velocity = Vector::new(0.3, -0.4);
+    state.angular_velocity = -2.0;
+    assert_relative_eq!(state.fastest(0.5), 1.5);
+    state.flippers[1].rate = 3.0;
+    assert_relative_eq!(state.fastest(0.5), 2.0);
+}
+
+#[test]
+fn a_step_is_off_by_what_its_rates_differ_from_the_mean_of_those_at_its_ends() {
+    let (mut dynamics, state) = built(&scenario(5.0));
+    let moving = |speed: f64, rate: f64| {
+        let mut state = state.clone();
+        state.velocity.x = speed;
+        state.flippers[1].rate = rate;
+        state
+    };
+    dynamics.motion = moving(0.15, 1.2);
+    let ends = [moving(0.3, 1.0), moving(0.1, 2.0)];
+    // 0.05 m/s of the chassis, and 0.3 rad/s of an arm.
+    let error = dynamics.local_error(ends.each_ref(), 2e-3, 0.5);
+    assert_relative_eq!(error, 2e-3 * (0.05 + 0.5 * 0.3), max_relative = 1e-12);
+}
+
+#[test]
 fn arms_and_chassis_together_are_the_robot() {
     let scenario = scenario(30.0);
     let robot = &scenario.robot;
