@@ -114,7 +114,7 @@ def test_what_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(c2d.ScenarioError, match=r"drive\.gait must not be a function"):
         c2d.Simulations([own])
     many = c2d.Simulations(SCENARIOS)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be places from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
         many.reset([4])
     with pytest.raises(c2d.ScenarioError, match=r"duration must be"):
         many.advance(-1.0)
@@ -129,12 +129,12 @@ def test_what_is_no_list_of_scenarios_is_refused(given: Any) -> None:
             c2d.Simulations(SCENARIOS).reset([0], given)
 
 
-@pytest.mark.parametrize("which", [[[0, 1]], [[0], [1, 2]], [0.5], "first", {}])
+@pytest.mark.parametrize("which", [[[0, 1]], [[0], [1, 2]], [0.5], "first", {}, [0, 1, 0]])
 def test_what_are_no_places_is_refused(which: Any) -> None:
     many = c2d.Simulations(SCENARIOS)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be places from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
         many.advance(0.1, which)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be places from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
         many.reset(which)
 
 

@@ -184,7 +184,7 @@ class Simulations(TakesKeywords):
         Raises
         ------
         ScenarioError
-            If `duration` is not a number, or it or a place is out of range.
+            If `duration` is not a number, it or a place is out of range, or a place stands twice.
         KeyboardInterrupt
             On Ctrl-C; then they stand at different times, and are to be reset.
         """
@@ -211,7 +211,8 @@ class Simulations(TakesKeywords):
         Raises
         ------
         ScenarioError
-            If a place is out of range, or a scenario breaks a rule; then nothing changes.
+            If a place is out of range or stands twice, or a scenario breaks a rule; then nothing
+            changes.
         """
         places = self._places(which)
         others = None if scenarios is None else _prepared(scenarios)
@@ -294,9 +295,10 @@ class Simulations(TakesKeywords):
         if places.dtype == bool:
             places = np.flatnonzero(self._shaped(places, "which"))
         is_whole = places.size == 0 or np.issubdtype(places.dtype, np.integer)
-        is_list = is_whole and places.ndim == 1
+        # A place that is given twice would be advanced twice.
+        is_list = is_whole and places.ndim == 1 and np.unique(places).size == places.size
         if not is_list or not ((places >= 0) & (places < len(self))).all():
-            rule = f"must be places from 0 to {len(self) - 1}, or a mask"
+            rule = f"must be different places from 0 to {len(self) - 1}, or a mask"
             raise ScenarioError("which", which, rule)
         found: list[int] = places.tolist()
         return found
