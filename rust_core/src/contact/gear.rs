@@ -205,3 +205,33 @@ impl GearContact {
         off.abs() >= self.half_base - SUNK.value() / self.gear.root_radius
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    #[test]
+    fn between_two_grousers_the_root_circle_bears_and_at_their_bases_it_does_not() {
+        let gear = Gear {
+            radius: 0.06,
+            root_radius: 0.05,
+            grousers: 7,
+            tip_thickness: 0.006,
+            base_thickness: 0.01,
+            phase: 0.4,
+        };
+        let half_base = (0.5_f64 * 0.01 / 0.05).asin();
+        let wheel = GearContact::new(0, Vector::ZERO, gear);
+        for grouser in -4..7 {
+            let middle = 0.4 + f64::from(grouser) * TAU / 7.0;
+            let bears = |off: f64| wheel.is_between_grousers(direction(middle + off));
+            // A millimetre of a base, 0.02 rad, still bears.
+            let inside = half_base - 0.025;
+            assert!(!bears(0.0) && !bears(inside) && !bears(-inside));
+            let outside = half_base + 0.005;
+            assert!(bears(outside) && bears(-outside) && bears(0.5 * TAU / 7.0));
+        }
+    }
+}

@@ -267,3 +267,47 @@ fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
     let chord = (first.distance * b + last.distance * a) / (a + b);
     a * b > 0.0 && middle.distance > chord - ON_CHORD.value()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_between_two_others_is_redundant_if_it_is_no_deeper_than_their_chord() {
+        let at = |x: f64, distance: f64| {
+            Contact::new(0, (0, -1), (Vector::new(x, 0.3), Vector::Y), distance)
+        };
+        let (first, last) = (at(1.0, -2e-4), at(5.0, 6e-4));
+        for (x, chord) in [(2.0, 0.0), (4.0, 4e-4)] {
+            for (off, lies) in [(1e-8, true), (0.0, true), (-1e-8, false)] {
+                assert_eq!(lies_above(&first, &at(x, chord + off), &last), lies);
+            }
+        }
+        assert!(!lies_above(&first, &at(0.5, 1.0), &last));
+        assert!(!lies_above(&first, &at(5.5, 1.0), &last));
+    }
+
+    #[test]
+    fn of_contacts_in_a_row_those_at_its_ends_and_the_deepest_are_left() {
+        let at = |x: f64, distance: f64| {
+            Contact::new(0, (0, -1), (Vector::new(x, 0.0), Vector::Y), distance)
+        };
+        let mut contacts = vec![
+            at(3.0, 0.0),
+            at(1.0, 0.0),
+            at(2.0, 0.0),
+            at(4.0, -1e-3),
+            at(5.0, 0.0),
+        ];
+        contacts.push(at(1.0 + 1e-10, 0.0));
+        contacts.push(Contact::new(
+            1,
+            (0, -1),
+            (Vector::new(2.5, 0.0), Vector::Y),
+            0.0,
+        ));
+        without_redundant(&mut contacts);
+        let left: Vec<(usize, f64)> = contacts.iter().map(|c| (c.part, c.point.x)).collect();
+        assert_eq!(left, [(0, 1.0), (0, 4.0), (0, 5.0), (1, 2.5)]);
+    }
+}

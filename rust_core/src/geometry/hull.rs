@@ -224,3 +224,24 @@ impl Stretch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_direction_within_rounding_of_the_tangent_has_not_to_turn_round_once() {
+        let disc = |x: f64, radius: f64| Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        };
+        let (large, small) = (disc(0.0, 0.2), disc(1.0, 0.1));
+        let tangent = (0.1_f64).acos();
+        let turn =
+            |outward: f64| turn_to(&large, &small, outward).expect("neither holds the other");
+        assert!((turn(tangent + 0.3) - 0.3).abs() < 1e-12);
+        assert!((turn(tangent - 0.3) - (TAU - 0.3)).abs() < 1e-12);
+        assert!(turn(tangent - 1e-14) == 0.0);
+        assert!(turn_to(&large, &disc(0.05, 0.1), 0.0).is_none());
+    }
+}

@@ -65,4 +65,22 @@ mod tests {
         let peak = maximise(-3.0, 5.0, |x| (x - 1.0).min(2.0 * (2.0 - x)));
         assert!((peak - 5.0 / 3.0).abs() < 1e-9);
     }
+
+    /// False position alone keeps one end for good, and takes dozens of calls.
+    #[test]
+    fn a_curve_takes_a_dozen_calls_whichever_way_it_bends() {
+        let curves: [fn(f64) -> f64; 2] = [|x| x.powi(5) - 0.1, |x| 0.1 - (1.0 - x).powi(5)];
+        for (curve, expected) in curves
+            .into_iter()
+            .zip([0.1_f64.powf(0.2), 1.0 - 0.1_f64.powf(0.2)])
+        {
+            let calls = std::cell::Cell::new(0);
+            let found = zero(0.0, 1.0, |x| {
+                calls.set(calls.get() + 1);
+                curve(x)
+            });
+            assert!((found - expected).abs() < 1e-15);
+            assert!(calls.get() < 20, "{}", calls.get());
+        }
+    }
 }

@@ -117,6 +117,23 @@ mod tests {
     }
 
     #[test]
+    fn a_segment_is_as_far_as_its_nearest_point() {
+        let segment = Segment {
+            left: Vector::new(1.0, 1.0),
+            right: Vector::new(3.0, 1.0),
+            friction: Friction::dry(0.5),
+        };
+        for (x, y, distance) in [
+            (2.5, 3.0, 2.0),
+            (1.0, 0.0, 1.0),
+            (0.0, 1.0, 1.0),
+            (6.0, 5.0, 5.0),
+        ] {
+            assert_eq!(segment.distance(Vector::new(x, y)), distance);
+        }
+    }
+
+    #[test]
     fn each_segment_has_its_own() {
         let ground = GroundFriction::of_segments(&STEP, &FRICTIONS, 0.0);
         let places = [(-0.7, 0.0), (-0.2, 0.0), (0.0, 0.05), (0.4, 0.1)];

@@ -251,6 +251,20 @@ mod tests {
     use super::*;
     use crate::scenario::Surface;
 
+    /// The first values of splitmix64 with seed 0: Vigna's splitmix64.c.
+    #[test]
+    fn posts_have_the_bits_of_splitmix64() {
+        let found = [0, 1, 2].map(|post| bits(0, 0, post));
+        let expected = [
+            0xE220_A839_7B1D_CDAF,
+            0x6E78_9E6A_A1B9_65F4,
+            0x06C4_5D18_8009_454F,
+        ];
+        assert_eq!(found, expected);
+        assert_eq!(bits(0, 1, 7), bits(0, 0, 65_543));
+        assert_ne!(bits(1, 0, 7), bits(0, 1, 7));
+    }
+
     #[test]
     fn the_higher_of_two_is_as_high_as_either_everywhere() {
         let stairs = Skyline::of_blocks(0.0, 1.0, &[1.0, 3.0]);

@@ -252,3 +252,19 @@ fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
         assert!(bearing[0].x < 0.012 && bearing[bearing.len() - 1].x > 0.488);
     }
 }
+
+#[test]
+fn the_arc_of_a_corner_is_as_long_as_its_angle_on_its_radius() {
+    let (_, lane) = rounded(
+        &[[-1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 0.0]],
+        0.05,
+    );
+    let lengths: Vec<f64> = (0..5)
+        .map(|i| lane.corner(i))
+        .filter(|corner| corner.is_convex && corner.radius > 0.0)
+        .map(Corner::arc_length)
+        .collect();
+    let right = 0.5 * std::f64::consts::PI;
+    assert!((lengths[0] - 0.05 * right).abs() < 1e-12);
+    assert!((lengths[1] - 0.05 * 0.5 * right).abs() < 1e-12);
+}

@@ -44,6 +44,25 @@ fn ground_rises_above_a_segment_by_its_farthest_corner() {
 }
 
 #[test]
+fn a_disc_rests_on_faces_and_on_corners_to_either_side() {
+    let ground = hill_and_block();
+    let below = |x: f64| 0.2 + (0.09_f64 - (x - 4.0) * (x - 4.0)).sqrt();
+    let slope = 0.3 * 2.0_f64.sqrt();
+    for (x, height) in [
+        (-1.0, 0.3),
+        (3.75, below(3.75)),
+        (4.2, 0.5),
+        (4.75, below(3.75)),
+        (1.25, 0.25 + slope),
+        (1.75, 0.25 + slope),
+        (1.5, 0.8),
+    ] {
+        let found = ground.height_under_disc(x, 0.3);
+        assert_relative_eq!(found, height, epsilon = 1e-12);
+    }
+}
+
+#[test]
 fn a_disc_is_clear_of_ground_that_ends_below_it() {
     let ground = hill_and_block();
     let is_clear = |x: f64, y: f64| ground.is_clear_of(Vector::new(x, y), 0.3);
