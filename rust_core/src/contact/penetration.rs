@@ -173,6 +173,7 @@ mod tests {
 
     use super::*;
     use crate::geometry::Vector;
+    use crate::robot::{BodyKind, Mount};
     use crate::scenario::Surface;
 
     #[test]
@@ -193,6 +194,31 @@ mod tests {
                 (found - f64::max(depth, 0.0)).abs() < 1e-12,
                 "{x} {y} {radius}: {found}"
             );
+        }
+    }
+
+    #[test]
+    fn what_hangs_over_an_end_of_the_ground_is_not_in_it() {
+        let flat = [[-1.0, 0.0], [1.0, 0.0]];
+        let lane = Profile::new("terrain", &flat, Surface::sharp(0.9), true).expect("a profile");
+        let wheel = Shape::Disc {
+            center: Vector::ZERO,
+            radius: 0.1,
+        };
+        let part = Part {
+            kind: BodyKind::Wheel,
+            shape: wheel,
+            drive: Some(0),
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            mount: Mount::Chassis,
+        };
+        let at = |x: f64| depth(&part, Pose::new(Vector::new(x, 0.08), 0.0), &lane);
+        for x in [-0.89, 0.0, 0.89] {
+            assert!((at(x) - 0.02).abs() < 1e-12);
+        }
+        for x in [-0.91, 0.91, -1.5, 1.5] {
+            assert_eq!(at(x), 0.0);
         }
     }
 

@@ -218,6 +218,35 @@ mod tests {
 
     /// Averaged over where it comes from and goes to, of which a share lies on an arc and the rest on a run.
     #[test]
+    fn near_a_joint_the_motion_is_mixed_with_that_beyond_it() {
+        let disc = |x: f64| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.1,
+        };
+        let hull = Envelope::new(&[disc(-0.3), disc(0.3)]);
+        let (arc, reach) = (0.1 * 0.5 * TAU, 0.02);
+        let half = hull.length() / 2.0;
+        assert!((half - arc - 0.6).abs() < 1e-12);
+        // It begins on an arc, whose turn is 1 / radius; within reach of a joint it fades to that of a run, which is 0.
+        let begin = hull.motion_at(0.5 * arc, reach).turn;
+        assert!((begin.abs() - 10.0).abs() < 1e-9);
+        for joint in [0.0, arc, half, half + arc] {
+            for (way, share) in [(0.0, 0.5), (0.25, 0.375), (0.5, 0.25), (1.5, 0.0)] {
+                for side in [-1.0, 1.0] {
+                    let at = joint + side * (way * reach + 1e-9);
+                    let inside = (at.rem_euclid(half)) < arc;
+                    let expected = begin * if inside { 1.0 - share } else { share };
+                    let found = hull.motion_at(at, reach).turn;
+                    assert!(
+                        (found - expected).abs() < 1e-5,
+                        "{joint} {way} {side}: {found}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_grouser_moves_as_its_motion_says() {
         let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {
             center: Vector::new(x, 0.0),

@@ -244,4 +244,17 @@ mod tests {
         assert!(turn(tangent - 1e-14) == 0.0);
         assert!(turn_to(&large, &disc(0.05, 0.1), 0.0).is_none());
     }
+
+    #[test]
+    fn a_run_along_several_discs_is_one_piece() {
+        let disc = |x: f64, radius: f64| Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        };
+        for order in [[0, 1, 2, 3], [3, 1, 2, 0], [1, 0, 3, 2]] {
+            let discs = order.map(|i| disc([-0.4, -0.1, 0.2, 0.5][i], 0.1));
+            let ends: Vec<f64> = arcs_round(&discs).iter().map(|arc| arc.center.x).collect();
+            assert_eq!(ends, [-0.4, 0.5]);
+        }
+    }
 }

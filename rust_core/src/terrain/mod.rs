@@ -410,6 +410,17 @@ mod tests {
     }
 
     #[test]
+    fn the_height_beyond_an_end_is_that_of_the_end() {
+        let step = Terrain::Step {
+            height: 0.1,
+            surface: Surface::sharp(0.5),
+        };
+        let ground = Ground::new(&step, 0.4).expect("it is ground");
+        let heights = [-1e4, -0.5, 0.0, 0.5, 1e4].map(|x| ground.height(x));
+        assert_relative_eq!(heights.as_slice(), [0.0, 0.0, 0.1, 0.1, 0.1].as_slice());
+    }
+
+    #[test]
     fn lanes_apart_are_refused() {
         let here = profile(&[[0.0, 0.0], [1.0, 0.0]]);
         let there = profile(&[[2.0, 0.0], [3.0, 0.0]]);
