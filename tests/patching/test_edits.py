@@ -94,7 +94,10 @@ def test_smaller_wheels_of_an_mjcf_scale_with_their_radius(tmp_path: Path) -> No
 
 
 SHARE = 0.75
-"""Of three wheels on a side that become four; those of the flippers stay."""
+"""[kg] Of each of three wheels on a side that become four; those of the flippers stay."""
+
+TORQUE = 5.0 * 6.0 / 7.0
+"""[N m] Of each wheel of a side: that at the tip of a flipper counts twice, and one is new."""
 
 
 @pytest.mark.parametrize("suffix", CART)
@@ -102,12 +105,13 @@ def test_wheels_and_their_copies_share_mass_and_torque(suffix: str, tmp_path: Pa
     reading = read(tmp_path, CART[suffix], suffix)
     text = patch_file(reading, on_chassis(reading, 4)).text
     count = {"urdf": "limit@effort", "sdf": "effort", "xml": "velocity@forcerange"}[suffix]
-    effort = "-3.75 3.75" if suffix == "xml" else "3.75"
     mass = {"urdf": "mass@value", "sdf": "mass", "xml": "inertial@mass"}[suffix]
     found = defaultdict[str, list[str]](list)
     for name, _, value in paths(text):
         found[name].append(value)
-    assert found[mass].count(str(SHARE)) == found[count].count(effort) == 8
+    assert found[mass].count(str(SHARE)) == 8
+    limits = [float(each.split()[-1]) for each in found[count]]
+    assert sum(abs(each - TORQUE) < 1e-6 for each in limits) == 8 + 4
 
 
 def names(text: str) -> set[str]:
@@ -226,7 +230,7 @@ def test_a_summary_counts_wheels_and_lines(tmp_path: Path) -> None:
     patch = patch_file(reading, on_chassis(reading, 2))
     lines = [line for line in patch.diff.splitlines()[2:] if line[0] in "+-"]
     new, gone = (sum(line[0] == mark for line in lines) for mark in "+-")
-    assert patch.summary == f"wheels: 2 removed, 4 changed; lines: {new} new, {gone} gone"
+    assert patch.summary == f"wheels: 2 removed, 8 changed; lines: {new} new, {gone} gone"
 
 
 KEY = '<keyframe><key name="home" qpos="{qpos}"/></keyframe></mujoco>'

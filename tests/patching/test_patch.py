@@ -125,7 +125,8 @@ def test_motors_of_mjcf_keep_what_they_do_together(tmp_path: Path, motor: str) -
     pytest.importorskip("mujoco")
     reading = mjcf(tmp_path, motor)
     was = reading.robot.drivetrain
-    assert was.max_torque in (60.0, 30.0, 15.0)
+    # On the chassis, and 15 on the flippers, where a wheel half as large counts twice.
+    assert was.max_torque in (60.0 + 15.0, 30.0 + 15.0, 15.0 + 15.0)
     for radius in (None, 0.1):
         text = patch_file(reading, on_chassis(reading, 5, radius)).text
         found = reread(reading, text, tmp_path).robot
@@ -163,9 +164,41 @@ def test_motors_of_some_wheels_keep_what_they_do_together(tmp_path: Path, count:
     path.write_text(re.sub(r'<velocity joint="\w+_middle_joint".*?/>', "", text))
     reading = quietly(path)
     found = reread(reading, patch_file(reading, on_chassis(reading, count)).text, tmp_path).robot
-    assert found.drivetrain.max_torque == pytest.approx(10.0)
+    assert found.drivetrain.max_torque == pytest.approx(10.0 + 15.0)
     assert found.drivetrain.controller is not None
-    assert found.drivetrain.controller.gain == pytest.approx(20.0)
+    assert found.drivetrain.controller.gain == pytest.approx(20.0 + 50.0)
+
+
+@pytest.mark.parametrize("name", ["urdf", "sdf", "mjcf"])
+def test_motors_that_share_evenly_still_do_with_other_wheels_on_one_carrier(
+    name: str, tmp_path: Path
+) -> None:
+    """As the simulator has it for the other robot: each wheel with an equal part of all torque."""
+    if name == "mjcf":
+        pytest.importorskip("mujoco")
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3))
+    motors = replace(robot.drivetrain, rotor_inertia=0.02, controller=c2d.PI(gain=20.0))
+    path = tmp_path / f"robot.{'xml' if name == 'mjcf' else name}"
+    getattr(replace(robot, drivetrain=motors), f"to_{name}")(path)
+    reading = quietly(path)
+    arms = reading.robot.flippers
+    assert arms is not None
+    for count, of_arms in ((5, 3), (3, 2)):
+        other = replace(
+            reading.robot,
+            track=c2d.LineOfWheels(count),
+            flippers=replace(arms, track=c2d.LineOfWheels(of_arms)),
+        )
+        again = reread(reading, patch_file(reading, other).text, tmp_path)
+        joints = [again.tree.joints[each] for each in again.wheels["name"].tolist()]
+        forces = [joint.effort for joint in joints] / again.wheels["radius"]
+        assert len(forces) == 2 * (count + of_arms)
+        assert forces == pytest.approx([forces[0]] * len(forces))
+        was, found = reading.robot.drivetrain, again.robot.drivetrain
+        assert found.max_torque == pytest.approx(was.max_torque)
+        assert found.rotor_inertia == pytest.approx(was.rotor_inertia)
+        assert found.torque_sharing == "wheel"
+        assert not [doubt for doubt in again.doubts if "rotor" in doubt]
 
 
 @pytest.mark.parametrize("name", CARTS)
@@ -214,8 +247,15 @@ def test_wheels_of_flippers_change_where_they_hang(name: str, tmp_path: Path) ->
 
 
 def without_wheels(text: str) -> str:
-    """All that a file holds but the wheels of its chassis and their motors, without spaces."""
+    """All that a file holds but wheels of its chassis and motors of wheels, without spaces."""
     root = ElementTree.fromstring(text)
+    for motor in root.iter():
+        if re.search(r"flipper_(root|tip)", motor.get("name", "") + motor.get("joint", "")):
+            for of_motor in motor.iter():
+                for name in {"effort", "forcerange", "kv"}.intersection(of_motor.keys()):
+                    of_motor.set(name, "")
+                if of_motor.tag == "effort":
+                    of_motor.text = ""
     for parent in list(root.iter()):
         for child in list(parent):
             named = child.get("name", "") + child.get("joint", "") + child.get("reference", "")

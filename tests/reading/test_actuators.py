@@ -12,7 +12,11 @@ from tests.reading.carts import FILES, SIDES, pair, read, urdf
 
 
 def mjcf(joint: str, changed: str = "") -> str:
-    """The cart, whose joints have these attributes by default, and its left front wheel others."""
+    """The cart, whose joints have these attributes by default, and its left front wheel others.
+
+    Of five wheels a side, two of them on a flipper, four are as large as the rear end. The one at
+    the tip is half as large: its torque counts twice, its rotor and its gain four times.
+    """
     text = (FILES / "cart.xml").read_text()
     text = text.replace("<default>", f"<default><joint {joint}/>", 1)
     return text.replace(
@@ -33,9 +37,20 @@ def test_every_engine_has_its_laws() -> None:
 def test_the_armature_of_one_side_is_the_rotor_inertia(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf('armature="0.01"'), "cart.xml")
-    # Three wheels a side, as large as the rear end.
-    assert reading.robot.drivetrain.rotor_inertia == pytest.approx(0.03, rel=1e-12)
+    assert reading.robot.drivetrain.rotor_inertia == pytest.approx(8.0 * 0.01, rel=1e-12)
     assert reading.sources["robot.drivetrain.rotor_inertia"].startswith("cart.xml:")
+    (doubt,) = [each for each in reading.doubts if "rotor" in each or "armature" in each]
+    assert "got 0.05 to 0.2 kg m^2" in doubt  # if all were as those of the tip, or as the others
+
+
+def test_rotors_in_proportion_to_their_wheels_are_alike(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = mjcf('armature="0.01"')
+    for side, _ in SIDES:
+        joint = f'<joint name="{side}_flipper_tip_joint"'
+        text = text.replace(joint, f'{joint} armature="0.0025"')
+    reading = read(tmp_path, text, "cart.xml")
+    assert reading.robot.drivetrain.rotor_inertia == pytest.approx(5.0 * 0.01, rel=1e-12)
     assert not [doubt for doubt in reading.doubts if "rotor" in doubt or "armature" in doubt]
 
 
@@ -43,15 +58,15 @@ def test_the_armature_of_an_actuator_counts_by_the_square_of_its_gear(tmp_path: 
     pytest.importorskip("mujoco")
     text = mjcf('armature="0.01"').replace("<velocity ", '<velocity gear="3" armature="0.002" ')
     rotor = read(tmp_path, text, "cart.xml").robot.drivetrain.rotor_inertia
-    assert rotor == pytest.approx(3.0 * (0.01 + 0.002 * 9.0), rel=1e-12)
+    assert rotor == pytest.approx(8.0 * (0.01 + 0.002 * 9.0), rel=1e-12)
 
 
 def test_rotors_that_differ_have_their_mean_and_a_doubt(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf('armature="0.01"', 'armature="0.07"'), "cart.xml")
     assert reading.robot.drivetrain.torque_sharing == "wheel"
-    assert reading.robot.drivetrain.rotor_inertia == pytest.approx((0.09 + 0.03) / 2.0)
-    assert any("got 0.03 to 0.21 kg m^2" in doubt for doubt in reading.doubts)
+    assert reading.robot.drivetrain.rotor_inertia == pytest.approx((0.14 + 0.08) / 2.0)
+    assert any("got 0.05 to 0.35 kg m^2" in doubt for doubt in reading.doubts)
 
 
 @pytest.mark.parametrize("engine", ["gz", "classic", "bullet"])
@@ -114,8 +129,8 @@ def test_dynamics_of_sdf_are_read(tmp_path: Path) -> None:
     text = (FILES / "cart.sdf").read_text()
     assert "</limit>" in text
     text = text.replace("</limit>", "</limit><dynamics><friction>0.05</friction></dynamics>")
-    # Three wheels a side, of 5 N m each.
-    assert any("0.15 of 15 N m" in note for note in read(tmp_path, text, "cart.sdf").notes)
+    # Five wheels a side, of 5 N m each, of which that at the tip counts twice.
+    assert any("0.3 of 30 N m" in note for note in read(tmp_path, text, "cart.sdf").notes)
 
 
 @pytest.mark.parametrize("name", ["acceleration", "linear_acceleration"])
@@ -132,9 +147,41 @@ def test_accelerations_are_those_of_a_differential_drive(tmp_path: Path, name: s
     assert "estimate" in usual.sources["robot.drivetrain.max_deceleration"]
 
 
-def test_a_note_says_what_wheels_on_flippers_leave_to_those_of_the_chassis(tmp_path: Path) -> None:
-    notes = read(tmp_path, (FILES / "cart.sdf").read_text(), "cart.sdf").notes
-    assert any("each wheel of the chassis has 3/5" in note for note in notes)
+def each_with(effort: str, of_tips: str, folder: Path) -> c2d.Reading:
+    """The cart with these torques of its wheels, and of those at the tips of its flippers."""
+    text = (FILES / "cart.urdf").read_text().replace('effort="5" velocity="10"', effort)
+    return read(folder, text.replace('effort="5" velocity="20"', of_tips))
+
+
+def test_wheels_on_flippers_add_their_torque(tmp_path: Path) -> None:
+    """Each wheel is simulated with the force that the file gives it."""
+    reading = each_with('effort="5" velocity="10"', 'effort="2.5" velocity="20"', tmp_path)
+    assert reading.robot.drivetrain.max_torque == pytest.approx(5.0 * 5.0, rel=1e-12)
+    assert reading.robot.drivetrain.torque_sharing == "wheel"
+    assert not [note for note in reading.notes if "force" in note]
+    assert "of 10 lines" in reading.sources["robot.drivetrain.max_torque"]
+
+
+@pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "cart.xml"])
+def test_a_note_says_where_alike_torques_are_unlike_forces(name: str, tmp_path: Path) -> None:
+    if name == "cart.xml":
+        pytest.importorskip("mujoco")
+    reading = read(tmp_path, (FILES / name).read_text(), name)
+    assert reading.robot.drivetrain.max_torque == pytest.approx(4.0 * 5.0 + 2.0 * 5.0)
+    assert reading.robot.drivetrain.torque_sharing == "wheel"
+    assert any("0.6 to 1.2 times the force" in note for note in reading.notes)
+
+
+def test_motors_of_flippers_that_are_weaker_make_one_motor(tmp_path: Path) -> None:
+    reading = each_with('effort="5" velocity="10"', 'effort="1" velocity="20"', tmp_path)
+    assert reading.robot.drivetrain.max_torque == pytest.approx(4.0 * 5.0 + 2.0 * 1.0)
+    assert reading.robot.drivetrain.torque_sharing == "track"
+
+
+def test_wheels_on_flippers_without_limit_leave_that_of_the_others(tmp_path: Path) -> None:
+    reading = each_with('effort="5" velocity="10"', 'effort="0" velocity="20"', tmp_path)
+    assert reading.robot.drivetrain.max_torque == pytest.approx(3.0 * 5.0)
+    assert reading.robot.drivetrain.torque_sharing == "track"
 
 
 def test_a_differential_drive_of_gazebo_classic_limits_the_torque(tmp_path: Path) -> None:
@@ -194,23 +241,23 @@ def test_bullet_reads_its_own_friction_of_a_urdf_only(tmp_path: Path) -> None:
 
 
 def test_the_servos_of_mujoco_are_a_controller(tmp_path: Path) -> None:
-    """Three wheels a side with kv = 10, as large as the rear end."""
+    """Five wheels a side with kv = 10, of which that at the tip counts four times."""
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf(""), "cart.xml")
-    assert reading.robot.drivetrain.controller == c2d.PI(gain=30.0)
+    assert reading.robot.drivetrain.controller == c2d.PI(gain=80.0)
     assert reading.sources["robot.drivetrain.controller"].startswith("cart.xml:")
     assert not [doubt for doubt in reading.doubts if "soft" in doubt]
     geared = read(tmp_path, mjcf("").replace("<velocity ", '<velocity gear="2" '), "cart.xml")
-    assert geared.robot.drivetrain.controller == c2d.PI(gain=120.0)
+    assert geared.robot.drivetrain.controller == c2d.PI(gain=320.0)
 
 
 def test_a_servo_that_never_gives_its_torque_is_doubted(tmp_path: Path) -> None:
-    """0.4 N m s/rad at 10 rad/s are 4 of 5 N m."""
+    """0.3 N m s/rad at 10 rad/s are 3 of 5 N m; those of the tips have 6 at 20 rad/s."""
     pytest.importorskip("mujoco")
-    reading = read(tmp_path, mjcf("").replace('kv="10"', 'kv="0.4"'), "cart.xml")
+    reading = read(tmp_path, mjcf("").replace('kv="10"', 'kv="0.3"'), "cart.xml")
     (soft,) = [doubt for doubt in reading.doubts if "soft" in doubt]
     assert soft.startswith("cart.xml:75: gain[left_rear_joint] is too soft")
-    assert "12 of 15 N m" in soft
+    assert "24 of 30 N m" in soft
 
 
 @pytest.mark.parametrize("engine", ["gz", "classic", "bullet", "isaac"])
@@ -238,11 +285,11 @@ def driven(actuator: str) -> str:
 def test_a_motor_of_mujoco_has_the_smaller_of_two_limits(
     tmp_path: Path, force: str, wanted: float
 ) -> None:
-    """Its control, and its force; three wheels a side have a gear of 20."""
+    """Its control, and its force; wheels have a gear of 20, and those of a side count six times."""
     pytest.importorskip("mujoco")
     limits = f'ctrlrange="-1 1" forcerange="-{force} {force}"'
     reading = read(tmp_path, driven(rf'<motor \1 gear="20" {limits}/>'), "cart.xml")
-    assert reading.robot.drivetrain.max_torque == pytest.approx(3.0 * wanted)
+    assert reading.robot.drivetrain.max_torque == pytest.approx(6.0 * wanted)
 
 
 @pytest.mark.parametrize(
@@ -265,7 +312,7 @@ def test_a_servo_of_mujoco_holds_its_control_by_both_gains(
 
 @pytest.mark.parametrize("is_first", [True, False])
 def test_two_actuators_of_a_joint_add_up(tmp_path: Path, *, is_first: bool) -> None:
-    """A servo with 5 N m and a motor with 2 on each wheel, in either order."""
+    """A servo with 5 N m and a motor with 2 on each wheel of the chassis, in either order."""
     pytest.importorskip("mujoco")
     motors = "".join(
         f'<motor joint="{side}_{end}_joint" ctrlrange="-2 2"/>'
@@ -279,8 +326,8 @@ def test_two_actuators_of_a_joint_add_up(tmp_path: Path, *, is_first: bool) -> N
         text = text.replace("</actuator>", f"{motors}</actuator>")
     reading = read(tmp_path, text, "cart.xml")
     found = reading.robot.drivetrain
-    assert found.max_torque == pytest.approx(3.0 * (5.0 + 2.0))
-    assert found.controller == c2d.PI(gain=30.0)
+    assert found.max_torque == pytest.approx(3.0 * (5.0 + 2.0) + 3.0 * 5.0)
+    assert found.controller == c2d.PI(gain=80.0)
     assert found.max_speed == pytest.approx(1.25)
     assert sum("several actuators" in doubt for doubt in reading.doubts) == 6
 
@@ -290,5 +337,5 @@ def test_actuators_of_tendons_are_those_of_no_joint(tmp_path: Path) -> None:
     tendon = '<tendon><fixed name="left_rear_joint"><joint joint="left_front_joint" coef="1"/>'
     motor = '</fixed></tendon><actuator><motor tendon="left_rear_joint" ctrlrange="-2 2"/>'
     reading = read(tmp_path, mjcf("").replace("<actuator>", tendon + motor), "cart.xml")
-    assert reading.robot.drivetrain.max_torque == pytest.approx(15.0)
+    assert reading.robot.drivetrain.max_torque == pytest.approx(30.0)
     assert not [doubt for doubt in reading.doubts if "several" in doubt]

@@ -153,13 +153,13 @@ def test_what_rolls_freely_adds_no_torque(tmp_path: Path, limit: str) -> None:
 
 
 def test_what_rolls_freely_takes_no_servo_from_the_others(tmp_path: Path) -> None:
-    """Of three wheels a side two have a gain of 10 N m s/rad, and 5 N m."""
+    """Of five wheels a side four have a gain of 10 N m s/rad, and 5 N m; one is half as large."""
     pytest.importorskip("mujoco")
     text = (FILES / "cart.xml").read_text(encoding="utf-8")
     text = re.sub(r'<velocity joint="\w+_middle_joint".*?/>', "", text)
     drivetrain = read(tmp_path, text, "cart.xml").robot.drivetrain
-    assert drivetrain.max_torque == pytest.approx(10.0)
-    assert drivetrain.controller == c2d.PI(gain=20.0)
+    assert drivetrain.max_torque == pytest.approx(3.0 * 5.0 + 2.0 * 5.0)
+    assert drivetrain.controller == c2d.PI(gain=3.0 * 10.0 + 4.0 * 10.0)
 
 
 def test_a_differential_drive_in_a_urdf_names_its_motors(tmp_path: Path) -> None:

@@ -2,9 +2,11 @@
 
 import dataclasses
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
@@ -35,6 +37,42 @@ def test_rotors_come_back_from_mjcf(robot: c2d.Robot, tmp_path: Path) -> None:
     if robot.flippers is not None:
         assert again.flippers is not None
         assert again.flippers.rotor_inertia == pytest.approx(0.3, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["sdf", "urdf", "mjcf"])
+@pytest.mark.parametrize("robot", ON_WHEELS.values(), ids=ON_WHEELS)
+def test_all_wheels_of_a_side_share_its_torque(robot: c2d.Robot, name: str, tmp_path: Path) -> None:
+    """Those on flippers, too: by the rule by which the simulator shares it among N wheels."""
+    if name == "mjcf":
+        pytest.importorskip("mujoco")
+    path = tmp_path / f"robot.{'xml' if name == 'mjcf' else name}"
+    getattr(robot, f"to_{name}")(path)
+    again = quietly(path)
+    force = robot.drivetrain.max_torque / belt_radius(robot)
+    assert again.robot.drivetrain.max_torque / again.robot.outline.rear_radius == pytest.approx(
+        force, rel=1e-9
+    )
+    joints = [again.tree.joints[each] for each in again.wheels["name"].tolist()]
+    forces = [joint.effort for joint in joints] / again.wheels["radius"]
+    assert forces == pytest.approx(force / (len(forces) / 2), rel=1e-6)
+
+
+def test_a_motor_of_the_core_is_that_of_the_file(tmp_path: Path) -> None:
+    """At rest against a slope too steep for it, every wheel has all the force of its motors."""
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3)).without_rotors()
+    robot = with_motors(robot, max_torque=1.0, torque_sharing="wheel")
+    path = tmp_path / "robot.urdf"
+    robot.to_urdf(path)
+    again = quietly(path)
+    slope = c2d.terrains.ramp(0.6, friction=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+        run = c2d.simulate(again.robot, slope, drive=c2d.Drive(speed=0.3), duration=4.0)
+    joint = again.tree.joints["left_wheel_1"]
+    assert joint.effort is not None
+    most = np.abs(run.drive_forces).max(axis=0)
+    assert len(most) == len(again.wheels) // 2
+    assert most[0] == pytest.approx(2.0 * joint.effort / again.robot.outline.rear_radius, rel=1e-6)
 
 
 def belt_radius(robot: c2d.Robot) -> float:
@@ -80,10 +118,12 @@ def test_mujoco_has_the_rotors_in_its_joints() -> None:
         for number in range(model.njnt)
         if model.jnt_type[number] == mujoco.mjtJoint.mjJNT_HINGE
     ]
-    of_wheel = 0.02 / 3.0 * (robot.outline.rear_radius / belt_radius(robot)) ** 2
+    wheels = robot.wheels()
+    rotors = 0.02 / (len(wheels) / 2) * (wheels["radius"] / belt_radius(robot)) ** 2
     assert robot.flippers is not None
     arms = 4 if robot.flippers.ends == "both" else 2
-    assert sorted(each for each in found if each) == pytest.approx([of_wheel] * 6 + [0.3] * arms)
+    expected = sorted([*rotors.tolist(), *[0.3] * arms])
+    assert sorted(each for each in found if each) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("robot", ON_WHEELS.values(), ids=ON_WHEELS)
@@ -112,7 +152,7 @@ def test_motors_that_no_file_holds_are_in_its_comment() -> None:
 
 
 def test_the_rotor_of_a_belt_is_in_the_comment_of_wheels_on_flippers() -> None:
-    """Wheels of the chassis share the rotor, those of flippers have none."""
+    """It turns with the belt, which has no joint; without one, all wheels share it."""
     arms = c2d.robots.engineer().flippers
     assert arms is not None
     arms = dataclasses.replace(arms, track=c2d.LineOfWheels(3))

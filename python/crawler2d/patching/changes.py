@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,21 @@ _SAME = 1e-6  # [m] Files round to a micrometre.
 _SIDES = ("left", "right")
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Motor:
+    """Factors of what the motor of a wheel does at its circumference.
+
+    Parameters
+    ----------
+    force, gain, rotor : float
+        [-] Of its largest force, of the gain of its servo, and of the mass of its rotor there.
+    """
+
+    force: float = 1.0
+    gain: float = 1.0
+    rotor: float = 1.0
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Change:
     """The change of one wheel of the file.
@@ -45,9 +60,11 @@ class Change:
         [-] Factor of its radius.
     round_size : float
         [-] Factor of the radius of its round shapes: of gear wheels that of the root circle.
-    mass, motor : float
-        [-] Factors of its mass, and of its motor at the same radius: the totals of all wheels of a
-        carrier stay the same, also where not all of them have motors.
+    mass : float
+        [-] Factor of its mass: that of all wheels of a carrier together stays the same.
+    motor : Motor
+        Factors of its motor at the same radius: all of a side together, those on flippers included,
+        stay the same, also where not all wheels have one.
     grousers : tuple of Shape
         Boxes, in the frame of the model.
     """
@@ -59,7 +76,7 @@ class Change:
     size: float = 1.0
     round_size: float = 1.0
     mass: float = 1.0
-    motor: float = 1.0
+    motor: Motor = Motor()
     grousers: tuple[Shape, ...] = ()
 
     @property
@@ -71,7 +88,8 @@ class Change:
     def is_none(self) -> bool:
         """Whether its wheel stays as it is."""
         same = (
-            self.size == self.mass == self.motor == 1.0
+            self.size == self.mass == 1.0
+            and self.motor == Motor()
             and not self.shift.any()
             and not self.grousers
         )
@@ -85,12 +103,17 @@ class Change:
     @property
     def effort(self) -> float:
         """[-] Factor of the limit of its motor."""
-        return self.motor * self.size
+        return self.motor.force * self.size
 
     @property
     def gain(self) -> float:
         """[-] Factor of the gain of its motor."""
-        return self.motor * self.size**2
+        return self.motor.gain * self.size**2
+
+    @property
+    def rotor(self) -> float:
+        """[-] Factor of the moment of inertia of its motor's rotor."""
+        return self.motor.rotor * self.size**2
 
     @property
     def inertia(self) -> float:
@@ -102,7 +125,8 @@ def changes_of(reading: Reading, robot: Robot) -> list[Change]:
     """Plan how the wheels of a file become those of another robot.
 
     Wheels that match one of the other robot stay. Of the others on a carrier, each becomes the next
-    one that is not taken; the rest is removed, and missing ones are copied from the closest.
+    one that is not taken; the rest is removed, and missing ones are copied from the closest. As all
+    wheels of a side share its torque, more or fewer on one carrier change the motors on the others.
 
     Parameters
     ----------
@@ -124,16 +148,35 @@ def changes_of(reading: Reading, robot: Robot) -> list[Change]:
     old, new = _carriers(reading.robot), _carriers(robot)
     if [each.end for each in old] != [each.end for each in new]:
         raise ScenarioError("robot.flippers", robot.flippers, "must be where the file has them")
-    changes = []
-    for was, now in zip(old, new, strict=True):
-        if not _is_same_carrier(was, now):
-            changes += _CarrierChange(reading, was, now).changes()
-    return changes
+    pairs = list(zip(old, new, strict=True))
+    changed = [pair for pair in pairs if not _is_same_carrier(*pair)]
+    if not changed:
+        return []
+    carriers = [
+        _CarrierChange(reading, *pair)
+        for pair in pairs
+        if pair in changed or _has_wheels(reading, pair[0])
+    ]
+    for each in carriers:
+        each.refuse_belts()
+    motors = {side: _motors_of(carriers, side, reading.tree.driven) for side in _SIDES}
+    changes = [
+        change
+        for each in carriers
+        for side in _SIDES
+        for change in each.on_side(side, motors[side])
+    ]
+    return [change for change in changes if not change.is_none]
 
 
 def _carriers(robot: Robot) -> list[Carrier]:
     text = Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json()
     return carriers_of(json.loads(_core.canonical(text))["robot"], text)
+
+
+def _name_of(carrier: Carrier) -> str:
+    """Return its name in the table of a reading."""
+    return f"{carrier.end} flipper" if carrier.end else "chassis"
 
 
 def _is_same_carrier(was: Carrier, now: Carrier) -> bool:
@@ -142,6 +185,13 @@ def _is_same_carrier(was: Carrier, now: Carrier) -> bool:
     return len(was.wheels) == len(now.wheels) and all(
         _deviation(first, second) <= _SAME and _has_same_outline(first, second)
         for first, second in zip(was.wheels, now.wheels, strict=True)
+    )
+
+
+def _has_wheels(reading: Reading, carrier: Carrier) -> bool:
+    """Whether it has wheels in the file: a chassis without any stands on those of its flippers."""
+    return carrier.surface == "wheels" and bool(
+        (reading.wheels["carrier"] == _name_of(carrier)).any()
     )
 
 
@@ -158,18 +208,38 @@ def _has_same_outline(first: Wheel, second: Wheel) -> bool:
     )
 
 
-def _strength(joint: Joint, radius: float) -> float:
-    """Return what the motor of a wheel counts among the others: its force, or its gain on that."""
-    if joint.effort:
-        return joint.effort / radius
-    return (joint.gain or 1.0) / radius**2
-
-
 def _share(of_wheels: list[float], stay: list[int]) -> float:
     """[-] Return by which factor those that stay, each with its copies, have the total of all."""
     kept = sum(of_wheels[each] for each in stay)
     factor = sum(of_wheels) / kept if kept > 0.0 else 1.0
     return factor if abs(factor - 1.0) > _SAME else 1.0
+
+
+def _motors_of(
+    carriers: list[_CarrierChange], side: str, driven: Collection[str]
+) -> dict[str, Motor]:
+    """Return the factors of each motor of a side, by its joint."""
+    groups = [group for each in carriers for group in each.joints(side)]
+    radii = [wheel.radius for each in carriers for wheel in each.was.wheels]
+    names = {joint.name for group in groups for joint in group}
+    motors = names.intersection(driven) or names
+    stay, first = [], 0
+    for each in carriers:
+        stay += [first + old for old, new, _ in each.actions() if new is not None]
+        first += len(each.was.wheels)
+
+    def share(value: Callable[[Joint], float], power: int) -> float:
+        of_wheels = [
+            sum(value(joint) for joint in group if joint.name in motors) / radius**power
+            for group, radius in zip(groups, radii, strict=True)
+        ]
+        return _share(of_wheels, stay)
+
+    gain = share(lambda joint: joint.gain or 0.0, 2)
+    has_limits = any(joint.effort for group in groups for joint in group)
+    force = share(lambda joint: joint.effort or 0.0, 1) if has_limits else gain
+    rotor = share(lambda joint: joint.armature, 2)
+    return dict.fromkeys(motors, Motor(force=force, gain=gain, rotor=rotor))
 
 
 class _CarrierChange:
@@ -178,17 +248,14 @@ class _CarrierChange:
     def __init__(self, reading: Reading, was: Carrier, now: Carrier) -> None:
         self.reading = reading
         self.was, self.now = was, now
-        self.name = f"{was.end} flipper" if was.end else "chassis"
+        self.name = _name_of(was)
         self.hanging = subtrees(reading.tree)
 
-    def changes(self) -> list[Change]:
+    def refuse_belts(self) -> None:
         for carrier, whose in ((self.was, "of the file"), (self.now, "of the robot")):
             if carrier.surface != "wheels":
                 rule = f"must be wheels, to be replaced by others: those {whose} are not"
                 raise ScenarioError(f"tracks of the {self.name}", carrier.surface, rule)
-        actions = list(self.actions())
-        changes = [change for side in _SIDES for change in self.on_side(side, actions)]
-        return [change for change in changes if not change.is_none]
 
     def actions(self) -> Iterator[tuple[int, int | None, str]]:
         """Yield the wheel of the file, the one that it becomes, and the action."""
@@ -214,30 +281,22 @@ class _CarrierChange:
         """Return the wheel of the file that is closest to a point."""
         return int(np.argmin([math.dist(wheel.center, center) for wheel in self.was.wheels]))
 
-    def on_side(self, side: str, actions: list[tuple[int, int | None, str]]) -> Iterator[Change]:
+    def on_side(self, side: str, motors: Mapping[str, Motor]) -> Iterator[Change]:
+        """Yield the changes on a side, where motors have these factors, by their joints."""
         joints, links = self.joints(side), self.reading.tree.by_name
         masses = [
             sum(links[name].mass for joint in group for name in self.hanging[joint.child])
             for group in joints
         ]
-        driven = self.reading.tree.driven
-        has_motors = any(joint.name in driven for group in joints for joint in group)
-        motors = [
-            sum(
-                _strength(joint, wheel.radius)
-                for joint in group
-                if joint.name in driven or not has_motors
-            )
-            for group, wheel in zip(joints, self.was.wheels, strict=True)
-        ]
-        stay = [old for old, new, _ in actions if new is not None]
-        factors = [_share(of_wheels, stay) for of_wheels in (masses, motors)]
+        actions = list(self.actions())
+        mass = _share(masses, [old for old, new, _ in actions if new is not None])
         for old, new, action in actions:
             for joint in joints[old]:
-                yield self.change(joint, old, new, action, factors)
+                motor = motors.get(joint.name, Motor())
+                yield self.change(joint, old, new, action, mass=mass, motor=motor)
 
     def change(
-        self, joint: Joint, old: int, new: int | None, action: str, factors: list[float]
+        self, joint: Joint, old: int, new: int | None, action: str, *, mass: float, motor: Motor
     ) -> Change:
         links = tuple(self.hanging[joint.child])
         if new is None:
@@ -259,8 +318,8 @@ class _CarrierChange:
             shift=np.where(np.abs(shift) <= _SAME, 0.0, shift),
             size=size if abs(size - 1.0) * was.radius > _SAME else 1.0,
             round_size=root if abs(root - 1.0) * was.radius > _SAME else 1.0,
-            mass=factors[0],
-            motor=factors[1],
+            mass=mass,
+            motor=motor,
             grousers=grousers,
         )
 

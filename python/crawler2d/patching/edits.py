@@ -122,9 +122,9 @@ def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> 
     has_rotor = any("armature" in each.attributes for each in (*motors, *body.all("joint")))
     for joint in body.all("joint"):
         document.multiply(joint, [change.effort] * 2, "actuatorfrcrange")
-        document.multiply(joint, [change.inertia], "armature")
-        if not has_rotor and change.joint.armature > 0.0 and change.inertia != 1.0:  # by a class
-            rotor = change.inertia * change.joint.armature
+        document.multiply(joint, [change.rotor], "armature")
+        if not has_rotor and change.joint.armature > 0.0 and change.rotor != 1.0:  # by a class
+            rotor = change.rotor * change.joint.armature
             document.set_attribute(joint, "armature", lengths([rotor]))
     _add_mjcf_grousers(document, body, change, tree.by_name[change.link].pose)
 
@@ -232,7 +232,7 @@ def _above(span: Span) -> list[str]:
 
 def _change_motor(document: Document, motor: Span, change: Change) -> None:
     """Change the limits of a motor: of servos their force, of others the gear, which scales all."""
-    rotor = change.inertia
+    rotor = change.rotor
     is_servo = change.joint.gain is not None or change.joint.velocity is not None
     if motor.tag == "velocity" and "class" in motor.attributes:
         _write_out_class(document, motor, change)

@@ -116,18 +116,22 @@ class Assembly:
         mass_at = lines([link.mass_at for link in tree.links], "sum")
         log.cite("robot", name=str(tree.at), mass=mass_at)
         log.cite("robot", center_of_mass=sum_at, moment_of_inertia=sum_at)
-        driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
+        on_flippers = [pair for end in by_end.values() for pair in end.pair.pairs]
+        driven = pairs or on_flippers
         outline = _outline_of(log, base, bent)
         # The estimate of Robot.simple: 1.6 times what holds it on 45 degrees.
         simple = Robot.simple(mass, axle_distance=1.0, radius=rear.radius)
         lever = rear.radius - simple.outline.grouser_height
         torque = simple.drivetrain.max_torque * rear.radius / lever
-        drivetrain = drivetrain_of(log, driven, track, radius=rear.radius, torque=torque)
+        drivetrain = drivetrain_of(
+            log,
+            driven,
+            on_flippers if pairs else [],
+            [track, *(end.track for end in by_end.values())],
+            radius=rear.radius,
+            torque=torque,
+        )
         flippers = flippers_of(log, by_end, mass)
-        if flippers is not None and isinstance(flippers.track, BeltTrack):
-            drivetrain = replace(drivetrain, torque_sharing="track")
-        if drivetrain.torque_sharing == "wheel":
-            self.note_shares(len(pairs), sum(len(end.pair.pairs) for end in by_end.values()))
         self.list_runners(pairs, by_end)
         return Robot(
             tree.name or "robot",
@@ -142,15 +146,6 @@ class Assembly:
             drivetrain=drivetrain,
             track=track,
         )
-
-    def note_shares(self, on_chassis: int, on_arms: int) -> None:
-        """Note what wheels on flippers leave of the torque to those of the chassis."""
-        if on_chassis and on_arms:
-            share = f"{on_chassis}/{on_chassis + on_arms}"
-            self.log.notes.append(
-                "the torque is that of the wheels of the chassis, and those on flippers have equal"
-                f" shares of it: each wheel of the chassis has {share} of what the file gives it"
-            )
 
     @property
     def frame(self) -> Pose:

@@ -38,7 +38,7 @@ FASTEST = 100.0
 """[rad/s] and [m/s] Larger limits of speed stand for no limit."""
 
 _ALIKE = 0.01
-"""[-] By how much rotors may differ, relative to the largest: files round them."""
+"""[-] By how much rotors or forces may differ, relative to the largest: files round them."""
 
 _LARGE = 0.1
 """[-] A smaller loss of torque is within the uncertainty of a torque that a file states."""
@@ -58,6 +58,7 @@ _RATES = ("_acceleration", "_linear_acceleration")
 """Behind "max" and "min", of the same; that of TrackedVehicle is within ``linear_velocity``."""
 
 _QUICKEST = 1e6  # [m/s^2]
+_SIDES = ("left", "right")
 
 _WITHIN_A_STEP = "the commanded speed within one step, as far as the torque limit allows"
 _AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (read in its source)"
@@ -334,7 +335,13 @@ def resistance(joint: Joint, rate: float, engine: str) -> float:
 
 
 def drivetrain_of(
-    log: ReadLog, pairs: list[Pair], track: Track, *, radius: float, torque: float
+    log: ReadLog,
+    pairs: list[Pair],
+    on_flippers: list[Pair],
+    tracks: Sequence[Track],
+    *,
+    radius: float,
+    torque: float,
 ) -> Drivetrain:
     """Return speed and torque of the tracks.
 
@@ -344,34 +351,39 @@ def drivetrain_of(
         Takes the sources of the figures, and doubts about figures that the engine ignores.
     pairs : list of Pair
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
-    track : Track
-        The model of the track of the chassis.
+    on_flippers : list of Pair
+        Wheels that share the torque with those of the chassis.
+    tracks : sequence of Track
+        The models of the tracks, that of the chassis first.
     radius : float
         [m] Of the rear end, at which the torque of a robot acts.
     torque : float
         [N m] The estimate for a motor without limit.
     """
     tree, engine = log.tree, log.engine
-    log.notes.append(ENGINES[engine].in_words(is_belt=isinstance(track, BeltTrack)))
+    log.notes.append(ENGINES[engine].in_words(is_belt=isinstance(tracks[0], BeltTrack)))
     speed, speed_source = _speed(tree, pairs)
-    sides = [_wheels(tree, pairs, side, engine) for side in ("left", "right")]
+    sides = [_wheels(tree, pairs, side, engine) for side in _SIDES]
+    of_chassis = [wheel for side in sides for wheel in side]
+    if of_chassis:  # not a belt alone, whose force no wheel on a flipper states
+        arms = [_wheels(tree, on_flippers, side, engine) for side in _SIDES]
+        sides = [[*own, *more] for own, more in zip(sides, arms, strict=True)]
     wheels = [wheel for side in sides for wheel in side]
     joints = [joint for joint, _ in wheels]
     # What rolls freely has no motor, whatever limit its joint states.
     motors = [wheel for wheel in wheels if wheel[0].name in tree.driven] or wheels
-    efforts = [joint.effort for joint, _ in motors if joint.effort]
-    has_limits = bool(motors) and len(efforts) == len(motors)
-    sharing: Literal["track", "wheel"] = "track"
+    if not all(joint.effort for joint, _ in motors):  # those on flippers may state none
+        motors = [wheel for wheel in motors if wheel in of_chassis] or motors
+    forces = [joint.effort / own for joint, own in motors if joint.effort]
+    has_limits = bool(motors) and len(forces) == len(motors)
     torque_source = estimate("that of Robot.simple: the file has no limit")
     sharing_source = estimate("one speed, as motors without limit hold")
     if has_limits:
         # Each of these has its own motor; the robot's figure is that of one side.
-        torque = 0.5 * sum((joint.effort or 0.0) * radius / own for joint, own in motors)
+        torque = 0.5 * sum(forces) * radius
         torque_source = lines([joint.effort_at for joint, _ in motors], "sum of one side")
         sharing_source = lines([joint.at for joint in joints])
-        is_each = len(motors) == len(wheels) and len(set(efforts)) == 1
-        if isinstance(track, LineOfWheels) and is_each:
-            sharing = "wheel"
+    sharing = _sharing(log, motors, tracks) if has_limits and motors == wheels else "track"
     none = f"{tree.at}: none"
     gaining, gaining_source = _acceleration(tree, "max", _ACCELERATION)
     slowing, slowing_source = _acceleration(tree, "min", _DECELERATION)
@@ -486,6 +498,32 @@ def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[t
         if joint is not None:
             wheels.append((joint, runner.radius))
     return wheels
+
+
+def _sharing(
+    log: ReadLog, motors: Sequence[tuple[Joint, float]], tracks: Sequence[Track]
+) -> Literal["track", "wheel"]:
+    """Return how motors, with the radii [m] of their wheels, share the torque of a side.
+
+    Those of a line of wheels that are alike have one each, unless flippers have belts; a note says
+    where alike torques are unlike forces.
+    """
+    track, *others = tracks
+    efforts = [joint.effort or 0.0 for joint, _ in motors]
+    forces = [effort / own for effort, (_, own) in zip(efforts, motors, strict=True)]
+    is_even = max(forces) - min(forces) <= _ALIKE * max(forces)
+    has_belt = any(isinstance(other, BeltTrack) for other in others)
+    is_line = isinstance(track, LineOfWheels) and not has_belt
+    if not is_line or not (is_even or len(set(efforts)) == 1):
+        return "track"
+    if not is_even:
+        mean = sum(forces) / len(forces)
+        low, high = mean / max(forces), mean / min(forces)
+        log.notes.append(
+            "wheels of all sizes share the torque of a side as equal forces:"
+            f" each has {low:.3g} to {high:.3g} times the force that the file gives it"
+        )
+    return "wheel"
 
 
 def _controller(log: ReadLog, wheels: Sequence[tuple[Joint, float]], radius: float) -> PI | None:

@@ -118,6 +118,7 @@ class _Model:
     ) -> None:
         self.robot = robot
         self.chassis, *self.arms = carriers
+        self.wheels = sum(len(each.wheels) for each in carriers)  # which share the motor of a side
         self.across = across
         self.friction = friction
         self.target = target
@@ -251,11 +252,10 @@ class _Model:
     def add_wheel(
         self, name: str, parent: str, carrier: Carrier, wheel: Wheel, y: float, *, is_hoop: bool
     ) -> None:
-        """Add a wheel with a motor of its own: an equal share of the force of its side."""
-        part = wheel.part(is_hoop=is_hoop)
-        count = max(1, len(self.chassis.wheels))
-        # Of the rotor, which the wheels of the chassis share; those of flippers have none.
-        rotor = 0.0 if carrier.end else self.rotor / count
+        """Add a wheel with a motor of its own: an equal share of the one of its side."""
+        part, count = wheel.part(is_hoop=is_hoop), self.wheels
+        # The rotor turns with the belt of the chassis, if there is one.
+        rotor = 0.0 if self.chassis.loop is not None else self.rotor / count
         width = self.across.flipper_width if carrier.end else self.across.track_width
         self.add(
             name,
