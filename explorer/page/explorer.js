@@ -30,10 +30,15 @@ class View {
     });
   }
 
-  // Simulates it without trials, and says whether there is something new to see.
-  async simulate(scenario) {
+  // Simulates it without trials, and says whether there is something to see. The end of a movement often repeats its last
+  // step, and waits for the same run.
+  simulate(scenario) {
     const text = JSON.stringify(scenario);
-    if (text === this.text) return false;
+    if (text !== this.text) this.running = this.run(text);
+    return this.running;
+  }
+
+  async run(text) {
     this.text = text;
     const answer = await this.core.ask(requested(text, null, INTERVAL));
     if (!answer) return false;

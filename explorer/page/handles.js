@@ -50,6 +50,7 @@ class Handles {
     if (name === "mass") return onChassis(...robot.massCenter.map(moment.value));
     if (name === "wheel") {
       const wheel = chassis.wheels[chassis.wheels.length >> 1];
+      if (!wheel) return null; // of the picture of a belt, before that of the wheels is there
       const { x, y } = moment.pose(wheel);
       return onChassis(x, y + wheel.reach);
     }

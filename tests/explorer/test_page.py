@@ -142,6 +142,33 @@ def test_a_run_that_waits_for_a_slow_one_is_not_pushed_aside_by_trials(page: Pag
     assert page.evaluate(highest) == [0.03, 0.03]
 
 
+def test_both_pictures_show_all_of_another_obstacle(page: Page) -> None:
+    """A list tells at once of a change and of its end, long before the run is there."""
+    page.select_option("[id='field-terrain.kind']", "stairs")
+    settled(page)
+    views = page.evaluate(
+        """() => window.explored.views.map(({ scene, camera }) =>
+            [camera.right, camera.top, scene.drawing.extent[3], scene.drawing.ground.goal])"""
+    )
+    highest = max(top for _, _, top, _ in views)
+    for right, top, _, goal in views:
+        assert right > goal
+        assert top == highest
+
+
+def test_a_picture_of_a_belt_has_no_wheel_to_drag(page: Page) -> None:
+    """It stays until the robot with wheels is simulated; an exception fails the test."""
+    page.select_option("[id='field-robot.track.kind']", "grouser_belt")
+    settled(page)
+    page.evaluate("location.hash = 'robot.track.count=1'")
+    page.wait_for_function(
+        "() => document.querySelector('.ending').textContent === 'not simulated'"
+    )
+    page.evaluate(DRAWN)
+    assert page.locator(".handle.axle").is_visible()
+    assert not page.locator(".handle.wheel").is_visible()
+
+
 def test_a_link_restores_the_state(page: Page, open_page: Open, html: str) -> None:
     page.select_option("[id='field-terrain.kind']", "barrier")
     page.select_option("[id='field-robot.track.wheel.kind']", "gear")
