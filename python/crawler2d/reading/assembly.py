@@ -182,7 +182,9 @@ class Assembly:
 
     def doubt_undriven(self, gear: RunningGear, castors: list[Runner]) -> None:
         """Doubt wheels without a motor if others have one."""
-        undriven = [runner for runner in gear.runners if runner.name in gear.passive]
+        on_flippers = [runner for arm in gear.arms for runner in arm.runners]
+        every = [*gear.runners, *on_flippers]
+        undriven = [runner for runner in every if runner.name in gear.passive]
         for wheels, reason in (
             (castors, "roll freely in the middle: read as skids of the belly, which slide"),
             (
