@@ -112,7 +112,6 @@ def _with(base: str | Scenario, fields: dict[str, Json]) -> Json:
     return tree
 
 
-CONTROLLER: Json = {"kind": "pi", "gain": 1.0, "integral": 0.0}
 FORCE: Json = {"kind": "force", "support": "wheels", "skid_friction": 0.0, "wheel_count": 3}
 CHAIN: Json = json.loads(VARIANTS["segmental-step"].to_json())["robot"]["track"]
 BELT: Json = {"kind": "belt"}

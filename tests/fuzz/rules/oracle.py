@@ -46,11 +46,6 @@ def _check(scenario: Json, v: Verdict) -> None:
         _check_start(scenario, model, ground, v)
 
 
-def broken_paths(scenario: Json) -> set[str] | None:
-    """Where a scenario breaks a rule; None if it keeps all of them, as far as is known."""
-    return set(verdict_on(scenario).broken) or None
-
-
 def _check_sizes(scenario: Json, model: robots.Model, v: Verdict) -> None:
     """Steps short enough for the smallest wheel, intrusions less deep than it is large."""
     robot, step = scenario["robot"], scenario["solver"]["time_step"]
