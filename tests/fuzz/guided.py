@@ -3,7 +3,8 @@
 All targets have a share of the minutes, as many at a time as there are processors. libFuzzer
 changes cases and keeps those that reach edges of the code that no other has. It begins with the
 cases that are kept in the repository, those of former times in out/fuzz, and files of the tests.
-`... guided keep` adds to the repository what has come up since: as few cases as reach these edges.
+`... guided keep` keeps in the repository, of its cases and what has come up since, a few that
+together reach most of these edges.
 """
 
 from __future__ import annotations
@@ -30,8 +31,9 @@ NOISE = {f"{n}": bytes((n * k * k + k) % 251 for k in range(120)) for n in range
 LIMITS = ("-timeout=60", "-report_slow_units=60", "-rss_limit_mb=2000", "-len_control=0")
 """What a case may take, [s] of the clock and [MB]; and cases of any length from the beginning."""
 
-LARGEST_KEPT, MOST_KEPT = 1600, 40
-"""[bytes] A case that is kept in the repository, and how many of a target."""
+LARGEST_KEPT, MOST_KEPT = 2500, 40
+"""[bytes] A case that is kept in the repository, as large as scenarios are, and how many of a
+target."""
 
 
 @dataclass(frozen=True)
@@ -98,22 +100,50 @@ class Target:
         return line, is_fault
 
     def keep(self) -> str:
-        """Add to the repository what reaches edges that nothing there reaches."""
-        short = OUT / self.name / "short"
-        shutil.rmtree(short, ignore_errors=True)
-        short.mkdir(parents=True)
+        """Keep in the repository, of what it has and what was found, what reaches most."""
+        short, merged = OUT / self.name / "short", OUT / self.name / "merged"
+        for folder in (short, merged):
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
         both = [path for folder in (self.kept, self.found) for path in folder.glob("*")]
         for path in both:
             if path.stat().st_size <= LARGEST_KEPT:
                 shutil.copy(path, short)
+        control = OUT / self.name / "reached.txt"
+        control.unlink(missing_ok=True)
+        how = ("-set_cover_merge=1", "-use_counters=0", f"-merge_control_file={control}")
+        self.run(*how, str(merged), str(short))
+        cases = [Path(name) for name in widest(control.read_text(), MOST_KEPT)]
         shutil.rmtree(self.kept, ignore_errors=True)
         self.kept.mkdir(parents=True)
-        self.run("-set_cover_merge=1", "-use_counters=0", str(self.kept), str(short))
-        cases = sorted(self.kept.iterdir(), key=lambda path: path.stat().st_size)
-        for path in cases[MOST_KEPT:]:
-            path.unlink()
-        sizes = [path.stat().st_size for path in cases[:MOST_KEPT]]
+        sizes = [Path(shutil.copy(path, self.kept)).stat().st_size for path in cases]
         return f"{self.name}: {len(sizes)} cases of {sum(sizes)} bytes"
+
+
+def widest(control: str, most: int) -> list[str]:
+    """Choose so many cases at most that together reach as much as possible.
+
+    Parameters
+    ----------
+    control : str
+        What libFuzzer notes of a merge: two numbers, the first that of the cases, their names with
+        the smallest first, and in lines that begin with FT and a case's number what it reaches.
+    most : int
+        How many are wanted.
+    """
+    count, _, *lines = control.splitlines()
+    names, notes = lines[: int(count)], lines[int(count) :]
+    told = [note.split() for note in notes if note.startswith("FT ")]
+    reached = {names[int(number)]: set(edges) for _, number, *edges in told}
+    chosen: list[str] = []
+    while reached and len(chosen) < most:
+        best = max(reached, key=lambda name: len(reached[name]))
+        new = reached.pop(best)
+        if not new:
+            break
+        chosen.append(best)
+        reached = {name: edges - new for name, edges in reached.items()}
+    return chosen
 
 
 TARGETS = [

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.fuzz.guided import widest
 from tests.fuzz.guided_targets import TARGETS, prepare
 
 CASES = Path(__file__).parent / "corpus"
@@ -25,3 +26,12 @@ def test_every_kept_case_is_read_or_refused(name: str, tmp_path: Path) -> None:
         begin = time.monotonic()
         TARGETS[name](case.read_bytes(), tmp_path)
         assert time.monotonic() - begin < LONGEST, case.name
+
+
+def test_what_is_kept_reaches_most() -> None:
+    """A case that is small and reaches little is not kept before one that reaches much."""
+    cases = {"a": "1", "b": "2", "c": "1 2 3", "d": "4 5 6 7", "e": "7 8"}
+    lines = [f"STARTED {n} {n}\nFT {n} {edges}\nCOV {n}" for n, edges in enumerate(cases.values())]
+    control = "\n".join(["5", "0", *cases, *lines])
+    assert widest(control, 2) == ["d", "c"]
+    assert widest(control, 40) == ["d", "c", "e"]

@@ -38,24 +38,33 @@ mod tests {
     use super::*;
     use crate::draw::cases;
 
-    /// Calls a target with each case that is kept for it.
-    fn replay(name: &str, target: fn(&[u8])) {
+    /// Calls a target with each case that is kept for it; returns these.
+    fn replay(name: &str, target: fn(&[u8])) -> Vec<Vec<u8>> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("fuzz/corpus")
             .join(name);
-        let cases = std::fs::read_dir(&folder).expect("cases are kept");
-        let mut count = 0;
-        for case in cases {
-            let path = case.expect("a case").path();
-            target(&std::fs::read(path).expect("a case can be read"));
-            count += 1;
+        let paths = std::fs::read_dir(&folder).expect("cases are kept");
+        let cases: Vec<Vec<u8>> = paths
+            .map(|path| std::fs::read(path.expect("a case").path()).expect("a case can be read"))
+            .collect();
+        assert!(cases.len() > 10, "{} cases of {name}", cases.len());
+        for case in &cases {
+            target(case);
         }
-        assert!(count > 10, "{count} cases of {name}");
+        cases
+    }
+
+    /// How many of some texts are scenarios.
+    fn scenarios_among(cases: &[Vec<u8>]) -> usize {
+        let is_scenario = |case: &&Vec<u8>| scenario::accepted(case).is_some();
+        cases.iter().filter(is_scenario).count()
     }
 
     #[test]
     fn every_kept_text_is_a_scenario_or_is_refused() {
-        replay("scenario", scenario);
+        let cases = replay("scenario", scenario);
+        let accepted = scenarios_among(&cases);
+        assert!(accepted > 5 && cases.len() > accepted + 5, "{accepted}");
     }
 
     #[test]
@@ -75,7 +84,8 @@ mod tests {
 
     #[test]
     fn every_kept_scenario_steps_to_numbers() {
-        replay("run", run);
+        let accepted = scenarios_among(&replay("run", run));
+        assert!(accepted > 10, "{accepted} that are stepped");
     }
 
     /// Changes the shared scenarios, and what came of them; counts those that are accepted.
