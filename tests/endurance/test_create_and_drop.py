@@ -87,7 +87,7 @@ KINDS = {
 
 
 def check(kind: str, cycles: int, megabytes: float, folder: Path, say: Say) -> None:
-    """Memory may grow by so much; a leak of a hundred bytes a cycle is one in ten thousand."""
+    """Memory may grow by so much: 2 MB in ten thousand cycles are two hundred bytes in each."""
     once = KINDS[kind]
     for number in range(max(10, cycles // 10)):  # what is allocated once, and what fragments
         once(number, folder)
