@@ -168,3 +168,83 @@ fn polygon(mut corners: Vec<Vector>) -> Option<SharedShape> {
     corners.dedup();
     SharedShape::convex_polyline_unmodified(corners)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::finder::OwnContact;
+    use crate::contact::penetration::depth;
+    use crate::draw::Draw;
+    use crate::robot::Model;
+    use crate::scenario::{Scenario, Surface};
+
+    /// The nearest contact: its distance [m], its place and the edge that it is on.
+    fn nearest(contacts: &[Contact]) -> Option<(f64, Vector, i32)> {
+        let least = contacts
+            .iter()
+            .min_by(|a, b| a.distance.total_cmp(&b.distance));
+        least.map(|contact| (contact.distance, contact.point, contact.edge))
+    }
+
+    #[test]
+    fn both_methods_find_the_same_nearest_place_of_a_robot_above_the_ground() {
+        const PREDICTION: f64 = 0.03;
+        let scenarios = [
+            include_str!("../../../tests/scenarios/engineer_gear3_step.json"),
+            include_str!("../../../tests/scenarios/engineer_force_step.json"),
+            include_str!("../../../tests/scenarios/engineer_belt_step.json"),
+        ];
+        let points = [
+            [-2.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 0.1],
+            [0.3, 0.15],
+            [0.5, -0.1],
+            [2.0, -0.1],
+        ];
+        let lane = Profile::new("terrain", &points, Surface::sharp(0.9), true).expect("a profile");
+        let mut draw = Draw(7);
+        for text in scenarios {
+            let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+            let model = Model::new(&scenario.robot).expect("the robot can be built");
+            let lanes = std::slice::from_ref(&lane);
+            let own = OwnContact::new(&model.parts, lanes);
+            let mut reference = ReferenceContact::new(&model.parts, lanes);
+            let (mut by_own, mut by_reference) = (Vec::new(), Vec::new());
+            let (mut compared, mut none) = (0, 0);
+            while compared < 100 || none < 20 {
+                let place = Vector::new(draw.between(-0.5, 1.0), draw.between(0.0, 0.3));
+                let pose = Pose::new(place, draw.between(-0.5, 0.5));
+                let mut running = Running::default();
+                let drives = vec![draw.between(0.0, 1.0); model.drives];
+                model.set_running(
+                    &mut running,
+                    drives.into_iter(),
+                    [].into_iter(),
+                    [].into_iter(),
+                );
+                let is_in_ground = |part: &Part| {
+                    let place = running.mounted(part.mount, pose) * part.place(&running);
+                    depth(part, place, &lane) > 0.0
+                };
+                if model.parts.iter().any(is_in_ground) {
+                    continue;
+                }
+                own.find(pose, &running, PREDICTION, &mut by_own);
+                reference.find(pose, &running, PREDICTION, &mut by_reference);
+                match (nearest(&by_own), nearest(&by_reference)) {
+                    (None, None) => none += 1,
+                    (Some((a, at, edge)), Some((b, there, other))) => {
+                        assert!((a - b).abs() < 1e-9, "{a} {b} at {at} {there}");
+                        assert!(
+                            (at - there).length() < 1e-6 && edge == other,
+                            "{at} {there}"
+                        );
+                        compared += 1;
+                    }
+                    (one, other) => panic!("{one:?} {other:?}"),
+                }
+            }
+        }
+    }
+}

@@ -421,6 +421,14 @@ mod tests {
     }
 
     #[test]
+    fn a_slope_has_its_height_between_its_ends() {
+        let ground = profile(&[[1.0, 0.0], [3.0, 0.5], [3.0, 0.8], [7.0, 0.0]]);
+        assert_relative_eq!(heights_at(&ground, 2.6).as_slice(), [0.4, 0.4].as_slice());
+        assert_relative_eq!(heights_at(&ground, 3.0).as_slice(), [0.5, 0.8].as_slice());
+        assert_relative_eq!(heights_at(&ground, 6.0).as_slice(), [0.2, 0.2].as_slice());
+    }
+
+    #[test]
     fn lanes_apart_are_refused() {
         let here = profile(&[[0.0, 0.0], [1.0, 0.0]]);
         let there = profile(&[[2.0, 0.0], [3.0, 0.0]]);

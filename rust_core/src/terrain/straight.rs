@@ -90,6 +90,24 @@ mod tests {
     use super::*;
     use crate::draw::Draw;
 
+    #[test]
+    fn what_comes_back_along_its_line_is_a_corner() {
+        let line = |places: &[f64]| -> Vec<Vector> {
+            places
+                .iter()
+                .map(|x| Vector::new(1.0 + x, 2.0 + 0.5 * x))
+                .collect()
+        };
+        for (places, left) in [
+            (&[0.0, 1.0, 2.0, 3.0][..], &[0.0, 3.0][..]),
+            (&[0.0, 3.0, 2.0], &[0.0, 3.0, 2.0]),
+            (&[0.0, -1.0, 2.0], &[0.0, -1.0, 2.0]),
+            (&[0.0, 1.0, 3.0, 2.0, 2.5], &[0.0, 3.0, 2.0, 2.5]),
+        ] {
+            assert_eq!(without_collinear(&line(places)), line(left));
+        }
+    }
+
     /// A metre of ground in pieces of this length [m], each end off its line by up to `jitter` [m].
     fn rough(length: f64, jitter: f64, draw: &mut Draw) -> Vec<Vector> {
         let (slope, curvature) = (draw.between(-1.0, 1.0), draw.between(-5.0, 5.0));

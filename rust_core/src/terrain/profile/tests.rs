@@ -63,6 +63,18 @@ fn a_disc_rests_on_faces_and_on_corners_to_either_side() {
 }
 
 #[test]
+fn the_angle_at_a_corner_is_that_of_the_facet_behind_it() {
+    let ground = hill_and_block();
+    let angle = 0.25 * std::f64::consts::PI;
+    let places = [-9.0, 0.0, 1.0, 1.2, 1.5, 1.9, 2.0, 4.2, 5.0, 9.0];
+    let found = places.map(|x| ground.angle_at(x));
+    let expected = [0.0, 0.0, angle, angle, -angle, -angle, 0.0, 0.0, 0.0, 0.0];
+    assert_relative_eq!(found.as_slice(), expected.as_slice(), epsilon = 1e-12);
+    let slope = profile(&[[0.0, 0.0], [1.0, 0.0], [2.0, 1.0]], 0.0).expect("it is ground");
+    assert_relative_eq!(slope.angle_at(5.0), angle);
+}
+
+#[test]
 fn a_disc_is_clear_of_ground_that_ends_below_it() {
     let ground = hill_and_block();
     let is_clear = |x: f64, y: f64| ground.is_clear_of(Vector::new(x, y), 0.3);
