@@ -15,7 +15,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
-from typing import NamedTuple, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from crawler2d._core import build_info
 from crawler2d.common import ctrl_c
@@ -183,6 +183,15 @@ class _Help(argparse.HelpFormatter):
 
 class _Parser(argparse.ArgumentParser):
     """Says in one line what is wrong with the options, and which was probably meant."""
+
+    def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> Any:
+        """Take a choice that begins with a minus, as in ``--forward -x``, for a value."""
+        given = list(sys.argv[1:] if args is None else args)
+        for k in range(len(given) - 1, 0, -1):
+            action = self._option_string_actions.get(given[k - 1])
+            if given[k].startswith("-") and action is not None and given[k] in (action.choices or ()):
+                given[k - 1 : k + 1] = [f"{given[k - 1]}={given[k]}"]
+        return super().parse_known_args(given, namespace)
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}; {self.prog} --help lists the options\n")

@@ -284,6 +284,13 @@ def test_the_console_script_is_this_command(capsys: Any) -> None:
     assert capsys.readouterr().err.startswith("crawler2d audit: FILE must be")
 
 
+@pytest.mark.parametrize("forward", [["--forward", "-x"], ["--forward=-x"]])
+def test_a_direction_may_begin_with_a_minus(capsys: Any, forward: list[str]) -> None:
+    path = c2d.samples.path("rover.sdf")
+    assert main(["audit", *forward, "--lint", str(path)]) == 0
+    assert "is forward right?" in capsys.readouterr().out
+
+
 def test_python_m_is_the_same_command() -> None:
     words = [sys.executable, "-m", "crawler2d", "audit", "missing.sdf"]
     made = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -100,8 +100,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     reading.add_argument(
         "--forward",
         choices=["+x", "-x", "+y", "-y"],
-        help="which way the model faces; write --forward=-x (default: the side of the links called"
-        " front, else +x)",
+        help="axis along which the model drives forward (default: the side of the links called front,"
+        " else +x)",
     )
     reading.add_argument("--model", help="name of the model in a world")
     reading.add_argument(
