@@ -134,7 +134,7 @@ def model_of_robot(robot: Robot) -> RobotModel:
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3))
     >>> model = model_of_robot(robot)
     >>> round(model.mass, 6), [wheel.link for wheel in model.wheels][:2]
-    (21.2, ['left_wheel_1', 'left_wheel_2'])
+    (21.2, ['left_wheel_0', 'left_wheel_1'])
     """
     text = Scenario(robot, Flat()).to_json()
     across = across_of(robot.gauge, None, None)

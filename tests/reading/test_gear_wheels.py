@@ -196,7 +196,7 @@ def test_grousers_that_grip_otherwise_than_their_wheel_are_refused(tmp_path: Pat
     text = robot.without_flippers().to_mjcf(friction=0.6)
     assert read(tmp_path, text, "gears.xml").friction == 0.6
     first = re.search(
-        r'<geom [^>]*type="box"[^>]*friction="0.6', text[text.index("left_wheel_1") :]
+        r'<geom [^>]*type="box"[^>]*friction="0.6', text[text.index("left_wheel_0") :]
     )
     assert first is not None
     slick = text.replace(first[0], first[0].replace('friction="0.6', 'friction="0.3'), 1)

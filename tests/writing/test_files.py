@@ -121,7 +121,7 @@ def test_grousers_that_taper_are_refused_where_there_are_no_hulls(name: str) -> 
 
 def _grousers(track: Any) -> int:
     text = WHEELS.with_track(track).to_mjcf()
-    return len(re.findall(r'<mesh name="left_wheel_1_', text))
+    return len(re.findall(r'<mesh name="left_wheel_0_', text))
 
 
 @pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
@@ -179,6 +179,15 @@ def test_wheels_of_one_radius_share_a_drive() -> None:
     radii = re.findall("<wheel_radius>(.*)</wheel_radius>", text)
     assert [float(radius) for radius in radii] == pytest.approx([0.064, 0.037])
     assert len(re.findall("<left_joint>", text)) == len(re.findall("<right_joint>", text)) == 4
+
+
+def test_wheels_have_the_numbers_that_they_have_in_diagnoses() -> None:
+    robot = with_flippers(c2d.LineOfWheels(3), c2d.LineOfWheels(2))
+    table = robot.wheels()
+    for side, carrier, body in zip(table["side"], table["carrier"], table["body"], strict=True):
+        end = "" if carrier == "chassis" else f"{carrier.split()[0]}_"
+        name = f"{end}{side}_{'flipper_' if end else ''}wheel_{body}"
+        assert f'name="{name}"' in robot.to_sdf()
 
 
 def test_widths_are_estimated_from_the_gauge() -> None:

@@ -59,7 +59,7 @@ def test_a_gear_wheel_has_its_exact_outline(wheel: c2d.GearWheel) -> None:
     bodies = _core.geometry(robot._at_rest())["bodies"]
     wheels = robot.wheels()
     for number in range(3):
-        link = tree.by_name[f"left_wheel_{number + 1}"]
+        link = tree.by_name[f"left_wheel_{number}"]
         outline = np.array(bodies["outline"][number])
         center = np.array([wheels["x"][number], wheels["y"][number]])
         # Chords of the arcs are a little inside the root circle, by at most 0.3 % of its radius.
@@ -111,10 +111,10 @@ def test_wheels_are_hoops_only_where_uniform_ones_leave_no_chassis() -> None:
     wheels = c2d.LineOfWheels(4)
     light = c2d.Robot.simple(10.0, axle_distance=0.4, radius=0.08, track=wheels)
     rows = light.wheels()
-    assert tree_of(light).by_name["left_wheel_1"].mass == pytest.approx(rows["mass"][0])
+    assert tree_of(light).by_name["left_wheel_0"].mass == pytest.approx(rows["mass"][0])
     heavy = dataclasses.replace(light, track_mass=6.0)
     hoop = heavy.wheels()["moment_of_inertia"][0] / 0.08**2
-    assert tree_of(heavy).by_name["left_wheel_1"].mass == pytest.approx(hoop)
+    assert tree_of(heavy).by_name["left_wheel_0"].mass == pytest.approx(hoop)
 
 
 def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> None:
@@ -124,7 +124,7 @@ def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> 
     tree = tree_of(robot)
     for number in range(3):
         outline = dense(scene.outline(3 + number, 0)[:-1])
-        shapes = tree.by_name[f"front_left_flipper_wheel_{number + 1}"].shapes
+        shapes = tree.by_name[f"front_left_flipper_wheel_{3 + number}"].shapes
         inside = deepest(shapes, outline)
         assert inside.min() > -1e-9
         assert inside.max() < 1e-3
@@ -133,7 +133,7 @@ def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> 
 def test_grousers_that_rounding_swallows_are_none() -> None:
     wheel = c2d.GearWheel(grouser_count=12, grouser_height=1e-13, tip_thickness=0.004)
     robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3, wheel=wheel))
-    (shape,) = tree_of(robot).by_name["left_wheel_1"].shapes
+    (shape,) = tree_of(robot).by_name["left_wheel_0"].shapes
     assert shape.kind == "cylinder"
     assert shape.radius == pytest.approx(0.064)
 

@@ -96,6 +96,8 @@ class Wheel:
 
     Parameters
     ----------
+    body : int
+        Its number in runs and diagnoses.
     center : ndarray, shape (2,)
         [m] Its axle in the chassis frame.
     radius : float
@@ -108,6 +110,7 @@ class Wheel:
         [m] Of a gear wheel about its axle, turned as it starts; None: it is round.
     """
 
+    body: int
     center: Array
     radius: float
     mass: float
@@ -336,6 +339,7 @@ def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
         turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
         outline = place(scene.bodies["outline"][body], turned)
     return Wheel(
+        body=int(row["body"]),
         center=np.array([row["x"], row["y"]]),
         radius=float(row["radius"]),
         mass=float(row["mass"]),

@@ -190,8 +190,8 @@ class _Model:
             y = sign * 0.5 * self.across.gauge
             if belt is not None:
                 self.add_track(f"{side}_track", y, belt)
-            for number, wheel in enumerate(self.chassis.wheels, 1):
-                name = f"{side}_wheel_{number}"
+            for wheel in self.chassis.wheels:
+                name = f"{side}_wheel_{wheel.body}"
                 self.add_wheel(name, CHASSIS, self.chassis, wheel, y, is_hoop=is_hoop)
 
     def rod(self, end: str) -> Part:
@@ -246,8 +246,9 @@ class _Model:
                 velocity=flippers["rate_limit"],
                 armature=flippers.get("rotor_inertia", 0.0),
             )
-            for number, wheel in enumerate(arm.wheels, 1):
-                self.add_wheel(f"{name}_wheel_{number}", name, arm, wheel, y, is_hoop=is_hoop)
+            for wheel in arm.wheels:
+                wheel_name = f"{name}_wheel_{wheel.body}"
+                self.add_wheel(wheel_name, name, arm, wheel, y, is_hoop=is_hoop)
 
     def add_wheel(
         self, name: str, parent: str, carrier: Carrier, wheel: Wheel, y: float, *, is_hoop: bool
