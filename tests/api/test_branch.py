@@ -51,11 +51,11 @@ def test_a_branch_counts_from_the_end_of_the_step_at_its_instant(seized: c2d.Run
     branch = seized.branch(at=1.0, duration=1.5)
     assert 1.0 <= branch.time[0] < 1.0 + LONGEST_STEP
     assert branch.metrics["time"] == branch.time[-1] == branch.time[0] + 1.5
-    assert branch.trunk == (seized.scenario, 1.0)
+    assert branch.parent == (seized.scenario, 1.0)
     assert branch.scenario == seized.scenario.replace({"duration": 1.5})
     way = branch.position[-1, 0] - branch.position[0, 0]
     assert branch.metrics["distance"] == pytest.approx(way, abs=1e-12)
-    assert seized.trunk is None
+    assert seized.parent is None
 
 
 @pytest.mark.parametrize("at", [0.3, 0.6, 2.0])  # by whole steps a rounding off a sample
@@ -68,8 +68,8 @@ def test_a_branch_that_begins_with_a_sample_has_it_once(at: float) -> None:
 def test_a_stop_is_the_instant_of_the_diagnosis(seized: c2d.Run) -> None:
     assert seized.diagnosis is not None
     branch = seized.branch(duration=0.1)
-    assert branch.trunk is not None
-    assert branch.trunk[1] == branch.time[0] == seized.diagnosis.time
+    assert branch.parent is not None
+    assert branch.parent[1] == branch.time[0] == seized.diagnosis.time
     assert np.array_equal(branch.position[0], seized.position[-1])
     assert branch.chassis_angle[0] == seized.chassis_angle[-1]
 
@@ -225,10 +225,10 @@ def test_a_run_that_was_pickled_or_summarised_branches_alike(seized: c2d.Run) ->
     assert ends[0] == ends[1] == ends[2]
 
 
-def test_a_branch_survives_pickling_with_its_trunk(seized: c2d.Run) -> None:
+def test_a_branch_survives_pickling_with_its_parent(seized: c2d.Run) -> None:
     branch = seized.branch(at=1.0, duration=0.1)
     twin = pickle.loads(pickle.dumps(branch))
-    assert twin.trunk == branch.trunk
+    assert twin.parent == branch.parent
     assert twin.metrics == branch.metrics
 
 

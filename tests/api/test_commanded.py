@@ -85,8 +85,8 @@ def test_a_run_of_a_copy_begins_where_it_was_copied(scenario: Scenario) -> None:
     other.advance(0.25)
     run = other.to_run()
     assert (run.time[0], run.time[-1]) == (0.5, 0.75)
-    assert run.trunk is not None
-    assert run.trunk[1] == 0.5
+    assert run.parent is not None
+    assert run.parent[1] == 0.5
     assert np.array_equal(run.position[-1], other.state().position)
 
 
@@ -123,7 +123,7 @@ def test_a_run_under_commands_is_saved_and_drawn(scenario: Scenario, tmp_path: P
     sim.advance(0.3)
     run = sim.to_run()
     again = c2d.load(run.save(tmp_path / "by_hand.npz"))
-    assert again.trunk == run.trunk
+    assert again.parent == run.parent
     assert again.plot().get_xlabel() == "x [m]"
 
 

@@ -213,7 +213,7 @@ def test_a_diagnosis_survives_pickling_with_everything(
                 }
             else:
                 assert own == other, field.name
-    assert pickle.loads(pickle.dumps(run)).trunk is None
+    assert pickle.loads(pickle.dumps(run)).parent is None
 
 
 def test_a_mechanism_is_not_a_reason(stops: dict[str, c2d.Run]) -> None:

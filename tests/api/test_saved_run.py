@@ -48,8 +48,8 @@ def _bits(array: Any) -> bytes:
 
 def content(run: c2d.Run) -> tuple[Any, ...]:
     """Everything that a run holds, as pickling takes it."""
-    _, (scenario, result, error, trunk) = run.__reduce__()
-    return scenario.to_json(), result, error, trunk
+    _, (scenario, result, error, parent) = run.__reduce__()
+    return scenario.to_json(), result, error, parent
 
 
 def reloaded(run: c2d.Run, folder: Path) -> c2d.Run:
@@ -114,10 +114,10 @@ def test_a_loaded_summary_says_that_it_has_no_history(stopped: c2d.Run, tmp_path
     assert again.metrics == stopped.metrics
 
 
-def test_a_branch_is_loaded_with_its_trunk(stopped: c2d.Run, tmp_path: Path) -> None:
+def test_a_branch_is_loaded_with_its_parent(stopped: c2d.Run, tmp_path: Path) -> None:
     branch = stopped.branch(friction=2.0)
     again = reloaded(branch, tmp_path)
-    assert again.trunk == branch.trunk
+    assert again.parent == branch.parent
     assert same(content(again), content(branch))
     with pytest.raises(c2d.ScenarioError, match="must not be a branch itself"):
         again.branch()

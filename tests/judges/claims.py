@@ -241,7 +241,7 @@ class Claims:
         variant = dataclasses.replace(variant, duration=lasts)
         text, changed = self.run.scenario.to_json(), variant.to_json()
         result = _core.branch(text, (at, None), changed, (0.0, 0.0), 0.01, "full")
-        return c2d.Run(variant, result, trunk=(self.run.scenario, at))
+        return c2d.Run(variant, result, parent=(self.run.scenario, at))
 
     def ahead(self, run: c2d.Run) -> float:
         """[m] How far a run gets beyond where the robot had come before it stopped."""

@@ -266,11 +266,11 @@ def test_the_comment_of_a_film_says_what_made_it(short: c2d.Run, tmp_path: Path)
         assert made.encode() in path.read_bytes()
 
 
-def test_the_provenance_of_a_branch_names_its_trunk(short: c2d.Run) -> None:
+def test_the_provenance_of_a_branch_names_its_parent(short: c2d.Run) -> None:
     branch = short.branch(0.1, track=c2d.BeltTrack(), duration=0.1)
-    own, trunk = branch.scenario.identity, short.scenario.identity
-    assert own != trunk
-    made = f"crawler2d {c2d.__version__}, scenario {own}, branched off scenario {trunk} at 0.1 s"
+    own, parent = branch.scenario.identity, short.scenario.identity
+    assert own != parent
+    made = f"crawler2d {c2d.__version__}, scenario {own}, branched off scenario {parent} at 0.1 s"
     assert branch.provenance == made
 
 

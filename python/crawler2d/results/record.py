@@ -65,7 +65,7 @@ class Record:
         Results that the core returned.
     error : Crawler2dError, optional
         The reason if there is no result.
-    trunk : tuple of Scenario and float, optional
+    parent : tuple of Scenario and float, optional
         For a branch, or a run of a `Simulation`: the scenario it set out from, and when [s].
     """
 
@@ -74,11 +74,11 @@ class Record:
         scenario: Scenario,
         result: Mapping[str, Any],
         error: Crawler2dError | None = None,
-        trunk: tuple[Scenario, float] | None = None,
+        parent: tuple[Scenario, float] | None = None,
     ) -> None:
         self.scenario = scenario
         self.error = error
-        self.trunk = trunk
+        self.parent = parent
         self.outcome = Outcome(result["outcome"]) if error is None else None
         self.diagnosis = _diagnosis_of(result.get("diagnosis"))
         self.metrics = Metrics(result.get("metrics", {}))
@@ -115,7 +115,7 @@ class Record:
         metrics, after, text = self.metrics, f"after {self.metrics['time']:.2f} s", ""
         match self.outcome:
             case Outcome.TIPPED_OVER:
-                tip_over = None if self.trunk else find_tip_over(self.scenario, try_changes=False)
+                tip_over = None if self.parent else find_tip_over(self.scenario, try_changes=False)
                 direction = "backwards" if metrics["final_angle"] > 0.0 else "forwards"
                 text = str(tip_over or f"tipped over {direction} {after}")
             case Outcome.TIMED_OUT:
@@ -268,7 +268,7 @@ class Record:
             "trace": self._trace,
             "contacts": dict(self._contacts),
         }
-        return type(self), (self.scenario, result, self.error, self.trunk)
+        return type(self), (self.scenario, result, self.error, self.parent)
 
     def __repr__(self) -> str:
         """Show what ran and how it ended."""
@@ -312,9 +312,9 @@ class Record:
         True
         """
         made = f"crawler2d {self.build['version']}, scenario {self.scenario.identity}"
-        if self.trunk is None:
+        if self.parent is None:
             return made
-        scenario, time = self.trunk
+        scenario, time = self.parent
         return f"{made}, branched off scenario {scenario.identity} at {time!r} s"
 
     @property

@@ -44,7 +44,7 @@ def write_run(run: Record, path: Path) -> None:
     if run.error is not None:
         rule = f"must have a result to be saved, not the error {run.error}"
         raise ScenarioError("run", run, rule)
-    _, (scenario, result, _, trunk) = run.__reduce__()
+    _, (scenario, result, _, parent) = run.__reduce__()
     tables = {name: result[name] for name in _TABLES}
     diagnosis = result["diagnosis"]
     if diagnosis is not None:
@@ -55,7 +55,7 @@ def write_run(run: Record, path: Path) -> None:
         "build": result["build"],
         "outcome": result["outcome"],
         "wall_time": result["wall_time"],
-        "trunk": None if trunk is None else [trunk[0].to_json(), trunk[1]],
+        "trunk": None if parent is None else [parent[0].to_json(), parent[1]],
         "tables": {name: _texts(columns) for name, columns in tables.items()},
     }
     arrays = {
@@ -181,10 +181,10 @@ def _arguments(
             if name.startswith("trace/")
         },
     }
-    trunk = about["trunk"]
+    stored = about["trunk"]
     try:
-        branched_off = None if trunk is None else (Scenario.from_json(trunk[0]), float(trunk[1]))
-        return Scenario.from_json(str(entries["scenario"])), result, None, branched_off
+        parent = None if stored is None else (Scenario.from_json(stored[0]), float(stored[1]))
+        return Scenario.from_json(str(entries["scenario"])), result, None, parent
     except ScenarioError as error:
         by = about["build"]["version"]
         raise StoreError(

@@ -168,7 +168,7 @@ def try_variant(
 
 def refuse_without_result(run: Record) -> None:
     """Refuse a run that ended with an error, and one that its scenario does not define."""
-    if run.trunk is not None:
+    if run.parent is not None:
         rule = "must not be a branch itself, nor of a Simulation: take the original run"
         raise ScenarioError("run", run, rule)
     if run.error is not None:

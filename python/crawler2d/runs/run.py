@@ -72,7 +72,7 @@ class Run(ShownRun):
         What simulated it, as `build_info` says; of a loaded run it may be another build.
     error : Crawler2dError or None
         Why there is no result, in a batch that was interrupted or has ``on_error="record"``.
-    trunk : tuple of Scenario and float, or None
+    parent : tuple of Scenario and float, or None
         For a branch, or a run of a `Simulation`: the scenario it set out from, and when [s].
 
     Notes
@@ -297,12 +297,12 @@ class Run(ShownRun):
     ) -> Run:
         how: Any = {"push": push, "record": record, "sample_interval": sample_interval}
         result = simulate_branch(self, time, variant, start=start, **how)
-        return Run(variant, result, trunk=(self.scenario, time))
+        return Run(variant, result, parent=(self.scenario, time))
 
     def _run_of_trial(self, time: float, trial: TrialResult) -> Run:
         variant, result = run_of_trial(self, time, trial.name)
         return Run(
-            variant, result, trunk=None if trial.is_from_the_start else (self.scenario, time)
+            variant, result, parent=None if trial.is_from_the_start else (self.scenario, time)
         )
 
     def _add_to_diagnosis(self, *results: TrialResult) -> None:

@@ -313,7 +313,7 @@ class Simulation(TakesKeywords):
         -------
         Run
             To be plotted, saved and explained like any other. Its scenario does not hold what was
-            commanded, so it cannot be repeated: `trunk` says from where it set out, and `branch`
+            commanded, so it cannot be repeated: `parent` says from where it set out, and `branch`
             and `trials` are refused.
 
         Raises
@@ -335,7 +335,7 @@ class Simulation(TakesKeywords):
         """
         kept, _ = check_recording(sample_interval, "full")
         result = self._core.to_run(kept, list(trial_names(trials)))
-        return Run(self._simulated, result, trunk=(self._simulated, self._since))
+        return Run(self._simulated, result, parent=(self._simulated, self._since))
 
     @takes_keywords
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -280,7 +280,7 @@ class Simulations(TakesKeywords):
         place = self._place(place)
         result = self._core.to_run(place, kept, list(trial_names(trials)))
         scenario = self.scenario(place)
-        return Run(scenario, result, trunk=(scenario, 0.0))
+        return Run(scenario, result, parent=(scenario, 0.0))
 
     def _place(self, place: int) -> int:
         return whole_number(place, "place", 0, len(self) - 1)
