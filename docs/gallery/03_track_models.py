@@ -26,7 +26,7 @@ for ax, track in zip(axes.flat, models, strict=True):
     run = c2d.simulate(robot.with_track(track), c2d.terrains.step(0.075))
     run.plot(ax, time=run.time[-1], trials=False)
     ax.set_xlim(-0.6, 0.8)
-    ax.set_title(f"{track.in_words}: {run.outcome}", loc="left")
+    ax.set_title(f"{track.description}: {run.outcome}", loc="left")
     ax.label_outer()
     ax.get_legend().remove()
 shown = {

@@ -10,7 +10,7 @@ that crawler2d brings along.
 import crawler2d as c2d
 
 file = c2d.samples.path("rover.sdf")
-print(c2d.read_robot(file).in_words)
+print(c2d.read_robot(file).description)
 
 step = {"step": c2d.terrains.step(0.05, friction=0.6)}
 audit = c2d.audit(file, step, quick=True, progress=False)

@@ -18,5 +18,5 @@ with tempfile.TemporaryDirectory() as folder:
     robot.to_mjcf(Path(folder, "robot.xml"))
     print(*Path(folder, "robot.xml").read_text().splitlines()[10:20], sep="\n")
     again = c2d.read_robot(Path(folder, "world.sdf"))
-print(again.in_words)
+print(again.description)
 again.robot.plot()

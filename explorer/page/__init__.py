@@ -112,7 +112,7 @@ def tables() -> dict[str, Any]:
             **vocabulary(),
             "outcomes": OUTCOMES,
             "mechanisms": MECHANISMS,
-            "tracks": {**patterns, "belt": _BELT.in_words},
+            "tracks": {**patterns, "belt": _BELT.description},
         },
     }
 
@@ -137,7 +137,7 @@ def _function(each: Parameters) -> str:
 
 def _pattern(track: Track) -> str:
     """Say what a track is, with the paths of its fields in place of their values."""
-    text = track.in_words
+    text = track.description
     if isinstance(track, c2d.LineOfWheels | c2d.CircumferentialWheels):
         for value, path in ((str(track.count), "{count}"), (track.wheel.kind, "{wheel.kind}")):
             text = text.replace(value, path, 1)  # "24 round wheels all round"

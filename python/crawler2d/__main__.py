@@ -189,7 +189,11 @@ class _Parser(argparse.ArgumentParser):
         given = list(sys.argv[1:] if args is None else args)
         for k in range(len(given) - 1, 0, -1):
             action = self._option_string_actions.get(given[k - 1])
-            if given[k].startswith("-") and action is not None and given[k] in (action.choices or ()):
+            if (
+                given[k].startswith("-")
+                and action is not None
+                and given[k] in (action.choices or ())
+            ):
                 given[k - 1 : k + 1] = [f"{given[k - 1]}={given[k]}"]
         return super().parse_known_args(given, namespace)
 

@@ -78,4 +78,4 @@ def test_the_progress_of_an_audit_is_shown_or_called() -> None:
     ],
 )
 def test_a_track_says_what_it_is(track: Any, words: str) -> None:
-    assert track.in_words == words
+    assert track.description == words

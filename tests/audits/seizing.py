@@ -30,7 +30,7 @@ def instant_audit(found: c2d.Audit) -> Any:
     """An audit that takes no time, and prints what it found."""
 
     def audit(*_: Any, progress: Any, **__: Any) -> c2d.Audit:
-        progress.print(found.in_words)
+        progress.print(found.summary)
         return found
 
     return audit

@@ -100,7 +100,7 @@ def test_the_belt_does_not_drive_where_the_robot_clears() -> None:
     assert (found.table["outcome"].sel(model="model") == "cleared").all()
     row = next(line for line in str(found).splitlines() if line.startswith("  step of 75 mm"))
     assert row.split()[-5:] == ["-", "cleared", "does", "not", "seize"]
-    assert "it clears 1 of 1 obstacles in at least 95 %" in found.in_words
+    assert "it clears 1 of 1 obstacles in at least 95 %" in found.summary
 
 
 def test_what_is_known_before_the_runs_is_told_before_them() -> None:
@@ -122,7 +122,7 @@ def test_what_is_known_before_the_runs_is_told_before_them() -> None:
     first = next(index for index, text in enumerate(printed) if text.startswith("  step of 75 mm"))
     assert "a run" in printed[1:first]
     assert "a run" in printed[first:]
-    assert "\n".join(text for text in printed if text != "a run") == found.in_words
+    assert "\n".join(text for text in printed if text != "a run") == found.summary
 
 
 def test_a_quick_audit_has_fewer_samples_and_tries_round_wheels_alone() -> None:
@@ -197,14 +197,14 @@ def test_an_error_of_lint_stands_above_the_verdict() -> None:
     how: Any = {"samples": 2, "repeats": 1, "repair": False, "duration": 0.1}
     found = c2d.audit(large, STEP, **how, **QUIET)
     said = "Lint has errors (size): the verdict holds for the robot as it is given"
-    lines = found.in_words.splitlines()
+    lines = found.summary.splitlines()
     assert lines[1].startswith(said)
     assert words.conclusion(found)[0].startswith(said)
     assert said in found.to_html()
 
 
 def test_without_an_error_of_lint_nothing_stands_above_the_verdict(found: c2d.Audit) -> None:
-    assert "Lint has errors" not in found.in_words
+    assert "Lint has errors" not in found.summary
 
 
 def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
@@ -218,7 +218,7 @@ def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
         "not a verdict",
     ):
         assert part in text
-    assert text == str(found) == found.in_words
+    assert text == str(found) == found.summary
     assert max(map(len, text.splitlines())) <= 120
 
 
@@ -237,7 +237,7 @@ def test_a_robot_that_does_not_seize_is_not_repaired() -> None:
     assert found.repaired is None
     assert found.repairs == ()
     assert found.verdicts[0].word == "does not seize"
-    assert "It was not found to seize" in found.in_words
+    assert "It was not found to seize" in found.summary
 
 
 def test_repairs_can_be_left_out() -> None:
@@ -520,7 +520,7 @@ def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
 
 
 def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
-    assert "0 wheels a side" not in found.in_words
+    assert "0 wheels a side" not in found.summary
     for each in found.repairs:
         expected = "belt" if each.kind == "belt" else f"{each.wheels} wheels a side"
         assert wheels_per_side(each) == expected
@@ -537,7 +537,7 @@ def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit
     assert "nan" not in text
     assert found.repaired is not None
     changed = replace(found, repaired=found.repaired._replace(repairs=(alone,)))
-    assert "none of the fresh runs on gap 90 mm" in changed.in_words
+    assert "none of the fresh runs on gap 90 mm" in changed.summary
     assert "none of the fresh runs on gap 90 mm" in changed.to_html()
 
 

@@ -219,6 +219,6 @@ def test_an_audit_without_runs_finds_the_same_lint(of_file: c2d.Audit) -> None:
     assert [each for each in of_file.lint if each not in doubts] == list(alone.lint)
     assert alone.pockets == of_file.pockets
     assert alone.verdicts == ()
-    assert str(alone).startswith(of_file.reading.in_words)
+    assert str(alone).startswith(of_file.reading.description)
     assert "Pockets" in str(alone)
     assert "Verdicts" not in str(alone)

@@ -77,7 +77,7 @@ def test_the_command_says_whether_it_seizes(
     monkeypatch.setattr(command, "audit", instant_audit(found))
     status, out, _ = run(capsys, "any.sdf", "--no-html")
     assert status == 1
-    assert out.strip() == found.in_words
+    assert out.strip() == found.summary
 
 
 @pytest.mark.parametrize(

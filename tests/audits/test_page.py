@@ -201,7 +201,7 @@ def test_the_conclusion_is_that_of_the_short_form(found: c2d.Audit, page: Page) 
     paragraphs = [text for _, text in page.all("p")]
     for sentence in words.conclusion(found):
         assert sentence in paragraphs
-        assert sentence in plain(found.in_words)
+        assert sentence in plain(found.summary)
 
 
 def test_every_figure_of_a_file_has_its_value_and_its_source(

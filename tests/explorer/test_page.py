@@ -32,7 +32,7 @@ def state(page: Page) -> Scenario:
 def test_it_begins_with_the_case_of_the_readme(page: Page) -> None:
     run = c2d.simulate(begin())
     assert run.outcome == "seized"
-    assert part(page, "subject") == begin().robot.track.in_words
+    assert part(page, "subject") == begin().robot.track.description
     assert part(page, "ending") == f"seized after {run.metrics['time']:.1f} s"
     assert part(page, "mechanism") == run.mechanism
     assert part(page, "sentence") == f"{run.diagnosis}."

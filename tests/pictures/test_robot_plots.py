@@ -52,7 +52,7 @@ def lines(ax: Any) -> list[Any]:
 def test_every_robot_is_drawn_and_no_label_lies_over_another(robot: c2d.Robot) -> None:
     ax = robot.plot()
     ax.figure.canvas.draw()
-    assert ax.get_title(loc="left") == robot.in_words
+    assert ax.get_title(loc="left") == robot.description
     boxes = [(text.get_text(), text.get_window_extent()) for text in words(ax)]
     assert [(a, b) for (a, one), (b, two) in combinations(boxes, 2) if one.overlaps(two)] == []
     whole = ax.figure.bbox
@@ -192,8 +192,8 @@ def test_a_title_says_what_the_tracks_are() -> None:
         "belt closed round 4 round wheels in a line": c2d.ClosedTrack(c2d.LineOfWheels(4)),
     }
     for told, track in named.items():
-        assert ROBOT.with_track(track).in_words == f"engineer: {told}"
-    assert c2d.robots.marv().in_words.endswith("; flippers: belt with grousers")
+        assert ROBOT.with_track(track).description == f"engineer: {told}"
+    assert c2d.robots.marv().description.endswith("; flippers: belt with grousers")
 
 
 @pytest.mark.parametrize("name", ["$5", "$\\frac{$", "x_{$1^$"])

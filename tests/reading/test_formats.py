@@ -345,7 +345,7 @@ def test_a_reading_survives_a_pickle() -> None:
 
 
 def test_a_reading_says_what_it_is() -> None:
-    assert SDF.in_words.startswith("cart: 3 round wheels in a line; flippers: 2 round wheels")
+    assert SDF.description.startswith("cart: 3 round wheels in a line; flippers: 2 round wheels")
     assert "left front flipper: x 0.5000 m" in repr(SDF)
     assert "robot.mass" in SDF._repr_html_()
 

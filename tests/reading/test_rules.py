@@ -171,5 +171,5 @@ def test_friction_of_a_reading_is_worked_out_for_another_ground() -> None:
 def test_a_reading_shows_its_wheels_notes_and_doubts() -> None:
     reading = c2d.read_robot(FILES / "cart.sdf")
     lines = repr(reading).splitlines()
-    assert lines[0] == reading.in_words
+    assert lines[0] == reading.description
     assert re.fullmatch(r"  left chassis: x -?0\.\d{4} m, y 0\.\d{4} m, radius 0\.1250 m", lines[1])

@@ -150,7 +150,7 @@ def test_slopes_and_gaps_are_climbed_up_to_their_limit() -> None:
     gap = BASE.replace({"terrain": c2d.terrains.gap(0.1)})
     wide = c2d.studies.max_gap(gap, widths=[0.1, 0.36], progress=False)
     assert wide["highest"].values.tolist() == [0.1]
-    assert list(steep["model"].values) == [ROBOT.track.in_words]
+    assert list(steep["model"].values) == [ROBOT.track.description]
 
 
 def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.studies.obstacles import _in_words, _Limits
+from crawler2d.studies.obstacles import _Limits, _limits_text
 from tests.shared import ROBOT
 
 BASE = c2d.Scenario(ROBOT, c2d.terrains.flat())
@@ -113,4 +113,4 @@ def test_the_figure_has_a_bar_for_every_cell_and_says_its_rate(found: Any) -> No
     ],
 )
 def test_the_summary_says_what_is_cleared_and_what_then(limits: list[Any], text: str) -> None:
-    assert _in_words([_Limits(*each) for each in limits], "height", "m").startswith(text)
+    assert _limits_text([_Limits(*each) for each in limits], "height", "m").startswith(text)

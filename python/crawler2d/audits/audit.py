@@ -84,7 +84,7 @@ class Audit(AuditRecord):
     """
 
     @property
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """The short form, as ``crawler2d audit`` prints it."""
         return text_of(self)
 
@@ -142,7 +142,7 @@ class Audit(AuditRecord):
 
     def __repr__(self) -> str:
         """Write the short form."""
-        return self.in_words
+        return self.summary
 
     @overload
     def to_html(self, path: None = None, *, threads: int | None = None) -> str: ...

@@ -238,15 +238,15 @@ class LintResult:
     verdicts: tuple[Verdict, ...] = ()
 
     @property
-    def in_words(self) -> str:
+    def summary(self) -> str:
         """The short form, as ``python -m crawler2d audit --lint`` prints it."""
-        title = self.robot.in_words if self.reading is None else self.reading.in_words
+        title = self.robot.description if self.reading is None else self.reading.description
         parts = ([title], lint_of(self.lint), _pockets(self.pockets))
         return "\n\n".join("\n".join(part) for part in parts)
 
     def __repr__(self) -> str:
         """Write the short form."""
-        return self.in_words
+        return self.summary
 
 
 def lint_only(

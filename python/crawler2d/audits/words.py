@@ -76,7 +76,7 @@ _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set
 
 def subject(audit: AuditSetup) -> str:
     """Say what was audited."""
-    return audit.robot.in_words if audit.reading is None else audit.reading.in_words
+    return audit.robot.description if audit.reading is None else audit.reading.description
 
 
 def robot_sentence(audit: AuditSetup) -> str:
@@ -253,17 +253,17 @@ def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
             verdicts = f"the verdict{'s' * (len(loose) > 1)} on {', '.join(loose)}"
             effect = f"{verdicts} may depend" if loose else "no verdict depends"
             drawn = ", ".join(
-                f"{_in_words(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
+                f"{_path_text(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
             )
             yield f"{head} ({drawn}), it seizes in: {runs}; {effect} on that."
 
 
-def _in_words(path: str) -> str:
+def _path_text(path: str) -> str:
     """Write what a path is in words.
 
     Examples
     --------
-    >>> _in_words("robot.flippers.rotor_inertia"), _in_words("robot.drivetrain.rotor_inertia")
+    >>> _path_text("robot.flippers.rotor_inertia"), _path_text("robot.drivetrain.rotor_inertia")
     ('rotor inertia of a flipper', 'rotor inertia of a track')
     """
     place, _, field = path.rpartition(".")

@@ -241,7 +241,7 @@ def _card(entry: Entry) -> str:
     reading, found = entry.reading, entry.audit
     assert reading is not None  # others are listed
     drawing = draw_robot(reading.robot, "side view", reading.silhouettes, width=300, height=200)
-    parts = [drawing, name, f"<p>{escape(reading.in_words)}</p>"]
+    parts = [drawing, name, f"<p>{escape(reading.description)}</p>"]
     if found is None:
         parts.append(f'<p class="bad">{escape(entry.refusal)}</p>')
         return f"<article>{''.join(parts)}</article>"

@@ -100,8 +100,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     reading.add_argument(
         "--forward",
         choices=["+x", "-x", "+y", "-y"],
-        help="axis along which the model drives forward (default: the side of the links called front,"
-        " else +x)",
+        help="axis along which the model drives forward (default: the side of the links called"
+        " front, else +x)",
     )
     reading.add_argument("--model", help="name of the model in a world")
     reading.add_argument(
@@ -243,7 +243,7 @@ def _audit_file(file: Path, options: argparse.Namespace, live: LivePrinter) -> A
         raise ScenarioError("FILE", str(file), rule)
     if options.lint:
         alone = lint_only(file, **_reading(options))
-        live.print(alone.in_words)
+        live.print(alone.summary)
         if options.json:
             print(json.dumps(plain_of(alone), indent=2, allow_nan=False))
         return alone

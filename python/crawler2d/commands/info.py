@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print what is installed; returns the exit status."""
     found = installed()
-    print(json.dumps(found, indent=2) if options.json else _in_words(found))
+    print(json.dumps(found, indent=2) if options.json else _text_of(found))
     return 0
 
 
@@ -73,7 +73,7 @@ def _package(name: str) -> dict[str, str] | None:
     return {"version": found.version, "path": str(found.locate_file(""))}
 
 
-def _in_words(found: dict[str, Any]) -> str:
+def _text_of(found: dict[str, Any]) -> str:
     core = found["core"]
     made = ", ".join(str(core[name]) for name in ("build_id", "profile", "target", "engine"))
     rows = [

@@ -24,7 +24,7 @@ from crawler2d.runs.batch import simulate
 if TYPE_CHECKING:
     from crawler2d.runs.run import Run
 
-__all__ = ["add_arguments", "in_words", "run"]
+__all__ = ["add_arguments", "run", "summary"]
 
 _WIDTH = 80
 
@@ -57,11 +57,11 @@ def run(options: argparse.Namespace) -> int:
             if options.json:
                 print(json.dumps(_plain(finished), indent=2, allow_nan=False))
             else:
-                print(in_words(finished), *(f"written: {path}" for path in written), sep="\n")
+                print(summary(finished), *(f"written: {path}" for path in written), sep="\n")
     return 0 if finished.outcome is Outcome.CLEARED else 1
 
 
-def in_words(run: Run) -> str:
+def summary(run: Run) -> str:
     """Write how a run ended, why, and its main figures, as lines."""
     lines = [run.title]
     if run.reason:

@@ -175,7 +175,7 @@ def _check_flippers(task: Task, models: Axis) -> None:
         robot = task.scenario.replace(values).robot
         if flipper_ends(robot) != task.ends:
             rule = "must have flippers at the same ends as the robot of the environment"
-            raise ScenarioError(f"models[{label!r}]", robot.in_words, rule)
+            raise ScenarioError(f"models[{label!r}]", robot.description, rule)
 
 
 class _Counted:

@@ -265,7 +265,7 @@ class Robot(Parameters, path="robot"):
         """
         from crawler2d.drawings.views import draw_robot  # noqa: PLC0415 - optional
 
-        return draw_robot(self._at_rest(), self.in_words, ax)
+        return draw_robot(self._at_rest(), self.description, ax)
 
     @takes_keywords
     def to_sdf(
@@ -431,11 +431,11 @@ class Robot(Parameters, path="robot"):
         return export_world(self._at_rest(terrain), self._at_rest(), path, **widths)
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """Its name and track models, for titles."""
         arms = None if self.flippers is None else self.flippers.track
-        of_arms = "" if arms is None else f"; flippers: {arms.in_words}"
-        return f"{self.name}: {self.track.in_words}{of_arms}"
+        of_arms = "" if arms is None else f"; flippers: {arms.description}"
+        return f"{self.name}: {self.track.description}{of_arms}"
 
     def _at_rest(self, terrain: Terrain = _LEVEL) -> str:
         """Write a scenario in which only the robot or the terrain can break a rule."""
@@ -466,7 +466,7 @@ class Robot(Parameters, path="robot"):
         from crawler2d.drawings.svg import robot_card  # noqa: PLC0415 - costs nothing until used
 
         try:
-            return robot_card(self._at_rest(), self.in_words)
+            return robot_card(self._at_rest(), self.description)
         except Exception:  # the display of a robot must never fail
             return None
 

@@ -193,10 +193,10 @@ class Scenario(ScenarioBase):
         """
         from crawler2d.drawings.views import draw_scenario  # noqa: PLC0415 - optional
 
-        return draw_scenario(self.to_json(), self._in_words(), ax)
+        return draw_scenario(self.to_json(), self._description(), ax)
 
-    def _in_words(self) -> str:
-        return f"{self.robot.in_words}; ground: {self.terrain.kind.replace('_', ' ')}"
+    def _description(self) -> str:
+        return f"{self.robot.description}; ground: {self.terrain.kind.replace('_', ' ')}"
 
     def _repr_html_(self) -> str | None:
         """Show start and ground in a notebook; a broken scenario is shown as text."""
@@ -204,7 +204,7 @@ class Scenario(ScenarioBase):
 
         try:
             terrain = textwrap.shorten(repr(self.terrain), _LONGEST)
-            return scenario_card(self.to_json(), self._in_words(), terrain)
+            return scenario_card(self.to_json(), self._description(), terrain)
         except Exception:  # the display of a scenario must never fail
             return None
 

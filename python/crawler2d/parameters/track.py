@@ -108,7 +108,7 @@ class LineOfWheels(Parameters, kind="line", path="robot.track"):
     as_track: bool = True
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         return f"{self.count} {self.wheel.kind} wheels in a line"
 
@@ -145,7 +145,7 @@ class CircumferentialWheels(Parameters, kind="circumferential", path="robot.trac
     wheel: Wheel = RoundWheel()
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         return f"{self.count} {self.wheel.kind} wheels all round"
 
@@ -178,7 +178,7 @@ class HybridWheels(Parameters, kind="hybrid", path="robot.track"):
     wheel: Wheel = RoundWheel()
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         wheels = "wheel" if len(self.placements) == 1 else "wheels"
         return f"{len(self.placements)} {self.wheel.kind} {wheels} placed by hand"
@@ -192,7 +192,7 @@ class BeltTrack(Parameters, kind="belt", path="robot.track"):
     """
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         return "smooth belt"
 
@@ -217,7 +217,7 @@ class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
     grouser_count: int | None = None
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         return "belt with grousers"
 
@@ -307,7 +307,7 @@ class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
     return_roller_count: int | None = None
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         return f"chain of shoes {'on a guide' if self.mechanism == 'guide' else 'round a sprocket'}"
 
@@ -335,7 +335,7 @@ class ForceTrack(Parameters, kind="force", path="robot.track"):
     wheel_count: int = 5
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
         carrying = "skids" if self.support == "skids" else f"{self.wheel_count} free wheels"
         return f"{carrying} pushed by a force"
@@ -383,9 +383,9 @@ class ClosedTrack(Parameters, kind="closed", path="robot.track"):
     surface: Literal["own", "smooth"] = "own"
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """What it is, for titles."""
-        return f"belt closed round {self.of.in_words}"
+        return f"belt closed round {self.of.description}"
 
 
 Track = OpenTrack | ClosedTrack

@@ -103,7 +103,7 @@ class EngineLaws:
     has_gain: bool = False
     ignored: Mapping[str, str] = field(default_factory=dict)
 
-    def in_words(self, *, is_belt: bool) -> str:
+    def description(self, *, is_belt: bool) -> str:
         """Describe its motors."""
         if is_belt and not self.surface:
             return f"{self.name} moves no surface of a belt"
@@ -361,7 +361,7 @@ def drivetrain_of(
         [N m] The estimate for a motor without limit.
     """
     tree, engine = log.tree, log.engine
-    log.notes.append(ENGINES[engine].in_words(is_belt=isinstance(tracks[0], BeltTrack)))
+    log.notes.append(ENGINES[engine].description(is_belt=isinstance(tracks[0], BeltTrack)))
     speed, speed_source = _speed(tree, pairs)
     sides = [_wheels(tree, pairs, side, engine) for side in _SIDES]
     of_chassis = [wheel for side in sides for wheel in side]

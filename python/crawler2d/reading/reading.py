@@ -79,10 +79,10 @@ class Reading:
     how: ReadOptions
 
     @property
-    def in_words(self) -> str:
+    def description(self) -> str:
         """A short description, for titles."""
         return (
-            f"{self.robot.in_words}; {self.robot.mass:.4g} kg,"
+            f"{self.robot.description}; {self.robot.mass:.4g} kg,"
             f" friction {self.friction:.3g} ({self.tree.format}, {self.tree.file})"
         )
 
@@ -114,7 +114,7 @@ class Reading:
         ]
         if len(lines) > _SHOWN:
             lines[_SHOWN:] = [f"and {len(lines) - _SHOWN} more: see .wheels"]
-        rows = [self.in_words, *(f"  {line}" for line in lines)]
+        rows = [self.description, *(f"  {line}" for line in lines)]
         rows += [f"  note: {note}" for note in self.notes]
         rows += [f"  doubt: {doubt}" for doubt in self.doubts]
         rows.append(f"  estimates: {', '.join(self.sources.estimates)}")

@@ -14,7 +14,7 @@ from crawler2d.common.bodies import BodyKind
 from crawler2d.results.findings import Intrusion, Mechanism, TrialResult
 from crawler2d.results.outcome import Outcome
 
-__all__ = ["Diagnosis", "body_name", "in_words", "sentence", "trial_text", "vocabulary"]
+__all__ = ["Diagnosis", "body_name", "end_text", "sentence", "trial_text", "vocabulary"]
 
 _NAMES = {
     BodyKind.BELT: "the belt",
@@ -294,7 +294,7 @@ def _advance(tried: TrialResult) -> str:
 
 def _end(d: Diagnosis, tried: TrialResult) -> str:
     if not tried.jammed:
-        return in_words(tried.outcome)
+        return end_text(tried.outcome)
     jam = tried.intrusion
     if jam is None:
         return "is jammed"
@@ -383,7 +383,7 @@ def _bearers(d: Diagnosis) -> str:
     return text + _GRIPS.get(str(d.mechanism), "")
 
 
-def in_words(outcome: Outcome) -> str:
+def end_text(outcome: Outcome) -> str:
     """Say how a trial ends, in the present tense."""
     return _ENDS[outcome]
 

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from crawler2d import _core
 
-__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "glossary_text", "rate_in_words"]
+__all__ = ["MECHANISMS", "OUTCOMES", "TRIALS", "Outcome", "glossary_text", "rate_label"]
 
 OUTCOMES = {
     "detracked": "a chain of shoes came off its guide or its wheels",
@@ -65,12 +65,12 @@ TRIALS = {
 """What is changed at a stop, one thing at a time."""
 
 
-def rate_in_words(outcome: str) -> str:
+def rate_label(outcome: str) -> str:
     """Name the rate of an outcome, for labels.
 
     Examples
     --------
-    >>> rate_in_words("cleared"), rate_in_words("slipping")
+    >>> rate_label("cleared"), rate_label("slipping")
     ('rate of clearing', 'rate of slipping')
     """
     return f"rate of {_ENDING.get(outcome, outcome)}"

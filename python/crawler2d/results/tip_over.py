@@ -10,7 +10,7 @@ from typing import Any
 from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Hold
-from crawler2d.results.diagnosis import in_words
+from crawler2d.results.diagnosis import end_text
 from crawler2d.results.outcome import Outcome
 
 __all__ = ["TipOver", "find_tip_over"]
@@ -75,7 +75,7 @@ class TipOver:
             f" {1e3 * (y - ground):.0f} mm below it at x = {pivot:z.3f} m, after {self.time:.2f} s,"
             f" {math.degrees(abs(self.chassis_angle)):.0f} degrees nose {nose}"
         )
-        tried = "; ".join(f"{change}: {in_words(end)}" for change, end in self.tried)
+        tried = "; ".join(f"{change}: {end_text(end)}" for change, end in self.tried)
         return f"{text}. Tried from the start: {tried}" if tried else text
 
 

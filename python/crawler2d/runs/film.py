@@ -124,7 +124,7 @@ def _read_runs(runs: Any) -> list[Run]:
 
 def _read_labels(labels: Any, runs: list[Run]) -> list[str]:
     if labels is None:
-        return [run.scenario.robot.track.in_words for run in runs]
+        return [run.scenario.robot.track.description for run in runs]
     if not isinstance(labels, (list, tuple)) or not all(isinstance(each, str) for each in labels):
         raise ScenarioError("labels", labels, "must be a list of strings")
     if len(labels) != len(runs):

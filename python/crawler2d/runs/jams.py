@@ -93,7 +93,7 @@ class Jam:
 
     def __str__(self) -> str:
         """Say it in one line."""
-        held = ", ".join(map(_in_words, self.contacts))
+        held = ", ".join(map(_contact_text, self.contacts))
         where = f"x = {self.position[0]:z.3f} m, {math.degrees(self.chassis_angle):z.1f} degrees"
         if self.between is not None and self.between[0] != self.between[1]:
             rear, front = self.between
@@ -104,7 +104,7 @@ class Jam:
         return f"jam at {where}: {held}; {stable}{belt}"
 
 
-def _in_words(contact: JamContact) -> str:
+def _contact_text(contact: JamContact) -> str:
     place = "a face" if contact.edge is None else f"edge {contact.edge}"
     kind = contact.body_kind.name.lower().replace("_", " ")
     return f"{kind} {contact.body} on {place} with {contact.normal_force:.0f} N"

@@ -14,7 +14,7 @@ from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.results.outcome import rate_in_words
+from crawler2d.results.outcome import rate_label
 from crawler2d.studies.boundary import (
     LONG_NAMES,
     Crossing,
@@ -144,7 +144,7 @@ def decision_table(
     dataset = dataset.merge(boundaries.reindex(unknown=names, fill_value=gaps))
     for name, text in _LONG_NAMES.items():
         dataset[name].attrs["long_name"] = text
-    dataset["rate"].attrs["long_name"] = rate_in_words(outcome)
+    dataset["rate"].attrs["long_name"] = rate_label(outcome)
     for name in ("rate", "count", "tried_rate", *_INDICES):
         dataset[name].attrs["units"] = "1"
     lines = [line for each in results for _, line in each.lines if line is not None]

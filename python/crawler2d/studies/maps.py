@@ -14,7 +14,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.fields import read_number_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.results.outcome import rate_in_words
+from crawler2d.results.outcome import rate_label
 from crawler2d.studies.campaign import (
     Cell,
     Counts,
@@ -243,7 +243,7 @@ def seizure_map(
             names[path_x]: (values_x, field_attributes([path_x])),
         }
         table = rate_table(study, "seizure_map", grid.tallies, dims)
-    table["rate"].attrs["long_name"] = rate_in_words(outcome)
+    table["rate"].attrs["long_name"] = rate_label(outcome)
     return _with_ends(table, grid, tuple(dims), ends).assign_attrs(outcome=outcome)
 
 

@@ -198,7 +198,7 @@ def _find_greatest(
     }
     samples = len(limits) // len(fields)
     lines = [
-        f"{label}: {_in_words(limits[k * samples : (k + 1) * samples], name, units)}"
+        f"{label}: {_limits_text(limits[k * samples : (k + 1) * samples], name, units)}"
         for k, label in enumerate(fields)
     ]
     return table.assign(
@@ -209,7 +209,7 @@ def _find_greatest(
     ).assign_attrs(summary="\n".join(lines))
 
 
-def _in_words(limits: Sequence[_Limits], name: str, units: str) -> str:
+def _limits_text(limits: Sequence[_Limits], name: str, units: str) -> str:
     """Say what a model clears, over all samples of the unknowns."""
     greatest = sorted({each.highest for each in limits if not math.isnan(each.highest)})
     if not greatest:

@@ -73,7 +73,7 @@ def read_models(
         If something else is given, or a model replaces one of the study's `own` paths.
     """
     if models is None:
-        return {scenario.robot.track.in_words: {}}
+        return {scenario.robot.track.description: {}}
     fields = variants(models)
     refuse_own(fields, own, "models")
     return fields

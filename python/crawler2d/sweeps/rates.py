@@ -13,7 +13,7 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import read_choice, takes_keywords
 from crawler2d.errors import ScenarioError, warn
-from crawler2d.results.outcome import Outcome, rate_in_words
+from crawler2d.results.outcome import Outcome, rate_label
 from crawler2d.sweeps.statistics import clustered, read_level
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def rates_of(
         if name in counts.coords:
             rule = "must have no other dimension or coordinate of that name: rename it"
             raise ScenarioError("table", name, rule)
-        variable.attrs = {"units": "1", "long_name": _LONG_NAMES.get(name, rate_in_words(wanted))}
+        variable.attrs = {"units": "1", "long_name": _LONG_NAMES.get(name, rate_label(wanted))}
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     return FigureDataset(

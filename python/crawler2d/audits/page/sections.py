@@ -299,8 +299,8 @@ def _value(robot: Robot, path: str) -> str:
     after = words.unit_after(path)
     if value is None:
         return "none"
-    if hasattr(value, "in_words"):
-        return str(value.in_words)
+    if hasattr(value, "description"):
+        return str(value.description)
     if isinstance(value, tuple) and value and isinstance(value[0], tuple):
         spans = (words.span([point[axis] for point in value], ".3f") for axis in (0, 1))
         x, y = spans

@@ -48,7 +48,7 @@ def path(name: str = "rover.sdf") -> Path:
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> c2d.read_robot(path("rover.urdf")).robot.in_words
+    >>> c2d.read_robot(path("rover.urdf")).robot.description
     'rover: 5 round wheels in a line'
     """
     return Path(__file__).with_name(read_choice(name, "name", _NAMES))
