@@ -96,7 +96,7 @@ def run_command(
     called = f"{prog} {options.command}"
     try:
         ctrl_c.raise_again()
-        with _doubts_in_one_line(called):
+        with _one_line_warnings(called):
             status = commands[options.command].run(options)
         print(end="", flush=True)  # noqa: T201 - nothing may fail later, unseen
     except KeyboardInterrupt as interrupt:
@@ -156,8 +156,8 @@ def _tell(called: str, text: str) -> None:
 
 
 @contextmanager
-def _doubts_in_one_line(called: str) -> Iterator[None]:
-    """Show doubts about a scenario without the line of code that simulates it."""
+def _one_line_warnings(called: str) -> Iterator[None]:
+    """Show warnings about a scenario without the line of code that simulates it."""
     with warnings.catch_warnings():
         others = warnings.showwarning
 
@@ -184,7 +184,9 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     """Says in one line what is wrong with the options, and which was probably meant."""
 
-    def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> Any:
+    def parse_known_args(  # type: ignore[override] # its overloads are of one namespace
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> Any:
         """Take a choice that begins with a minus, as in ``--forward -x``, for a value."""
         given = list(sys.argv[1:] if args is None else args)
         for k in range(len(given) - 1, 0, -1):

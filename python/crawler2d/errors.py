@@ -24,7 +24,7 @@ __all__ = [
     "ScenarioWarning",
     "SimulationDiverged",
     "StoreError",
-    "ignore_doubts",
+    "ignore_warnings",
     "own_error",
     "raise_first",
     "warn",
@@ -137,7 +137,7 @@ class ScenarioWarning(UserWarning):
     value : object
         Its value.
     reason : str
-        Why it is doubtful: "is usually ...".
+        Why it is unlikely to be intended: "is usually ...".
 
     Examples
     --------
@@ -251,7 +251,7 @@ _PACKAGE = __name__.partition(".")[0]
 
 
 def warn(path: str, value: object, reason: str) -> None:
-    """Issue one doubt as a warning; called by the core, too.
+    """Issue a `ScenarioWarning`; called by the core, too.
 
     Parameters
     ----------
@@ -265,8 +265,8 @@ def warn(path: str, value: object, reason: str) -> None:
 
 
 @contextlib.contextmanager
-def ignore_doubts() -> Iterator[None]:
-    """Issue no `ScenarioWarning`, where doubts are reported elsewhere or would be out of place."""
+def ignore_warnings() -> Iterator[None]:
+    """Issue no `ScenarioWarning`: they are reported elsewhere, or would be out of place."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ScenarioWarning)
         yield

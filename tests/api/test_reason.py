@@ -95,7 +95,7 @@ def test_a_title_says_when_the_goal_was_reached_as_the_metric_does() -> None:
     assert run.title.endswith(f"cleared after {run.metrics['time_to_clear']:.2f} s")
 
 
-def test_a_goal_that_no_robot_clears_on_the_ground_is_doubted() -> None:
+def test_a_goal_that_no_robot_clears_on_the_ground_gets_a_warning() -> None:
     ground = c2d.terrains.step(0.05)
     scenario = c2d.Scenario(ROBOT, ground, duration=300.0)
     with pytest.warns(c2d.ScenarioWarning, match="goal cannot be cleared: beyond .* the ground"):

@@ -67,7 +67,7 @@ def test_a_sample_is_a_robot_that_could_be(name: str) -> None:
     outline = found.robot.outline
     assert 0.45 < outline.axle_distance + 2.0 * outline.front_radius < 0.6
     assert found.reading is not None
-    assert not found.reading.doubts
+    assert not found.reading.warnings
     assert len(c2d.samples.path(name).read_text("utf-8").splitlines()) <= 150
 
 

@@ -291,10 +291,10 @@ def test_an_impossible_start_is_refused_and_changes_nothing(
     assert sim.scenario == scenario
 
 
-def test_doubts_are_told_once_and_not_at_every_reset(scenario: Scenario) -> None:
-    doubtful = scenario.replace({"gravity": 40.0})
+def test_warnings_are_told_once_and_not_at_every_reset(scenario: Scenario) -> None:
+    heavy = scenario.replace({"gravity": 40.0})
     with pytest.warns(c2d.ScenarioWarning, match="gravity"):
-        sim = c2d.Simulation(doubtful)
+        sim = c2d.Simulation(heavy)
     sim.reset()  # warnings are errors
     with pytest.warns(c2d.ScenarioWarning, match="gravity"):
         sim.reset(c2d.Start())

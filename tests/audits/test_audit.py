@@ -491,8 +491,8 @@ def test_bad_input_is_refused(arguments: Any, how: Any, path: str) -> None:
 
 
 def test_reading_an_audited_file_is_quiet() -> None:
-    """What reading doubts is in the lint, not a warning: warnings are errors here."""
-    assert quietly(FILES / "cart.urdf").doubts == ()
+    """What the reader warns of is in the lint and not issued: warnings are errors here."""
+    assert quietly(FILES / "cart.urdf").warnings == ()
 
 
 @pytest.mark.usefixtures("one_obstacle")

@@ -123,7 +123,7 @@ def test_places_are_kept_from_the_root_of_the_repository(tmp_path: Path, made: M
     def changes(root: Path) -> list[Any]:
         (root / ".git").mkdir(parents=True)
         what = f"is taken to be {root}/urdf/utils.xacro: no package has that name"
-        finding = Finding(rule="doubt", severity="warning", what=what)
+        finding = Finding(rule="other", severity="warning", what=what)
         check = dataclasses.replace(made(lint=(finding,)), path=root / "robot" / "cart.sdf")
         return list(entry_of(check)["lint"])
 
@@ -159,9 +159,9 @@ WARNING = Finding(
         ({"what": "3 of 9 wheels, left_wheel_1"}, []),
         ({"severity": "note"}, []),
         ({"what": "2 of 8 wheels, left_wheel_2"}, ["effort"]),
-        ({"rule": "doubt"}, ["doubt"]),
+        ({"rule": "other"}, ["other"]),
         ({"severity": "error"}, ["effort"]),
-        ({"rule": "doubt", "severity": "note"}, []),
+        ({"rule": "other", "severity": "note"}, []),
     ],
 )
 def test_lint_is_new_by_its_words_and_severity_and_not_by_lines_and_figures(
@@ -174,14 +174,14 @@ def test_lint_is_new_by_its_words_and_severity_and_not_by_lines_and_figures(
         assert f"new {now.severity} of lint, {now.rule}: {now.what}" in changes
 
 
-def test_lines_in_what_a_doubt_says_are_no_change(made: Made, tmp_path: Path) -> None:
+def test_lines_in_what_a_warning_says_are_no_change(made: Made, tmp_path: Path) -> None:
     before, now = (
-        Finding(rule="doubt", severity="warning", what=f"a.sdf:{line}: mesh is left out, got b.stl")
+        Finding(rule="other", severity="warning", what=f"a.sdf:{line}: mesh is left out, got b.stl")
         for line in (12, 345)
     )
     assert compared(made(lint=(before,)), made(lint=(now,)), tmp_path) == ([], "")
     (kept,) = entry_of(made(lint=(before,)))["lint"]
-    assert kept == ["warning", "doubt", "a.sdf: mesh is left out, got b.stl"]
+    assert kept == ["warning", "other", "a.sdf: mesh is left out, got b.stl"]
 
 
 def test_what_is_gone_is_told(made: Made, tmp_path: Path) -> None:

@@ -244,16 +244,16 @@ def test_wheels_that_overlap_in_mjcf_collide_unless_filtered(
     assert [each.severity for each in found] == [severity]
 
 
-def test_what_the_reader_doubts_is_told(tmp_path: Path) -> None:
+def test_what_the_reader_warnings_is_told(tmp_path: Path) -> None:
     wide = pair("front", 2.0) + pair("rear", -2.0)
     reading = read(tmp_path, urdf(wide, mass="4000"))
-    found = of_rule(lint(reading.robot, reading), "doubt")
+    found = of_rule(lint(reading.robot, reading), "other")
     assert "is the file in metres?" in found[0].what
 
 
-def test_what_the_simulator_doubts_is_told() -> None:
-    (found,) = lint(ROBOT, doubts=["robot.x is usually less"])
-    assert (found.rule, found.severity) == ("doubt", "warning")
+def test_what_the_simulator_warnings_is_told() -> None:
+    (found,) = lint(ROBOT, warnings=["robot.x is usually less"])
+    assert (found.rule, found.severity) == ("other", "warning")
 
 
 def test_a_rule_about_the_robot_names_the_lines_of_the_file(tmp_path: Path) -> None:

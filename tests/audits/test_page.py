@@ -191,9 +191,9 @@ def test_the_answer_says_in_which_runs_it_seizes_against_the_rule(of_file: c2d.A
 
 def test_an_error_of_lint_is_told_above_the_answer(of_file: c2d.Audit) -> None:
     error = dataclasses.replace(of_file.lint[0], severity="error")
-    doubted = dataclasses.replace(of_file, lint=(error,))
-    texts = [text for _, text in Page(doubted.to_html()).all("p")]
-    above = texts.index(words.reservation(doubted))
+    flawed = dataclasses.replace(of_file, lint=(error,))
+    texts = [text for _, text in Page(flawed.to_html()).all("p")]
+    above = texts.index(words.reservation(flawed))
     assert texts[above + 1].startswith("It seizes on")
 
 
@@ -386,10 +386,10 @@ def test_a_repair_by_wheels_is_shown_before_belts_and_a_confirmed_one_before_oth
         repaired = found.repaired._replace(repairs=repairs)
         return simulate_replays(dataclasses.replace(found, repaired=repaired))[0].other
 
-    doubted = dataclasses.replace(wheels, confirmed=False)
+    flawed = dataclasses.replace(wheels, confirmed=False)
     assert shown(belt, gears) == f"{gears.what} (confirmed)"
-    assert shown(belt, doubted) == "belts moved by a track plugin (confirmed)"
-    assert shown(doubted) == f"{wheels.what} (not confirmed)"
+    assert shown(belt, flawed) == "belts moved by a track plugin (confirmed)"
+    assert shown(flawed) == f"{wheels.what} (not confirmed)"
 
 
 def test_a_repair_that_seizes_in_the_very_run_is_said_to(found: c2d.Audit) -> None:

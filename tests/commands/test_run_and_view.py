@@ -228,7 +228,7 @@ def test_a_file_that_cannot_be_written_is_named(ran: Ran, monkeypatch: pytest.Mo
 
 
 @pytest.mark.filterwarnings("default::crawler2d.ScenarioWarning")
-def test_a_doubt_is_one_line_and_no_error(folder: Path, ran: Ran) -> None:
+def test_a_warning_is_one_line_and_no_error(folder: Path, ran: Ran) -> None:
     (folder / "it.json").write_text(CLEARS.replace({"gravity": 60.0, "duration": 0.1}).to_json())
     status, _, err = ran("run", "it.json")
     assert status == 1

@@ -27,7 +27,7 @@ LENGTH, RADIUS = OUTLINE.axle_distance, OUTLINE.front_radius
 BELT_RADIUS = RADIUS - OUTLINE.grouser_height
 GRAVITY = 9.81
 WEIGHT = ROBOT.mass * GRAVITY
-# The program doubts such friction.
+# The program warns of such friction.
 pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 TAIL = (np.zeros(2), np.array([0.0, 1.0]))
 Place = tuple[Array, Array]

@@ -68,7 +68,7 @@ ids = pytest.mark.parametrize(
         for case in CASES
     ],
 )
-# A doubt says that nobody builds such robots.
+# A warning says that nobody builds such robots.
 any_mass = pytest.mark.filterwarnings("ignore:robot.mass:crawler2d.ScenarioWarning")
 
 

@@ -106,7 +106,7 @@ def test_values_that_break_a_rule_keep_the_run_and_say_which() -> None:
     assert found.run.scenario == base.replace({"terrain.height": 0.06})
 
 
-def test_doubts_are_not_told_at_every_move() -> None:
+def test_warnings_are_not_told_at_every_move() -> None:
     found = c2d.explore(BASE, gravity=(1.0, 40.0))
     found.sliders["gravity"].value = 39.0  # warnings are errors
     assert found.scenario.gravity == 39.0

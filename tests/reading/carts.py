@@ -79,14 +79,14 @@ def link(name: str, joint: str, xyz: str = "0 0 0", parent: str = "hull") -> str
 
 
 def read(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> c2d.Reading:
-    """Read a text as a file; what it doubts is in the reading."""
+    """Read a text as a file; its warnings are in the reading."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return quietly(path, **how)
 
 
 def quietly(path: Path, **how: Any) -> c2d.Reading:
-    """Read a file; what it doubts is in the reading."""
+    """Read a file; its warnings are in the reading."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", c2d.ScenarioWarning)
         return c2d.read_robot(path, **how)
@@ -125,8 +125,8 @@ def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: 
 def left_out(folder: Path, text: str, reason: str, name: str = "cart.urdf", **how: Any) -> None:
     """Read a text of which a collision shape must be left out, with file, line and reason."""
     reading = read(folder, text, name, **how)
-    told = [doubt for doubt in reading.doubts if "is left out" in doubt]
-    assert told, reading.doubts
-    for doubt in told:
-        assert re.search(reason, doubt), doubt
-        assert re.match(re.escape(name) + r":\d+", doubt), doubt
+    told = [warning for warning in reading.warnings if "is left out" in warning]
+    assert told, reading.warnings
+    for warning in told:
+        assert re.search(reason, warning), warning
+        assert re.match(re.escape(name) + r":\d+", warning), warning

@@ -39,8 +39,8 @@ def test_the_armature_of_one_side_is_the_rotor_inertia(tmp_path: Path) -> None:
     reading = read(tmp_path, mjcf('armature="0.01"'), "cart.xml")
     assert reading.robot.drivetrain.rotor_inertia == pytest.approx(8.0 * 0.01, rel=1e-12)
     assert reading.sources["robot.drivetrain.rotor_inertia"].startswith("cart.xml:")
-    (doubt,) = [each for each in reading.doubts if "rotor" in each or "armature" in each]
-    assert "got 0.05 to 0.2 kg m^2" in doubt  # if all were as those of the tip, or as the others
+    (warning,) = [each for each in reading.warnings if "rotor" in each or "armature" in each]
+    assert "got 0.05 to 0.2 kg m^2" in warning  # if all were as those of the tip, or as the others
 
 
 def test_rotors_in_proportion_to_their_wheels_are_alike(tmp_path: Path) -> None:
@@ -51,7 +51,7 @@ def test_rotors_in_proportion_to_their_wheels_are_alike(tmp_path: Path) -> None:
         text = text.replace(joint, f'{joint} armature="0.0025"')
     reading = read(tmp_path, text, "cart.xml")
     assert reading.robot.drivetrain.rotor_inertia == pytest.approx(5.0 * 0.01, rel=1e-12)
-    assert not [doubt for doubt in reading.doubts if "rotor" in doubt or "armature" in doubt]
+    assert not [warning for warning in reading.warnings if "rotor" in warning or "armature" in warning]
 
 
 def test_the_armature_of_an_actuator_counts_by_the_square_of_its_gear(tmp_path: Path) -> None:
@@ -61,12 +61,12 @@ def test_the_armature_of_an_actuator_counts_by_the_square_of_its_gear(tmp_path: 
     assert rotor == pytest.approx(8.0 * (0.01 + 0.002 * 9.0), rel=1e-12)
 
 
-def test_rotors_that_differ_have_their_mean_and_a_doubt(tmp_path: Path) -> None:
+def test_rotors_that_differ_have_their_mean_and_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf('armature="0.01"', 'armature="0.07"'), "cart.xml")
     assert reading.robot.drivetrain.torque_sharing == "wheel"
     assert reading.robot.drivetrain.rotor_inertia == pytest.approx((0.14 + 0.08) / 2.0)
-    assert any("got 0.05 to 0.35 kg m^2" in doubt for doubt in reading.doubts)
+    assert any("got 0.05 to 0.35 kg m^2" in warning for warning in reading.warnings)
 
 
 @pytest.mark.parametrize("engine", ["gz", "classic", "bullet"])
@@ -75,7 +75,9 @@ def test_an_engine_without_rotors_has_none(engine: str, tmp_path: Path) -> None:
     reading = read(tmp_path, mjcf('armature="0.01"'), "cart.xml", engine=engine)
     assert reading.robot.drivetrain.rotor_inertia == 0.0
     assert "none in" in reading.sources["robot.drivetrain.rotor_inertia"]
-    assert any("armature[" in doubt and "has no effect in" in doubt for doubt in reading.doubts)
+    assert any(
+        "armature[" in warning and "has no effect in" in warning for warning in reading.warnings
+    )
 
 
 def test_formats_without_armature_say_that_there_is_none(tmp_path: Path) -> None:
@@ -94,30 +96,30 @@ def test_formats_without_armature_say_that_there_is_none(tmp_path: Path) -> None
         ("isaac", {"damping", "friction"}),
     ],
 )
-def test_what_an_engine_ignores_of_a_urdf_is_doubted(
+def test_what_an_engine_ignores_of_a_urdf_gets_a_warning(
     engine: str, ignored: set[str], tmp_path: Path
 ) -> None:
     text = stated(dynamics='<dynamics damping="0.001" friction="0.002"/>')
     reading = read(tmp_path, text, engine=engine)
-    found = [doubt for doubt in reading.doubts if "has no effect" in doubt]
-    assert {doubt.split(": ")[1].split("[")[0] for doubt in found} == ignored
-    assert all(doubt.startswith("cart.urdf:") for doubt in found)
+    found = [warning for warning in reading.warnings if "has no effect" in warning]
+    assert {warning.split(": ")[1].split("[")[0] for warning in found} == ignored
+    assert all(warning.startswith("cart.urdf:") for warning in found)
 
 
 def test_speeds_of_commands_are_limits_in_mujoco(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf(""), "cart.xml")
     assert reading.robot.drivetrain.max_speed == pytest.approx(10.0 * 0.125)
-    assert not [doubt for doubt in reading.doubts if "has no effect" in doubt]
+    assert not [warning for warning in reading.warnings if "has no effect" in warning]
 
 
 def test_losses_of_joints_are_told(tmp_path: Path) -> None:
     """Two wheels a side at 10 rad/s: 0.4 and 0.02 N m each, of 5."""
     large = read(tmp_path, stated(dynamics='<dynamics damping="0.03" friction="0.4"/>'))
-    assert any("1.4 of 10 N m" in doubt and "gz-sim" in doubt for doubt in large.doubts)
+    assert any("1.4 of 10 N m" in warning and "gz-sim" in warning for warning in large.warnings)
     small = read(tmp_path, stated(dynamics='<dynamics damping="0.03"/>'))
     assert any("0.6 of 10 N m" in note for note in small.notes)
-    assert not [doubt for doubt in small.doubts if " N m" in doubt]
+    assert not [warning for warning in small.warnings if " N m" in warning]
 
 
 def test_the_first_dynamics_of_a_urdf_count(tmp_path: Path) -> None:
@@ -246,16 +248,16 @@ def test_the_servos_of_mujoco_are_a_controller(tmp_path: Path) -> None:
     reading = read(tmp_path, mjcf(""), "cart.xml")
     assert reading.robot.drivetrain.controller == c2d.PI(gain=80.0)
     assert reading.sources["robot.drivetrain.controller"].startswith("cart.xml:")
-    assert not [doubt for doubt in reading.doubts if "soft" in doubt]
+    assert not [warning for warning in reading.warnings if "soft" in warning]
     geared = read(tmp_path, mjcf("").replace("<velocity ", '<velocity gear="2" '), "cart.xml")
     assert geared.robot.drivetrain.controller == c2d.PI(gain=320.0)
 
 
-def test_a_servo_that_never_gives_its_torque_is_doubted(tmp_path: Path) -> None:
+def test_a_servo_that_never_gives_its_torque_gets_a_warning(tmp_path: Path) -> None:
     """0.3 N m s/rad at 10 rad/s are 3 of 5 N m; those of the tips have 6 at 20 rad/s."""
     pytest.importorskip("mujoco")
     reading = read(tmp_path, mjcf("").replace('kv="10"', 'kv="0.3"'), "cart.xml")
-    (soft,) = [doubt for doubt in reading.doubts if "soft" in doubt]
+    (soft,) = [warning for warning in reading.warnings if "soft" in warning]
     assert soft.startswith("cart.xml:75: gain[left_rear_joint] is too soft")
     assert "24 of 30 N m" in soft
 
@@ -329,7 +331,7 @@ def test_two_actuators_of_a_joint_add_up(tmp_path: Path, *, is_first: bool) -> N
     assert found.max_torque == pytest.approx(3.0 * (5.0 + 2.0) + 3.0 * 5.0)
     assert found.controller == c2d.PI(gain=80.0)
     assert found.max_speed == pytest.approx(1.25)
-    assert sum("several actuators" in doubt for doubt in reading.doubts) == 6
+    assert sum("several actuators" in warning for warning in reading.warnings) == 6
 
 
 def test_actuators_of_tendons_are_those_of_no_joint(tmp_path: Path) -> None:
@@ -338,4 +340,4 @@ def test_actuators_of_tendons_are_those_of_no_joint(tmp_path: Path) -> None:
     motor = '</fixed></tendon><actuator><motor tendon="left_rear_joint" ctrlrange="-2 2"/>'
     reading = read(tmp_path, mjcf("").replace("<actuator>", tendon + motor), "cart.xml")
     assert reading.robot.drivetrain.max_torque == pytest.approx(30.0)
-    assert not [doubt for doubt in reading.doubts if "several" in doubt]
+    assert not [warning for warning in reading.warnings if "several" in warning]

@@ -98,8 +98,8 @@ def test_an_include_is_left_out_if_there_is_none_and_not_if_it_is_odd(
     ODD[what](tmp_path / "part")
     text = urdf('\n<xacro:include filename="part"/>', WHEELS).replace('<robot name="cart">', XACRO)
     if what in ("zero", "random", "tty", "elsewhere", "nowhere"):
-        (doubt,) = read(tmp_path, text, "cart.xacro").doubts
-        assert re.match(r"cart\.xacro:2 is left out: .* got /.*/part$", doubt)
+        (warning,) = read(tmp_path, text, "cart.xacro").warnings
+        assert re.match(r"cart\.xacro:2 is left out: .* got /.*/part$", warning)
     elif what == "device" and (tmp_path / "part").is_symlink():
         pytest.skip("only root may make a device")
     else:

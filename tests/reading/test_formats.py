@@ -219,13 +219,13 @@ def test_xacro_takes_arguments(tmp_path: Path) -> None:
     assert "18" in given.text
 
 
-def test_arguments_that_no_file_has_are_doubted(tmp_path: Path) -> None:
+def test_arguments_that_no_file_has_get_a_warning(tmp_path: Path) -> None:
     """Those of a file of settings are often passed as a whole."""
     pytest.importorskip("xacrodoc")
     (tmp_path / "sizes.yaml").write_text("load: 3\n", encoding="utf-8")
     text = f'{XACRO}<xacro:arg name="mass" default="8"/>{urdf(WHEELS).partition(">")[2]}'
     given = {"mas": "18", "Mass": "2", "mass": "9", "load": "1"}
-    found = read(tmp_path, text, "cart.xacro", arguments=given).doubts
+    found = read(tmp_path, text, "cart.xacro", arguments=given).warnings
     close = "it must be an argument of the model, of which the closest is mass"
     assert [each for each in found if "no effect" in each] == [
         f"arguments[mas] has no effect: {close}, got mas=18",
@@ -233,8 +233,8 @@ def test_arguments_that_no_file_has_are_doubted(tmp_path: Path) -> None:
     ]
 
 
-def test_arguments_that_a_format_does_not_have_are_doubted(tmp_path: Path) -> None:
-    found = read(tmp_path, urdf(WHEELS), model="cart", arguments={"mass": "9"}).doubts
+def test_arguments_that_a_format_does_not_have_get_a_warning(tmp_path: Path) -> None:
+    found = read(tmp_path, urdf(WHEELS), model="cart", arguments={"mass": "9"}).warnings
     assert [each.partition(":")[0] for each in found] == [
         "arguments have no effect",
         "model has no effect",
@@ -279,7 +279,7 @@ def test_forward_is_the_side_of_the_links_called_front(tmp_path: Path) -> None:
     turned = urdf(pair("front", -0.2) + pair("rear", 0.2, radius="0.07"))
     reading = read(tmp_path, turned)
     assert reading.robot.outline.front_radius == 0.08
-    assert any("on the other side than its name says" in doubt for doubt in reading.doubts)
+    assert any("on the other side than its name says" in warning for warning in reading.warnings)
 
 
 def test_forward_is_x_where_no_name_tells(tmp_path: Path) -> None:
@@ -377,4 +377,4 @@ def test_no_wheel_moves_more_than_its_mass_with_the_track(tmp_path: Path) -> Non
     reading = read(tmp_path, urdf(front + rear))
     assert reading.robot.track_mass == pytest.approx(2 * 1.0 + 2 * 0.5, rel=1e-12)
     assert reading.sources["robot.track_mass"].startswith("estimate: the mass of the wheels")
-    assert "robot.track_mass is limited to hoops" in reading.doubts[0]
+    assert "robot.track_mass is limited to hoops" in reading.warnings[0]

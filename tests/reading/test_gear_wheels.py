@@ -103,7 +103,7 @@ def test_wheels_that_all_start_turned_by_more_are_noted(tmp_path: Path) -> None:
     assert isinstance(reading.robot.track, c2d.LineOfWheels)
     assert reading.robot.track.wheel.phase_fraction == pytest.approx(0.0, abs=1e-9)  # type: ignore[union-attr]
     assert any("all start turned by 7 degrees" in note for note in reading.notes)
-    assert not any("phase_fraction" in doubt for doubt in reading.doubts)
+    assert not any("phase_fraction" in warning for warning in reading.warnings)
 
 
 def test_a_turn_too_small_to_tell_is_not_taken_for_a_share(tmp_path: Path) -> None:
@@ -123,10 +123,10 @@ def test_angles_of_two_wheels_that_a_file_rounds_are_no_turn_of_both(tmp_path: P
         tmp_path, urdf(gear("rear", -0.2, turn=turns[0]), gear("front", 0.2, turn=turns[1]))
     )
     assert not any("turned by" in note for note in reading.notes)
-    assert not any("phase_fraction" in doubt for doubt in reading.doubts)
+    assert not any("phase_fraction" in warning for warning in reading.warnings)
 
 
-def test_a_doubt_about_phases_names_the_wheels_and_the_turn_that_all_have(tmp_path: Path) -> None:
+def test_a_warning_about_phases_names_the_wheels_and_the_turn_that_all_have(tmp_path: Path) -> None:
     """One of six is 0.1 rad off; the turn and the share of all come nearest in squares."""
     turn, places = -0.5 * ANGLE + math.radians(7.0), np.linspace(-0.2, 0.2, 6)
     turns = turn + np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0])
@@ -136,22 +136,22 @@ def test_a_doubt_about_phases_names_the_wheels_and_the_turn_that_all_have(tmp_pa
     ]
     reading = read(tmp_path, urdf(*parts))
     (note,) = (note for note in reading.notes if "all start turned by" in note)
-    (doubt,) = (doubt for doubt in reading.doubts if "phase_fraction" in doubt)
+    (warning,) = (warning for warning in reading.warnings if "phase_fraction" in warning)
     slope, level = np.polyfit(np.arange(1, 7), turns - turn, 1)
     most = np.abs(turns - turn - level - slope * np.arange(1, 7)).max()
     assert f"left_w1 to left_w6: all start turned by {7 + math.degrees(level):.3g} degrees" in note
     degrees = f"{math.degrees(most):.3g} degrees"
     off = f"left_w1 to left_w6 start up to {degrees} off, in addition to a turn"
-    assert off in doubt
+    assert off in warning
 
 
-def test_wheels_that_start_turned_without_a_rule_are_doubted(tmp_path: Path) -> None:
+def test_wheels_that_start_turned_without_a_rule_get_a_warning(tmp_path: Path) -> None:
     turns = (("a", 0.2, 0.0), ("b", 0.0667, 0.3), ("c", -0.0667, 0.1), ("d", -0.2, 0.35))
     reading = read(tmp_path, urdf(*(gear(name, x, turn=turn) for name, x, turn in turns)))
-    assert any("robot.track.wheel.phase_fraction" in doubt for doubt in reading.doubts)
+    assert any("robot.track.wheel.phase_fraction" in warning for warning in reading.warnings)
 
 
-def test_a_wheel_with_grousers_turned_against_that_of_the_other_side_is_doubted(
+def test_a_wheel_with_grousers_turned_against_that_of_the_other_side_gets_a_warning(
     tmp_path: Path,
 ) -> None:
     text = urdf(gear("front", 0.2), gear("rear", -0.2))
@@ -161,7 +161,7 @@ def test_a_wheel_with_grousers_turned_against_that_of_the_other_side_is_doubted(
     first = other.index('<link name="right_front">')
     turned = other[first : other.index("</link>", first)]
     reading = read(tmp_path, text[:start] + turned + text[end:])
-    assert any("start up to 11.5 degrees off" in doubt for doubt in reading.doubts)
+    assert any("start up to 11.5 degrees off" in warning for warning in reading.warnings)
 
 
 def test_hulls_that_taper_are_grousers_with_their_thickness_at_the_root(tmp_path: Path) -> None:

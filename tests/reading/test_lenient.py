@@ -1,4 +1,4 @@
-"""What cannot carry the robot does not stop the reader; what can is refused or doubted aloud."""
+"""What cannot carry the robot does not stop the reader; what can is refused or gets a warning."""
 
 import re
 import time
@@ -35,13 +35,13 @@ def sensor(joint: str, shape: str = "", name: str = "lidar") -> str:
     return link(name, joint, "0 0 0.3").replace("</link>", f"{shape}</link>")
 
 
-def doubts(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> list[str]:
-    """Read a cart, which must be the one without the oddity, and return what it doubts."""
+def warnings_of(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> list[str]:
+    """Read a cart, which must be the one without the oddity, and return its warnings."""
     reading = read(folder, text, name, **how)
     assert reading.robot.outline.axle_distance == 0.4
-    for doubt in reading.doubts:
-        assert re.match(re.escape(name) + r":\d+", doubt), doubt
-    return list(reading.doubts)
+    for warning in reading.warnings:
+        assert re.match(re.escape(name) + r":\d+", warning), warning
+    return list(reading.warnings)
 
 
 @pytest.mark.parametrize(
@@ -57,9 +57,9 @@ def doubts(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> list
 )
 def test_a_shape_that_touches_nothing_is_left_out_of_a_sensor(tmp_path: Path, shape: str) -> None:
     text = urdf(WHEELS, sensor('type="fixed">', collision(shape)))
-    (doubt,) = doubts(tmp_path, text)
-    assert "/geometry/" in doubt
-    assert "is left out: " in doubt
+    (warning,) = warnings_of(tmp_path, text)
+    assert "/geometry/" in warning
+    assert "is left out: " in warning
 
 
 @pytest.mark.parametrize("shape", ['<sphere radius="0"/>', "<bloc/>", '<mesh filename="w.stl"/>'])
@@ -75,8 +75,8 @@ def test_a_wheel_without_a_shape_is_refused_although_there_are_others(
 def test_a_spinning_part_above_the_wheels_needs_no_shape(tmp_path: Path) -> None:
     mesh = collision('<mesh filename="dish.stl"/>')
     text = urdf(WHEELS, sensor('type="continuous"><axis xyz="0 1 0"/>', mesh))
-    (doubt,) = doubts(tmp_path, text)
-    assert f"is left out: there is no file {tmp_path}/dish.stl" in doubt
+    (warning,) = warnings_of(tmp_path, text)
+    assert f"is left out: there is no file {tmp_path}/dish.stl" in warning
 
 
 def test_a_model_whose_only_shapes_were_left_out_is_refused(tmp_path: Path) -> None:
@@ -105,7 +105,7 @@ def test_a_moved_track_without_a_shape_is_refused_beside_wheels(tmp_path: Path) 
 
 def test_a_capsule_of_length_0_is_a_sphere(tmp_path: Path) -> None:
     ball = pair("front", 0.2, geometry='<capsule radius="0.08" length="0"/>') + pair("rear", -0.2)
-    assert doubts(tmp_path, urdf(ball)) == []
+    assert warnings_of(tmp_path, urdf(ball)) == []
 
 
 def test_an_ellipsoid_is_a_wheel_if_it_is_round_about_its_axle(tmp_path: Path) -> None:
@@ -139,8 +139,8 @@ def test_a_cone_belongs_to_the_belly(tmp_path: Path) -> None:
 def test_a_joint_that_carries_nothing_is_fixed_if_it_is_wrong(
     tmp_path: Path, joint: str, reason: str
 ) -> None:
-    (doubt,) = doubts(tmp_path, urdf(WHEELS, sensor(joint)))
-    assert f"is taken as fixed, as nothing on its joint collides: {reason}" in doubt
+    (warning,) = warnings_of(tmp_path, urdf(WHEELS, sensor(joint)))
+    assert f"is taken as fixed, as nothing on its joint collides: {reason}" in warning
     box = collision('<box size="0.1 0.1 0.1"/>')
     refused(tmp_path, urdf(WHEELS, sensor(joint, box)), reason)
 
@@ -157,19 +157,21 @@ def test_a_joint_that_carries_nothing_is_fixed_if_it_is_wrong(
 )
 def test_a_joint_that_needs_no_axis_has_none(tmp_path: Path, joint: str) -> None:
     box = collision('<box size="0.1 0.1 0.1"/>')
-    assert doubts(tmp_path, urdf(WHEELS, sensor(joint, box))) == []
+    assert warnings_of(tmp_path, urdf(WHEELS, sensor(joint, box))) == []
 
 
-def test_two_joints_of_one_name_are_doubted(tmp_path: Path) -> None:
+def test_two_joints_of_one_name_get_a_warning(tmp_path: Path) -> None:
     text = urdf(WHEELS).replace('name="left_front_joint"', 'name="left_rear_joint"')
-    assert any("is also the name of another joint" in doubt for doubt in doubts(tmp_path, text))
+    assert any(
+        "is also the name of another joint" in warning for warning in warnings_of(tmp_path, text)
+    )
 
 
 def test_a_negative_moment_of_inertia_is_that_of_a_point(tmp_path: Path) -> None:
     text = urdf(WHEELS)
     wrong = text.replace(TENSOR, TENSOR.replace("0.1", "-0.1"))
-    (doubt,) = doubts(tmp_path, wrong)
-    assert "is taken as 0 kg m^2: no body has a negative moment, got -0.1" in doubt
+    (warning,) = warnings_of(tmp_path, wrong)
+    assert "is taken as 0 kg m^2: no body has a negative moment, got -0.1" in warning
     less = read(tmp_path, text).robot.moment_of_inertia - 0.2
     assert read(tmp_path, wrong).robot.moment_of_inertia == pytest.approx(less)
 
@@ -178,8 +180,8 @@ def test_an_inertia_that_no_body_in_the_robot_has_is_limited(tmp_path: Path) -> 
     gps = sensor('type="fixed">').replace('<mass value="0.5"/>', '<mass value="0.01"/>')
     tensor = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
     gps = re.sub(r"<inertia .*?/>", tensor, gps)
-    (doubt,) = doubts(tmp_path, urdf(WHEELS, gps))
-    assert re.search(r"is taken as \S+ kg m\^2, but 0.01 kg have at most", doubt)
+    (warning,) = warnings_of(tmp_path, urdf(WHEELS, gps))
+    assert re.search(r"is taken as \S+ kg m\^2, but 0.01 kg have at most", warning)
     usual = read(tmp_path, urdf(WHEELS)).robot.moment_of_inertia
     assert usual < read(tmp_path, urdf(WHEELS, gps)).robot.moment_of_inertia < usual + 0.01
 
@@ -187,8 +189,8 @@ def test_an_inertia_that_no_body_in_the_robot_has_is_limited(tmp_path: Path) -> 
 def test_a_heavy_link_keeps_an_inertia_that_it_cannot_have(tmp_path: Path) -> None:
     tensor = '<inertia ixx="9" ixy="0" ixz="0" iyy="9" iyz="0" izz="9"/>'
     text = urdf(WHEELS)
-    (doubt,) = doubts(tmp_path, text.replace(TENSOR, tensor))
-    assert "link[hull]/inertia is kept, but 8 kg have at most" in doubt
+    (warning,) = warnings_of(tmp_path, text.replace(TENSOR, tensor))
+    assert "link[hull]/inertia is kept, but 8 kg have at most" in warning
     usual = read(tmp_path, text).robot.moment_of_inertia
     found = read(tmp_path, text.replace(TENSOR, tensor)).robot.moment_of_inertia
     assert found == pytest.approx(usual + 8.8)
@@ -198,17 +200,17 @@ def test_a_false_inertia_that_makes_no_difference_stays_as_it_is(tmp_path: Path)
     """As the flippers of 1e-5 kg with 1e-3 kg m2 do, which are in public models."""
     tiny = sensor('type="fixed">').replace('<mass value="0.5"/>', '<mass value="1e-5"/>')
     tensor = '<inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/>'
-    assert doubts(tmp_path, urdf(WHEELS, re.sub(r"<inertia .*?/>", tensor, tiny))) == []
+    assert warnings_of(tmp_path, urdf(WHEELS, re.sub(r"<inertia .*?/>", tensor, tiny))) == []
 
 
 def test_the_first_of_several_inertials_and_origins_holds(tmp_path: Path) -> None:
     twice = '<inertial><mass value="70"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
     text = urdf(WHEELS, shapes=f"{twice}</inertial>")
-    (doubt,) = doubts(tmp_path, text)
-    assert "link[hull]/inertial is left out: the first one counts" in doubt
+    (warning,) = warnings_of(tmp_path, text)
+    assert "link[hull]/inertial is left out: the first one counts" in warning
     assert read(tmp_path, text).robot.mass == 12.0
     moved = urdf(WHEELS, sensor('type="fixed"><origin xyz="0 0 1"/>'))
-    assert any("origin is left out" in each for each in doubts(tmp_path, moved))
+    assert any("origin is left out" in each for each in warnings_of(tmp_path, moved))
 
 
 def test_a_negative_mass_is_refused(tmp_path: Path) -> None:
@@ -218,19 +220,19 @@ def test_a_negative_mass_is_refused(tmp_path: Path) -> None:
 def test_of_several_trees_that_with_the_wheels_is_read(tmp_path: Path) -> None:
     many = "".join(f'<link name="stray{number}"/>' for number in range(9))
     first = urdf(WHEELS).replace('<link name="hull">', f'{many}<link name="hull">', 1)
-    told = doubts(tmp_path, first)
+    told = warnings_of(tmp_path, first)
     assert len(told) == 9
     assert "link[stray0] is left out: it is not joined to hull" in told[0]
     pair_of = link("b", 'type="fixed">', parent="a").replace("<link", '<link name="a"/><link', 1)
-    (doubt,) = doubts(tmp_path, urdf(WHEELS, pair_of))
-    assert "link[a] is left out with 1 that hang on it: it is not joined to hull" in doubt
+    (warning,) = warnings_of(tmp_path, urdf(WHEELS, pair_of))
+    assert "link[a] is left out with 1 that hang on it: it is not joined to hull" in warning
 
 
 @pytest.mark.parametrize("kind", ["fixed", "floating"])
 def test_a_robot_held_to_the_world_is_read_as_free(tmp_path: Path, kind: str) -> None:
     held = f'<joint name="w" type="{kind}"><parent link="world"/><child link="hull"/></joint>'
     text = urdf(WHEELS, '<link name="world"/>', held)
-    told = doubts(tmp_path, text)
+    told = warnings_of(tmp_path, text)
     assert [("holds the robot to the world" in each) for each in told] == [True] * (kind == "fixed")
     assert read(tmp_path, text).tree.links[0].name == "hull"
 
@@ -266,7 +268,7 @@ def test_what_an_sdf_model_does_not_hold_itself_is_left_out(
 ) -> None:
     left_out(tmp_path, in_model(part), f"({reason}|it is in another file)", "tank.sdf")
     reading = read(tmp_path, in_model(part), "tank.sdf")
-    assert any(reason in doubt for doubt in reading.doubts)
+    assert any(reason in warning for warning in reading.warnings)
     assert reading.robot.outline.axle_distance == pytest.approx(0.8)
 
 
@@ -496,8 +498,8 @@ def test_a_body_with_two_joints_that_carries_nothing_is_fixed(tmp_path: Path) ->
         if collides:
             refused(tmp_path, with_head, "must have at most one joint", "cart.xml")
         else:
-            doubts = read(tmp_path, with_head, "cart.xml").doubts
-            assert any("body[head] is taken as fixed" in doubt for doubt in doubts)
+            warned = read(tmp_path, with_head, "cart.xml").warnings
+            assert any("body[head] is taken as fixed" in warning for warning in warned)
 
 
 def test_an_ellipsoid_of_mujoco_is_a_hull(tmp_path: Path) -> None:
@@ -519,14 +521,14 @@ def test_a_mesh_of_mjcf_that_is_only_seen_need_not_be_there(tmp_path: Path) -> N
     seen = '<geom type="mesh" mesh="m" contype="0" conaffinity="0" material="paint" mass="0"/>'
     text = text.replace("<worldbody>", assets).replace("<freejoint/>", f"<freejoint/>{seen}", 1)
     reading = read(tmp_path, text, "cart.xml")
-    assert not any("m.stl" in doubt for doubt in reading.doubts)
+    assert not any("m.stl" in warning for warning in reading.warnings)
     touching = text.replace('contype="0" conaffinity="0"', "")
-    (doubt,) = [d for d in read(tmp_path, touching, "cart.xml").doubts if "m.stl" in d]
-    assert f"is left out: there is no file {tmp_path}/m.stl" in doubt
+    (warning,) = [d for d in read(tmp_path, touching, "cart.xml").warnings if "m.stl" in d]
+    assert f"is left out: there is no file {tmp_path}/m.stl" in warning
     box = '<body><geom type="box" size="0.1 0.1 0.1" mass="1"/>{}</body>'
     heavy = text.replace(seen, box.format(seen.replace(' mass="0"', "")))
-    told = read(tmp_path, heavy, "cart.xml").doubts
-    assert any("has no mass here, but its volume counts" in doubt for doubt in told)
+    told = read(tmp_path, heavy, "cart.xml").warnings
+    assert any("has no mass here, but its volume counts" in warning for warning in told)
 
 
 def test_a_mesh_that_alone_gives_a_body_its_mass_is_named_if_it_is_missing(tmp_path: Path) -> None:

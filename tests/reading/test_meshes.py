@@ -20,7 +20,7 @@ def with_meshes(*names: str) -> str:
 def belly(folder: Path, name: str, data: bytes) -> tuple[tuple[float, float], ...] | None:
     (folder / name).write_bytes(data)
     reading = read(folder, with_meshes(name))
-    assert not reading.doubts
+    assert not reading.warnings
     return reading.robot.belly
 
 
@@ -73,15 +73,15 @@ def test_what_a_mesh_names_is_not_opened(tmp_path: Path) -> None:
 
 def test_a_mesh_that_is_only_seen_is_not_looked_for(tmp_path: Path) -> None:
     visual = '<visual><geometry><mesh filename="package://no/where.dae"/></geometry></visual>'
-    assert not read(tmp_path, urdf(WHEELS, shapes=visual)).doubts
+    assert not read(tmp_path, urdf(WHEELS, shapes=visual)).warnings
 
 
 def test_one_bad_mesh_leaves_the_others(tmp_path: Path) -> None:
     (tmp_path / "good.dae").write_bytes(BOXES["metres.dae"])
     (tmp_path / "bad.dae").write_bytes(b"<COLLADA/>")
     reading = read(tmp_path, with_meshes("bad.dae", "good.dae", "good.dae"))
-    (doubt,) = reading.doubts
-    assert "must be a mesh that trimesh reads (" in doubt
+    (warning,) = reading.warnings
+    assert "must be a mesh that trimesh reads (" in warning
     assert reading.robot.belly is not None
     (link,) = (each for each in reading.tree.links if each.unread)
     assert [(each.name, len(link.shapes)) for each in link.unread] == [("bad.dae", 2)]

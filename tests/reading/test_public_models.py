@@ -127,7 +127,7 @@ def test_a_reading_agrees_with_the_preset_in_what_both_take_from_the_file(name: 
 def test_the_engineers_urdf_is_read_although_ten_times_too_large() -> None:
     assert wheels(URDF, "chassis")[:, 2].tolist() == [0.8, 0.8]
     assert URDF.robot.outline.axle_distance == pytest.approx(3.72)
-    assert any("is the file in metres?" in doubt for doubt in URDF.doubts)
+    assert any("is the file in metres?" in warning for warning in URDF.warnings)
 
 
 def test_the_engineers_urdf_has_its_lateral_axis_along_x() -> None:
@@ -143,7 +143,7 @@ def test_the_engineers_xacro_has_three_wheels_of_80_mm_a_side() -> None:
     masses, _ = robot_files.read_xacro("eng.xacro")
     assert reading.robot.mass == pytest.approx(sum(masses.values()))
     assert wheels(reading, "front flipper")[:, 2] == pytest.approx([0.056])
-    assert sum("is left out: the file must be in" in doubt for doubt in reading.doubts) == 3
+    assert sum("is left out: the file must be in" in warning for warning in reading.warnings) == 3
 
 
 def leaves(parameters: Parameters, path: str) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Xacro of strangers expands by default: what is not there is done without, and doubted."""
+"""Xacro of strangers expands by default: what is not there is left out, with a warning."""
 
 import os
 import re
@@ -13,7 +13,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.reading.files import VARIABLES, Files
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.parsing import parse_xml
 from crawler2d.reading.xacro import expand_xacro
 from tests.reading.carts import WHEELS, XACRO, collision, read, refused, urdf
@@ -29,7 +29,7 @@ NO_MACRO = (
 TAKEN = r"is taken to be .*/robots/marv/urdf/{}: no package has that name$"
 NO_DEFAULT = "is taken for the argument {}, which has no default: arguments= sets it$"
 
-DOUBTS: dict[str, list[tuple[str, str, str]]] = {
+WARNED: dict[str, list[tuple[str, str, str]]] = {
     "marv": [
         ("marv.xacro:157", "$(find marv_description)/urdf/utils.xacro", TAKEN),
         ("marv.xacro:779", "$(find marv_description)/urdf/lights.xacro", TAKEN),
@@ -68,7 +68,7 @@ DOUBTS: dict[str, list[tuple[str, str, str]]] = {
     "tank": [("tank.urdf.xacro:6", "", r"is left out: the file .*\(No such file or directory\)$")],
     "tractor": [],
 }
-"""By main file the path, the beginning of the value and the reason of what is doubted."""
+"""By main file the path, the beginning of the value and the reason of each warning."""
 
 LINKS = {
     "marv": 42,
@@ -87,13 +87,13 @@ def _no_packages_of_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(variable, raising=False)
 
 
-def expand(path: Path, **how: Any) -> tuple[str, list[Doubt]]:
+def expand(path: Path, **how: Any) -> tuple[str, list[ReadingWarning]]:
     """Expand a file as `read_robot` does by default."""
     data = path.read_bytes()
     usual: dict[str, Any] = {"trusted": False, "arguments": {}, "leave_out": True}
     files = Files(path, how.pop("packages", {}))
-    text, doubts = expand_xacro(files, data, path.name, **{**usual, **how})
-    return text.decode(), doubts
+    text, warned = expand_xacro(files, data, path.name, **{**usual, **how})
+    return text.decode(), warned
 
 
 def copied(key: Key, to: Path) -> Path:
@@ -102,20 +102,20 @@ def copied(key: Key, to: Path) -> Path:
     return to / "clone" / key.file.relative_to(key.folder)
 
 
-def check(name: str, text: str, doubts: list[Doubt]) -> None:
+def check(name: str, text: str, warned: list[ReadingWarning]) -> None:
     root = parse_xml(text.encode(), name)
     assert root.tag == "robot"
     assert len(list(root.all("link"))) == LINKS[name]
     assert not any(element.tag.startswith("xacro:") for element in root.within())
-    assert len(doubts) == len(DOUBTS[name]), doubts
-    for (path, value, reason), expected in zip(doubts, DOUBTS[name], strict=True):
+    assert len(warned) == len(WARNED[name]), warned
+    for (path, value, reason), expected in zip(warned, WARNED[name], strict=True):
         assert (path, str(value)[: len(expected[1])]) == expected[:2]
         rule = expected[2].format(re.escape(Path(str(value)).name))
         assert re.match(rule, reason), reason
 
 
-@pytest.mark.parametrize("name", DOUBTS)
-def test_a_public_tree_expands_with_what_is_missing_doubted(name: str) -> None:
+@pytest.mark.parametrize("name", WARNED)
+def test_a_public_tree_expands_with_warnings_of_what_is_missing(name: str) -> None:
     check(name, *expand(keys()[name].file))
 
 
@@ -128,7 +128,7 @@ def test_a_public_tree_expands_as_well_outside_of_a_repository(name: str, tmp_pa
 
 def test_every_public_main_file_of_xacro_is_tried() -> None:
     files = {name for name, key in keys().items() if key.file.suffix == ".xacro"}
-    assert files == DOUBTS.keys() == LINKS.keys()
+    assert files == WARNED.keys() == LINKS.keys()
 
 
 @pytest.mark.parametrize(
@@ -148,17 +148,17 @@ def test_what_is_expanded_has_the_mass_of_its_key(name: str, key: str) -> None:
 def test_marv_is_expanded_with_the_settings_of_its_repository() -> None:
     key = keys()["marv"]
     found, _ = expand(key.file)
-    given, doubts = expand(key.file, arguments=key.arguments, packages=key.packages)
+    given, warned = expand(key.file, arguments=key.arguments, packages=key.packages)
     assert found == given
-    assert not doubts
+    assert not warned
 
 
 def test_an_argument_that_is_given_comes_before_settings() -> None:
     key = keys()["marv"]
-    text, doubts = expand(key.file, arguments={"rover_topBoxX": "0.123", "num_wheels": "1"})
+    text, warned = expand(key.file, arguments={"rover_topBoxX": "0.123", "num_wheels": "1"})
     assert "0.123 0" in text
     assert text.count("_wheel1") > 0
-    assert not any("rover_topBoxX" in reason for _, _, reason in doubts)
+    assert not any("rover_topBoxX" in reason for _, _, reason in warned)
 
 
 # Includes.
@@ -171,10 +171,10 @@ def test_an_include_at_any_depth_is_left_out_with_its_own_line(tmp_path: Path) -
     )
     (tmp_path / "parts" / "wheels.xacro").write_text(f"{XACRO}{lost}{WHEELS}</robot>")
     text = urdf('<xacro:include filename="parts/wheels.xacro"/>').replace(OLD_NAME, XACRO)
-    doubts = read(tmp_path, text, "cart.xacro").doubts
-    assert len(doubts) == 2
-    assert re.match(r"wheels\.xacro:3 is left out: .* got .*/parts/lost\.xacro$", doubts[0])
-    assert re.match(r"wheels\.xacro:4 is left out: .* got \$\(find p\)/l\.xacro$", doubts[1])
+    warned = read(tmp_path, text, "cart.xacro").warnings
+    assert len(warned) == 2
+    assert re.match(r"wheels\.xacro:3 is left out: .* got .*/parts/lost\.xacro$", warned[0])
+    assert re.match(r"wheels\.xacro:4 is left out: .* got \$\(find p\)/l\.xacro$", warned[1])
 
 
 OLD_NAME = '<robot name="cart">'
@@ -185,7 +185,7 @@ OLD_NAME = '<robot name="cart">'
 )
 def test_what_is_not_there_is_refused_on_request(tmp_path: Path, name: str) -> None:
     text = urdf(f'\n<xacro:include filename="{name}"/>', WHEELS).replace(OLD_NAME, XACRO)
-    assert len(read(tmp_path, text, "cart.xacro").doubts) == 1
+    assert len(read(tmp_path, text, "cart.xacro").warnings) == 1
     refused(tmp_path, text, "must ", "cart.xacro", missing="refuse")
 
 
@@ -193,7 +193,7 @@ def test_an_include_that_holds_elements_is_included_and_they_are_ignored(tmp_pat
     (tmp_path / "wheels.xacro").write_text(f"{XACRO}{WHEELS}</robot>")
     filled = '<xacro:include filename="wheels.xacro"><xacro:arg name="a" value="$(arg b)"/>'
     text = urdf(f"{filled}</xacro:include>").replace(OLD_NAME, XACRO)
-    assert not read(tmp_path, text, "cart.xacro").doubts
+    assert not read(tmp_path, text, "cart.xacro").warnings
 
 
 def test_an_include_with_entities_is_refused(tmp_path: Path) -> None:
@@ -240,7 +240,7 @@ def test_a_call_of_an_unknown_macro_is_left_out_with_its_block(tmp_path: Path) -
     text = urdf(call, '\n<xacro:call macro="a.b"/>', WHEELS).replace(OLD_NAME, XACRO)
     reading = read(tmp_path, text, "cart.xacro")
     assert "lidar" not in reading.text
-    assert [re.sub(", got.*", "", doubt) for doubt in reading.doubts] == [
+    assert [re.sub(", got.*", "", warning) for warning in reading.warnings] == [
         f"cart.xacro:{line} is left out with what is in it: no file has such a macro"
         for line in (2, 3)
     ]
@@ -249,15 +249,15 @@ def test_a_call_of_an_unknown_macro_is_left_out_with_its_block(tmp_path: Path) -
 def test_a_call_in_a_macro_is_told_by_the_line_of_the_call(tmp_path: Path) -> None:
     macro = '\n<xacro:macro name="m">\n<xacro:inner/></xacro:macro>\n<xacro:m/><xacro:m/>'
     text = urdf(macro, WHEELS).replace(OLD_NAME, XACRO)
-    (doubt,) = read(tmp_path, text, "cart.xacro").doubts
-    assert doubt.startswith("cart.xacro:3 is left out with what is in it")
+    (warning,) = read(tmp_path, text, "cart.xacro").warnings
+    assert warning.startswith("cart.xacro:3 is left out with what is in it")
 
 
-def test_a_thousand_doubts_are_told_as_a_hundred(tmp_path: Path) -> None:
+def test_a_thousand_warnings_are_told_as_a_hundred(tmp_path: Path) -> None:
     text = urdf("\n<xacro:none/>" * 1000, WHEELS).replace(OLD_NAME, XACRO)
-    doubts = read(tmp_path, text, "cart.xacro").doubts
-    assert len(doubts) == 100
-    assert "is one of 901 more places of this kind" in doubts[-1]
+    warned = read(tmp_path, text, "cart.xacro").warnings
+    assert len(warned) == 100
+    assert "is one of 901 more places of this kind" in warned[-1]
 
 
 # Packages without a manifest.
@@ -284,8 +284,8 @@ INCLUDE = urdf('<xacro:include filename="$(find parts)/urdf/wheels.xacro"/>').re
 
 def test_a_file_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path) -> None:
     path = part(clone / "anywhere" / "urdf")
-    (doubt,) = read(clone / "models", INCLUDE, "cart.xacro").doubts
-    assert doubt == (
+    (warning,) = read(clone / "models", INCLUDE, "cart.xacro").warnings
+    assert warning == (
         f"cart.xacro:1 is taken to be {path}: no package has that name,"
         " got $(find parts)/urdf/wheels.xacro"
     )
@@ -294,8 +294,8 @@ def test_a_file_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path)
 def test_the_name_of_the_package_as_a_folder_tells_it_of_others(clone: Path) -> None:
     part(clone / "others" / "urdf", text="<robot/>")
     path = part(clone / "parts" / "urdf")
-    (doubt,) = read(clone / "models", INCLUDE, "cart.xacro").doubts
-    assert f"is taken to be {path}" in doubt
+    (warning,) = read(clone / "models", INCLUDE, "cart.xacro").warnings
+    assert f"is taken to be {path}" in warning
 
 
 def test_two_files_that_may_be_meant_are_not_taken(clone: Path) -> None:
@@ -317,8 +317,8 @@ def test_a_file_that_is_told_by_its_path_includes_what_is_beside_it(clone: Path)
     part(clone / "any" / "urdf", text=f'{XACRO}<xacro:include filename="sub/w.xacro"/></robot>')
     part(clone / "any" / "urdf" / "sub", "w.xacro")
     (clone / "any" / "package.xml").write_text("<package><name>called otherwise</name></package>")
-    (doubt,) = read(clone / "models", INCLUDE, "cart.xacro").doubts
-    assert "no package has that name" in doubt
+    (warning,) = read(clone / "models", INCLUDE, "cart.xacro").warnings
+    assert "no package has that name" in warning
 
 
 @pytest.mark.parametrize("name", ["package://parts/", "model://parts/", "file://$(find parts)/"])
@@ -330,7 +330,7 @@ def test_a_mesh_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path,
         text = urdf(WHEELS, shapes=shapes).replace(OLD_NAME, XACRO)
         reading = read(clone / "models", text, kind, mesh="hull")
         assert reading.robot.belly is not None
-        assert any(f"is taken to be {path}" in doubt for doubt in reading.doubts)
+        assert any(f"is taken to be {path}" in warning for warning in reading.warnings)
 
 
 def test_yaml_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path) -> None:
@@ -339,13 +339,13 @@ def test_yaml_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path) -
     text = urdf(WHEELS, mass=mass).replace(OLD_NAME, XACRO)
     reading = read(clone / "models", text, "cart.xacro")
     assert reading.robot.mass == 12.0
-    assert "config/m.yaml" in reading.doubts[0]
+    assert "config/m.yaml" in reading.warnings[0]
 
 
 def test_a_visual_of_a_package_that_is_nowhere_stops_nothing(tmp_path: Path) -> None:
     visual = '<visual><geometry><mesh filename="file://$(find no)/a.stl"/></geometry></visual>'
     text = urdf(WHEELS, shapes=visual).replace(OLD_NAME, XACRO)
-    assert not read(tmp_path, text, "cart.xacro").doubts
+    assert not read(tmp_path, text, "cart.xacro").warnings
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has links of Unix")
@@ -395,7 +395,7 @@ def test_an_argument_without_a_value_is_that_of_a_setting(tmp_path: Path) -> Non
     (tmp_path / "config" / "same.yml").write_text("load: 5\n")
     reading = with_arguments(tmp_path / "urdf", "hull", "load")
     assert reading.robot.mass == 12.0
-    assert reading.doubts == (
+    assert reading.warnings == (
         "sizes.yaml:3 is taken for the argument hull, which has no default: arguments= sets it,"
         " got 3",
         "sizes.yaml:4 is taken for the argument load, which has no default: arguments= sets it,"
@@ -435,10 +435,10 @@ def test_settings_are_not_asked_on_request_and_for_a_default(tmp_path: Path) -> 
     with pytest.raises(c2d.ScenarioError, match=rule):
         with_arguments(tmp_path, "hull", missing="refuse")
     own = '<xacro:arg name="hull" default="8"/>'
-    assert with_arguments(tmp_path, "hull", own=own).doubts == ()
+    assert with_arguments(tmp_path, "hull", own=own).warnings == ()
     reading = with_arguments(tmp_path, "hull", "load", own=own)
     assert reading.robot.mass == 12.0  # 3 kg: the file is taken as a whole
-    assert reading.doubts[1] == (
+    assert reading.warnings[1] == (
         "a.yaml is taken as a whole, also in place of defaults, got hull: 3 for 8"
     )
 
@@ -485,7 +485,7 @@ def test_elements_of_old_xacro_need_no_prefix(tmp_path: Path) -> None:
     reading = read(tmp_path, text, "cart.xacro")
     assert reading.robot.mass == 12.0
     assert reading.robot.belly is not None
-    assert reading.doubts == (
+    assert reading.warnings == (
         "cart.xacro:2 is taken as one of xacro, without its prefix, and so are 6 more elements of"
         " the file, got <property>",
         "cart.xacro:8 is taken as a call of the macro, which old xacro allowed, got <box_of>",
@@ -498,7 +498,7 @@ def test_elements_of_urdf_and_of_plugins_are_no_calls(tmp_path: Path) -> None:
     plugin = '<plugin name="a" filename="b"><property name="c" value="d"/><if value="e"/></plugin>'
     text = urdf(macro, f"<gazebo>{plugin}</gazebo>", WHEELS).replace(OLD_NAME, XACRO)
     reading = read(tmp_path, text, "cart.xacro")
-    assert reading.doubts == ()
+    assert reading.warnings == ()
     assert '<property name="c" value="d"/>' in reading.text
 
 
@@ -506,7 +506,7 @@ def test_a_macro_calls_others_without_a_prefix_but_not_itself(tmp_path: Path) ->
     macros = '<macro name="inner" params="of"><inner of="${of}"/></macro>'
     macros += '\n<macro name="outer" params="of"><inner of="${of}"/></macro>\n<outer of="a"/>'
     reading = read(tmp_path, urdf(macros, WHEELS).replace(OLD_NAME, OLD), "cart.xacro")
-    assert [doubt.partition(" ")[0] for doubt in reading.doubts] == [
+    assert [warning.partition(" ")[0] for warning in reading.warnings] == [
         f"cart.xacro:{line}" for line in (1, 3, 2)
     ]
     assert reading.text.count('<inner of="a"/>') == 1
@@ -520,15 +520,15 @@ def test_an_element_that_a_macro_does_not_fit_is_no_call(tmp_path: Path, element
     macro = '<xacro:macro name="cover" params="size"><link name="cover"/></xacro:macro>'
     macro += '<xacro:include filename="none.xacro" ns="space"/>'
     text = urdf(macro, element, WHEELS).replace(OLD_NAME, XACRO)
-    assert read(tmp_path, text, "cart.xacro").doubts == ()
+    assert read(tmp_path, text, "cart.xacro").warnings == ()
 
 
 def test_a_macro_may_be_called_before_it_is_defined_as_in_old_xacro(tmp_path: Path) -> None:
     call = "\n<xacro:all_wheels/>\n<xacro:nowhere/>"
     macro = f'<xacro:macro name="all_wheels">{WHEELS}</xacro:macro>'
     text = urdf(call, macro).replace(OLD_NAME, XACRO)
-    doubts = read(tmp_path, text, "cart.xacro").doubts
-    assert [re.sub(" which.*| with.*", "", doubt) for doubt in doubts] == [
+    warned = read(tmp_path, text, "cart.xacro").warnings
+    assert [re.sub(" which.*| with.*", "", warning) for warning in warned] == [
         "cart.xacro:2 is a macro that is defined later,",
         "cart.xacro:3 is left out",
     ]

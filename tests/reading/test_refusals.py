@@ -155,7 +155,7 @@ def flippers(x: float = 0.2, tip: str = "0.2 0 0", radius: str = "0.05", shape: 
 def test_a_flipper_with_a_wheel_at_its_tip_alone_keeps_it_there(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(WHEELS, flippers()))
     robot = reading.robot
-    assert any("no wheel of theirs is at the pivot" in doubt for doubt in reading.doubts)
+    assert any("no wheel of theirs is at the pivot" in warning for warning in reading.warnings)
     assert robot.flippers is not None
     assert (robot.flippers.length, robot.flippers.torque_limit) == (0.2, 9.0)
     assert isinstance(robot.flippers.track, c2d.HybridWheels)
@@ -182,13 +182,13 @@ def test_a_plate_within_the_envelope_of_a_flipper_is_left_out_aloud(tmp_path: Pa
     for side, _ in SIDES:
         arms += wheel(f"{side}_root", "0 0 0", parent=f"{side}_arm0.2", radius="0.05")
     reading = read(tmp_path, urdf(WHEELS, arms))
-    assert "within the envelope of its flipper's wheels" in reading.doubts[0]
-    assert "collision[" in reading.doubts[0]
+    assert "within the envelope of its flipper's wheels" in reading.warnings[0]
+    assert "collision[" in reading.warnings[0]
 
 
-def test_a_skid_that_rubs_on_level_ground_is_doubted(tmp_path: Path) -> None:
+def test_a_skid_that_rubs_on_level_ground_gets_a_warning(tmp_path: Path) -> None:
     skid = collision('<box size="0.1 0.1 0.16"/>')
-    assert "rubs on level ground" in read(tmp_path, urdf(WHEELS, shapes=skid)).doubts[0]
+    assert "rubs on level ground" in read(tmp_path, urdf(WHEELS, shapes=skid)).warnings[0]
 
 
 def test_a_lidar_that_turns_touches_nothing(tmp_path: Path) -> None:
@@ -232,7 +232,7 @@ def test_flippers_that_differ_in_mass_have_the_mean(tmp_path: Path) -> None:
     found = read(tmp_path, text)
     assert found.robot.flippers is not None
     assert found.robot.flippers.mass == pytest.approx(1.65)  # arms of 0.8 and 0.5, tips of 1 kg
-    assert "differ in mass left and right" in found.doubts[0]
+    assert "differ in mass left and right" in found.warnings[0]
 
 
 def test_two_pairs_of_flippers_at_one_end_are_refused(tmp_path: Path) -> None:
@@ -334,7 +334,7 @@ def test_joints_of_missing_links_are_left_out_or_refused_on_request(tmp_path: Pa
         tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves out joints', missing="refuse"
     )
     reading = read(tmp_path, urdf(WHEELS, mount))
-    assert "mount" in reading.doubts[0]
+    assert "mount" in reading.warnings[0]
 
 
 def test_a_misspelt_parent_is_named_with_the_nearest_link(tmp_path: Path) -> None:

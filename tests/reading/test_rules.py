@@ -168,7 +168,7 @@ def test_friction_of_a_reading_is_worked_out_for_another_ground() -> None:
     assert reading.friction_on(2.0) == reading.friction
 
 
-def test_a_reading_shows_its_wheels_notes_and_doubts() -> None:
+def test_a_reading_shows_its_wheels_notes_and_warnings() -> None:
     reading = c2d.read_robot(FILES / "cart.sdf")
     lines = repr(reading).splitlines()
     assert lines[0] == reading.description

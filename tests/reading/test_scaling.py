@@ -37,11 +37,11 @@ def test_lines_are_those_of_the_file() -> None:
 
 def test_the_engineer_that_is_ten_times_too_large_says_so_and_is_read_a_tenth_as_large() -> None:
     large = quietly(ROBOTS / "eng.urdf", mesh="leave_out")
-    assert any("scale=0.1 would correct that" in doubt for doubt in large.doubts)
+    assert any("scale=0.1 would correct that" in warning for warning in large.warnings)
     found = quietly(ROBOTS / "eng.urdf", mesh="leave_out", scale=0.1)
     assert found.robot.outline.axle_distance == pytest.approx(0.372)
     assert found.robot.mass == large.robot.mass
-    assert not any("scale=" in doubt for doubt in found.doubts)
+    assert not any("scale=" in warning for warning in found.warnings)
 
 
 def test_a_changed_file_is_written_in_metres(tmp_path: Path) -> None:

@@ -62,8 +62,8 @@ def test_fixed_drums_that_nothing_moves_are_a_belt(tmp_path: Path) -> None:
     assert found.robot.track == c2d.BeltTrack()
     outline = found.robot.outline
     assert (outline.axle_distance, outline.front_radius, outline.rear_radius) == (0.4, 0.08, 0.06)
-    assert "are moved by nothing in the file" in found.doubts[0]
-    assert "4 fixed drums: left_front, left_rear, right_front, right_rear" in found.doubts[0]
+    assert "are moved by nothing in the file" in found.warnings[0]
+    assert "4 fixed drums: left_front, left_rear, right_front, right_rear" in found.warnings[0]
 
 
 def test_a_sprocket_and_a_fixed_idler_are_a_belt_and_the_sprocket_has_the_torque(
@@ -73,7 +73,7 @@ def test_a_sprocket_and_a_fixed_idler_are_a_belt_and_the_sprocket_has_the_torque
     assert found.robot.track == c2d.BeltTrack()
     assert found.robot.drivetrain.max_torque == 5.0
     assert found.robot.outline.axle_distance == 0.4
-    assert "do not turn as the wheel on their side does" in found.doubts[0]
+    assert "do not turn as the wheel on their side does" in found.warnings[0]
 
 
 def test_a_box_between_the_drums_is_no_belly(tmp_path: Path) -> None:
@@ -88,7 +88,7 @@ def test_fixed_cylinders_beside_more_wheels_are_belly_as_ever(tmp_path: Path) ->
     found = read(tmp_path, urdf(WHEELS, drums("skid", 0.4)))
     assert found.robot.track == c2d.LineOfWheels(2)
     assert found.robot.belly is not None
-    assert not any("drums" in doubt for doubt in found.doubts)
+    assert not any("drums" in warning for warning in found.warnings)
 
 
 def test_fixed_cylinders_above_a_lower_hull_are_no_track(tmp_path: Path) -> None:
@@ -134,12 +134,12 @@ def test_a_sprocket_at_either_end_of_a_flipper_is_read_alike(tmp_path: Path, end
     assert (flippers.track, flippers.length) == (c2d.BeltTrack(), 0.2)
 
 
-def test_wheels_without_a_motor_beside_driven_ones_are_doubted(tmp_path: Path) -> None:
+def test_wheels_without_a_motor_beside_driven_ones_get_a_warning(tmp_path: Path) -> None:
     text = urdf(WHEELS, pair("mid", 0.0, radius="0.05"), motors("front", "rear"))
     found = read(tmp_path, text)
     assert len(found.wheels) == 6
-    assert "left_mid, right_mid" in found.doubts[0]
-    assert "read as driven" in found.doubts[0]
+    assert "left_mid, right_mid" in found.warnings[0]
+    assert "read as driven" in found.warnings[0]
 
 
 @pytest.mark.parametrize("limit", ["", '<limit effort="5" velocity="10"/>'])
@@ -181,8 +181,8 @@ def test_a_differential_drive_in_a_urdf_names_its_motors(tmp_path: Path) -> None
     plugin = f'<gazebo><plugin name="diff_drive" filename="x">{joints}</plugin></gazebo>'
     found = read(tmp_path, urdf(WHEELS, wheel("castor", "0.3 0 -0.05", radius="0.03"), plugin))
     assert found.tree.driven.keys() == {f"{side}_rear_joint" for side, _ in SIDES}
-    assert "castor" in found.doubts[0]
-    assert "left_front, right_front" in found.doubts[1]
+    assert "castor" in found.warnings[0]
+    assert "left_front, right_front" in found.warnings[1]
     assert len(found.wheels) == 4
 
 
@@ -194,7 +194,7 @@ def test_castors_in_the_middle_are_skids_of_the_belly(tmp_path: Path) -> None:
     assert found.robot.track == c2d.LineOfWheels(2)
     assert found.robot.belly is not None
     assert min(y for _, y in found.robot.belly) == pytest.approx(-0.08)
-    assert "trailing, leading" in found.doubts[0]
+    assert "trailing, leading" in found.warnings[0]
 
 
 def test_one_wheel_a_side_with_castors_stands_on_all_three(tmp_path: Path) -> None:
@@ -228,11 +228,11 @@ def test_flippers_lighter_than_the_core_can_move_get_the_least_mass(tmp_path: Pa
     found = read(tmp_path, text)
     assert found.robot.flippers is not None
     assert found.robot.flippers.mass == pytest.approx(1e-5 * found.robot.mass, rel=0.01)
-    assert any("is too light to simulate" in doubt for doubt in found.doubts)
+    assert any("is too light to simulate" in warning for warning in found.warnings)
     found.robot.wheels()
 
 
-def test_a_shape_that_stands_a_little_out_of_a_flipper_is_left_out_with_a_doubt(
+def test_a_shape_that_stands_a_little_out_of_a_flipper_is_left_out_with_a_warning(
     tmp_path: Path,
 ) -> None:
     def with_box(height: float) -> str:
@@ -245,7 +245,7 @@ def test_a_shape_that_stands_a_little_out_of_a_flipper_is_left_out_with_a_doubt(
         return text
 
     found = read(tmp_path, with_box(0.13))
-    assert any("5 mm beyond it" in doubt for doubt in found.doubts)
+    assert any("5 mm beyond it" in warning for warning in found.warnings)
     refused(tmp_path, with_box(0.2), "must lie within the envelope of its flipper's wheels")
 
 
@@ -262,4 +262,4 @@ def test_a_moved_box_above_the_upper_run_is_belly(tmp_path: Path) -> None:
     found = read(tmp_path, urdf(tracks), tracks=["left_track", "right_track"])
     assert found.robot.track == c2d.BeltTrack()
     assert found.robot.belly is not None
-    assert any("20 mm" in doubt and "read as belly" in doubt for doubt in found.doubts)
+    assert any("20 mm" in warning and "read as belly" in warning for warning in found.warnings)

@@ -104,7 +104,7 @@ def test_a_single_run_or_scenario_is_no_list_of_them() -> None:
         c2d.table(c2d.simulate(scenario))  # type: ignore[arg-type]
 
 
-def test_fields_that_differ_in_their_seed_alone_are_doubted_where_runs_draw_it() -> None:
+def test_fields_that_differ_in_their_seed_alone_get_a_warning_where_runs_draw_it() -> None:
     # Each row of the result is the same: every run on either has a field of its own.
     base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
     fields = {f"field {seed}": c2d.terrains.random_stepfield(seed) for seed in (1, 2)}

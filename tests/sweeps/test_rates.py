@@ -218,7 +218,7 @@ def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> No
     ("varied", "where"),
     [("", "nothing varied"), ("robot.mass", r"what varied hardly moves the robot \(robot.mass\)")],
 )
-def test_many_runs_with_few_poses_are_doubted_with_the_reason(varied: str, where: str) -> None:
+def test_many_runs_with_few_poses_get_a_warning_with_the_reason(varied: str, where: str) -> None:
     poses = {name: ("repeat", [0.0] * 20) for name in POSES}
     table = xr.Dataset({"outcome": ("repeat", ["cleared"] * 20), **poses}, attrs={"vary": varied})
     with pytest.warns(c2d.ScenarioWarning, match=f"in every cell: where {where}, rates say"):

@@ -42,7 +42,7 @@ def other_wheels(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Ite
         yield from _other_wheel(arms.track, others.track, accuracy, is_phased=is_stated(robot))
     yield from _told_of_chassis(robot, reading)
     if is_stated(robot):
-        words = [*reading.doubts, *reading.notes]
+        words = [*reading.warnings, *reading.notes]
         yield from (each for each in words if re.search(rf"flipper_wheel.*({TURNED}|{OFF})", each))
     else:
         yield from _told_of_flippers(robot, reading, accuracy)
@@ -85,7 +85,7 @@ def _told_of_chassis(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
     """What is told of the wheels of the chassis, unless it is the tilt of the frame they are in."""
     _, (ahead, _) = frame_of(reading)
     turn = -math.atan2(ahead[1], ahead[0])
-    words = [each for each in (*reading.doubts, *reading.notes) if "flipper_wheel" not in each]
+    words = [each for each in (*reading.warnings, *reading.notes) if "flipper_wheel" not in each]
     told = _degrees(words, TURNED)
     if abs(_wrapped(turn - told, spacing(robot.track))) > (
         0.005 * abs(told) + 1e-9 if told else UNTOLD
@@ -99,7 +99,7 @@ def _told_of_flippers(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -
     assert robot.flippers is not None
     wheels, found = starts(robot), starts(reading.robot)
     for end in (end for end in ("front", "rear") if end in wheels):
-        words = [*reading.doubts, *reading.notes]
+        words = [*reading.warnings, *reading.notes]
         words = [each for each in words if f"{end}_left_flipper_wheel" in each]
         turn, off = (_degrees(words, rule) for rule in (TURNED, OFF))
         left = _wrapped(wheels[end] - found[end] - turn, spacing(robot.flippers.track))

@@ -343,7 +343,7 @@ def audit(
         setup = AuditSetup(
             robot=own,
             reading=read,
-            lint=lint(own, read, _doubts(caught)),
+            lint=lint(own, read, _core_warnings(caught)),
             pockets=found,
             belt=belt_of(own),
             obstacles=grounds,
@@ -379,11 +379,11 @@ def audit(
         if not issubclass(each.category, ScenarioWarning):
             warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
     parts = {each.name: getattr(setup, each.name) for each in fields(setup)}
-    parts["lint"] = lint(own, read, _doubts(caught))
+    parts["lint"] = lint(own, read, _core_warnings(caught))
     audit = Audit(**parts, verdicts=verdicts, assumed=others, repaired=repairs, table=table)
     late = [each for each in audit.lint if each not in setup.lint]
     if late:
-        write("\n".join(lint_of(late, "Lint, doubted in runs")))
+        write("\n".join(lint_of(late, "Lint, warnings during the runs")))
     write(rest_of(audit))
     return audit
 
@@ -411,7 +411,7 @@ def _drive(
     return tuple(verdicts), tuple(others), xr.concat(tables, "terrain")
 
 
-def _doubts(caught: list[warnings.WarningMessage]) -> list[str]:
-    """List what the core doubts, each once."""
+def _core_warnings(caught: list[warnings.WarningMessage]) -> list[str]:
+    """List the warnings of the core, each once."""
     messages = [str(each.message) for each in caught if issubclass(each.category, ScenarioWarning)]
     return list(dict.fromkeys(messages))

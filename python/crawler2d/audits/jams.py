@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
-from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.errors import ScenarioError, ignore_warnings
 from crawler2d.parameters.fields import read_path
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def free_of_jams(
         if not left:
             break
         try:
-            with ignore_doubts():  # they are in the lint
+            with ignore_warnings():  # they are in the lint
                 texts = [scenario.replace(candidates[place]).to_json() for place in left]
                 found = _core.jam_ranges(texts, _MOST)
         except ScenarioError:

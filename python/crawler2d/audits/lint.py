@@ -125,7 +125,7 @@ class Rule:
 
 
 def lint(
-    robot: Robot, reading: Reading | None = None, doubts: Iterable[str] = ()
+    robot: Robot, reading: Reading | None = None, warnings: Iterable[str] = ()
 ) -> tuple[Finding, ...]:
     """Find probable mistakes in a robot, and in the file that it was read from.
 
@@ -135,8 +135,8 @@ def lint(
         The robot.
     reading : Reading, optional
         Where it was read from.
-    doubts : iterable of str
-        What the simulator doubted; see `Scenario.validate`.
+    warnings : iterable of str
+        Warnings of the simulator; see `Scenario.validate`.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def lint(
     [('size', 'error'), ('mass', 'warning')]
     """
     found = [each for rule in RULES for each in rule.findings(robot, reading)]
-    found += [Finding(rule="doubt", severity="warning", what=doubt) for doubt in doubts]
+    found += [Finding(rule="other", severity="warning", what=warning) for warning in warnings]
     return tuple(sorted(found, key=lambda each: SEVERITIES.index(each.severity)))
 
 
@@ -463,10 +463,10 @@ def _effect_of_overlap(reading: Reading, names: set[str]) -> tuple[str, str]:
     return "note", "switch self-collision off where the file is loaded, or they push each other"
 
 
-def _doubts(reading: Reading) -> Iterator[_Break]:
-    for doubt in reading.doubts:
-        line = re.search(re.escape(reading.tree.file) + r"[^:]*:[0-9]+", doubt)
-        yield _Break(doubt, line[0] if line else reading.tree.file)
+def _warnings(reading: Reading) -> Iterator[_Break]:
+    for warning in reading.warnings:
+        line = re.search(re.escape(reading.tree.file) + r"[^:]*:[0-9]+", warning)
+        yield _Break(warning, line[0] if line else reading.tree.file)
 
 
 RULES = (
@@ -524,6 +524,6 @@ RULES = (
     Rule("balance", "warning", "The centre of mass of a wheel is on its axle.", file=_balance),
     Rule("sides", "note", "Left and right are alike.", file=_sides),
     Rule("overlap", "note", "Wheels of one side do not push each other apart.", file=_overlaps),
-    Rule("doubt", "warning", "Nothing is doubted by the reader or by the simulator.", file=_doubts),
+    Rule("other", "warning", "Reader and simulator have no other warnings.", file=_warnings),
 )
 """Every rule, in the order in which they are asked."""

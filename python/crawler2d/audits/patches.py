@@ -11,7 +11,7 @@ import numpy as np
 from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
 from crawler2d.common.files import write_text
-from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.errors import ScenarioError, ignore_warnings
 from crawler2d.parameters.robot import Robot
 from crawler2d.patching.patch import add_label, patch_file
 
@@ -103,7 +103,7 @@ def change_of(audit: AuditRecord, repair: Repair) -> Change:
         return _on_belts(audit, repair.robot, repair)
     assert audit.reading is not None
     label = words.repair_sentence(repair)
-    with ignore_doubts():  # they are in the lint
+    with ignore_warnings():  # they are in the lint
         patch = patch_file(audit.reading, repair.robot, f"crawler2d, {label}")
     return Change(
         text=patch.text, label=label, diff=patch.diff, summary=patch.summary, left=patch.left
@@ -140,7 +140,7 @@ def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change
     else:
         label = words.repair_sentence(repair)
     is_mjcf = read.tree.format == "MJCF"
-    with ignore_doubts():  # they are in the lint
+    with ignore_warnings():  # they are in the lint
         text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
     note = "" if is_mjcf or read.tree.format.startswith("SDF") else ", because URDF holds no belts"
     return Change(

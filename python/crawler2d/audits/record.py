@@ -15,7 +15,7 @@ from crawler2d.audits.runs import Belt
 from crawler2d.audits.sampling import Assumption
 from crawler2d.audits.verdicts import Verdict
 from crawler2d.common.bodies import BodyKind, bodies_of
-from crawler2d.errors import ignore_doubts
+from crawler2d.errors import ignore_warnings
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive
@@ -54,7 +54,7 @@ _FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
 
 def bodies_per_side(robot: Robot) -> int:
     """Count the bodies of one side, flippers included: the number of the first on the right."""
-    with ignore_doubts():
+    with ignore_warnings():
         # At rest: what is usual may be faster than it is.
         bodies = bodies_of(Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json())
     return int(((bodies["body"] >= 0) & (bodies["kind"] != BodyKind.BELLY)).sum())

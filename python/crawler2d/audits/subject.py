@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple, TypedDict
 from crawler2d.audits.lint import lint
 from crawler2d.audits.repairs import LEVEL
 from crawler2d.common.bodies import BELLY_HEIGHTS
-from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.errors import ScenarioError, ignore_warnings
 from crawler2d.parameters.outline import TrackOutline
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
@@ -289,7 +289,7 @@ def unknown_of_file(
 
 
 def subject_of(robot: object, how: ReadKeywords) -> Subject:
-    """Take a robot or a reading, or read a file; doubts of the reader are left to the lint.
+    """Take a robot or a reading, or read a file; warnings of the reader are left to the lint.
 
     Raises
     ------
@@ -311,7 +311,7 @@ def _read(path: object, how: ReadKeywords) -> Reading:
     if not isinstance(path, (str, os.PathLike)):
         rule = "must be a Robot, a Reading, or the name of a file"
         raise ScenarioError("robot", path, rule)
-    with ignore_doubts():
+    with ignore_warnings():
         return read_robot(path, **how)
 
 

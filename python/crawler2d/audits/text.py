@@ -254,7 +254,7 @@ def lint_only(
 ) -> LintResult:
     """Look for probable mistakes in a model, and measure its pockets, without a run.
 
-    It cannot find what only the simulator doubts.
+    It cannot find what only the simulator warnings.
 
     Parameters
     ----------

@@ -163,7 +163,7 @@ def _is_mjcf(data: bytes) -> bool:
 def _entry(folder: Path, path: Path, *, samples: int, threads: int | None) -> Entry:
     """Read and audit a file with default options."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ScenarioWarning)  # doubts are in the reading
+        warnings.simplefilter("ignore", ScenarioWarning)  # warnings are in the reading
         try:
             reading = read_robot(folder / path)
         except (Crawler2dError, ImportError, OSError) as error:

@@ -153,7 +153,7 @@ def run(options: argparse.Namespace) -> int:
     """Audit each file; returns the exit status."""
     # With --json nothing else may be on the standard output.
     out = sys.stderr if options.json else sys.stdout
-    live = LivePrinter(out, as_options)  # doubts advise as errors do
+    live = LivePrinter(out, as_options)  # warnings give the same advice as errors
     try:
         _check_options(options)
         baseline = _read_baseline(options)

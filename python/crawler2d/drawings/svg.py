@@ -12,7 +12,7 @@ import numpy as np
 from crawler2d.common.bodies import discs_in, end_discs, is_centered_pair
 from crawler2d.drawings.palette import BLACK, GREEN, GROUND
 from crawler2d.drawings.scene import STYLES, Extent, Look, Scene, extent_of
-from crawler2d.errors import ignore_doubts
+from crawler2d.errors import ignore_warnings
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -169,7 +169,7 @@ def robot_card(text: str, title: str) -> str:
     ScenarioError
         If the robot breaks a rule.
     """
-    with ignore_doubts():  # showing an object must not warn
+    with ignore_warnings():  # showing an object must not warn
         scene = Scene.of_robot(text)
     sheet = Sheet(extent_of(*scene.outlines(0), margin=MARGIN), _WIDTH, _HEIGHT)
     draw_robot_on(sheet, scene)
@@ -181,7 +181,7 @@ def scenario_card(text: str, title: str, terrain: str) -> str:
 
     The rest is as for `robot_card`.
     """
-    with ignore_doubts():
+    with ignore_warnings():
         scene = Scene.at_start(text)
     sheet = Sheet(scene.course(), _WIDTH, _HEIGHT)
     _draw_ground_on(sheet, scene)

@@ -148,7 +148,7 @@ class Scenario(ScenarioBase):
         Warns
         -----
         ScenarioWarning
-            For each field whose value is legal but doubtful, such as a step of 75 m.
+            For each field whose value is legal but unlikely to be intended, such as a step of 75 m.
         """
         _core.validate(self.to_json())
 

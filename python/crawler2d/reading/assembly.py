@@ -43,7 +43,7 @@ __all__ = ["Assembly", "Silhouette", "assemble", "silhouettes"]
 
 _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorter.
 _LONGEST = 100.0  # [m] Axle distance that a robot can have.
-_SHOWN = 4  # names of links in a doubt
+_SHOWN = 4  # names of links in a warning
 _LEAST_MOVING = 0.001  # [kg] The least that a robot can have.
 _MOVING_FRACTION = 0.01  # of the mass, for a surface that moves without mass in its file
 _CHORDS = 64  # of a circle; at most 0.2 % of its radius inside it
@@ -57,7 +57,7 @@ class Assembly:
     Parameters
     ----------
     log : ReadLog
-        The model, and the record of notes, doubts and sources.
+        The model, and the record of notes, warnings and sources.
     view : SideView
         The side view.
     base : Base
@@ -78,14 +78,14 @@ class Assembly:
         """
         log, tree = self.log, self.log.tree
         surfaces = surfaces_of(tree)
-        log.doubts += surfaces.doubts
+        log.warnings += surfaces.warnings
         view = side_view(tree, surfaces, forward, tolerance)
         log.notes.append(f"{view.reason}: {_axis_name(view.forward)} is forward")
         gear = running_gear_of(tree, view, surfaces)
         runners = gear.runners or [runner for arm in gear.arms for runner in arm.runners]
         self.view = view = replace(view, middle=middle_of(runners))
         castors = gear.remove_castors(view.middle, tolerance)
-        self.doubt_undriven(gear, castors)
+        self.warn_of_undriven(gear, castors)
         pairs = pair_runners(gear.runners, view)
         arms = arm_pairs(log, gear.arms, view)
         is_belt = is_belted(gear.runners, str(tree.at))
@@ -178,10 +178,10 @@ class Assembly:
                 gear.shapes.append((link, shape))
             if out > 0.0 and is_moved:
                 reason = "sticks out of the belt round the drums: read as belly, which is fixed"
-                self.log.doubt(shape.path, f"{1e3 * out:.3g} mm", reason)
+                self.log.add_warning(shape.path, f"{1e3 * out:.3g} mm", reason)
 
-    def doubt_undriven(self, gear: RunningGear, castors: list[Runner]) -> None:
-        """Doubt wheels without a motor if others have one."""
+    def warn_of_undriven(self, gear: RunningGear, castors: list[Runner]) -> None:
+        """Warn of wheels without a motor if others have one."""
         on_flippers = [runner for arm in gear.arms for runner in arm.runners]
         every = [*gear.runners, *on_flippers]
         undriven = [runner for runner in every if runner.name in gear.passive]
@@ -194,7 +194,7 @@ class Assembly:
         ):
             if wheels:
                 names = list_names([wheel.name for wheel in wheels], _SHOWN)
-                self.log.doubt(wheels[0].link.at, names, reason)
+                self.log.add_warning(wheels[0].link.at, names, reason)
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
         """[kg] Return the mass that moves at track speed: moment of inertia by radius squared.
@@ -215,11 +215,11 @@ class Assembly:
             rule = "the mass of the wheels, as of hoops: their moments of inertia exceed it"
             self.log.sources[path] = estimate(rule)
             reason = "is limited to hoops: wheels state more inertia"
-            self.log.doubt(path, float(f"{moving:.4g}"), reason)
+            self.log.add_warning(path, float(f"{moving:.4g}"), reason)
         return moving
 
     def belly(self, gear: RunningGear, driven: list[Pair]) -> Belly | None:
-        """Return the belly, counter-clockwise; doubt one that touches level ground."""
+        """Return the belly, counter-clockwise; warn of one that touches level ground."""
         moving = list(dict.fromkeys(link.name for _, link, _ in gear.moving))
         if moving:
             text = f"{', '.join(moving)}: move by themselves, and touch nothing here"
@@ -235,7 +235,7 @@ class Assembly:
         lowest = min(float(y) for _, y in corners)
         if lowest <= ground + self.view.tolerance:
             reason = "rubs on level ground: a skid next to the wheels counts as belly"
-            self.log.doubt("robot.belly", lowest, reason)
+            self.log.add_warning("robot.belly", lowest, reason)
         return tuple((float(x), float(y)) for x, y in corners)
 
     def gauge(self, pairs: list[Pair]) -> float:
@@ -271,7 +271,7 @@ class Assembly:
             is_left, is_right = "left" in name, "right" in name
             if is_left is not is_right and is_left is not (runner.z > middle):
                 reason = "is on the other side than its name says: is forward right?"
-                log.doubt("forward", runner.name, reason)
+                log.add_warning("forward", runner.name, reason)
                 break
 
 
@@ -356,7 +356,7 @@ def _outline_pairs(
         ]
         bent = sorted([*pairs, *singles], key=lambda pair: pair.x)
         reason = "is no track: its outline is drawn round it and the free wheels in the middle"
-        log.doubt("robot.outline", "one wheel a side", reason)
+        log.add_warning("robot.outline", "one wheel a side", reason)
     elif pairs:
         bent = [pairs[0], pairs[-1]]
     else:
@@ -451,5 +451,5 @@ def _outline_of(log: ReadLog, base: Base, bent: list[Pair]) -> TrackOutline:
         if length > _LONGEST:
             raise ScenarioError(path, length, f"must be <= {_LONGEST:g} m: {hint}")
         reason = f"is usually at most {_LARGEST:g} m with the wheels: {hint}"
-        log.doubt(path, length, reason)
+        log.add_warning(path, length, reason)
     return outline

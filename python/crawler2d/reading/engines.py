@@ -268,7 +268,7 @@ def rotor_inertia(
     Parameters
     ----------
     log : ReadLog
-        Takes source and doubts.
+        Takes source and warnings.
     path : str
         Of the figure.
     inertias : sequence of float
@@ -286,12 +286,12 @@ def rotor_inertia(
     log.sources[path] = places
     if max(inertias) - min(inertias) > _ALIKE * max(inertias):
         value = f"{min(inertias):.4g} to {max(inertias):.4g} kg m^2"
-        log.doubt(path, value, "differs from motor to motor: the mean is used")
+        log.add_warning(path, value, "differs from motor to motor: the mean is used")
     return sum(inertias) / len(inertias)
 
 
 def warn_ignored(log: ReadLog, joints: Sequence[Joint]) -> None:
-    """Doubt the figures of joints of all wheels, or all flippers, that the engine ignores."""
+    """Warn of the figures of joints of all wheels, or all flippers, that the engine ignores."""
     laws = ENGINES[log.engine]
     for name, reason in laws.ignored.items():
         stating = [joint for joint in joints if _states(joint, name)]
@@ -301,7 +301,7 @@ def warn_ignored(log: ReadLog, joints: Sequence[Joint]) -> None:
             where = getattr(first, f"{name}_at", first.dynamics_at)
             path = f"{where}: {name}[{list_names([joint.name for joint in stating])}]"
             value = f"{getattr(first, name):.4g} {_UNITS[name]}"
-            log.doubt(path, value, f"has no effect in {laws.name}: {reason}")
+            log.add_warning(path, value, f"has no effect in {laws.name}: {reason}")
 
 
 def report_losses(log: ReadLog, joints: Sequence[Joint], lost: float, limit: float) -> None:
@@ -310,7 +310,7 @@ def report_losses(log: ReadLog, joints: Sequence[Joint], lost: float, limit: flo
     Parameters
     ----------
     log : ReadLog
-        Takes a doubt if it is more than a tenth of the limit, or else a note.
+        Takes a warning if it is more than a tenth of the limit, or else a note.
     joints : sequence of Joint
         Of the motors.
     lost, limit : float
@@ -322,7 +322,7 @@ def report_losses(log: ReadLog, joints: Sequence[Joint], lost: float, limit: flo
     path, name = f"{first.dynamics_at}: joint[{first.name}]", ENGINES[log.engine].name
     part = f"{lost:.3g} of {limit:.3g} N m of a side"
     if lost > _LARGE * limit:
-        log.doubt(path, part, f"is lost to damping and friction in {name}, but not here")
+        log.add_warning(path, part, f"is lost to damping and friction in {name}, but not here")
     else:
         log.notes.append(f"{path}: damping and friction take {part} in {name}, and none here")
 
@@ -348,7 +348,7 @@ def drivetrain_of(
     Parameters
     ----------
     log : ReadLog
-        Takes the sources of the figures, and doubts about figures that the engine ignores.
+        Takes the sources of the figures, and warnings about figures that the engine ignores.
     pairs : list of Pair
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     on_flippers : list of Pair
@@ -404,7 +404,7 @@ def drivetrain_of(
     if gain_torque < torque and has_limits:
         path = f"{motors[0][0].gain_at}: gain[{motors[0][0].name}]"
         value = f"{gain_torque:.3g} of {torque:.3g} N m of a side"
-        log.doubt(path, value, "is too soft for the torque limit, even at full speed")
+        log.add_warning(path, value, "is too soft for the torque limit, even at full speed")
     return Drivetrain(
         max_speed=speed,
         max_acceleration=gaining,

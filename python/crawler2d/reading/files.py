@@ -30,7 +30,7 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 
 __all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "VARIABLES", "Files", "is_absent", "reason_of"]
 
@@ -230,7 +230,7 @@ class Files:
         That of the model, with all links resolved.
     packages : Packages
         The packages that it may name.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         Files that stand in for those of packages that are not found.
 
     Examples
@@ -258,7 +258,7 @@ class Files:
         self._roots = [_package_around(self.folder), *self._given.values(), *named]
         self._left = LARGEST_TOGETHER
         self._taken: dict[str, Path] = {}
-        self.doubts: list[Doubt] = []
+        self.warnings: list[ReadingWarning] = []
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -332,9 +332,9 @@ class Files:
                 )
                 raise ScenarioError(at, name, rule) from _absent(name)
             self._taken[name] = taken
-        doubt = (at, name, f"is taken to be {self._taken[name]}: no package has that name")
-        if doubt not in self.doubts:
-            self.doubts.append(doubt)
+        warning = (at, name, f"is taken to be {self._taken[name]}: no package has that name")
+        if warning not in self.warnings:
+            self.warnings.append(warning)
         return _real(self._taken[name], at)
 
 

@@ -91,7 +91,7 @@ class ArmPair:
 
     @property
     def path(self) -> str:
-        """Its line and its joint, for errors and doubts."""
+        """Its line and its joint, for errors and warnings."""
         return self.arms[0].joint.path
 
     def refuse(self, value: object, rule: str) -> NoReturn:
@@ -172,7 +172,7 @@ def arms_at(
         off = ends[end].off
         if off > view.tolerance:
             reason = f"pivots {1e3 * off:.3g} mm off the end axle, here on it"
-            log.doubt(f"joint[{pair.arms[0].joint.name}]", end, reason)
+            log.add_warning(f"joint[{pair.arms[0].joint.name}]", end, reason)
         elif off > _NOTED:
             text = f"the {end} flippers pivot {1e3 * off:.2g} mm off the end axle, here on it"
             log.notes.append(text)
@@ -201,7 +201,7 @@ def flippers_of(log: ReadLog, by_end: dict[str, AtEnd], mass: float) -> Flippers
     if not first.has_root:
         of_radius["root_radius"] = estimate("that of the tip: no wheel is at the pivot")
         reason = "is that of the tip: no wheel of theirs is at the pivot"
-        log.doubt("robot.flippers.root_radius", first.root_radius, reason)
+        log.add_warning("robot.flippers.root_radius", first.root_radius, reason)
     surfaces = [shape.size_at for runner in runners for shape in runner.surfaces]
     log.cite(
         "robot.flippers",
@@ -225,7 +225,7 @@ def flippers_of(log: ReadLog, by_end: dict[str, AtEnd], mass: float) -> Flippers
         reason = (
             f"is too light to simulate: {least:.4g} kg is used, the least that a flipper can have"
         )
-        log.doubt("robot.flippers.mass", float(f"{own:.4g}"), reason)
+        log.add_warning("robot.flippers.mass", float(f"{own:.4g}"), reason)
     return Flippers(
         length=first.length,
         root_radius=first.root_radius,
@@ -264,14 +264,14 @@ def _pair(log: ReadLog, arms: tuple[Arm, ...], view: SideView) -> ArmPair:
     )
     if max(masses) - min(masses) > _ALIKE * max(masses):
         value = " and ".join(f"{mass:.4g} kg" for mass in masses)
-        log.doubt(pair.path, value, "differ in mass left and right: the mean is used")
+        log.add_warning(pair.path, value, "differ in mass left and right: the mean is used")
     for arm in arms:
         _leave_out_fixed(log, arm, view, is_belt=pair.is_belt)
     return pair
 
 
 def _leave_out_fixed(log: ReadLog, arm: Arm, view: SideView, *, is_belt: bool) -> None:
-    """Leave out shapes of an arm that do not move; doubt those that something may touch."""
+    """Leave out shapes of an arm that do not move; warn of those that something may touch."""
     largest, tolerance = max(runner.radius for runner in arm.runners), view.tolerance
     for _, shape in arm.shapes:
         flat = silhouette(shape, view)
@@ -288,10 +288,10 @@ def _leave_out_fixed(log: ReadLog, arm: Arm, view: SideView, *, is_belt: bool) -
             raise ScenarioError(shape.path, value, rule)
         if beyond > tolerance:
             reason = "left out, with what sticks out of the envelope of its flipper's wheels"
-            log.doubt(shape.path, value, reason)
+            log.add_warning(shape.path, value, reason)
         elif not is_belt:
             reason = "left out: within the envelope of its flipper's wheels, where edges reach it"
-            log.doubt(shape.path, shape.kind, f"{reason} only between two of them")
+            log.add_warning(shape.path, shape.kind, f"{reason} only between two of them")
 
 
 def _beyond(flat: Array, runners: Sequence[Runner]) -> float:
@@ -310,7 +310,7 @@ def _at_end(
     Parameters
     ----------
     log : ReadLog
-        Takes notes and doubts.
+        Takes notes and warnings.
     pair : ArmPair
         The flippers.
     base : Base
@@ -373,7 +373,7 @@ def _at_end(
 
 
 def _refuse_unlike(log: ReadLog, front: AtEnd, rear: AtEnd, tolerance: float) -> None:
-    """Refuse flippers at both ends that differ in shape; doubt a difference in mass or angle.
+    """Refuse flippers at both ends that differ in shape; warn of a difference in mass or angle.
 
     Raises
     ------
@@ -387,11 +387,13 @@ def _refuse_unlike(log: ReadLog, front: AtEnd, rear: AtEnd, tolerance: float) ->
             rear.pair.refuse(f"{name} {second:.6g} and {first:.6g}", rule)
     if abs(front.pair.mass - rear.pair.mass) > _ALIKE * front.pair.mass:
         value = f"{rear.pair.mass:.4g} and {front.pair.mass:.4g} kg"
-        log.doubt(rear.pair.path, value, "differ in mass from the front ones: the mean is used")
+        log.add_warning(
+            rear.pair.path, value, "differ in mass from the front ones: the mean is used"
+        )
     if abs(front.angle - rear.angle) > _SAME_ANGLE:
         value = f"{rear.angle:.4g} and {front.angle:.4g} rad"
         reason = "are at another angle than the front ones: the angle of those is used for both"
-        log.doubt(rear.pair.path, value, reason)
+        log.add_warning(rear.pair.path, value, reason)
     if not _is_same(front.track, rear.track):
         rule = "must be alike at both ends and have evenly spaced wheels, or a belt"
         rear.pair.refuse(f"{rear.track!r} and {front.track!r}", rule)

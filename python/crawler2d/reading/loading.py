@@ -15,7 +15,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Link, Tree
 from crawler2d.reading.engines import ENGINES
 from crawler2d.reading.files import Files
-from crawler2d.reading.log import Doubt, add_doubts, list_names
+from crawler2d.reading.log import ReadingWarning, add_warnings, list_names
 from crawler2d.reading.meshes import Meshes, MeshRule
 from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import parse_xml
@@ -51,7 +51,7 @@ TOLERANCE = 0.001
 
 _LISTED = 5  # names of links
 _LIGHT = 0.01  # [-] Lighter links, relative to the robot, are light.
-_MATTERS = 0.01  # [-] False moments of inertia are doubted from this effect on that of the robot.
+_MATTERS = 0.01  # [-] False moments of inertia get a warning from this effect on that of the robot.
 _MOST_SHAPES = 3000  # collisions; the public models have at most 67
 
 
@@ -150,13 +150,13 @@ class LoadedModel:
         The model.
     text : str
         The file, or its expansion.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         What was left out or replaced, with its line.
     """
 
     tree: Tree
     text: str
-    doubts: list[Doubt]
+    warnings: list[ReadingWarning]
 
 
 def size_of(tree: Tree) -> float:
@@ -189,9 +189,9 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
         before.
     """
     name, files = path.name, Files(path, options.packages)
-    doubts: list[Doubt] = []
+    warnings: list[ReadingWarning] = []
     if path.suffix == ".xacro":
-        data, doubts = expand_xacro(
+        data, warnings = expand_xacro(
             files,
             data,
             name,
@@ -202,8 +202,8 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
         name = f"{name} (expanded)"
     elif options.arguments:
         reason = "have no effect: the file is no xacro, which is named *.xacro"
-        doubts.append(("arguments", ", ".join(options.arguments), reason))
-    with add_doubts(doubts):
+        warnings.append(("arguments", ", ".join(options.arguments), reason))
+    with add_warnings(warnings):
         root = parse_xml(data, name)
         if options.scale not in (None, 1.0):
             if root.tag not in ("sdf", "robot"):
@@ -216,21 +216,21 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
             rule = f"must have at most {_MOST_SHAPES} collision shapes"
             shapes[_MOST_SHAPES].refuse(len(shapes), rule)
         text = data.decode("utf-8", errors="replace")
-        meshes = Meshes(rule=options.mesh, files=files, doubts=doubts)
+        meshes = Meshes(rule=options.mesh, files=files, warnings=warnings)
         if root.tag == "sdf":
             tree = read_sdf(root, options.model, meshes)
         elif root.tag == "robot":
             is_bullet = options.engine == "bullet"
             if options.model is not None:
-                doubts.append(("model", options.model, "has no effect: a URDF has one robot"))
+                warnings.append(("model", options.model, "has no effect: a URDF has one robot"))
             leave_out = options.leaves_out_missing
             tree = read_urdf(root, meshes, leave_out=leave_out, is_bullet=is_bullet)
         elif root.tag == "mujoco":
             tree = read_mjcf(root, text, options.model, meshes)
         else:
             root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
-        tree = _limit_inertias(tree, doubts)
-    return LoadedModel(tree, text, doubts + files.doubts)
+        tree = _limit_inertias(tree, warnings)
+    return LoadedModel(tree, text, warnings + files.warnings)
 
 
 def _check_pairs(pairs: object, path: str, what: str, kinds: tuple[type, ...]) -> None:
@@ -284,11 +284,11 @@ def _add_scale(document: Document, mesh: Span, scale: float) -> None:
         document.set_attribute(mesh, "scale", text)
 
 
-def _limit_inertias(tree: Tree, doubts: list[Doubt]) -> Tree:
+def _limit_inertias(tree: Tree, warnings: list[ReadingWarning]) -> Tree:
     """Return the tree with no moment of inertia that its mass cannot have inside the robot.
 
-    A larger one is doubted, the worst with its line. If the link is light and no wheel, it is
-    scaled down to that of the mass on the outermost point of the robot: such figures come from
+    Larger ones get one warning, with the line of the worst. In a link that is light and no wheel it
+    is scaled down to that of the mass on the outermost point of the robot: such figures come from
     placeholders that no engine rejects. Heavy links, and what turns without limit, keep the figures
     of their file, and so do all if they make no difference to the robot.
     """
@@ -320,7 +320,7 @@ def _limit_inertias(tree: Tree, doubts: list[Doubt]) -> Tree:
             f" have at most {most:.3g} kg m^2 within {size:.3g} m, the reach of the robot"
             f"{f'; likewise those of {list_names(others, _LISTED)}' if others else ''}"
         )
-        doubts.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
+        warnings.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
     return tree if is_same else replace(tree, links=tuple(links))
 
 

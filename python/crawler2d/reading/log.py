@@ -1,4 +1,4 @@
-"""The log of reading a file: sources of figures, notes, doubts, and the wheels in table order."""
+"""The log of reading a file: sources of figures, notes, warnings, and the wheels in table order."""
 
 from __future__ import annotations
 
@@ -11,12 +11,20 @@ from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.model_tree import Tree, Where
 from crawler2d.reading.wheels import Runner
 
-__all__ = ["Doubt", "ReadLog", "Sources", "add_doubts", "estimate", "lines", "list_names"]
+__all__ = [
+    "ReadLog",
+    "ReadingWarning",
+    "Sources",
+    "add_warnings",
+    "estimate",
+    "lines",
+    "list_names",
+]
 
 _MOST_LINES = 4  # that are listed one by one
 _MOST_NOTES = 10  # on one error
 
-Doubt = tuple[str, object, str]
+ReadingWarning = tuple[str, object, str]
 """Path, value and reason of a `ScenarioWarning`."""
 
 
@@ -77,7 +85,7 @@ class ReadLog:
         By path.
     notes : list of str
         Decisions.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         Probable mistakes.
     rows : list of (str, Runner)
         All wheels and drums, each with its carrier, in the order of the table.
@@ -87,7 +95,7 @@ class ReadLog:
     engine: str
     sources: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-    doubts: list[Doubt] = field(default_factory=list)
+    warnings: list[ReadingWarning] = field(default_factory=list)
     rows: list[tuple[str, Runner]] = field(default_factory=list)
 
     @property
@@ -99,9 +107,9 @@ class ReadLog:
         """Record the sources of figures of a part of the robot."""
         self.sources |= {f"{path}.{name}": source for name, source in sources.items()}
 
-    def doubt(self, path: object, value: object, reason: str) -> None:
+    def add_warning(self, path: object, value: object, reason: str) -> None:
         """Record a probable mistake."""
-        self.doubts.append((str(path), value, reason))
+        self.warnings.append((str(path), value, reason))
 
 
 def estimate(rule: str) -> str:
@@ -134,13 +142,13 @@ def lines(places: Iterable[Where], what: str = "") -> str:
 
 
 @contextmanager
-def add_doubts(doubts: Iterable[Doubt]) -> Iterator[None]:
-    """Add earlier doubts to an error as notes: what was left out may be its cause."""
+def add_warnings(warnings: Iterable[ReadingWarning]) -> Iterator[None]:
+    """Add earlier warnings to an error as notes: what was left out may be its cause."""
     try:
         yield
     except ScenarioError as error:
-        for doubt in islice(doubts, _MOST_NOTES):
-            error.add_note(str(ScenarioWarning(*doubt)))
+        for warning in islice(warnings, _MOST_NOTES):
+            error.add_note(str(ScenarioWarning(*warning)))
         raise
 
 

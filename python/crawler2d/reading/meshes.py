@@ -21,7 +21,7 @@ from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Shape, Unread
 from crawler2d.reading.files import LARGEST_TOGETHER, Files, reason_of
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.parsing import Element, ask_child, no_more_files, serve
 
 __all__ = ["MOST_CORNERS", "MeshRule", "Meshes"]
@@ -49,13 +49,13 @@ class Meshes:
         As in `read_robot`.
     files : Files
         The files of the model.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         Takes shapes that are left out.
     """
 
     rule: MeshRule
     files: Files
-    doubts: list[Doubt] = field(default_factory=list)
+    warnings: list[ReadingWarning] = field(default_factory=list)
     _corners: dict[str, Array | str] = field(default_factory=dict)  # or why there are none
 
     def read(self, elements: dict[str, Element]) -> None:
@@ -122,8 +122,8 @@ class Meshes:
         return self.leave_out(element, name, reason if self.rule == "hull" else "a mesh")
 
     def leave_out(self, element: Element, name: str, reason: str) -> Unread:
-        """Leave out a collision shape, with a doubt."""
-        self.doubts.append((element.at, name, f"is left out: {reason}"))
+        """Leave out a collision shape, with a warning."""
+        self.warnings.append((element.at, name, f"is left out: {reason}"))
         return Unread(name=name, reason=reason, at=element.where)
 
 

@@ -63,7 +63,7 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     model : str, optional
         Name of the body with the free joint; None takes the only one.
     meshes : Meshes
-        The rule for meshes, the doubts, and the files of the model.
+        The rule for meshes, the warnings, and the files of the model.
 
     Raises
     ------
@@ -127,7 +127,7 @@ class _Model:
             if own is not motor:
                 self.motors[motor["joint"]] = _together(own, motor)
                 reason = "has several actuators: their torques are added up, as in MuJoCo"
-                meshes.doubts.append((f"{self.where(motor)}: actuator", motor["joint"], reason))
+                meshes.warnings.append((f"{self.where(motor)}: actuator", motor["joint"], reason))
 
     def where(self, item: Item) -> Where:
         return Where(self.at.file, item["line"] or self.at.line)
@@ -143,7 +143,7 @@ class _Model:
             joints[body["name"]] = self.joint(number, poses[number])
         names = [(self.bodies[n]["name"], self.where(self.bodies[n])) for n in poses]
         ends = [(joint.name, joint.parent, joint.child, joint.at) for joint in joints.values()]
-        order = order_links(names, ends, self.at, self.meshes.doubts)
+        order = order_links(names, ends, self.at, self.meshes.warnings)
         links = [self.link(number, pose) for number, pose in poses.items()]
         return Tree(
             name=self.answer["name"],
@@ -203,7 +203,7 @@ class _Model:
             if self.colliding.intersection(self.subtree(number)):
                 raise ScenarioError(path, value, rule)
             reason = f"is taken as fixed, as nothing on its joints collides: {rule}"
-            self.meshes.doubts.append((path, value, reason))
+            self.meshes.warnings.append((path, value, reason))
         if len(joints) != 1:
             return Joint(
                 name=f"of {child}",
@@ -259,13 +259,13 @@ class _Model:
         )
 
     def lacking(self, number: int) -> Iterator[Unread]:
-        """Yield the colliding geoms that a body lacks; doubt a lack of mass."""
+        """Yield the colliding geoms that a body lacks; warn of a lack of mass."""
         for each in self.answer["lacking"]:
             if each["body"] == number:
                 geom = self.element(each)
                 if each["weighs"]:
                     reason = "has no mass here, but its volume counts in MuJoCo"
-                    self.meshes.doubts.append((geom.at, each["file"], reason))
+                    self.meshes.warnings.append((geom.at, each["file"], reason))
                 if each["collides"]:
                     yield self.meshes.missing(geom, each["file"], each["reason"])
 

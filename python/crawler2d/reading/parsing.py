@@ -23,7 +23,7 @@ from xml.parsers import expat
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Where
 from crawler2d.reading.files import LARGEST_MODEL, Files
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 
 __all__ = ["Element", "ask_child", "no_more_files", "parse_xml", "real", "serve"]
 
@@ -124,10 +124,10 @@ class Element:
             node = children[0]
         return node
 
-    def first(self, tag: str, doubts: list[Doubt]) -> Element | None:
-        """Return the first child of a name, as simulators do; others are doubted."""
+    def first(self, tag: str, warnings: list[ReadingWarning]) -> Element | None:
+        """Return the first child of a name, as simulators do; warn of others."""
         children = list(self.all(tag))
-        doubts += [(other.at, tag, "is left out: the first one counts") for other in children[1:]]
+        warnings += [(other.at, tag, "is left out: the first one counts") for other in children[1:]]
         return children[0] if children else None
 
     def needed(self, path: str) -> Element:

@@ -23,7 +23,7 @@ from crawler2d.model_tree import (
     Where,
     unit,
 )
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.parsing import Element, real
 
@@ -146,18 +146,20 @@ def ellipsoid(radii: list[float]) -> Array:
     return points
 
 
-def inertia(element: Element, value: Callable[[str], float], doubts: list[Doubt]) -> Array:
+def inertia(
+    element: Element, value: Callable[[str], float], warnings: list[ReadingWarning]
+) -> Array:
     """Read a tensor of inertia [kg m^2] by the names of its six components.
 
-    One with a negative moment is doubted and taken as 0, that of a point: a guess at its size would
-    be worse, and the position of a link matters more than its own inertia.
+    One with a negative moment is taken as 0, that of a point, with a warning: a guess at its size
+    would be worse, and the position of a link matters more than its own inertia.
     """
     tensor = np.zeros((3, 3))
     for name, row, column in _AXES:
         tensor[row, column] = tensor[column, row] = value(name)
     least = float(tensor.diagonal().min())
     if least < 0.0:
-        doubts.append((element.at, least, "is taken as 0 kg m^2: no body has a negative moment"))
+        warnings.append((element.at, least, "is taken as 0 kg m^2: no body has a negative moment"))
         return np.zeros((3, 3))
     return tensor
 
@@ -252,7 +254,7 @@ def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -
 
 
 def joint_or_fixed(
-    joint: Joint, complete: Callable[[], Joint], *, carries: bool, doubts: list[Doubt]
+    joint: Joint, complete: Callable[[], Joint], *, carries: bool, warnings: list[ReadingWarning]
 ) -> Joint:
     """Return a joint with axis and limits, or a fixed one where its faults make no difference.
 
@@ -264,7 +266,7 @@ def joint_or_fixed(
         Returns it with its axis and limits, or raises the rule that it breaks.
     carries : bool
         Whether anything in its subtree collides.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         Takes the fault.
     """
     try:
@@ -273,7 +275,7 @@ def joint_or_fixed(
         if carries:
             raise
         reason = f"is taken as fixed, as nothing on its joint collides: {error.rule}"
-        doubts.append((error.path, error.value, reason))
+        warnings.append((error.path, error.value, reason))
         return replace(joint, kind="fixed")
 
 
@@ -345,7 +347,7 @@ def order_links(
     names: list[tuple[str, Where]],
     joints: list[tuple[str, str, str, Where]],
     at: Where,
-    doubts: list[Doubt],
+    warnings: list[ReadingWarning],
     *,
     driving: Collection[str] = (),
     remedy: str = "",
@@ -363,7 +365,7 @@ def order_links(
         Name, parent and child of each joint.
     at : Where
         Line of the model.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         Takes trees that are left out, and names that repeat.
     driving : collection of str
         Links that turn without limit, or whose surface moves.
@@ -384,7 +386,7 @@ def order_links(
     for name, parent, child, where in joints:
         path = f"{where}: joint[{name}]"
         if name in known:
-            doubts.append((path, name, "is also the name of another joint"))
+            warnings.append((path, name, "is also the name of another joint"))
         known.add(name)
         for end in (parent, child):
             if end not in links:
@@ -414,7 +416,7 @@ def order_links(
             more = len(trees[name]) - 1
             hanging = f" with {more} that hang on it" if more else ""
             reason = f"is left out{hanging}: it is not joined to {root}"
-            doubts.append((f"{where}: link[{name}]", name, reason))
+            warnings.append((f"{where}: link[{name}]", name, reason))
     return trees[root]
 
 

@@ -18,7 +18,7 @@ from crawler2d.reading.assembly import Assembly, Silhouette, assemble, silhouett
 from crawler2d.reading.engines import ENGINES, Engine
 from crawler2d.reading.files import Files
 from crawler2d.reading.loading import TOLERANCE, ReadOptions, load_model
-from crawler2d.reading.log import Sources, add_doubts
+from crawler2d.reading.log import Sources, add_warnings
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.surfaces import refuse_unread
 
@@ -45,7 +45,7 @@ class Reading:
         [kg] of what turns, `line`.
     notes : tuple of str
         Decisions made while reading, in words.
-    doubts : tuple of str
+    warnings : tuple of str
         Probable mistakes, in words; each was also a `ScenarioWarning`.
     engine : str
         The engine whose laws combined the friction and drive the motors.
@@ -69,7 +69,7 @@ class Reading:
     sources: Sources
     wheels: Table
     notes: tuple[str, ...]
-    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
     engine: str
     tree: Tree
     silhouettes: tuple[Silhouette, ...]
@@ -106,7 +106,7 @@ class Reading:
         return friction
 
     def __repr__(self) -> str:
-        """Write the robot, its wheels, notes and doubts."""
+        """Write the robot, its wheels, notes and warnings."""
         columns = [self.wheels[name].tolist() for name in ("side", "carrier", "x", "y", "radius")]
         lines = [
             f"{side} {carrier}: x {x:.4f} m, y {y:.4f} m, radius {radius:.4f} m"
@@ -116,7 +116,7 @@ class Reading:
             lines[_SHOWN:] = [f"and {len(lines) - _SHOWN} more: see .wheels"]
         rows = [self.description, *(f"  {line}" for line in lines)]
         rows += [f"  note: {note}" for note in self.notes]
-        rows += [f"  doubt: {doubt}" for doubt in self.doubts]
+        rows += [f"  warning: {warning}" for warning in self.warnings]
         rows.append(f"  estimates: {', '.join(self.sources.estimates)}")
         return "\n".join(rows)
 
@@ -157,7 +157,7 @@ def read_robot(
         The simulator by whose laws the model is read: gz-sim with DART, Gazebo Classic with ODE,
         PyBullet, MuJoCo or Isaac Sim; none of them runs. It determines how the friction of two
         surfaces is combined, the effect of a commanded speed (a note of the reading), and which
-        figures of a joint count: a rotor inertia where the engine has one, and doubts about what it
+        figures of a joint count: a rotor inertia where the engine has one, and warnings of what it
         ignores. ``docs/conventions.md``, "Reading a model file", has the rules with their sources.
         None takes "mujoco" for MJCF and "gz" for the rest.
     forward : {"+x", "-x", "+y", "-y"}, optional
@@ -167,12 +167,12 @@ def read_robot(
         Name of the model in a world; None takes the only one that can move.
     mesh : {"refuse", "hull", "leave_out"}
         What to do with collision meshes. "hull" takes the hull of a mesh whose file (.dae, .stl,
-        .obj, .glb or .gltf) exists and can be read, and leaves out any other, with a doubt.
+        .obj, .glb or .gltf) exists and can be read, and leaves out any other, with a warning.
         "leave_out" leaves all out, "refuse" refuses them. A model whose wheels or tracks would be
         left out is refused in any case.
     missing : {"leave_out", "refuse"}
         What to do with missing parts: includes, macros that no file has, joints of missing links.
-        "leave_out" leaves them out, with a doubt each. A file of a package that is not found is
+        "leave_out" leaves them out, with a warning each. A file of a package that is not found is
         then identified by its path, and an argument without a value by a setting in the package.
     tracks : collection of str
         Links whose surface something outside the file moves, as a controller in Isaac does.
@@ -257,9 +257,9 @@ def read_robot(
         arguments=arguments or {},
     )
     path = Path(path)
-    reading, doubts = read_text(Files(path, options.packages).model(), path, options)
-    for doubt in doubts:
-        warn(doubt.path, doubt.value, doubt.reason)
+    reading, warnings = read_text(Files(path, options.packages).model(), path, options)
+    for warning in warnings:
+        warn(warning.path, warning.value, warning.reason)
     return reading
 
 
@@ -292,12 +292,12 @@ def read_text(
     ground = options.ground_friction
     if ground is None:
         ground = ENGINES[engine].usual_friction
-    with add_doubts(loaded.doubts):
+    with add_warnings(loaded.warnings):
         robot, friction, work = assemble(
             tree, forward=options.forward, tolerance=options.tolerance, engine=engine, ground=ground
         )
     robot.wheels()  # the core checks every rule of a robot
-    doubts = [ScenarioWarning(*doubt) for doubt in [*loaded.doubts, *work.log.doubts]]
+    warnings = [ScenarioWarning(*warning) for warning in [*loaded.warnings, *work.log.warnings]]
     if path.suffix == ".xacro":
         work.log.notes.append(
             f"lines are those of the text that {path.name} expands to, Reading.text"
@@ -308,7 +308,7 @@ def read_text(
         sources=Sources(work.log.sources),
         wheels=_wheel_table(work),
         notes=tuple(work.log.notes),
-        doubts=tuple(str(doubt) for doubt in doubts),
+        warnings=tuple(str(warning) for warning in warnings),
         engine=engine,
         tree=tree,
         silhouettes=silhouettes(tree, work.view, work.base),
@@ -317,7 +317,7 @@ def read_text(
         path=path,
         how=options,
     )
-    return reading, doubts
+    return reading, warnings
 
 
 def _wheel_table(work: Assembly) -> Table:

@@ -24,7 +24,7 @@ from crawler2d.model_tree import (
     from_rpy,
     unit,
 )
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.parsing import Element, real
 from crawler2d.reading.parts import (
@@ -61,14 +61,14 @@ class _Frames:
     that of another of its frames, by which it is placed.
     """
 
-    doubts: list[Doubt]
+    warnings: list[ReadingWarning]
     given: dict[str, tuple[Pose, str, Element]] = field(default_factory=dict)
     known: dict[str, Pose] = field(default_factory=lambda: {MODEL: Pose()})
     placed: dict[str, str] = field(default_factory=dict)
 
     def add(self, name: str, element: Element, usual: str, scope: str) -> None:
         """Add a frame, given in the one that it names, or else in the usual one."""
-        pose, relative = _pose_of(element, self.doubts)
+        pose, relative = _pose_of(element, self.warnings)
         within = scope + relative if relative else usual
         self.given.setdefault(name, (pose, within, element))
 
@@ -91,7 +91,7 @@ class _Frames:
         for name in reversed(chain):
             pose, within, element = self.given[name]
             if placed := self.placed.pop(name, ""):  # once, however deep models are nested
-                inside = _Frames(self.doubts, self.given, {name: Pose()}, self.placed)
+                inside = _Frames(self.warnings, self.given, {name: Pose()}, self.placed)
                 pose = pose.then(Pose().seen_from(inside.of(placed, element)))
                 self.given[name] = pose, within, element
             self.known[name] = self.known[within].then(pose)
@@ -99,7 +99,7 @@ class _Frames:
 
     def inside(self, element: Element, usual: str, scope: str) -> Pose:
         """Return the pose of something that is no frame itself, such as a collision."""
-        pose, relative = _pose_of(element, self.doubts)
+        pose, relative = _pose_of(element, self.warnings)
         return self.of(scope + relative if relative else usual, element).then(pose)
 
 
@@ -130,7 +130,7 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
         Name of the model; None takes the only one that is not static, or of several the only one
         that can drive.
     meshes : Meshes
-        The rule for meshes, and the doubts.
+        The rule for meshes, and the warnings.
 
     Raises
     ------
@@ -157,9 +157,9 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
     return _Model(chosen, minor, meshes).tree()
 
 
-def _pose_of(element: Element, doubts: list[Doubt]) -> tuple[Pose, str]:
+def _pose_of(element: Element, warnings: list[ReadingWarning]) -> tuple[Pose, str]:
     """Read the pose of an element, and the name of the frame that it is given in, if any."""
-    pose = element.first("pose", doubts)
+    pose = element.first("pose", warnings)
     if pose is None:
         return Pose(), ""
     relative = pose.attributes.get("relative_to", "")
@@ -235,8 +235,8 @@ class _Model:
         self.model = model
         self.minor = minor
         self.meshes = meshes
-        self.doubts = meshes.doubts
-        self.frames = _Frames(meshes.doubts)
+        self.warnings = meshes.warnings
+        self.frames = _Frames(meshes.warnings)
         self.models = list(self.nested(model, ""))
         self.has_includes = bool(self.parts("include"))
         self.links = {part.name: part for part in self.parts("link")}
@@ -247,7 +247,7 @@ class _Model:
         for include in model.all("include"):
             name = (include.only("name") or include.only("uri") or include).text
             reason = "is left out: it is in another file; its mass is missing here"
-            self.doubts.append((include.at, name, reason))
+            self.warnings.append((include.at, name, reason))
         for inner in model.all("model"):
             within = f"{scope}{inner.attribute('name')}{SCOPE}"
             self.frames.add(within + MODEL, inner, scope + MODEL, scope)
@@ -274,7 +274,7 @@ class _Model:
             [(part.name, part.element.where) for part in self.parts("link")],
             ends,
             self.model.where,
-            self.doubts,
+            self.warnings,
             driving=[*turning, *(name for name, _ in named_tracks(plugins))],
         )
         for name, part in self.links.items():
@@ -318,7 +318,7 @@ class _Model:
         elif self.has_includes and not self.links.keys() >= set(ends):
             reason = "what it joins is in another file"
         if reason:
-            self.doubts.append((joint.at, part.name, f"is left out: {reason}"))
+            self.warnings.append((joint.at, part.name, f"is left out: {reason}"))
             return None
         return ends
 
@@ -354,7 +354,7 @@ class _Model:
         pose = self.frames.of(name, link)
         mass, frame, tensor, mass_at = _USUAL_MASS, pose, np.eye(3), link.where
         shapes, unread = collisions(self.shape(c, part) for c in link.all("collision"))
-        inertial = link.first("inertial", self.doubts)
+        inertial = link.first("inertial", self.warnings)
         is_auto = inertial is not None and inertial.attributes.get("auto", "") in ("1", "true")
         if inertial is not None:
             mass_at, frame = inertial.where, Pose()
@@ -367,7 +367,7 @@ class _Model:
                 tensor = inertia(
                     values,
                     lambda word: values.real(word, 1.0 if word[1] == word[2] else 0.0),
-                    self.doubts,
+                    self.warnings,
                 )
         place, tensor = frame.place, frame.turn @ tensor @ frame.turn.T
         if inertial is not None and is_auto:
@@ -458,7 +458,7 @@ class _Model:
         if joint.kind == "fixed":
             return joint
         complete = partial(self.moving, joint, part)
-        return joint_or_fixed(joint, complete, carries=carries, doubts=self.doubts)
+        return joint_or_fixed(joint, complete, carries=carries, warnings=self.warnings)
 
     def moving(self, joint: Joint, part: _Part) -> Joint:
         element = part.element

@@ -14,7 +14,7 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import Array, Shape, Tree
-from crawler2d.reading.log import Doubt, list_names
+from crawler2d.reading.log import ReadingWarning, list_names
 from crawler2d.reading.parts import moved_links
 from crawler2d.reading.wheels import (
     corners_of,
@@ -52,13 +52,13 @@ class Surfaces:
         All of them, by the file or by a rule of this module.
     taken : frozenset of Shape
         Those by a rule of this module.
-    doubts : tuple of Doubt
+    warnings : tuple of ReadingWarning
         One for each rule that was used.
     """
 
     moved: frozenset[Shape]
     taken: frozenset[Shape]
-    doubts: tuple[Doubt, ...]
+    warnings: tuple[ReadingWarning, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +96,7 @@ def surfaces_of(tree: Tree) -> Surfaces:
         if shape.surface_speed > 0.0 or link.name in links
     )
     driven, unmoved = _Search(tree, moved).drums()
-    doubts = []
+    warnings = []
     for drums, reason in (
         (driven, "do not turn as the wheel on their side does: read as a belt round both"),
         (unmoved, "are moved by nothing in the file: read as the drums of moving belts"),
@@ -105,9 +105,9 @@ def surfaces_of(tree: Tree) -> Surfaces:
             names = list_names(list(dict.fromkeys(drum.link for drum in drums)), _SHOWN)
             value = f"{len(drums)} fixed drums: {names}"
             at = str(drums[0].shape.at)
-            doubts.append((at, value, f"{reason}; with this file alone they slide"))
+            warnings.append((at, value, f"{reason}; with this file alone they slide"))
     taken = frozenset(drum.shape for drum in (*driven, *unmoved))
-    return Surfaces(taken | moved, taken, tuple(doubts))
+    return Surfaces(taken | moved, taken, tuple(warnings))
 
 
 def refuse_unread(tree: Tree) -> None:

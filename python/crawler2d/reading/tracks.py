@@ -147,7 +147,7 @@ def wheels_of(
     Parameters
     ----------
     log : ReadLog
-        Takes notes and doubts.
+        Takes notes and warnings.
     pairs : list of Pair
         From the rear to the front.
     base : Base
@@ -377,7 +377,7 @@ def common_wheel(
     Parameters
     ----------
     log : ReadLog
-        Takes notes and doubts on their phases.
+        Takes notes and warnings on their phases.
     pairs : list of Pair
         The wheels, from the rear to the front.
     view : SideView
@@ -420,7 +420,7 @@ def common_wheel(
     if is_off:
         more = ", in addition to a turn that all have" if is_turned else ""
         reason = f"is the best fit: {names} start up to {degrees} off{more}"
-        log.doubt(f"{path}.phase_fraction", float(f"{phases.step:.4g}"), reason)
+        log.add_warning(f"{path}.phase_fraction", float(f"{phases.step:.4g}"), reason)
     tip, base = (float(np.mean([getattr(gear, name) for gear in gears])) for name in _THICKNESSES)
     is_parallel = base - tip <= _PARALLEL * gears[0].radius
     return GearWheel(

@@ -21,7 +21,7 @@ from crawler2d.model_tree import (
     from_rpy,
     unit,
 )
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.parsing import Element, real
 from crawler2d.reading.parts import (
@@ -55,7 +55,7 @@ def read_urdf(
     root : Element
         Of the file.
     meshes : Meshes
-        The rule for meshes, and the doubts.
+        The rule for meshes, and the warnings.
     leave_out : bool
         Whether joints whose links are missing are left out, or refused.
     is_bullet : bool
@@ -82,17 +82,17 @@ def read_urdf(
             if mesh.tag == "mesh"
         }
     )
-    doubts = meshes.doubts
+    warnings = meshes.warnings
     ends, ground = [], ""
     for element in root.all("joint"):
         parent, child = (element.needed(end).attribute("link") for end in ("parent", "child"))
         if leave_out and not {parent, child} <= elements.keys():
-            doubts.append((element.at, f"{parent} to {child}", "is left out: a link is missing"))
+            warnings.append((element.at, f"{parent} to {child}", "is left out: a link is missing"))
         elif parent == _WORLD and parent in elements and not elements[parent].children:
             ground = parent
             if element.attribute("type") != "floating":
                 reason = "is left out: it holds the robot to the world, where it is to drive"
-                doubts.append((element.at, f"{parent} to {child}", reason))
+                warnings.append((element.at, f"{parent} to {child}", reason))
         else:
             ends.append((element, element.attribute("name"), parent, child))
     plugins = tuple(
@@ -103,7 +103,7 @@ def read_urdf(
         [(name, where) for name, where in names if name != ground],
         [(name, parent, child, element.where) for element, name, parent, child in ends],
         root.where,
-        doubts,
+        warnings,
         driving=[
             *(each for element, _, _, each in ends if element.attribute("type") == "continuous"),
             *(name for name, _ in named_tracks(plugins)),
@@ -118,7 +118,7 @@ def read_urdf(
         pose, pose_at = Pose(), elements[name].where
         if name in by_child:
             element, parent = by_child[name]
-            pose = poses[parent].then(_origin(element, doubts))
+            pose = poses[parent].then(_origin(element, warnings))
             pose_at = _origin_element(element).where
         poses[name] = pose
         links.append(_link(elements[name], pose, pose_at, frictions.get(name), meshes))
@@ -130,7 +130,7 @@ def read_urdf(
         joint = joint_of(element, element.attribute("name"), parent, child, poses[child])
         if joint.kind in ("hinge", "slide"):
             complete = partial(_moving, joint, element, poses[child])
-            joint = joint_or_fixed(joint, complete, carries=child in carriers, doubts=doubts)
+            joint = joint_or_fixed(joint, complete, carries=child in carriers, warnings=warnings)
         joints[child] = joint
     return Tree(
         name=root.attributes.get("name", ""),
@@ -168,8 +168,8 @@ def _frictions(root: Element, *, is_bullet: bool) -> dict[str, Friction]:
     return frictions
 
 
-def _origin(element: Element, doubts: list[Doubt]) -> Pose:
-    origin = element.first("origin", doubts)
+def _origin(element: Element, warnings: list[ReadingWarning]) -> Pose:
+    origin = element.first("origin", warnings)
     if origin is None:
         return Pose()
     xyz, rpy = (
@@ -188,13 +188,13 @@ def _link(
     link: Element, pose: Pose, pose_at: Where, friction: Friction | None, meshes: Meshes
 ) -> Link:
     mass, center, tensor, mass_at = 0.0, pose, np.zeros((3, 3)), link.where
-    inertial = link.first("inertial", meshes.doubts)
+    inertial = link.first("inertial", meshes.warnings)
     if inertial is not None:
         given = inertial.needed("mass")
         (mass,), mass_at = given.reals(1, "value"), given.where
-        center = pose.then(_origin(inertial, meshes.doubts))
+        center = pose.then(_origin(inertial, meshes.warnings))
         values = inertial.needed("inertia")
-        tensor = inertia(values, lambda name: values.reals(1, name)[0], meshes.doubts)
+        tensor = inertia(values, lambda name: values.reals(1, name)[0], meshes.warnings)
     if mass < 0.0:
         link.refuse(mass, "must have a mass >= 0 kg")
     shapes, unread = collisions(
@@ -217,7 +217,7 @@ def _link(
 def _shape(
     collision: Element, link: Element, pose: Pose, friction: Friction | None, meshes: Meshes
 ) -> Shape | Unread | None:
-    pose = pose.then(_origin(collision, meshes.doubts))
+    pose = pose.then(_origin(collision, meshes.warnings))
     if friction is not None and friction.direction is not None:
         friction = replace(friction, direction=unit(pose.along(friction.direction)))
     shape = Shape(

@@ -21,7 +21,7 @@ from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.expressions import NAMES, NotAllowed, copy_data, evaluate
 from crawler2d.reading.files import Files
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.parsing import ask_child, parse_xml, serve
 from crawler2d.reading.xacro_tree import XacroFiles, XacroMacros
 
@@ -40,7 +40,7 @@ _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
 
 _EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
 _MOST_PASSES = 5
-_MOST_DOUBTS = 100
+_MOST_WARNINGS = 100
 
 
 class Setting(NamedTuple):
@@ -160,7 +160,7 @@ def expand_xacro(
     trusted: bool,
     arguments: Mapping[str, str],
     leave_out: bool,
-) -> tuple[bytes, list[Doubt]]:
+) -> tuple[bytes, list[ReadingWarning]]:
     """Expand a file.
 
     Parameters
@@ -183,7 +183,7 @@ def expand_xacro(
     -------
     text : bytes
         The URDF.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         What was left out or replaced.
 
     Raises
@@ -208,7 +208,7 @@ def expand_xacro(
         "leave_out": leave_out,
     }
     answer = ask_child(__name__, question, file=file, files=files)
-    return answer["text"].encode(), [tuple(doubt) for doubt in answer["doubts"]]
+    return answer["text"].encode(), [tuple(warning) for warning in answer["warnings"]]
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
@@ -253,7 +253,7 @@ def _expand(
         values = Arguments({name: each.value for name, each in settings.items()} | arguments)
         files = XacroFiles(of_model, question["file"], text, leave_out=leave_out)
         calls = XacroMacros(files, leave_out=leave_out, known=macros)
-        of_model.doubts.clear()
+        of_model.warnings.clear()
         builtins.open = files  # type: ignore[assignment]
         files.attach(xacro, substitution, own)
         calls.attach(xacro, own)
@@ -278,14 +278,14 @@ def _expand(
         _refuse_arguments(files, values.lacking, differing, more=failure is not None)
     if failure is not None:
         _refuse(failure, files, xacro)
-    replaced = _doubts_of(settings, files.defaults, lacking)
+    replaced = _warnings_of(settings, files.defaults, lacking)
     useless = _useless(arguments, files, package)
-    doubts = list(dict.fromkeys([*files.doubts, *of_model.doubts, *replaced, *useless]))
-    if len(doubts) > _MOST_DOUBTS:
-        path, value, _ = doubts[_MOST_DOUBTS - 1]
-        reason = f"is one of {len(doubts) - _MOST_DOUBTS + 1} more places of this kind"
-        doubts[_MOST_DOUBTS - 1 :] = [(path, value, reason)]
-    return {"text": urdf, "doubts": doubts}
+    warnings = list(dict.fromkeys([*files.warnings, *of_model.warnings, *replaced, *useless]))
+    if len(warnings) > _MOST_WARNINGS:
+        path, value, _ = warnings[_MOST_WARNINGS - 1]
+        reason = f"is one of {len(warnings) - _MOST_WARNINGS + 1} more places of this kind"
+        warnings[_MOST_WARNINGS - 1 :] = [(path, value, reason)]
+    return {"text": urdf, "warnings": warnings}
 
 
 def _restrict(xacro: Any, substitution: Any) -> None:
@@ -386,26 +386,28 @@ def _current_file(xacro: Any) -> str:
     return os.path.abspath(files[-1]) if files and files[-1] else ""
 
 
-def _doubts_of(
+def _warnings_of(
     settings: Mapping[str, Setting], defaults: Mapping[str, str], lacking: Iterable[str]
-) -> list[Doubt]:
+) -> list[ReadingWarning]:
     """Report the settings that were used: for arguments without a default, and in place of one."""
-    doubts: list[Doubt] = []
+    warnings: list[ReadingWarning] = []
     for name in lacking:
         if name in settings:
             each = settings[name]
             reason = f"is taken for the argument {name}, which has no default: arguments= sets it"
-            doubts.append((f"{each.file}:{each.line}", each.value, reason))
+            warnings.append((f"{each.file}:{each.line}", each.value, reason))
     others: dict[str, list[str]] = {}
     for name, default in defaults.items():
         if name in settings and _value(settings[name].value) != _value(default):
             each = settings[name]
             others.setdefault(each.file, []).append(f"{name}: {each.value} for {default}")
     reason = "is taken as a whole, also in place of defaults"
-    return doubts + [(file, ", ".join(values), reason) for file, values in others.items()]
+    return warnings + [(file, ", ".join(values), reason) for file, values in others.items()]
 
 
-def _useless(arguments: Mapping[str, str], files: XacroFiles, package: Settings) -> Iterator[Doubt]:
+def _useless(
+    arguments: Mapping[str, str], files: XacroFiles, package: Settings
+) -> Iterator[ReadingWarning]:
     """Report arguments that were given and that neither the model nor its settings name.
 
     A repository often passes all of its settings, used or not.

@@ -14,7 +14,7 @@ from xml.sax.saxutils import escape
 
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.files import Files, is_absent
-from crawler2d.reading.log import Doubt
+from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.parsing import parse_xml
 
 __all__ = ["XacroFiles", "XacroMacros"]
@@ -65,7 +65,7 @@ class XacroFiles:
     ----------
     texts : dict of str to str
         The texts that were read, by path.
-    doubts : list of Doubt
+    warnings : list of ReadingWarning
         What was left out or replaced.
     left_out : list of (str, str)
         The includes that were left out: file and line, and name.
@@ -77,7 +77,7 @@ class XacroFiles:
         self.files = files
         self.leave_out = leave_out
         self.texts = {file: text}
-        self.doubts: list[Doubt] = []
+        self.warnings: list[ReadingWarning] = []
         self.left_out: list[tuple[str, str]] = []
         self.defaults: dict[str, str] = {}
         self._include: minidom.Element | None = None  # the current one
@@ -173,16 +173,16 @@ class XacroFiles:
                 # One of a package that is missing has no path. An error may cut names short.
                 name = name or str(getattr(error.__cause__, "filename", error.value))
                 self.left_out.append((at, name))
-                self.doubts.append((at, name, f"is left out: the file {error.rule}"))
+                self.warnings.append((at, name, f"is left out: the file {error.rule}"))
 
     def _parse(self, text: str | None, path: str | None = None) -> minidom.Document:
         """Return the document of the model's text, or of an include."""
         if text is not None:
-            document, doubts = _dom_of(text, next(iter(self.texts)))
+            document, warnings = _dom_of(text, next(iter(self.texts)))
         else:
             assert path is not None
-            document, doubts = _dom_of(self._includes.pop(path), Path(path).name)
-        self.doubts += doubts
+            document, warnings = _dom_of(self._includes.pop(path), Path(path).name)
+        self.warnings += warnings
         for each in document.getElementsByTagName("xacro:arg"):
             self.defaults.setdefault(each.getAttribute("name"), each.getAttribute("default"))
         return document
@@ -197,7 +197,7 @@ class XacroMacros:
     Parameters
     ----------
     files : XacroFiles
-        The files, with their doubts.
+        The files, with their warnings.
     leave_out : bool
         Whether calls of unknown macros are left out, or refused.
     known : mapping of str to Any
@@ -258,8 +258,8 @@ class XacroMacros:
         xacro.grab_macro, xacro.handle_macro_call = defined, called
 
     def note(self, node: minidom.Element, reason: str) -> None:
-        """Doubt a call."""
-        self.files.doubts.append((_place_of(node), f"<{node.tagName}>", reason))
+        """ReadingWarning a call."""
+        self.files.warnings.append((_place_of(node), f"<{node.tagName}>", reason))
 
     def fits(self, node: minidom.Element, macro: Any) -> bool:
         """Whether an element without the prefix has the parameters of a macro, and its blocks."""
@@ -281,8 +281,8 @@ def _place_of(node: minidom.Element) -> str:
     return place
 
 
-def _dom_of(data: str | bytes, file: str) -> tuple[minidom.Document, list[Doubt]]:
-    """Return the document of a file, and a doubt if it has elements of old xacro.
+def _dom_of(data: str | bytes, file: str) -> tuple[minidom.Document, list[ReadingWarning]]:
+    """Return the document of a file, and a warning if it has elements of old xacro.
 
     Each element has its line, see `_place_of`.
 

@@ -10,7 +10,7 @@ from crawler2d.common.arrays import read_range
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import suggestion
 from crawler2d.common.units import unit_of
-from crawler2d.errors import Crawler2dError, ScenarioError, ignore_doubts
+from crawler2d.errors import Crawler2dError, ScenarioError, ignore_warnings
 from crawler2d.parameters.fields import is_whole, known_paths, read_path
 from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.runs.batch import simulate
@@ -123,7 +123,7 @@ class Explorer:
     def _change(self, _: object) -> None:
         scenario = self.scenario.replace(self._values())
         try:
-            with ignore_doubts():  # at every move of a slider they would fill the notebook
+            with ignore_warnings():  # at every move of a slider they would fill the notebook
                 run = simulate(scenario)
         except Crawler2dError as error:
             self._message.value, self._message.layout.display = str(error), None

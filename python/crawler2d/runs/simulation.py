@@ -11,7 +11,7 @@ from crawler2d import _core
 from crawler2d.common.arrays import Table, freeze_array, real_number
 from crawler2d.common.bodies import POSE_COLUMNS
 from crawler2d.common.keywords import TakesKeywords, takes_keywords
-from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.errors import ScenarioError, ignore_warnings
 from crawler2d.parameters.scenario import Scenario, check_scenario
 from crawler2d.parameters.settings import Start
 from crawler2d.results.diagnosis import Diagnosis
@@ -291,7 +291,7 @@ class Simulation(TakesKeywords):
         if start is not None:
             self._set_out(self.scenario.replace({"start": start}))
             return
-        with ignore_doubts():  # they were given when it was made
+        with ignore_warnings():  # they were given when it was made
             self._set_out(self.scenario)
 
     @takes_keywords

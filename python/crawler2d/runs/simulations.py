@@ -329,7 +329,9 @@ def _numbers(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return array.astype(float)
 
 
-def _prepared(scenarios: Sequence[Scenario | _core.Passed]) -> list[_core.Passed]:
+def _prepared(
+    scenarios: Sequence[Scenario | _core.Passed],
+) -> list[_core.Passed]:
     """Validate them, if that has not been done; equal robots and grounds are built once."""
     if not isinstance(scenarios, Iterable):
         raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")

@@ -15,7 +15,7 @@ from crawler2d.audits.page.chart import chart_section
 from crawler2d.audits.runs import TRIED
 from crawler2d.audits.verdicts import BELT, OWN, ObstacleRuns
 from crawler2d.drawings.svg import escape
-from crawler2d.errors import ignore_doubts
+from crawler2d.errors import ignore_warnings
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.pictures.page import fill_page, read_part
 from crawler2d.pictures.page.pair import (
@@ -81,7 +81,7 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
         name = f"{sections.change(audit, repair)} ({words.confirmation(repair)})"
         replays = [each._replace(other=name) for each in replays]
     scenarios = [_scenarios(audit, each) for each in replays]
-    with ignore_doubts():  # they are in the lint
+    with ignore_warnings():  # they are in the lint
         runs = simulate_many(
             [scenario for pair in scenarios for scenario in pair],
             threads=threads,

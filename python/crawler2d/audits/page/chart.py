@@ -8,7 +8,7 @@ import numpy as np
 
 from crawler2d.audits.runs import scenario_of
 from crawler2d.drawings.svg import Sheet, escape
-from crawler2d.errors import ScenarioError, ignore_doubts
+from crawler2d.errors import ScenarioError, ignore_warnings
 from crawler2d.parameters.terrain import Step
 from crawler2d.pictures.jams import JamRegion, jam_regions
 from crawler2d.studies.jams import jam_chart
@@ -50,7 +50,7 @@ def chart_section(robot: Robot, others: Sequence[tuple[str, Robot]] = ()) -> str
 def _figure(name: str, robot: Robot) -> str:
     most = 2.0 * robot.outline.front_radius
     heights = [most * (k + 1) / _HEIGHTS for k in range(_HEIGHTS)]
-    with ignore_doubts():  # they are in the lint
+    with ignore_warnings():  # they are in the lint
         scenario = scenario_of(robot, Step(height=most), None, None)
         data = jam_chart(scenario, values=heights, most_friction=_MOST)
     regions = jam_regions(data.isel(model=0))

@@ -12,7 +12,7 @@ from crawler2d.audits import words
 from crawler2d.audits.candidates import left_wheels
 from crawler2d.drawings.scene import Scene, extent_of
 from crawler2d.drawings.svg import MARGIN, Sheet, draw_robot_on, escape
-from crawler2d.errors import ignore_doubts
+from crawler2d.errors import ignore_warnings
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Flat
@@ -54,7 +54,7 @@ def draw_robot(
 
     `title` is for those who cannot see it, `width` and `height` [px] are the most that it may have.
     """
-    with ignore_doubts():  # showing an object must not warn
+    with ignore_warnings():  # showing an object must not warn
         # At rest: what is usual may be faster than it is.
         scene = Scene.of_robot(Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json())
     seen = [each.outline for each in shapes if len(each.outline) > 2]

@@ -1,4 +1,4 @@
-"""Doubts: a scenario that is legal but hardly meant is simulated, and a warning names the field."""
+"""A scenario that is legal but hardly meant is simulated, and a warning names the field."""
 
 import math
 import pickle
@@ -125,7 +125,7 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
 }
 
 
-def doubts(call: Callable[[], object]) -> list[c2d.ScenarioWarning]:
+def warnings_of(call: Callable[[], object]) -> list[c2d.ScenarioWarning]:
     """Return what a call warns of, each at the line of this file."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -137,32 +137,32 @@ def doubts(call: Callable[[], object]) -> list[c2d.ScenarioWarning]:
 
 
 @pytest.mark.parametrize("name", DOUBTFUL)
-def test_what_nobody_means_is_doubted_by_its_path(name: str) -> None:
+def test_what_nobody_means_gets_a_warning_with_its_path(name: str) -> None:
     scenario, path, value = DOUBTFUL[name]
-    found = {doubt.path: doubt for doubt in doubts(scenario.validate)}
+    found = {warning.path: warning for warning in warnings_of(scenario.validate)}
     assert found[path].value == value
     assert str(found[path]) == f"{path} {found[path].reason}, got {value}"
 
 
-def test_a_tip_radius_that_wheels_of_their_own_radius_overrule_is_doubted() -> None:
+def test_a_tip_radius_that_wheels_of_their_own_radius_overrule_gets_a_warning() -> None:
     # On the arms' own model, and where they take the robot's.
     arms = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(5, wheel_radius=0.06))
     assert arms.flippers is not None
     tip = arms.flippers.tip_radius
     inherited = with_flippers(c2d.LineOfWheels(5, wheel_radius=0.06))
     for robot, path in ((arms, "robot.flippers.track"), (inherited, "robot.track")):
-        (doubt,) = doubts(Scenario(robot, STEP).validate)
-        assert (doubt.path, doubt.value) == ("robot.flippers.tip_radius", tip)
-        assert f"{path}.wheel_radius = 0.06 m" in doubt.reason
+        (warning,) = warnings_of(Scenario(robot, STEP).validate)
+        assert (warning.path, warning.value) == ("robot.flippers.tip_radius", tip)
+        assert f"{path}.wheel_radius = 0.06 m" in warning.reason
     as_built = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(5, wheel_radius=tip))
     of_both = with_flippers(c2d.LineOfWheels(5))
     for robot in (as_built, of_both):
-        assert not doubts(Scenario(robot, STEP).validate)
+        assert not warnings_of(Scenario(robot, STEP).validate)
 
 
 @pytest.mark.parametrize("name", VARIANTS)
-def test_what_is_usual_is_not_doubted(name: str) -> None:
-    assert not doubts(VARIANTS[name].validate)
+def test_what_is_usual_gets_no_warning(name: str) -> None:
+    assert not warnings_of(VARIANTS[name].validate)
 
 
 @pytest.mark.parametrize(
@@ -182,12 +182,12 @@ def test_what_is_usual_is_not_doubted(name: str) -> None:
         Scenario(ROBOT, STEP, solver=c2d.Solver(contact_frequency=30.0)),
     ],
 )
-def test_what_may_well_be_meant_is_not_doubted(scenario: Scenario) -> None:
-    assert not doubts(scenario.validate)
+def test_what_may_well_be_meant_gets_no_warning(scenario: Scenario) -> None:
+    assert not warnings_of(scenario.validate)
 
 
 @pytest.mark.parametrize("frequency", [10.0, 30.0])
-def test_the_sinkage_of_a_doubt_is_that_of_a_robot_at_rest(frequency: float) -> None:
+def test_the_sinkage_of_a_warning_is_that_of_a_robot_at_rest(frequency: float) -> None:
     solver = c2d.Solver(contact_frequency=frequency, contact_damping_ratio=1.0)
     still = Scenario(ROBOT, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0), solver=solver)
     with warnings.catch_warnings():
@@ -199,9 +199,9 @@ def test_the_sinkage_of_a_doubt_is_that_of_a_robot_at_rest(frequency: float) -> 
     share = run.contacts["normal_force"][bearing] / (9.81 * ROBOT.mass)
     assert run.contacts["penetration"][bearing] == pytest.approx(share * sinkage, rel=1e-3)
     assert share.sum() == pytest.approx(1.0, rel=1e-3)
-    doubted = doubts(still.validate)
-    assert [each.path for each in doubted] == ["solver.contact_frequency"] * (frequency < 20.0)
-    assert all(f"{sinkage:.2e}"[:4] in each.reason for each in doubted)
+    found = warnings_of(still.validate)
+    assert [each.path for each in found] == ["solver.contact_frequency"] * (frequency < 20.0)
+    assert all(f"{sinkage:.2e}"[:4] in each.reason for each in found)
 
 
 CALLS: dict[str, Callable[[], object]] = {
@@ -222,9 +222,9 @@ CALLS: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_a_call_tells_a_doubt_once_at_the_line_of_the_caller(name: str) -> None:
-    (doubt,) = doubts(CALLS[name])
-    assert doubt.path == "terrain.height"
+def test_a_call_tells_a_warning_once_at_the_line_of_the_caller(name: str) -> None:
+    (warning,) = warnings_of(CALLS[name])
+    assert warning.path == "terrain.height"
 
 
 SUNK = Scenario(
@@ -238,18 +238,18 @@ SUNK = Scenario(
 """Contacts that may not push it out again."""
 
 
-def test_a_run_that_sank_deeper_than_its_softness_explains_is_doubted() -> None:
+def test_a_run_that_sank_deeper_than_its_softness_explains_gets_a_warning() -> None:
     runs = []
-    (doubt,) = doubts(lambda: runs.append(c2d.simulate(SUNK)))
-    assert doubt.path == "max_penetration"
-    assert doubt.value == runs[0].metrics["max_penetration"] > 2e-3
-    assert "max_push_speed" in doubt.reason
+    (warning,) = warnings_of(lambda: runs.append(c2d.simulate(SUNK)))
+    assert warning.path == "max_penetration"
+    assert warning.value == runs[0].metrics["max_penetration"] > 2e-3
+    assert "max_push_speed" in warning.reason
     for call in (
         lambda: c2d.simulate_many([SUNK, SUNK]),
         lambda: c2d.sweep(SUNK, {"gravity": [20.0, 21.0]}, progress=False),
     ):
-        (doubt,) = doubts(call)
-        assert doubt.path == "max_penetration"
+        (warning,) = warnings_of(call)
+        assert warning.path == "max_penetration"
 
 
 def test_ground_inside_a_track_that_is_closed_in_a_run_is_no_sinking() -> None:
@@ -262,20 +262,20 @@ def test_ground_inside_a_track_that_is_closed_in_a_run_is_no_sinking() -> None:
 
 
 @pytest.mark.parametrize("name", VARIANTS)
-def test_a_run_of_what_is_usual_is_not_doubted(name: str) -> None:
-    assert not doubts(lambda: c2d.simulate(VARIANTS[name], record="summary"))
+def test_a_run_of_what_is_usual_gets_no_warning(name: str) -> None:
+    assert not warnings_of(lambda: c2d.simulate(VARIANTS[name], record="summary"))
 
 
-def test_what_only_reads_and_writes_tells_no_doubt() -> None:
+def test_what_only_reads_and_writes_tells_no_warning() -> None:
     def read_and_write() -> None:
         scenario = Scenario.from_json(HIGH.to_json()).replace({"duration": 0.01})
         assert scenario.identity
         ROBOT.with_track(line(0.5)).wheels()
 
-    assert not doubts(read_and_write)
+    assert not warnings_of(read_and_write)
 
 
-def test_a_robot_too_large_for_the_ground_is_said_to_be_doubtful() -> None:
+def test_a_robot_too_large_for_the_ground_gets_a_warning() -> None:
     rule = r"terrain must reach under .* \(robot\.track\.wheel_radius = 90 is usually at most 0\.18"
     with pytest.raises(c2d.ScenarioError, match=rule):
         on(line(90.0)).validate()
@@ -284,7 +284,7 @@ def test_a_robot_too_large_for_the_ground_is_said_to_be_doubtful() -> None:
         replace(over(points), start=c2d.Start(approach=9.0)).validate()
 
 
-def test_a_doubt_that_is_made_an_error_comes_before_the_run() -> None:
+def test_a_warning_that_is_made_an_error_comes_before_the_run() -> None:
     asked: list[int] = []
     with warnings.catch_warnings():
         warnings.simplefilter("error", c2d.ScenarioWarning)
@@ -293,10 +293,10 @@ def test_a_doubt_that_is_made_an_error_comes_before_the_run() -> None:
     assert not asked
 
 
-def test_a_doubt_survives_pickling() -> None:
-    doubt = c2d.ScenarioWarning("terrain.height", 75.0, "is usually at most 1.5 m")
-    twin: Any = pickle.loads(pickle.dumps(doubt))
-    assert vars(twin) == vars(doubt)
+def test_a_warning_survives_pickling() -> None:
+    warning = c2d.ScenarioWarning("terrain.height", 75.0, "is usually at most 1.5 m")
+    twin: Any = pickle.loads(pickle.dumps(warning))
+    assert vars(twin) == vars(warning)
     assert str(twin) == "terrain.height is usually at most 1.5 m, got 75.0"
 
 
