@@ -57,6 +57,24 @@ def test_a_pair_is_one_repeat_of_both_models(found: xr.Dataset) -> None:
         assert row["neither"].item() == (~cleared[index] & ~cleared[0]).sum()
 
 
+@pytest.mark.parametrize("part", [{}, {"model": "skids"}])
+def test_the_figure_has_each_difference_with_its_interval(
+    found: xr.Dataset, part: dict[str, str]
+) -> None:
+    shown = found.sel(part)
+    ax = shown.plot()
+    names = np.atleast_1d(shown["model"].to_numpy()).tolist()
+    assert [label.get_text() for label in ax.get_yticklabels()] == names
+    (line,) = (each for each in ax.lines if each.get_marker() == "o")
+    np.testing.assert_array_equal(line.get_xdata(), np.atleast_1d(shown["difference"]))
+    (bars,) = ax.collections
+    ends = np.array([each[:, 0] for each in bars.get_segments()])
+    bounds = [np.atleast_1d(shown[f"difference_{end}"]) for end in ("low", "high")]
+    np.testing.assert_array_equal(ends.T, bounds)
+    lost = found["only_reference"].sel(model="skids").item()
+    assert any(f"only belt {lost} times" in text.get_text() for text in ax.texts)
+
+
 def test_rates_and_differences_are_those_of_the_pairs(found: xr.Dataset) -> None:
     rates = rates_of(found)
     for name in list(MODELS)[1:]:

@@ -371,6 +371,31 @@ def _value(values: xarray.DataArray, value: float) -> str:
     return f"{values.name} {factor * value:.4g} {unit}".rstrip()
 
 
+def plot_comparison(data: xarray.Dataset, ax: Axes | None) -> Axes:
+    """Draw the difference of each model's rate from the reference's, with its interval."""
+    data = with_dims(data, "model")
+    names, reference = data["model"].to_numpy().tolist(), data.attrs["reference"]
+    ax = axes_or_new(ax, (8.0, _ROW * len(names) + _REST))
+    at = np.arange(len(names))
+    middle, low, high = (data[f"difference{end}"].to_numpy() for end in ("", "_low", "_high"))
+    ax.axvline(0.0, color=GRAY, linewidth=1.0, zorder=0)
+    ax.hlines(at, low, high, color=BLUE, linewidth=2.0)
+    ax.plot(middle, at, "o", color=BLUE, markersize=6.0)
+    for k, name in enumerate(names):
+        won, lost = data["only_model"].to_numpy()[k], data["only_reference"].to_numpy()[k]
+        text = f"clears {data['rate'].to_numpy()[k]:.0%}"
+        text += "" if name == reference else f"; only it {won}, only {reference} {lost} times"
+        ax.text(1.07, k, text, fontsize="x-small", va="center", parse_math=False)
+    ax.set_yticks(at, list(map(str, names)), parse_math=False)
+    ax.set(xlim=(-1.05, 1.05), ylim=(len(names) - 0.4, -0.6))
+    ax.set_xlabel(f"rate of clearing, minus that of {reference}", parse_math=False)
+    ax.spines[["top", "right"]].set_visible(False)
+    repeats = data.sizes.get("repeat", 1)
+    pairs = f"{repeats} pairs of runs for each model; intervals of 95 % (Newcombe, paired)"
+    _entitle(data.drop_vars("model"), ax, pairs, populations(data.attrs, banded=False))
+    return ax
+
+
 FIGURES: Mapping[str, Callable[..., Any]] = {
     "rates": plot_rates,
     "max_obstacle": plot_rates,
@@ -380,6 +405,7 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "seizure_map": plot_map,
     "jam_chart": plot_jam_chart,
     "policy": plot_policy,
+    "comparison": plot_comparison,
     "search": plot_search,
     "what_decides": plot_decides,
     "success": plot_outcomes,

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
+    from crawler2d.sweeps.figure_dataset import FigureDataset
+
 __all__ = ["Variant", "axis_of", "compare", "sweep", "variants"]
 
 
@@ -246,7 +248,7 @@ def compare(
     executor: Executor | None = None,
     threads: int | None = None,
     progress: bool | Progress | None = True,
-) -> xarray.Dataset:
+) -> FigureDataset:
     """Compare track models, or any variants, with a reference model under the same draws.
 
     Parameters
@@ -267,9 +269,9 @@ def compare(
 
     Returns
     -------
-    xarray.Dataset
-        The table of `sweep` with the dimensions `model` and `repeat`. In addition, for each model,
-        with 95 % intervals:
+    FigureDataset
+        An `xarray.Dataset` whose `plot` draws the differences: the table of `sweep` with the
+        dimensions `model` and `repeat`. In addition, for each model, with 95 % intervals:
 
         - `rate`, `rate_low`, `rate_high`: rate of clearing, Wilson's interval;
         - `difference`, `difference_low`, `difference_high`: that rate minus the reference's,
@@ -337,7 +339,11 @@ def compare(
     rates = rates_of(table).rename(low="rate_low", high="rate_high").drop_vars("count")
     rows = [_compare_pair(table, index, base) for index in range(len(labels))]
     columns = {name: ("model", [row[name] for row in rows], _attributes(name)) for name in rows[0]}
-    return table.merge(rates).assign(columns).assign_attrs(reference=labels[base])
+    whole = table.merge(rates).assign(columns)
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
+
+    about = {**table.attrs, "figure": "comparison", "reference": labels[base]}
+    return FigureDataset(whole.data_vars, whole.coords, about)
 
 
 def variants(models: object, place: str = "models") -> dict[Label, Mapping[str, Any]]:
