@@ -41,7 +41,7 @@ def test_what_holds_a_robot_that_tips_over_is_tried(tipped: c2d.Run) -> None:
     found = tipped.tip_over()
     changes = [change for change, _ in found.tried]
     assert changes[:2] == ["half the speed", "a tenth of the speed"]
-    assert found.held_by == (changes[-1],) == ("centre of mass 36 mm further forward",)
+    assert found.prevented_by == (changes[-1],) == ("centre of mass 36 mm further forward",)
     assert str(found).endswith("centre of mass 36 mm further forward: clears")
     x, y = ROBOT.center_of_mass
     shift = 0.1 * ROBOT.outline.axle_distance

@@ -60,7 +60,7 @@ class TipOver:
     tried: tuple[tuple[str, Outcome], ...] = ()
 
     @property
-    def held_by(self) -> tuple[str, ...]:
+    def prevented_by(self) -> tuple[str, ...]:
         """The changes that kept it from tipping over, whether it then cleared or not."""
         return tuple(change for change, end in self.tried if end is not Outcome.TIPPED_OVER)
 

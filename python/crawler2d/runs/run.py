@@ -355,7 +355,7 @@ class Run(ShownRun):
         >>> import crawler2d as c2d
         >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.11))
         >>> fall = run.tip_over()
-        >>> fall.backwards, fall.held_by
+        >>> fall.backwards, fall.prevented_by
         (True, ('centre of mass 36 mm further forward',))
         """
         refuse_without_result(self)
