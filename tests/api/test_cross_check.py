@@ -230,8 +230,8 @@ def test_a_check_says_how_often_both_engines_ended_alike_with_such_a_model(
 ) -> None:
     found = agreement_of(ROBOT.with_track(track))
     assert len(found.models) == models
-    assert (found.runs, found.alike, found.own, found.rapier) == figures
-    said = f"{found.alike} of {found.runs} runs" if models else "not studied"
+    assert (found.runs, found.agreeing, found.own, found.rapier) == figures
+    said = f"{found.agreeing} of {found.runs} runs" if models else "not studied"
     assert said in str(found)
 
 

@@ -67,13 +67,13 @@ _DIRECTIONS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Agreement:
-    """How often both engines ended alike with models of one kind; ``str(...)`` says it.
+    """How often both engines agreed on models of one kind; ``str(...)`` says it.
 
     Attributes
     ----------
     models : tuple of str
         Those of the study that are of this kind; empty if it has none.
-    runs, alike : int
+    runs, agreeing : int
         Number of runs, and of those in which both got over or neither did.
     own, rapier : int
         How many got over in crawler2d's own dynamics, and in rapier's.
@@ -81,17 +81,17 @@ class Agreement:
 
     models: tuple[str, ...]
     runs: int
-    alike: int
+    agreeing: int
     own: int
     rapier: int
 
     def __str__(self) -> str:
-        """Say how often they ended alike, and which way they differ."""
+        """Say how often they agreed, and which way they differ."""
         if not self.models:
-            return "How often both end alike with such a model was not studied"
+            return "How often both engines agree on such a model was not studied"
         text = (
             f"In the seizure study, with tracks of this kind ({'; '.join(self.models)}), both got"
-            f" over or neither did in {self.alike} of {self.runs} runs; {self.own} got over in"
+            f" over or neither did in {self.agreeing} of {self.runs} runs; {self.own} got over in"
             f" crawler2d's own dynamics, {self.rapier} in rapier"
         )
         directions = [_DIRECTIONS[model] for model in self.models if model in _DIRECTIONS]
@@ -99,18 +99,18 @@ class Agreement:
 
 
 def agreement_of(robot: Robot) -> Agreement:
-    """Look up how often both engines ended alike with models of the kind of a robot's.
+    """Look up how often both engines agreed on models of the kind of a robot's.
 
     Examples
     --------
     >>> import crawler2d as c2d
     >>> found = agreement_of(c2d.robots.engineer(track=c2d.CircumferentialWheels(24)))
-    >>> found.models, found.alike, found.runs
+    >>> found.models, found.agreeing, found.runs
     (('24 all round',), 102, 128)
     """
     models = _models_like(robot)
-    runs, alike, own, rapier = (sum(STUDY[model][k] for model in models) for k in range(4))
-    return Agreement(models=models, runs=runs, alike=alike, own=own, rapier=rapier)
+    runs, agreeing, own, rapier = (sum(STUDY[model][k] for model in models) for k in range(4))
+    return Agreement(models=models, runs=runs, agreeing=agreeing, own=own, rapier=rapier)
 
 
 def _models_like(robot: Robot) -> tuple[str, ...]:
@@ -156,8 +156,8 @@ class CrossCheck(Generic[R]):
     run, other : Run
         The run, and that in the other engine, both with their histories.
     same_outcome : bool
-        Whether both ended alike. "seized" depends on trials, which crawler2d's own dynamics make in
-        both; see docs/decisions/0016.
+        Whether both had the same outcome. "seized" depends on trials, which crawler2d's own
+        dynamics make in both; see docs/decisions/0016.
     distance : float
         [m] From the pose in which `run` ended to that of `other`.
     turn : float
@@ -171,7 +171,7 @@ class CrossCheck(Generic[R]):
     forces : Table
         Forces of the ground on each body that bears in a stop, see below.
     agreement : Agreement
-        How often both engines ended alike with such a model in a study, and which way they differ.
+        How often both engines agreed on such a model in a study, and which way they differ.
 
     Notes
     -----
@@ -199,7 +199,7 @@ class CrossCheck(Generic[R]):
 
     @property
     def same_outcome(self) -> bool:
-        """Whether both ended alike."""
+        """Whether both had the same outcome."""
         return self.run.outcome == self.other.outcome
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -388,7 +388,7 @@ class Run(ShownRun):
         -------
         CrossCheck
             Both runs, when their paths part, how far apart they end, the forces at the stops, the
-            `Balance` of each, and how often both ended alike with such a model in a study.
+            `Balance` of each, and how often both agreed on such a model in a study.
 
         Raises
         ------
