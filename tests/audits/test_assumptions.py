@@ -21,7 +21,7 @@ def test_a_rotor_that_is_stated_is_assumed_no_other() -> None:
 
 def test_chains_give_back_nothing_of_a_blow() -> None:
     robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack())
-    assert dict(c2d.unknowns.of_blows(robot)) == {}
+    assert dict(c2d.unknowns.of_restitution(robot)) == {}
 
 
 @pytest.mark.parametrize(("seized", "holds"), [(0, False), (2, False), (3, True), (18, True)])

@@ -20,7 +20,7 @@ from crawler2d.audits.verdicts import (
 )
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.terrain import Gap, Ridge, Terrain
-from crawler2d.presets.unknowns import of_blows, of_robot
+from crawler2d.presets.unknowns import of_restitution, of_robot
 from crawler2d.sweeps.statistics import wilson
 from crawler2d.variation.distributions import Ranges
 
@@ -168,7 +168,7 @@ def assumptions_of(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ran
     """
     own = of_robot(robot)
     others = [path for path in own if not path.endswith(_ROTOR) or path in unknown]
-    found = {"rotor": own.without(others), "restitution": of_blows(robot)}
+    found = {"rotor": own.without(others), "restitution": of_restitution(robot)}
     return {name: ranges for name, ranges in found.items() if ranges}
 
 

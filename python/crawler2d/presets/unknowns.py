@@ -28,8 +28,8 @@ from crawler2d.variation.distributions import (
 
 __all__ = [
     "RUN_UP",
-    "of_blows",
     "of_ground",
+    "of_restitution",
     "of_robot",
 ]
 
@@ -133,7 +133,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
 """Of the presets, by name."""
 
 
-def of_blows(robot: Robot) -> Ranges:
+def of_restitution(robot: Robot) -> Ranges:
     """List what is not known of impacts on the ground: the coefficient of restitution.
 
     Parameters
@@ -144,7 +144,7 @@ def of_blows(robot: Robot) -> Ranges:
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> dict(of_blows(c2d.robots.engineer()))
+    >>> dict(of_restitution(c2d.robots.engineer()))
     {'solver.restitution': Uniform(low=0.0, high=1.0)}
     """
     if isinstance(robot.track, SegmentalTrack):
