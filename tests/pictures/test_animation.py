@@ -44,7 +44,7 @@ def film_of(
         labels=[run.subject],
         pace=pace,
         follow=follow,
-        beside=False,
+        side_by_side=False,
         width=width,
     )
 

@@ -28,7 +28,7 @@ def pair() -> list[c2d.Run]:
 
 
 def film_of(runs: list[c2d.Run], times: Any, **options: Any) -> Film:
-    chosen: dict[str, Any] = {"pace": 1.0, "follow": None, "beside": False, "width": 300}
+    chosen: dict[str, Any] = {"pace": 1.0, "follow": None, "side_by_side": False, "width": 300}
     return Film(runs, np.array(times), labels=list(TRACKS), **chosen | options)
 
 
@@ -76,12 +76,12 @@ def test_a_branch_stands_still_until_it_branches_off(pair: list[c2d.Run]) -> Non
     assert same == [True, True, True, False]
 
 
-@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("side_by_side", [False, True])
 @pytest.mark.parametrize("follow", [False, True])
 def test_all_pictures_have_one_size_and_one_scale(
-    pair: list[c2d.Run], beside: bool, follow: bool
+    pair: list[c2d.Run], side_by_side: bool, follow: bool
 ) -> None:
-    film = film_of(pair, [0.0, 3.0, 5.0], beside=beside, follow=follow)
+    film = film_of(pair, [0.0, 3.0, 5.0], side_by_side=side_by_side, follow=follow)
     for number in range(3):
         film.show(number)
         film.figure.canvas.draw()
@@ -90,7 +90,7 @@ def test_all_pictures_have_one_size_and_one_scale(
         spans = [np.diff([ax.get_xlim(), ax.get_ylim()], axis=1) for ax in (one, other)]
         assert spans[0] == pytest.approx(spans[1])
         apart = abs(one.bbox.min - other.bbox.min) >= one.bbox.size
-        assert apart.tolist() == [beside, not beside]
+        assert apart.tolist() == [side_by_side, not side_by_side]
         whole = film.figure.bbox
         for ax in (one, other):
             box = ax.get_tightbbox()
@@ -134,7 +134,7 @@ def test_arrows_of_robots_of_any_size_are_to_one_scale() -> None:
         labels=["small", "large"],
         pace=1.0,
         follow=None,
-        beside=False,
+        side_by_side=False,
         width=300,
     )
     film.show(0)
@@ -147,9 +147,9 @@ def test_arrows_of_robots_of_any_size_are_to_one_scale() -> None:
     assert scales[0] == pytest.approx(scales[1])
 
 
-@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("side_by_side", [False, True])
 def test_a_film_of_two_has_as_many_frames_as_the_longer_run(
-    pair: list[c2d.Run], tmp_path: Path, beside: bool
+    pair: list[c2d.Run], tmp_path: Path, side_by_side: bool
 ) -> None:
     calls: list[tuple[int, int]] = []
     path = c2d.animate(
@@ -157,12 +157,12 @@ def test_a_film_of_two_has_as_many_frames_as_the_longer_run(
         tmp_path / "pair.gif",
         fps=2.0,
         width=300,
-        beside=beside,
+        side_by_side=side_by_side,
         progress=lambda *each: calls.append(each),
     )
     assert calls == [(done, 11) for done in range(12)]
     with Image.open(path) as image:
-        assert image.size[0] == (600 if beside else 300)
+        assert image.size[0] == (600 if side_by_side else 300)
         assert image.info["comment"].decode() == "; ".join(run.provenance for run in pair)
         assert getattr(image, "n_frames", 1) > 5  # equal ones are one
     assert list(tmp_path.iterdir()) == [path]
@@ -196,7 +196,7 @@ def test_without_labels_pictures_are_called_by_their_tracks(
         (lambda pair: {"runs": pair, "labels": ["one"]}, "labels"),
         (lambda pair: {"runs": pair, "labels": "ab"}, "labels"),
         (lambda pair: {"runs": pair, "labels": ["one", 2]}, "labels"),
-        (lambda pair: {"runs": pair, "beside": 1}, "beside"),
+        (lambda pair: {"runs": pair, "side_by_side": 1}, "side_by_side"),
         (lambda pair: {"runs": pair, "follow": "no"}, "follow"),
         (lambda pair: {"runs": pair, "progress": "yes"}, "progress"),
         (lambda pair: {"runs": pair, "path": "pair.avi"}, "path"),

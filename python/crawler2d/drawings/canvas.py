@@ -96,7 +96,7 @@ class Canvas:
 
 
 def blank_axes(
-    figure: Figure, extent: Extent, count: int = 1, *, beside: bool = False
+    figure: Figure, extent: Extent, count: int = 1, *, side_by_side: bool = False
 ) -> list[Axes]:
     """Add Axes of the size that drawings of an extent take, for `arrange` to put in their places.
 
@@ -108,11 +108,11 @@ def blank_axes(
         [m] Left, right, bottom and top of each drawing.
     count : int
         How many.
-    beside : bool
-        Whether they will be beside each other, not one above the other.
+    side_by_side : bool
+        Whether they will be side by side, not one above the other.
     """
     left, right, bottom, top = extent
-    columns, rows = (count, 1) if beside else (1, count)
+    columns, rows = (count, 1) if side_by_side else (1, count)
     width = _WIDTH - _LEFT - _RIGHT
     height = min(max(width * (top - bottom) / (right - left), _HEIGHTS[0]), _HEIGHTS[1])
     figure.set_size_inches(columns * _WIDTH, rows * height)
@@ -121,10 +121,10 @@ def blank_axes(
 
 
 def arrange(
-    figure: Figure, axes: list[Axes], titles: list[Text], legend: Any, *, beside: bool = False
+    figure: Figure, axes: list[Axes], titles: list[Text], legend: Any, *, side_by_side: bool = False
 ) -> None:
     """Put Axes with their titles beside or below each other, and the legend of all below."""
-    columns, rows = (len(axes), 1) if beside else (1, len(axes))
+    columns, rows = (len(axes), 1) if side_by_side else (1, len(axes))
     above = max(_inches(title) for title in titles) + 2.0 * _CLEAR
     drawing = _inches(axes[0])
     below = _inches(legend) + 2.0 * _CLEAR
@@ -133,7 +133,7 @@ def arrange(
     figure.set_figheight(whole)
     width, height = (_WIDTH - _LEFT - _RIGHT) / (columns * _WIDTH), drawing / whole
     for number, ax in enumerate(axes):
-        column, row = (number, 0) if beside else (0, number)
+        column, row = (number, 0) if side_by_side else (0, number)
         left = (column * _WIDTH + _LEFT) / (columns * _WIDTH)
         bottom = below + (rows - 1 - row) * cell + _AXIS
         ax.set_position((left, bottom / whole, width, height))

@@ -54,7 +54,7 @@ def animate(
     fps: float,
     speed: float,
     follow: bool | None,
-    beside: bool,
+    side_by_side: bool,
     width: int,
     counted: Callable[[int], AbstractContextManager[Callable[[int], None]]],
 ) -> Path:
@@ -79,7 +79,13 @@ def animate(
     with part_of(path) as part:
         part.touch()  # here it fails if nothing can be written
         film = Film(
-            runs, times, labels=labels, pace=speed, follow=follow, beside=beside, width=width
+            runs,
+            times,
+            labels=labels,
+            pace=speed,
+            follow=follow,
+            side_by_side=side_by_side,
+            width=width,
         )
         with counted(count) as report:
             shown = 0
@@ -181,7 +187,7 @@ class Film:
         What to call each.
     pace : float
         [-] How many times faster than real time they are shown.
-    follow, beside, width
+    follow, side_by_side, width
         See `crawler2d.animate`.
     """
 
@@ -193,7 +199,7 @@ class Film:
         labels: Sequence[str],
         pace: float,
         follow: bool | None,
-        beside: bool,
+        side_by_side: bool,
         width: int,
     ) -> None:
         figures = extra("matplotlib.figure", "animation")
@@ -205,7 +211,7 @@ class Film:
         left, bottom = extents[:, ::2].min(axis=0).tolist()
         right, top = extents[:, 1::2].max(axis=0).tolist()
         views = _views(scenes, (left, right, bottom, top), follow=follow)
-        axes = blank_axes(self.figure, tuple(views[0][0]), len(runs), beside=beside)
+        axes = blank_axes(self.figure, tuple(views[0][0]), len(runs), side_by_side=side_by_side)
         # Arrows are as long as their robots are, so forces are scaled by that.
         sizes = [run.scenario.robot.outline.axle_distance for run in runs]
         scale = max(usual_force(run) / size for run, size in zip(runs, sizes, strict=True))
@@ -218,9 +224,9 @@ class Film:
             )
         ]
         axes[0].plot([], [], "-", color=RED, linewidth=2.5, label=forces)
-        legend = draw_legend(axes[0] if beside else axes[-1], axes)
+        legend = draw_legend(axes[0] if side_by_side else axes[-1], axes)
         titles = [picture.title for picture in self._pictures]
-        arrange(self.figure, axes, titles, legend, beside=beside)
+        arrange(self.figure, axes, titles, legend, side_by_side=side_by_side)
 
     def show(self, number: int) -> None:
         """Draw a frame."""

@@ -1,4 +1,4 @@
-"""Several runs in one film, beside or above each other."""
+"""Several runs in one video, side by side or one above the other."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def animate(
     fps: float = 25.0,
     speed: float = 1.0,
     follow: bool | None = None,
-    beside: bool = False,
+    side_by_side: bool = False,
     width: int = 800,
     progress: bool | Progress | None = True,
 ) -> Path:
@@ -56,8 +56,8 @@ def animate(
     follow : bool, optional
         Whether each view moves with its robot. False shows all that any of them visits; None does
         so unless the robots would be too small to see.
-    beside : bool
-        Whether the pictures are beside each other; else they are one above the other.
+    side_by_side : bool
+        Whether the views are side by side; else they are one above the other.
     width : int
         [px] Width of each picture, from 200 to 4000.
     progress : bool or callable
@@ -104,7 +104,7 @@ def animate(
         fps=fps,
         speed=speed,
         follow=None if follow is None else read_bool(follow, "follow"),
-        beside=read_bool(beside, "beside"),
+        side_by_side=read_bool(side_by_side, "side_by_side"),
         width=width,
         counted=partial(reporter, progress, unit="frame"),
     )

@@ -178,7 +178,7 @@ class ShownRun(Record):
             fps=fps,
             speed=speed,
             follow=None if follow is None else read_bool(follow, "follow"),
-            beside=False,
+            side_by_side=False,
             width=width,
             counted=partial(reporter, progress, unit="frame"),
         )
