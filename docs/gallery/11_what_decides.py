@@ -13,7 +13,7 @@ found = c2d.studies.what_decides(
     c2d.Scenario(robot, c2d.terrains.step(0.08)),
     unknown=c2d.unknowns.of_robot(robot) | c2d.unknowns.of_ground(),
     samples=64,
-    until=c2d.Until(threshold=0.5, least=5, most=20),
+    until=c2d.Until(threshold=0.5, min_runs=5, max_runs=20),
     progress=False,
 )
 found.plot()

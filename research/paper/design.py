@@ -97,7 +97,7 @@ class Work:
 
     def sampling_of(self, repeats: int) -> RateSampling:
         """Return the keywords of a study of rates whose cells all have the same number of runs."""
-        until = c2d.Until(width=_NO_WIDTH, least=repeats, most=repeats)
+        until = c2d.Until(width=_NO_WIDTH, min_runs=repeats, max_runs=repeats)
         return RateSampling(**self.sampling, until=until)
 
     def success(

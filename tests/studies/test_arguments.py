@@ -108,7 +108,7 @@ def test_fields_that_differ_in_their_seed_alone_get_a_warning_where_runs_draw_it
     # Each row of the result is the same: every run on either has a field of its own.
     base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=0.1)
     fields = {f"field {seed}": c2d.terrains.random_stepfield(seed) for seed in (1, 2)}
-    few: Any = {"until": c2d.Until(least=1, most=1), "progress": False}
+    few: Any = {"until": c2d.Until(min_runs=1, max_runs=1), "progress": False}
     with pytest.warns(c2d.ScenarioWarning, match="their seed.*got field 1, field 2$"):
         c2d.studies.success(base, terrains=fields, **few)
     with warnings.catch_warnings():

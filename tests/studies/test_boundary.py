@@ -45,7 +45,9 @@ def test_every_model_and_sample_has_its_own_bracket() -> None:
 def test_where_a_model_was_not_tried_nothing_was_drawn() -> None:
     models = {"as it is": {}, "weak": {"robot.drivetrain.max_torque": 0.5}}
     how: dict[str, Any] = {"unknown": {"robot.mass": c2d.uniform(18.0, 24.0)}, "samples": 2}
-    found = friction_of(models=models, tolerance=0.2, until=c2d.Until(least=1, most=1), **how)
+    found = friction_of(
+        models=models, tolerance=0.2, until=c2d.Until(min_runs=1, max_runs=1), **how
+    )
     is_tried = found["count"] > 0
     assert not is_tried.all()
     assert (found["unknown_mass"].notnull() == is_tried).all()
@@ -95,7 +97,7 @@ def test_a_model_that_breaks_a_rule_is_refused_before_any_run() -> None:
 
 
 def test_halving_ends_where_there_is_no_number_between() -> None:
-    once = c2d.Until(least=1, most=1)
+    once = c2d.Until(min_runs=1, max_runs=1)
     found = friction_of(tolerance=1e-18, until=once)
     low, high = found["bracket_low"].item(), found["bracket_high"].item()
     assert 0.5 * (low + high) in (low, high)

@@ -18,7 +18,7 @@ MODELS = {"belt": c2d.BeltTrack(), "3 gears": c2d.LineOfWheels(3, wheel=c2d.Gear
 HEIGHTS = [0.04, 0.088]
 
 
-TEN = c2d.Until(width=0.01, least=10, most=10)
+TEN = c2d.Until(width=0.01, min_runs=10, max_runs=10)
 
 
 def found_of(**how: Any) -> Any:
@@ -62,15 +62,15 @@ def test_the_runs_are_those_of_a_sweep_with_the_same_seed() -> None:
 
 
 def test_the_rule_is_the_one_that_is_given() -> None:
-    fixed = found_of(until=c2d.Until(width=0.01, least=7, most=7))
+    fixed = found_of(until=c2d.Until(width=0.01, min_runs=7, max_runs=7))
     assert (fixed["count"] == 7).all()
     assert fixed.sizes["repeat"] == 7
-    assert "least=7" in fixed.attrs["until"]
+    assert "min_runs=7" in fixed.attrs["until"]
 
 
 def test_what_is_not_known_has_a_rate_for_every_sample() -> None:
     unknown = {"terrain.friction": c2d.uniform(0.3, 1.0)}
-    found = found_of(unknown=unknown, samples=4, until=c2d.Until(threshold=0.5, most=20))
+    found = found_of(unknown=unknown, samples=4, until=c2d.Until(threshold=0.5, max_runs=20))
     assert found["rate"].dims == ("model", "height", "sample")
     assert found["highest"].dims == ("model", "sample")
     assert found["unknown_friction"].sel(model="belt", height=0.04).shape == (4,)
@@ -156,7 +156,7 @@ def test_slopes_and_gaps_are_climbed_up_to_their_limit() -> None:
 def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
-    found = found_of(until=c2d.Until(threshold=0.5, most=10))
+    found = found_of(until=c2d.Until(threshold=0.5, max_runs=10))
     ax = found.plot()
     ax.figure.canvas.draw()
     tried = (1e3 * np.array(HEIGHTS)).tolist()
@@ -234,7 +234,7 @@ def test_values_in_a_legend_have_the_unit_that_they_have_at_an_axis() -> None:
 def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
-    found = found_of(until=c2d.Until(threshold=0.5, most=10))
+    found = found_of(until=c2d.Until(threshold=0.5, max_runs=10))
     _, ax = plt.subplots()
     assert found.plot(ax) is ax
     assert len(ax.get_lines()) == 2
@@ -253,7 +253,7 @@ def test_labels_with_dollars_are_no_formulas_in_a_figure() -> None:
 
     dear, dearer = models = {"for 5 $^$": c2d.BeltTrack(), "for 6 $_$": c2d.LineOfWheels(4)}
     how: Any = {"models": models, "progress": False}
-    once = c2d.Until(least=1, most=1, confidence=0.995)
+    once = c2d.Until(min_runs=1, max_runs=1, confidence=0.995)
     highest = c2d.studies.max_obstacle(BASE, heights=[0.05], until=once, **how)
     crossed = c2d.studies.success(BASE, terrains={dear: BASE.terrain}, until=once, **how)
     ridden = c2d.studies.ride(BASE, repeats=1, **how)

@@ -23,7 +23,7 @@ UNKNOWN: dict[str, Any] = {
     "terrain.friction": c2d.uniform(0.5, 1.0),
     "robot.drivetrain.max_torque": c2d.uniform(30.0, 40.0),
 }
-QUICK = c2d.Until(threshold=0.5, least=5, most=10)
+QUICK = c2d.Until(threshold=0.5, min_runs=5, max_runs=10)
 
 
 def found_of(scenario: Any = SLOPE, **how: Any) -> Any:

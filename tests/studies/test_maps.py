@@ -93,7 +93,7 @@ def test_the_boundary_of_a_belt_on_a_slope_is_where_friction_equals_its_tangent(
 
 def test_with_unknowns_the_median_decides_and_the_band_says_where_it_is_not_sure() -> None:
     unknown = {"terrain.friction": c2d.shifted(-0.15, 0.15)}
-    until = c2d.Until(threshold=0.5, least=2, most=2)
+    until = c2d.Until(threshold=0.5, min_runs=2, max_runs=2)
     found = map_of(unknown=unknown, samples=4, refine=1, until=until).squeeze("model")
     assert found["rate"].dims == ("angle", "friction", "sample")
     tried = found["count"].to_numpy().max(axis=-1) > 0
@@ -144,7 +144,7 @@ def test_where_all_slip_the_map_has_another_colour_than_where_all_clear() -> Non
 def test_what_is_not_certain_is_hatched_and_the_legend_says_so() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
-    few = c2d.Until(threshold=0.5, least=3, most=3)  # three that agree prove nothing
+    few = c2d.Until(threshold=0.5, min_runs=3, max_runs=3)  # three that agree prove nothing
     found = map_of(refine=0, until=few).squeeze("model")
     assert found["unsure"].all()
     ax = found.plot()
@@ -170,7 +170,7 @@ def test_a_map_draws_one_model_with_its_unit_and_its_populations() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
     models = {"as it is": {}, "weak": {"robot.drivetrain.max_torque": 3.0}}
-    found = map_of(models=models, refine=1, until=c2d.Until(threshold=0.5, most=10))
+    found = map_of(models=models, refine=1, until=c2d.Until(threshold=0.5, max_runs=10))
     error = refused(found.plot)
     assert error.path == "plot"
     assert "found.sel(model=...)" in error.rule
@@ -189,7 +189,7 @@ def test_a_map_draws_one_model_with_its_unit_and_its_populations() -> None:
 
 
 def test_the_figure_of_a_part_of_a_map_with_one_value_of_a_field_is_refused() -> None:
-    found = map_of(refine=0, until=c2d.Until(threshold=0.5, most=10))
+    found = map_of(refine=0, until=c2d.Until(threshold=0.5, max_runs=10))
     for part in ({"angle": [0]}, {"friction": [0]}, {"angle": [0], "friction": [0]}):
         error = refused(found.isel(part).plot)
         assert error.path == "plot"

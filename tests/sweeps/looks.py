@@ -53,7 +53,7 @@ class Looks:
         enough = self.high - self.low <= until.width
         if until.threshold is not None:
             enough |= self.misses(until.threshold)
-        return (runs >= until.least) & enough | (runs >= until.most)
+        return (runs >= until.min_runs) & enough | (runs >= until.max_runs)
 
 
 @cache

@@ -62,7 +62,7 @@ def test_the_figure_has_each_difference_with_its_interval(
     found: xr.Dataset, part: dict[str, str]
 ) -> None:
     shown = found.sel(part)
-    ax = shown.plot()
+    ax: Any = shown.plot()
     names = np.atleast_1d(shown["model"].to_numpy()).tolist()
     assert [label.get_text() for label in ax.get_yticklabels()] == names
     (line,) = (each for each in ax.lines if each.get_marker() == "o")

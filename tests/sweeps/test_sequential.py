@@ -107,9 +107,9 @@ def test_a_confidence_of_50_percent_is_kept_too() -> None:
         Until(),
         Until(width=0.3),
         Until(threshold=0.5),
-        Until(threshold=0.5, least=0),
-        Until(threshold=0.95, least=1),
-        Until(threshold=0.1, width=0.05, most=500),
+        Until(threshold=0.5, min_runs=0),
+        Until(threshold=0.95, min_runs=1),
+        Until(threshold=0.1, width=0.05, max_runs=500),
     ],
 )
 def test_the_interval_of_a_cell_that_ends_holds_the_rate_in_95_percent(until: Until) -> None:
@@ -269,9 +269,9 @@ def test_impossible_confidence_is_refused(confidence: float) -> None:
 
 def test_a_cell_ends_where_its_interval_says() -> None:
     for until in (
-        Until(width=0.3, most=60),
-        Until(width=0.25, threshold=0.75, least=0, confidence=0.8),
-        Until(threshold=0.4, least=70, most=70),
+        Until(width=0.3, max_runs=60),
+        Until(width=0.25, threshold=0.75, min_runs=0, confidence=0.8),
+        Until(threshold=0.4, min_runs=70, max_runs=70),
     ):
         found = np.zeros((91, 91), dtype=bool)
         sides = np.zeros((91, 91), dtype=int)
@@ -291,7 +291,7 @@ def test_a_cell_ends_where_its_interval_says() -> None:
 
 
 def test_least_and_most_come_before_what_is_known() -> None:
-    until = Until(threshold=0.5, least=12, most=15)
+    until = Until(threshold=0.5, min_runs=12, max_runs=15)
     assert until.side(11, 11) == 1
     assert not until.is_done(11, 11)
     assert until.is_done(12, 12)
@@ -322,7 +322,7 @@ def test_ten_equal_outcomes_tell_the_side_of_a_half() -> None:
 def test_every_rate_reaches_the_default_width_within_the_default_most() -> None:
     widths = looks.sequentials().high - looks.sequentials().low
     wide = [n for n in range(1, looks.MOST) if widths[n, : n + 1].max() > Until().width]
-    assert max(wide) + 1 == 245 <= Until().most
+    assert max(wide) + 1 == 245 <= Until().max_runs
     assert "at most 245 runs" in PAGE
 
 
@@ -336,11 +336,11 @@ def test_every_rate_reaches_the_default_width_within_the_default_most() -> None:
         *(("confidence", value, "must be between 0 and 1") for value in (0.0, 1.0, 95, math.nan)),
         ("confidence", None, "must be a number"),
         *(
-            ("least", value, "must be a whole number from 0 to 1000000")
+            ("min_runs", value, "must be a whole number from 0 to 1000000")
             for value in (-1, 2.5, 10.0, True, None, 10**6 + 1)
         ),
         *(
-            ("most", value, "must be a whole number from 10 to 1000000")
+            ("max_runs", value, "must be a whole number from 10 to 1000000")
             for value in (9, 0, "250", 10**6 + 1)
         ),
     ],
@@ -353,31 +353,31 @@ def test_what_breaks_a_rule_is_refused_at_once(field: str, value: Any, rule: str
 
 
 def test_a_list_is_no_number() -> None:
-    for field in ("width", "threshold", "least", "most", "confidence"):
+    for field in ("width", "threshold", "min_runs", "max_runs", "confidence"):
         given: Any = {field: np.array([0.5, 0.5])}
         with pytest.raises(ScenarioError, match=f"^until.{field} must be a (whole )?number"):
             Until(**given)
 
 
 def test_the_ends_of_every_rule_are_allowed() -> None:
-    assert Until(width=1.0, least=10**6, most=10**6).is_done(0, 10**6)
-    assert Until() == Until(width=0.2, threshold=None, least=10, most=250, confidence=0.95)
+    assert Until(width=1.0, min_runs=10**6, max_runs=10**6).is_done(0, 10**6)
+    assert Until() == Until(width=0.2, threshold=None, min_runs=10, max_runs=250, confidence=0.95)
 
 
 def test_at_least_one_run_is_made() -> None:
     with pytest.raises(ScenarioError, match=r"must be a whole number from 1 to 1000000, got 0$"):
-        Until(least=0, most=0)
-    assert not Until(least=0, most=1, width=0.9).is_done(0, 0)
-    assert Until(least=0, most=1, width=0.9).is_done(1, 1)
-    assert not Until(least=0, width=1.0).is_done(0, 0)
-    assert Until(least=0, width=1.0).is_done(0, 1)
+        Until(min_runs=0, max_runs=0)
+    assert not Until(min_runs=0, max_runs=1, width=0.9).is_done(0, 0)
+    assert Until(min_runs=0, max_runs=1, width=0.9).is_done(1, 1)
+    assert not Until(min_runs=0, width=1.0).is_done(0, 0)
+    assert Until(min_runs=0, width=1.0).is_done(0, 1)
 
 
 def test_a_rule_is_frozen_equal_to_its_copy_and_made_of_python_numbers() -> None:
     given: Any = (np.float32(0.25), np.float64(0.5), np.int32(5), np.uint64(80), np.array(0.9))
     names = [field.name for field in dataclasses.fields(Until)]
     until = Until(**dict(zip(names, given, strict=True)))
-    expected = Until(width=0.25, threshold=0.5, least=5, most=80, confidence=0.9)
+    expected = Until(width=0.25, threshold=0.5, min_runs=5, max_runs=80, confidence=0.9)
     assert until == expected == pickle.loads(pickle.dumps(until))
     assert hash(until) == hash(expected)
     assert repr(until) == repr(expected)

@@ -255,9 +255,9 @@ class Tally:
         """Number of runs to simulate next: half as many again, so that few rounds are needed."""
         count, valid = len(self.rows), self.valid
         commonest = max(sum(map(each, valid)) for each in (self.counts, *self.others))
-        if count >= self.until.most or self.until.is_done(commonest, len(valid)):
+        if count >= self.until.max_runs or self.until.is_done(commonest, len(valid)):
             return 0
-        return min(max(self.until.least - count, count // 2, 5), self.until.most - count)
+        return min(max(self.until.min_runs - count, count // 2, 5), self.until.max_runs - count)
 
 
 class Campaign:
@@ -408,7 +408,7 @@ def campaign(
         until = Until(threshold=threshold)
     else:
         count = whole_number(repeats, "repeats", 1, 10**6)
-        until = Until(least=count, most=count)
+        until = Until(min_runs=count, max_runs=count)
     given: RateSampling = {"until": until, **how}
     if not isinstance(given["until"], Until):
         raise ScenarioError("until", given["until"], "must be an Until")

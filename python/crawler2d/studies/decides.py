@@ -301,7 +301,7 @@ def what_decides(
     ...     "terrain.friction": c2d.uniform(0.5, 1.0),
     ...     "robot.drivetrain.max_torque": c2d.uniform(30.0, 40.0),
     ... }
-    >>> until = c2d.Until(threshold=0.5, least=5, most=10)  # quick
+    >>> until = c2d.Until(threshold=0.5, min_runs=5, max_runs=10)  # quick
     >>> found = c2d.studies.what_decides(
     ...     base, unknown=unknown, samples=32, until=until, progress=False
     ... )

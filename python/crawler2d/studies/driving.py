@@ -204,7 +204,7 @@ def _limiting_study(
         halts = [Halt(each) if figure.halts else None for each in run_ups]
         drive(study, [halt for halt in halts if halt is not None])
         driven = list(zip(run_ups, halts, strict=True))
-        shape = (len(fields), len(changes), -1, study.until.most)
+        shape = (len(fields), len(changes), -1, study.until.max_runs)
         values = np.array([figure.values(*both) for both in driven]).reshape(shape)
         speeds = np.array([run_up.speed for run_up in run_ups]).reshape(shape)
         measures = {

@@ -197,7 +197,7 @@ def odometry(
             for change in changes
         ]
         tallies = study.repeat(cells)
-        shape = (len(fields), len(changes), -1, study.until.most)
+        shape = (len(fields), len(changes), -1, study.until.max_runs)
         ratios = _figures(tallies, _ratio).reshape(shape)  # of the way made to the way read
         radii = _figures(tallies[:: len(changes)], _radius).reshape(ratios[:, 0].shape)
         dims: Dims = {

@@ -156,12 +156,12 @@ def search(
     with campaign(scenario, how, swept, repeats=whole_number(first, "first", 1, 10**6)) as study:
         candidates, refusals = _candidates(study, fields, grounds, objective)
         study.settings += len(candidates) * len(grounds)
-        rounds = halve(study, candidates, goal, study.until.least)
+        rounds = halve(study, candidates, goal, study.until.min_runs)
         confirmed = _confirmed(study, ranked(candidates, goal)[:2], fresh)
         cost = "wheels a side" if objective is None else getattr(objective, "__name__", "cost")
         return search_table(study, candidates, list(grounds), confirmed, goal).assign_attrs(
             objective=cost,
-            first=study.until.least,
+            first=study.until.min_runs,
             rounds=rounds,
             confirm=fresh,
             refused=len(refusals),

@@ -270,7 +270,7 @@ def measure_table(
         table = table.assign(summary(name, _each(measure, table)))
     return FigureDataset(table.data_vars, table.coords).assign_attrs(
         **campaign.attributes(figure, flat),
-        repeats=campaign.until.most,
+        repeats=campaign.until.max_runs,
         measure=next(iter(measures)),
     )
 

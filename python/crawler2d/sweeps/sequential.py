@@ -110,10 +110,8 @@ class Until(TakesKeywords):
         most 245 runs.
     threshold : float, optional
         Enough, too, as soon as the interval lies wholly above or below this rate, between 0 and 1.
-    least : int
-        Fewest runs, 0 or more.
-    most : int
-        Most runs, at least `least` and 1.
+    min_runs, max_runs : int
+        Fewest runs, 0 or more; most runs, at least `min_runs` and 1.
     confidence : float
         Confidence level of the interval, between 0 and 1.
 
@@ -133,8 +131,8 @@ class Until(TakesKeywords):
 
     width: float = 0.2
     threshold: float | None = None
-    least: int = 10
-    most: int = 250
+    min_runs: int = 10
+    max_runs: int = 250
     confidence: float = 0.95
 
     def __post_init__(self) -> None:
@@ -148,8 +146,8 @@ class Until(TakesKeywords):
             if not 0.0 < number < 1.0 and not (name == "width" and number == 1.0):
                 rule = "> 0 and at most 1" if name == "width" else "between 0 and 1"
                 raise ScenarioError(f"until.{name}", number, f"must be {rule}")
-        for name in ("least", "most"):
-            lowest = 0 if name == "least" else max(self.least, 1)
+        for name in ("min_runs", "max_runs"):
+            lowest = 0 if name == "min_runs" else max(self.min_runs, 1)
             count = whole_number(getattr(self, name), f"until.{name}", lowest, _MOST)
             object.__setattr__(self, name, count)
 
@@ -168,8 +166,8 @@ class Until(TakesKeywords):
             If not ``0 <= successes <= count``.
         """
         interval = sequential(successes, count, self.confidence)
-        if count < max(self.least, 1) or count >= self.most:  # of no runs nothing is known
-            return count >= self.most
+        if count < max(self.min_runs, 1) or count >= self.max_runs:  # of no runs nothing is known
+            return count >= self.max_runs
         return interval.high - interval.low <= self.width or interval.side(self.threshold) != 0
 
     @takes_keywords
