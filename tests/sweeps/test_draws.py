@@ -65,10 +65,10 @@ def test_a_scaled_value_is_a_share_of_the_scenarios_own() -> None:
 def test_a_shifted_value_lies_about_the_scenarios_own() -> None:
     assert value(shifted(-0.04, 0.04), 0.25, own=0.1) == pytest.approx(0.08)
     assert value(shifted(-0.04, 0.04), 1.0, own=-1.0) == pytest.approx(-0.96)
-    above = shifted(-0.04, 0.04, least=0.0)
+    above = shifted(-0.04, 0.04, minimum=0.0)
     assert [value(above, n, own=0.01) for n in (0.0, 1.0)] == pytest.approx([0.0, 0.08])
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    share = shifted(-0.5, 0.5, of="robot.outline.axle_distance").resolve(base)
+    share = shifted(-0.5, 0.5, unit="robot.outline.axle_distance").resolve(base)
     assert value(share, 1.0, own=0.0) == pytest.approx(0.5 * ROBOT.outline.axle_distance)
 
 

@@ -263,7 +263,7 @@ def unknown_of_file(
     stated, about = reading.sources, scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
     slack = "2 % of the axle distance for what is mounted or left off"
     for axis in (0, 1):
-        place = shifted(-0.02, 0.02, of="robot.outline.axle_distance")
+        place = shifted(-0.02, 0.02, unit="robot.outline.axle_distance")
         source = f"{stated['robot.center_of_mass']}; {slack}"
         ranges[f"robot.center_of_mass[{axis}]"] = place, source
     torque = stated["robot.drivetrain.max_torque"]
@@ -272,7 +272,7 @@ def unknown_of_file(
     else:
         ranges["robot.drivetrain.max_torque"] = about, f"{torque}; a tenth"
     if reading.robot.belly is not None:
-        height = shifted(-0.05, 0.05, of="robot.outline.front_radius")
+        height = shifted(-0.05, 0.05, unit="robot.outline.front_radius")
         source = f"{stated['robot.belly']}; a twentieth of the radius"
         ranges[BELLY_HEIGHTS] = height, source
     if with_friction:

@@ -366,7 +366,7 @@ def range_of(path: str, distribution: Distribution) -> str:
         case Levels(factors):
             return f"times {', '.join(f'{each:.3g}' for each in factors)} in turn"
         case Shifted():
-            of = str(distribution.of or "").rpartition(".")[2].replace("_", " ")
+            of = str(distribution.unit or "").rpartition(".")[2].replace("_", " ")
             unit = f" of the {of}" if of else own
             return f"{distribution.low:+g} to {distribution.high:+g}{unit}"
     return str(read_distribution(distribution, path))  # one of SciPy has no text of its own

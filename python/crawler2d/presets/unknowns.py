@@ -62,10 +62,10 @@ _MOTORS = "the preset's is an estimate: half to twice"
 _BY_ROUGH = "0.016 to 0.1 s times rated torque squared over power, both from ROUGH"
 
 GENERAL: Mapping[str, Range] = {
-    _X: (shifted(-0.1, 0.1, of="robot.outline.axle_distance"), "a tenth of the axle distance"),
-    _Y: (shifted(-0.05, 0.05, of="robot.outline.axle_distance"), "a twentieth of it"),
+    _X: (shifted(-0.1, 0.1, unit="robot.outline.axle_distance"), "a tenth of the axle distance"),
+    _Y: (shifted(-0.05, 0.05, unit="robot.outline.axle_distance"), "a twentieth of it"),
     _TORQUE: (scaled(0.5, 2.0), "half to twice"),
-    BELLY_HEIGHTS: (shifted(-0.1, 0.1, of="robot.outline.front_radius"), "a tenth of the radius"),
+    BELLY_HEIGHTS: (shifted(-0.1, 0.1, unit="robot.outline.front_radius"), "a tenth of the radius"),
 }
 """Of a robot that is no preset: general estimates."""
 

@@ -220,10 +220,10 @@ class Shifted(_Bounded):
     Parameters
     ----------
     low, high : float
-        Bounds of the shift, in units of the field, or as shares of the length `of`.
-    of : str, optional
-        Path of a length of the scenario: the bounds are multiples of it.
-    least : float, optional
+        Bounds of the shift, in units of the field, or in units of a length of the scenario.
+    unit : str, optional
+        Path of that length, such as ``robot.outline.axle_distance``.
+    minimum : float, optional
         Smallest value: a range that begins below it is moved up.
 
     Raises
@@ -239,8 +239,8 @@ class Shifted(_Bounded):
     [-0.03, 0.03]
     """
 
-    of: str | None = None
-    least: float | None = None
+    unit: str | None = None
+    minimum: float | None = None
 
     @property
     def is_relative(self) -> bool:
@@ -249,19 +249,19 @@ class Shifted(_Bounded):
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
         """Map numbers from 0 to 1 to values."""
-        low = own + self.low if self.least is None else max(own + self.low, self.least)
+        low = own + self.low if self.minimum is None else max(own + self.low, self.minimum)
         return _between(low, low + (self.high - self.low), numbers)
 
     def resolve(self, scenario: Scenario) -> Shifted:
-        """Take the length `of` from the scenario."""
-        if self.of is None:
+        """Take the length that is the unit from the scenario."""
+        if self.unit is None:
             return self
-        length = read_path(scenario, self.of)
-        return replace(self, low=self.low * length, high=self.high * length, of=None)
+        length = read_path(scenario, self.unit)
+        return replace(self, low=self.low * length, high=self.high * length, unit=None)
 
     def __repr__(self) -> str:
         """Write the call that makes it, without arguments that are None."""
-        fields = {"low": self.low, "high": self.high, "of": self.of, "least": self.least}
+        fields = {"low": self.low, "high": self.high, "unit": self.unit, "minimum": self.minimum}
         arguments = [f"{name}={value!r}" for name, value in fields.items() if value is not None]
         return f"{type(self).__name__}({', '.join(arguments)})"
 

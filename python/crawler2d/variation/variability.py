@@ -5,9 +5,9 @@ A rate over it is how often the robot would get over if it tried again and again
 >>> import crawler2d as c2d
 >>> c2d.variability.of_start() | c2d.variability.of_contact()
 Ranges
-  start.approach: Shifted(low=-0.125, high=0.125, of='robot.outline.axle_distance', least=0.0)
+  start.approach: Shifted(low=-0.125, high=0.125, unit='robot.outline.axle_distance', minimum=0.0)
       a quarter of the axle distance: the wheel spacing of a line of five
-  start.track_phase: Shifted(low=0.0, high=1.0, of='robot.outline.grouser_pitch')
+  start.track_phase: Shifted(low=0.0, high=1.0, unit='robot.outline.grouser_pitch')
       one grouser pitch, after which the track looks the same
   drive.speed: Scaled(low=0.98, high=1.02)
       estimate: how well a controller holds a speed
@@ -40,9 +40,9 @@ def of_start() -> Ranges:
     >>> list(of_start())
     ['start.approach', 'start.track_phase']
     """
-    approach = shifted(-0.125, 0.125, of="robot.outline.axle_distance", least=0.0)
+    approach = shifted(-0.125, 0.125, unit="robot.outline.axle_distance", minimum=0.0)
     spacing = "a quarter of the axle distance: the wheel spacing of a line of five"
-    phase = shifted(0.0, 1.0, of="robot.outline.grouser_pitch")
+    phase = shifted(0.0, 1.0, unit="robot.outline.grouser_pitch")
     pitch = "one grouser pitch, after which the track looks the same"
     ranges = {"start.approach": (approach, spacing), "start.track_phase": (phase, pitch)}
     return Ranges.with_sources(ranges, optional=True)
