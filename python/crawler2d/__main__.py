@@ -1,6 +1,6 @@
 """Simulate tracked robots in side view, and say which track models seize on an obstacle.
 
-Each command has a --help of its own.
+crawler2d COMMAND --help lists the options of a command.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def run_command(
     if version is not None:
         parser.add_argument("--version", action="version", version=version)
     if given and not given[0].startswith("-") and given[0] not in commands:
-        parser.error(f"{given[0]} is no command{suggestion(given[0], commands)}")
+        parser.error(f"unknown command {given[0]}{suggestion(given[0], commands)}")
     choices = parser.add_subparsers(dest="command", required=True, metavar="command")
     parsers = {}
     for name, each in commands.items():
@@ -205,7 +205,7 @@ class _Parser(argparse.ArgumentParser):
     def refuse(self, unknown: Sequence[str]) -> NoReturn:
         name = unknown[0].partition("=")[0]
         options = [each for action in self._actions for each in action.option_strings]
-        self.error(f"{name} is not known{suggestion(name, options)}")
+        self.error(f"unknown option {name}{suggestion(name, options)}")
 
 
 if __name__ == "__main__":

@@ -301,7 +301,7 @@ def test_python_m_is_the_same_command() -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--smaples", "3", "x.sdf"], "--smaples is not known (did you mean --samples?)"),
+        (["--smaples", "3", "x.sdf"], "unknown option --smaples (did you mean --samples?)"),
         (["x.sdf", "--engine", "ode"], "invalid choice: 'ode'"),
         ([], "the following arguments are required: file"),
     ],

@@ -180,14 +180,14 @@ def write_bad_files(folder: Path) -> None:
         ("run clears.json --html ./clears.json", "--html must be another file than the one that"),
         ("run clears.json --html a --save ../{}/a", "--save must be another file than that of --"),
         ("view whole.npz --out whole.npz", "--out must be another file than the one that is read"),
-        ("run clears.json --htlm a.html", "--htlm is not known (did you mean --html?)"),
+        ("run clears.json --htlm a.html", "unknown option --htlm (did you mean --html?)"),
         ("run", "the following arguments are required: FILE"),
         ("view missing.npz", "FILE must be a file that can be read (No such file or directory)"),
         ("view cut.npz", "cut.npz is cut short or damaged: copy it again"),
         ("view other.npz", "scenario must be JSON"),
         ("view summary.npz", "FILE must have a history"),
         ("view clears.json --out .", "--out must be a file in a folder that exists"),
-        ("veiw clears.json", "veiw is no command (did you mean view?)"),
+        ("veiw clears.json", "unknown command veiw (did you mean view?)"),
     ],
 )
 def test_what_cannot_be_done_is_refused_in_one_line(

@@ -1,6 +1,6 @@
-"""Audit every model file in a tree of repositories, and write one page of them all.
+"""Audit every model file in a folder of repositories, and write one page about all of them.
 
-The page is written anew after each robot, so that Ctrl-C keeps what is done.
+The page is rewritten after each robot, so Ctrl-C keeps what is done.
 """
 
 from __future__ import annotations
@@ -65,10 +65,14 @@ class Entry:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     parser.add_argument("folder", type=Path, help="a folder of repositories")
-    parser.add_argument("--html", type=Path, default=_PAGE, help=f"the page (default: {_PAGE})")
-    samples = f"draws of the uncertain parameters of each robot (default: {_SAMPLES})"
-    parser.add_argument("--samples", type=int, default=_SAMPLES, help=samples)
-    parser.add_argument("--threads", type=int, help="default: all cores")
+    parser.add_argument(
+        "--html", type=Path, default=_PAGE, metavar="PAGE", help=f"page to write (default: {_PAGE})"
+    )
+    samples = f"samples of the uncertain parameters of each robot (default: {_SAMPLES})"
+    parser.add_argument("--samples", type=int, metavar="N", default=_SAMPLES, help=samples)
+    parser.add_argument(
+        "--threads", type=int, metavar="N", help="number of threads (default: all cores)"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

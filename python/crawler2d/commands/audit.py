@@ -1,11 +1,10 @@
-"""Audit a model file: what it lacks, where the robot seizes, and what smallest change ends that.
+"""Audit a model file: its mistakes, where the robot seizes, and the smallest change that helps.
 
-It prints each result as soon as it is known: lint and pockets at once, then the verdicts, those
-first where the robot is likely to seize. At the end it writes a page that replays seizures.
+Results are printed as they become known: lint and pockets at once, then the verdicts, beginning
+where the robot is likely to seize. At the end it writes a page with replays of the seizures.
 
-Exit status: 1 if the robot seizes where a belt clears (with --lint if lint has errors, with
---baseline if anything is new since then), 2 if a file or an option is bad, else 0; 130 after
-Ctrl-C.
+Exit status: 1 if the robot seizes where a belt clears (with --lint: if lint has errors; with
+--baseline: if anything is new), 2 if a file or an option is invalid, else 0; 130 after Ctrl-C.
 """
 
 from __future__ import annotations
@@ -45,38 +44,43 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--quick", action="store_true", help="fewer samples, and no gear wheels among the repairs"
     )
     parser.add_argument(
-        "--json", action="store_true", help="print plain data; progress goes to standard error"
+        "--json", action="store_true", help="print JSON; progress goes to standard error"
     )
-    samples = f"draws of the unknowns, at most (default: {SAMPLES}, with --quick {QUICK};"
+    samples = f"largest number of samples of the uncertain parameters (default: {SAMPLES}, with --quick {QUICK};"
     samples += f" fewer than {least_samples()} cannot show that it does not seize)"
-    parser.add_argument("--samples", type=int, help=samples)
+    parser.add_argument("--samples", type=int, metavar="N", help=samples)
     repeats = f"runs of each sample (default: {REPEATS})"
-    parser.add_argument("--repeats", type=int, default=REPEATS, help=repeats)
-    parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
+    parser.add_argument("--repeats", type=int, metavar="N", default=REPEATS, help=repeats)
+    parser.add_argument(
+        "--seed", type=int, metavar="N", default=0, help="seed of the random numbers (default: 0)"
+    )
     parser.add_argument(
         "--store",
         type=Path,
-        help="a file that keeps every run: the same command continues from there",
+        metavar="FILE",
+        help="keep every run in this file, from which the same command continues",
     )
-    parser.add_argument("--threads", type=int, help="how many to use (default: all cores)")
+    parser.add_argument(
+        "--threads", type=int, metavar="N", help="number of threads (default: all cores)"
+    )
     page = parser.add_mutually_exclusive_group()
     page.add_argument(
-        "--html", type=Path, help="where to write the page (default: out/audit-NAME.html)"
+        "--html", type=Path, metavar="PAGE", help="page to write (default: out/audit-NAME.html)"
     )
-    page.add_argument("--no-html", action="store_true", help="write no page")
+    page.add_argument("--no-html", action="store_true", help="do not write a page")
     parser.add_argument("--no-repairs", action="store_true", help="do not search for repairs")
     parser.add_argument(
         "--patch",
         type=Path,
         metavar="FILE",
-        help="write the model file with the best change of wheels found, confirmed or not, or else"
-        " with belts; belts of URDF as .sdf",
+        help="write the model file with the best wheels found, confirmed or not, or else with"
+        " belts (for URDF as .sdf)",
     )
     group = parser.add_argument_group("for continuous integration; see docs/guide/audit.md")
     group.add_argument(
         "--lint",
         action="store_true",
-        help="lint and pockets only, no runs; the exit status is 1 if lint has errors",
+        help="lint and pockets only, nothing is simulated; exit status 1 if lint has errors",
     )
     group.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML")
     group.add_argument("--sarif", type=Path, metavar="FILE", help="write SARIF 2.1.0")
@@ -84,18 +88,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--baseline",
         type=Path,
         metavar="FILE",
-        help="the exit status is 1 only for what is new since this file was written",
+        help="exit status 1 only for findings that are not in this file",
     )
     group.add_argument(
         "--update-baseline",
         action="store_true",
-        help="write what was found to the file of --baseline",
+        help="write the findings to the --baseline file",
     )
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
     reading.add_argument(
         "--engine",
         choices=sorted(ENGINES),
-        help="whose rules of friction and motors apply (default: mujoco for MJCF, else gz)",
+        help="engine whose rules for friction and motors apply (default: mujoco for MJCF, else gz)",
     )
     reading.add_argument(
         "--forward",
@@ -103,7 +107,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="axis along which the model drives forward (default: the side of the links called"
         " front, else +x)",
     )
-    reading.add_argument("--model", help="name of the model in a world")
+    reading.add_argument("--model", metavar="NAME", help="name of the model in a world")
     reading.add_argument(
         "--mesh",
         choices=get_args(MeshRule),
@@ -120,25 +124,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--track",
         action="append",
         default=[],
-        help="a link whose surface moves as a track; repeatable",
+        metavar="LINK",
+        help="link whose surface moves as a track; repeatable",
     )
     reading.add_argument(
-        "--ground-friction", type=float, help="coefficient of the floor's own surface"
+        "--ground-friction",
+        type=float,
+        metavar="MU",
+        help="friction coefficient of the floor's own surface",
     )
     reading.add_argument(
         "--tolerance",
         type=float,
         default=TOLERANCE,
-        help="by how much the two sides may differ, in m",
+        metavar="LENGTH",
+        help=f"how far the two sides may differ, in m (default: {TOLERANCE})",
     )
-    reading.add_argument("--scale", type=float, help="multiply every length, as in 0.001 for mm")
-    reading.add_argument("--trusted", action="store_true", help="let xacro evaluate anything")
+    reading.add_argument(
+        "--scale", type=float, metavar="FACTOR", help="multiply every length, e.g. 0.001 for mm"
+    )
+    reading.add_argument(
+        "--trusted", action="store_true", help="let xacro evaluate any Python expression"
+    )
     reading.add_argument(
         "--package",
         action="append",
         default=[],
         metavar="NAME=FOLDER",
-        help="the folder of a package, if it is not to be searched for; repeatable",
+        help="folder of a package, if it is not found automatically; repeatable",
     )
     reading.add_argument(
         "--argument",
@@ -330,16 +343,16 @@ def _reading(options: argparse.Namespace) -> dict[str, Any]:
     return {
         **{name: getattr(options, name) for name in (*READING, "trusted")},
         "tracks": options.track,
-        "packages": _pairs(options.package, "packages"),
-        "arguments": _pairs(options.argument, "arguments"),
+        "packages": _pairs(options.package, "packages", "NAME=FOLDER"),
+        "arguments": _pairs(options.argument, "arguments", "NAME=VALUE"),
     }
 
 
-def _pairs(texts: list[str], name: str) -> dict[str, str]:
+def _pairs(texts: list[str], name: str, form: str) -> dict[str, str]:
     pairs = {}
     for text in texts:
         key, sign, value = text.partition("=")
         if not sign or not key:
-            raise ScenarioError(name, text, "must be NAME=VALUE")
+            raise ScenarioError(name, text, f"must be {form}")
         pairs[key] = value
     return pairs

@@ -1,4 +1,4 @@
-"""Print what completes commands, options and files in a shell.
+"""Print a script that completes commands, options and files in a shell.
 
 For bash, put eval "$(crawler2d completion bash)" into ~/.bashrc.
 """

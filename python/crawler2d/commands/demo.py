@@ -1,6 +1,6 @@
-"""Write a page that shows a robot which seizes on wheels and gets over on a belt.
+"""Write a page with a robot that seizes on wheels and clears the same step on a belt.
 
-Both replays are side by side, with the reason of the stop and what to do next.
+It has both replays side by side, why the robot stopped, and what to do next.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="PAGE",
         default=OUT / "demo.html",
-        help=f"where to write it (default: {OUT / 'demo.html'})",
+        help=f"page to write (default: {OUT / 'demo.html'})",
     )
-    parser.add_argument("--open", action="store_true", help="open it in the browser")
+    parser.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""Say what is installed: versions, threads, optional packages. Put it into a bug report."""
+"""Print versions, threads and optional packages, for bug reports."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NEEDED = re.compile(r"""([\w.-]+).*;.*extra *== *['"]([\w.-]+)['"]""")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``crawler2d info``."""
-    parser.add_argument("--json", action="store_true", help="print plain data instead")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,9 +1,9 @@
-"""Simulate a scenario file, and say how it ended and why.
+"""Simulate a scenario file, and print how the run ended and why.
 
-It prints the outcome, the diagnosis of a stop, and the main figures with their units.
+It prints the outcome, the diagnosis if the robot stopped, and the main results with units.
 
 Exit status: 0 if the robot cleared the obstacle, 1 if the run ended otherwise, 2 if the file or an
-option is bad or the run has no result, 130 after Ctrl-C.
+option is invalid or the run has no result, 130 after Ctrl-C.
 """
 
 from __future__ import annotations
@@ -32,13 +32,16 @@ _WIDTH = 80
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``crawler2d run``."""
     parser.add_argument(
-        "file", type=Path, metavar="FILE", help="a scenario as JSON; - is the standard input"
+        "file", type=Path, metavar="FILE", help="scenario as JSON; - reads standard input"
     )
-    parser.add_argument("--html", type=Path, metavar="PAGE", help="write a page that replays it")
+    parser.add_argument("--html", type=Path, metavar="PAGE", help="write a page with a replay")
     parser.add_argument(
-        "--save", type=Path, metavar="FILE", help="write the run, for crawler2d view and load"
+        "--save",
+        type=Path,
+        metavar="FILE",
+        help="save the run, for crawler2d view and crawler2d.load",
     )
-    parser.add_argument("--json", action="store_true", help="print plain data instead")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,6 +1,6 @@
 """Print the JSON Schema (draft 2020-12) of scenario files, for editors and checks.
 
-It has the fields, types and ranges of this version of crawler2d. Rules that join several fields
+It has the fields, types and ranges of this version of crawler2d. Rules that involve several fields
 are only checked when a file is read.
 """
 

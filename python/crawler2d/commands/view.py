@@ -1,6 +1,6 @@
-"""Write the page that replays a run, saved or of a scenario.
+"""Write a page that replays a saved run, or a scenario.
 
-A scenario is simulated first. The page is one file for any browser and needs nothing else.
+A scenario is simulated first. The page is a single file that opens in any browser.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="a saved run, or a scenario as JSON; - is the standard input",
+        help="saved run, or scenario as JSON; - reads standard input",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="PAGE", help="where to write it (default: out/NAME.html)"
+        "--out", type=Path, metavar="PAGE", help="page to write (default: out/NAME.html)"
     )
-    parser.add_argument("--open", action="store_true", help="open it in the browser")
+    parser.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
 def run(options: argparse.Namespace) -> int:
