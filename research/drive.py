@@ -311,7 +311,7 @@ def _highest(
     draws: NDArray[np.float64],
 ) -> list[int]:
     """Return the highest edge that each draw clears, in units."""
-    whole = _core.Passed(scenario.to_json(), None)
+    whole = _core.PreparedScenario(scenario.to_json(), None)
     acceleration = scenario.robot.drivetrain.max_acceleration
     run_up = scenario.drive.speed**2 / (2.0 * acceleration) + _STEADY
     asked = {draw: next(search) for draw, search in enumerate(searches)}

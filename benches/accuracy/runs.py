@@ -17,7 +17,7 @@ import crawler2d as c2d
 from benches.accuracy.cells import Cell, Setting
 from benches.shared.results import progress
 from crawler2d import ScenarioError
-from crawler2d._core import Passed
+from crawler2d._core import PreparedScenario
 from crawler2d.results.record import Row as SweepRow
 from crawler2d.runs.progress import thread_count
 from crawler2d.sweeps.collect import Collector, RowsInterrupted
@@ -55,7 +55,7 @@ class Interrupted(KeyboardInterrupt):
         self.rows = rows
 
 
-def plan(cell: Cell, setting: Setting, count: int, seed: int) -> list[Passed]:
+def plan(cell: Cell, setting: Setting, count: int, seed: int) -> list[PreparedScenario]:
     """Draw the first runs of a cell, as a sweep does."""
     base = cell.scenario(setting)
     planner = Planner(Variation.read(base, None, ()), Variation({}), seed)
@@ -63,15 +63,17 @@ def plan(cell: Cell, setting: Setting, count: int, seed: int) -> list[Passed]:
     for each in plan.checked:
         if isinstance(each, ScenarioError):
             raise each
-    return [each for each in plan.checked if isinstance(each, Passed)]
+    return [each for each in plan.checked if isinstance(each, PreparedScenario)]
 
 
-def simulate(plans: Sequence[Passed], repeats: Sequence[int], threads: int | None) -> list[Row]:
+def simulate(
+    plans: Sequence[PreparedScenario], repeats: Sequence[int], threads: int | None
+) -> list[Row]:
     """Simulate some repeats.
 
     Parameters
     ----------
-    plans : sequence of Passed
+    plans : sequence of PreparedScenario
         All repeats of the cell.
     repeats : sequence of int
         Those to simulate.

@@ -302,7 +302,7 @@ fn changed<T>(
 }
 
 /// A valid scenario, with the robot and the ground that were built to check it.
-#[pyclass(frozen, module = "crawler2d._core", name = "Passed")]
+#[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct PreparedScenario {
     pub checked: ValidScenario,
 }

@@ -145,10 +145,7 @@ mod _core {
     /// Warns of what in a batch is legal but unlikely to be meant, once for each field.
     #[pyfunction]
     fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<()> {
-        calls::warn(
-            py,
-            scenarios.iter().flat_map(|passed| passed.checked.doubts()),
-        )
+        calls::warn(py, scenarios.iter().flat_map(|each| each.checked.doubts()))
     }
 
     /// Simulates many scenarios on several threads; an error spoils only its own run.
@@ -168,10 +165,7 @@ mod _core {
         let with_tables = record != "row";
         let record = if with_tables { record } else { "summary" };
         let record = convert::record(sample_interval, record, &trials)?;
-        let scenarios = scenarios
-            .iter()
-            .map(|passed| passed.checked.clone())
-            .collect();
+        let scenarios = scenarios.iter().map(|each| each.checked.clone()).collect();
         let mut doubts = Vec::new();
         let interrupted = run_all(py, scenarios, threads, record, |py, finished| {
             if finished.is_empty() {

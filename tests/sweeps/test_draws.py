@@ -8,7 +8,7 @@ import pytest
 from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
-from crawler2d._core import Passed
+from crawler2d._core import PreparedScenario
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
 from crawler2d.studies.campaign import scaled_draws
@@ -35,7 +35,7 @@ def planned(cell: Scenario, variation: Variation, repeats: int) -> Plan:
 def drawn(cell: Scenario, *, base: Scenario | None = None, swept: tuple[str, ...] = ()) -> Any:
     """The default draws of 200 repeats, shape (200,) by path."""
     plan = planned(cell, Variation.read(base or cell, None, swept), 200)
-    assert all(isinstance(each, Passed) for each in plan.checked)
+    assert all(isinstance(each, PreparedScenario) for each in plan.checked)
     return plan.drawn
 
 

@@ -69,7 +69,9 @@ class Step:
 class Episodes:
     """N episodes of a task, bit by bit as each would be alone."""
 
-    def __init__(self, task: Task, scenarios: Sequence[_core.Passed], threads: int | None) -> None:
+    def __init__(
+        self, task: Task, scenarios: Sequence[_core.PreparedScenario], threads: int | None
+    ) -> None:
         self._task, self._many = task, Simulations(scenarios, threads=threads)
         self._full_speeds = np.array([each.speed for each in scenarios])
         self._durations = np.array(_durations_of(scenarios))
@@ -81,7 +83,7 @@ class Episodes:
         """The present states."""
         return self._states
 
-    def reset(self, places: NDArray[np.intp], scenarios: Sequence[_core.Passed]) -> None:
+    def reset(self, places: NDArray[np.intp], scenarios: Sequence[_core.PreparedScenario]) -> None:
         """Begin new episodes at some places."""
         self._many.reset(places, scenarios)
         self._full_speeds[places] = [each.speed for each in scenarios]
@@ -190,7 +192,7 @@ class Episodes:
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
-def _durations_of(scenarios: Sequence[_core.Passed]) -> list[float]:
+def _durations_of(scenarios: Sequence[_core.PreparedScenario]) -> list[float]:
     """[s] Return how long episodes last, which models, obstacles and draws may set."""
     return [json.loads(each.text)["duration"] for each in scenarios]
 

@@ -154,7 +154,7 @@ def audit_policy(
     driven, compared = (Tabulation(each, axes, **options) for each in (task.scenario, gait))
     for each in (driven, compared):
         raise_first(each.checked)
-    scenarios = [each for each in driven.checked if isinstance(each, _core.Passed)]
+    scenarios = [each for each in driven.checked if isinstance(each, _core.PreparedScenario)]
     with reporter(progress, 2 * len(scenarios)) as report:
         driven.take(_drive(policy, task, scenarios, thread_count(threads), report))
         compared.simulate(range(len(scenarios)), _Counted(report))
@@ -192,7 +192,7 @@ class _Counted:
 def _drive(
     policy: Policy,
     task: Task,
-    scenarios: Sequence[_core.Passed],
+    scenarios: Sequence[_core.PreparedScenario],
     threads: int,
     report: Reporter,
 ) -> list[Row]:

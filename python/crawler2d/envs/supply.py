@@ -24,7 +24,7 @@ class Supply:
 
     def __init__(self, task: Task, count: int) -> None:
         self._task, self._depth = task, -(-_TOGETHER // count)
-        self._queues: list[deque[_core.Passed]] = [deque() for _ in range(count)]
+        self._queues: list[deque[_core.PreparedScenario]] = [deque() for _ in range(count)]
 
     def forget(self, place: int) -> None:
         """Forget what was drawn for a place, which has another generator now."""
@@ -32,7 +32,7 @@ class Supply:
 
     def take(
         self, places: Sequence[int], generators: Sequence[np.random.Generator]
-    ) -> list[_core.Passed]:
+    ) -> list[_core.PreparedScenario]:
         """Return the next scenario of some places; `generators` are those of all."""
         if not all(self._queues[place] for place in places):
             empty = [place for place, queue in enumerate(self._queues) if not queue]

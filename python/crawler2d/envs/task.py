@@ -180,7 +180,7 @@ class Task:
         bounds += [_FARTHEST_HEIGHT] * (len(self.names) - len(bounds))
         return np.array(bounds, np.float32)
 
-    def draw(self, generators: list[np.random.Generator]) -> list[_core.Passed]:
+    def draw(self, generators: list[np.random.Generator]) -> list[_core.PreparedScenario]:
         """Draw the scenario of one episode from each generator.
 
         Raises
@@ -195,7 +195,7 @@ class Task:
         for each in drawn:
             if isinstance(each, ScenarioError):
                 raise each
-        return cast("list[_core.Passed]", drawn)
+        return cast("list[_core.PreparedScenario]", drawn)
 
     def commands(
         self, actions: NDArray[np.float64], full: NDArray[np.float64]

@@ -178,14 +178,14 @@ def simulate_many(
 
 def _simulate_valid(
     scenarios: Sequence[Scenario],
-    checked: Sequence[_core.Passed | ScenarioError],
+    checked: Sequence[_core.PreparedScenario | ScenarioError],
     kept: tuple[float, str, list[str]],
     *,
     threads: int,
     progress: bool | Progress | None,
 ) -> list[Run]:
     """Simulate the valid scenarios; the others become runs with their errors."""
-    valid = [each for each in checked if isinstance(each, _core.Passed)]
+    valid = [each for each in checked if isinstance(each, _core.PreparedScenario)]
     results: list[dict[str, Any] | None] = [None] * len(valid)
     _core.warn(valid)
     with reporter(progress, len(valid)) as report:
@@ -227,16 +227,16 @@ def complete(
     return whole.replace(fields)
 
 
-def _validate(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
+def _validate(batch: list[Scenario]) -> list[_core.PreparedScenario | ScenarioError]:
     """Validate each scenario; return the error of those that break a rule."""
-    results: list[_core.Passed | ScenarioError] = []
+    results: list[_core.PreparedScenario | ScenarioError] = []
     last = None
     for index, scenario in enumerate(batch):
         path = f"scenarios[{index}]"
         if not isinstance(scenario, Scenario):
             raise ScenarioError(path, scenario, "must be a Scenario")  # a Run could not hold it
         try:
-            last = _core.Passed(scenario.to_json(), last)
+            last = _core.PreparedScenario(scenario.to_json(), last)
             results.append(last)
         except ScenarioError as error:
             results.append(ScenarioError(f"{path}.{error.path}", error.value, error.rule))

@@ -109,7 +109,7 @@ class Simulations(TakesKeywords):
     """
 
     def __init__(
-        self, scenarios: Sequence[Scenario | _core.Passed], *, threads: int | None = None
+        self, scenarios: Sequence[Scenario | _core.PreparedScenario], *, threads: int | None = None
     ) -> None:
         self._threads = thread_count(threads)
         prepared = _prepared(scenarios)
@@ -197,7 +197,7 @@ class Simulations(TakesKeywords):
     def reset(
         self,
         which: ArrayLike | None = None,
-        scenarios: Sequence[Scenario | _core.Passed] | None = None,
+        scenarios: Sequence[Scenario | _core.PreparedScenario] | None = None,
     ) -> None:
         """Set some out anew, bit by bit as if they were new.
 
@@ -330,19 +330,19 @@ def _numbers(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def _prepared(
-    scenarios: Sequence[Scenario | _core.Passed],
-) -> list[_core.Passed]:
+    scenarios: Sequence[Scenario | _core.PreparedScenario],
+) -> list[_core.PreparedScenario]:
     """Validate them, if that has not been done; equal robots and grounds are built once."""
     if not isinstance(scenarios, Iterable):
         raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")
-    found: list[_core.Passed] = []
+    found: list[_core.PreparedScenario] = []
     for each in scenarios:
-        if isinstance(each, _core.Passed):
+        if isinstance(each, _core.PreparedScenario):
             found.append(each)
             continue
         gait = check_scenario(each).drive.gait
         if callable(gait):
             rule = "must not be a function: command angles instead"
             raise ScenarioError("drive.gait", gait, rule)
-        found.append(_core.Passed(each.to_json(), found[-1] if found else None))
+        found.append(_core.PreparedScenario(each.to_json(), found[-1] if found else None))
     return found

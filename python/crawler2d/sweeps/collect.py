@@ -54,7 +54,7 @@ def simulate_chunk(
     if own != build:
         return own, []
     results: dict[int, dict[str, Any]] = {}
-    checked = [_core.Passed(text) for text in texts]
+    checked = [_core.PreparedScenario(text) for text in texts]
     _core.simulate_many(checked, 1, 0.01, "row", list(trials), results.update)
     return own, [(each.identity, results.get(index)) for index, each in enumerate(checked)]
 
@@ -190,10 +190,10 @@ class Batch:
                 self._places.setdefault(each.identity, []).append(place)
 
     @property
-    def missing(self) -> list[_core.Passed]:
+    def missing(self) -> list[_core.PreparedScenario]:
         """The scenarios without a row, each once."""
         lacking = (places[0] for places in self._places.values() if self._rows[places[0]] is None)
-        return [cast("_core.Passed", self._checked[place]) for place in lacking]
+        return [cast("_core.PreparedScenario", self._checked[place]) for place in lacking]
 
     def take(self, rows: Iterable[Row]) -> int:
         """Take finished rows; return how many scenarios they complete."""
@@ -210,7 +210,7 @@ class Batch:
         unfinished = RunUnfinished("the batch was interrupted before this run had ended")
         return [
             Row.of_error(unfinished, each.identity, each.text)
-            if row is None and isinstance(each, _core.Passed)
+            if row is None and isinstance(each, _core.PreparedScenario)
             else cast("Row", row)
             for row, each in zip(self._rows, self._checked, strict=True)
         ]
@@ -238,7 +238,7 @@ def _is_reproducible(row: Row) -> bool:
 
 
 def _simulate_here(
-    missing: list[_core.Passed], trials: Sequence[str], threads: int, take: Take
+    missing: list[_core.PreparedScenario], trials: Sequence[str], threads: int, take: Take
 ) -> bool:
     """Simulate the runs on threads of this process; returns whether Ctrl-C ended it."""
 
@@ -249,7 +249,7 @@ def _simulate_here(
 
 
 def _simulate_by_executor(
-    executor: Executor, missing: Sequence[_core.Passed], trials: Sequence[str], take: Take
+    executor: Executor, missing: Sequence[_core.PreparedScenario], trials: Sequence[str], take: Take
 ) -> bool:
     """Submit the runs in chunks, and take the rows in any order; returns whether Ctrl-C ended it.
 
@@ -258,7 +258,7 @@ def _simulate_by_executor(
     """
     build = _build()
     due = deque((missing[k : k + _CHUNK], 1) for k in range(0, len(missing), _CHUNK))
-    out: dict[Future[Any], tuple[Sequence[_core.Passed], int]] = {}
+    out: dict[Future[Any], tuple[Sequence[_core.PreparedScenario], int]] = {}
     given_up = 0
     try:
         while due or out:
@@ -307,7 +307,9 @@ class _LostTask(Exception):
     """A task came to nothing; the text says why."""
 
 
-def _read_answer(future: Future[Any], runs: Sequence[_core.Passed], build: str) -> list[Row]:
+def _read_answer(
+    future: Future[Any], runs: Sequence[_core.PreparedScenario], build: str
+) -> list[Row]:
     """Make rows of an answer, which must be one to these runs.
 
     Raises
@@ -335,7 +337,7 @@ def _read_answer(future: Future[Any], runs: Sequence[_core.Passed], build: str) 
         raise _LostTask(text) from fault
 
 
-def _read_row(run: _core.Passed, identity: str, result: dict[str, Any] | None) -> Row:
+def _read_row(run: _core.PreparedScenario, identity: str, result: dict[str, Any] | None) -> Row:
     """Make the row of a run of what a worker sent."""
     if identity != run.identity:
         raise ValueError(f"it is of the run {str(identity)[:12]}, not {run.identity[:12]}")
@@ -351,5 +353,5 @@ def _read_row(run: _core.Passed, identity: str, result: dict[str, Any] | None) -
     return row
 
 
-def _row(run: _core.Passed, result: dict[str, Any]) -> Row:
+def _row(run: _core.PreparedScenario, result: dict[str, Any]) -> Row:
     return Row.of_result(run.identity, run.text, result)

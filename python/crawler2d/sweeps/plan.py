@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Checked", "Plan", "Planner", "World", "plan_runs"]
 
-Checked = _core.Passed | ScenarioError
+Checked = _core.PreparedScenario | ScenarioError
 """A scenario that can be run, or the rule that it breaks."""
 
 _UNKNOWN = "unknown "
@@ -135,7 +135,7 @@ class Planner:
         )
 
     def worlds(
-        self, cell: Scenario, names: Sequence[str], like: _core.Passed | None = None
+        self, cell: Scenario, names: Sequence[str], like: _core.PreparedScenario | None = None
     ) -> list[World]:
         """Set every sample of the unknowns in a cell; what `like` shares is not built again.
 
@@ -207,7 +207,7 @@ def plan_runs(
     planner: Planner,
     *,
     repeats: int,
-    like: _core.Passed | None = None,
+    like: _core.PreparedScenario | None = None,
 ) -> list[Plan]:
     """Plan every run: cell by cell, the samples of a cell in order.
 
@@ -224,7 +224,9 @@ def plan_runs(
         with _prefixed(_cell_path(names)):
             cell = base.replace({path: v for _, values in points for path, v in values.items()})
         worlds = planner.worlds(cell, names, like)
-        like = next((w.checked for w in worlds if isinstance(w.checked, _core.Passed)), like)
+        like = next(
+            (w.checked for w in worlds if isinstance(w.checked, _core.PreparedScenario)), like
+        )
         plans += [planner.runs(world, 0, repeats) for world in worlds]
     return plans
 
@@ -244,7 +246,7 @@ def _apply_draws(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> li
 
 def _drop_invalid(
     world: World,
-    whole: _core.Passed,
+    whole: _core.PreparedScenario,
     drawn: Draws,
     runs: list[Checked],
     optional: Collection[str],
@@ -269,7 +271,7 @@ def _drop_invalid(
             trial = row.copy()
             trial[column] = rows[repeat, column]
             (checked,) = whole.varied(fields, trial[None, :])
-            if isinstance(checked, _core.Passed):
+            if isinstance(checked, _core.PreparedScenario):
                 row = trial
             elif path in shown:
                 shown[path][repeat] = row[column]
@@ -295,9 +297,9 @@ def _prefixed(place: str) -> Iterator[None]:
         raise _prefix(error, place) from None
 
 
-def _validate(scenario: Scenario, place: str, like: _core.Passed | None) -> Checked:
+def _validate(scenario: Scenario, place: str, like: _core.PreparedScenario | None) -> Checked:
     """Validate a scenario; warnings are left to the batch, which issues each once."""
     try:
-        return _core.Passed(scenario.to_json(), like)
+        return _core.PreparedScenario(scenario.to_json(), like)
     except ScenarioError as error:
         return _prefix(error, place) if place else error

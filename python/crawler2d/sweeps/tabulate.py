@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from crawler2d._core import Passed
+from crawler2d._core import PreparedScenario
 from crawler2d.common.arrays import read_bool, whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import read_choice
@@ -206,7 +206,7 @@ class Tabulation:
         self._tried = trial_names(trials)
         self._store, self._executor, self._threads = store, executor, thread_count(threads)
         self._repeats = whole_number(repeats, "repeats", 1, 10**6)
-        base = Passed(scenario.to_json())
+        base = PreparedScenario(scenario.to_json())
         swept = [path for axis in axes for path in axis.paths]
         self._scenario, self._axes = scenario, axes
         self._planner = Planner.read(
