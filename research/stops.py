@@ -57,7 +57,7 @@ class Stops:
     hung_up: int
     stalled: int
     slipping: int
-    passing: int
+    transient: int
     """Stops that the robot left by itself; they count as timed out."""
     mechanism: str
     """The commonest mechanism of the stops; "" if most have none."""
@@ -345,7 +345,7 @@ def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops
         **{name: counts[name] for name in STOPS},
         mechanism=str(mechanism),
         of_mechanism=most,
-        passing=_count(own["passing"].to_numpy()),
+        transient=_count(own["transient"].to_numpy()),
         jammed=_count(own["jammed"].to_numpy() & stopped),
         unnatural_stops=_count(np.logical_or(*(freed(name) for name in TRIALS[:2]))),
         freed_by_torque=_count(freed("torque x 2")),

@@ -15,14 +15,14 @@ class Sentence {
     const { d } = this;
     const clauses = [this.ground(), this.bearers(), this.belly(), this.drives(), this.creep(), this.balance()];
     const facts = [this.head(), clauses.filter(Boolean).join("; ")].filter(Boolean).join(": ");
-    if (d.passing) return `${facts}. ${this.continuation()}`;
+    if (d.transient) return `${facts}. ${this.continuation()}`;
     const tried = d.trials.map((each) => this.trial(each)).filter(Boolean).join("; ");
     return tried ? `${facts}. Tried: ${tried}${this.beltLimit()}` : facts;
   }
 
   head() {
     const { d } = this;
-    if (d.passing) return `in passing, ${spaced(d.symptom)}`;
+    if (d.transient) return `temporarily ${spaced(d.symptom)}`;
     const where = d.outcome === "seized" && d.intrusion ? this.where(d.intrusion) : "";
     const side = this.bellySide();
     const onEnd = d.outcome === "hung_up" && ["tail", "nose"].includes(side);
@@ -44,7 +44,7 @@ class Sentence {
     const { d, words } = this;
     const piece = d.intrusion;
     if (!piece) return "";
-    const where = d.outcome === "seized" && !d.passing ? "" : this.where(piece);
+    const where = d.outcome === "seized" && !d.transient ? "" : this.where(piece);
     let roots = "";
     if (this.hasGrousers(piece) && piece.bodies[0] !== piece.bodies[1]) {
       const past = piece.root_depth > words.least_depth;
@@ -138,10 +138,10 @@ class Sentence {
     return `no contact forces balance it: the smallest residual is ${twoDigits(100 * imbalance)} % of the weight`;
   }
 
-  // Which control got out of a passing stop.
+  // Which control got out of a transient stop.
   continuation() {
     const control = this.d.trials.find((each) => each.freed);
-    const text = control.name === "unchanged" ? "It goes on by itself" : "With its track built anew it goes on";
+    const text = control.name === "unchanged" ? "It goes on by itself" : "With its track rebuilt it goes on";
     return `${text}: ${this.result(control)}`;
   }
 

@@ -157,7 +157,7 @@ def test_a_stop_is_freed_by_what_holds_it(
     d = why(stops[name])
     assert freed <= set(d.freed_by)
     assert not {"unchanged", "rebuilt"} & set(d.freed_by)
-    assert not d.passing
+    assert not d.transient
     for tried in d.trials:
         is_lost = tried.outcome in ("tipped_over", "left_terrain", "detracked")
         assert tried.freed == math.isfinite(tried.time)

@@ -75,7 +75,7 @@ def made(contacts: Any = None, **fields: Any) -> c2d.Diagnosis:
     plain: dict[str, Any] = {
         "outcome": OUT.SEIZED,
         "symptom": OUT.SLIPPING,
-        "passing": False,
+        "transient": False,
         "trials": (),
         "jammed": True,
         "mechanism": c2d.Mechanism.STRADDLED,
@@ -215,15 +215,15 @@ def test_a_stop_that_no_belt_gets_past_says_so(belt: float, closed: float, said:
     ("control", "said"),
     [
         ("unchanged", "It goes on by itself: free after 0.3 s, then clears"),
-        ("rebuilt", "With its track built anew it goes on: free after 0.3 s, then clears"),
+        ("rebuilt", "With its track rebuilt it goes on: free after 0.3 s, then clears"),
     ],
 )
-def test_of_a_passing_stop_no_more_is_said_than_that_it_passed(control: str, said: str) -> None:
-    passing = made(
-        passing=True, outcome=OUT.TIMED_OUT, trials=(dataclasses.replace(BELT, name=control),)
+def test_of_a_transient_stop_no_more_is_said_than_how_it_went_on(control: str, said: str) -> None:
+    stop = made(
+        transient=True, outcome=OUT.TIMED_OUT, trials=(dataclasses.replace(BELT, name=control),)
     )
-    assert str(passing) == (
-        f"in passing, slipping: {INSIDE} between wheels 3 and 4; {ON_IT}; "
+    assert str(stop) == (
+        f"temporarily slipping: {INSIDE} between wheels 3 and 4; {ON_IT}; "
         f"the track slips at 0.40 m/s. {said}".replace("; the track slips at 0.40 m/s", "")
     )
 

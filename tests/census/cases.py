@@ -119,7 +119,7 @@ def second_opinion(run: c2d.Run) -> Opinion:
 
 
 def stopped(census: list[Case]) -> list[Case]:
-    """The cases that stood still or went to and fro at their end, in passing or not."""
+    """The cases that stood still or went to and fro at their end, temporarily or not."""
     return [case for case in census if case.diagnosis is not None]
 
 
@@ -131,7 +131,7 @@ def faults_of_kind(census: list[Case]) -> list[str]:
         rules = {
             "result": case.outcome is not None,
             "diagnosis": d is not None or not (case.outcome and case.outcome.is_stop),
-            "stop": d is None or bool(d.outcome.is_stop) is not d.passing,
+            "stop": d is None or bool(d.outcome.is_stop) is not d.transient,
             "lasts": d is None or case.lasts,
             "outcome": d is None or d.outcome is case.outcome,
         }
@@ -160,7 +160,7 @@ def rules_of(d: Diagnosis) -> dict[str, bool]:
     tried = {trial.name for trial in d.trials}
     is_freed_as_a_belt = d.jammed and bool(freed & belts)
     outcome = d.symptom
-    if d.passing:
+    if d.transient:
         outcome = Outcome.TIMED_OUT
     elif is_freed_as_a_belt:
         outcome = Outcome.STALLED if "one motor" in freed else Outcome.SEIZED
@@ -171,8 +171,8 @@ def rules_of(d: Diagnosis) -> dict[str, bool]:
         "shares": all(0.0 <= share <= 1.0 + 1e-9 for share in shares),
         "intrusion": d.mechanism is None or d.intrusion is not None,
         "outcome": d.outcome is outcome,
-        "controls": d.passing == bool(freed & {"unchanged", "rebuilt"}),
-        "a jam is tried with belts": d.passing or not d.jammed or belts & tried != set(),
+        "controls": d.transient == bool(freed & {"unchanged", "rebuilt"}),
+        "a jam is tried with belts": d.transient or not d.jammed or belts & tried != set(),
         "a jam has contacts": any(d.contacts["in_pocket"]) or not d.jammed,
         "a belly hangs": d.symptom is not Outcome.HUNG_UP or d.belly_share >= criteria.belly_load,
         "motors stall": d.symptom is not Outcome.STALLED or is_stalled,

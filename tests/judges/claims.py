@@ -69,7 +69,7 @@ class Claims:
     def of_what_is_seen(self) -> Iterator[tuple[str, bool]]:
         """Yield each clause of what is seen, and whether it is so."""
         opinion = self.judge.opinion()
-        word = self.head.removeprefix("in passing, ").split(" between")[0]
+        word = self.head.removeprefix("temporarily ").split(" between")[0]
         word = re.split(r" (?:at|under|on) ", word)[0].replace(" ", "_")
         if word != "seized":
             yield self.head, word in (opinion.symptom, "stalled")

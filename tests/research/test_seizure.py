@@ -64,7 +64,7 @@ def table() -> xr.Dataset:
         "intrusion_depth": zero + np.arange(10) * 1e-3,
         "intrusion_root_depth": zero + np.arange(10) * 0.5e-3,
         "jammed": outcomes == "seized",
-        "passing": outcomes == "timed_out",
+        "transient": outcomes == "timed_out",
         "freed_by_closed_track": stopped & every_other,
         "freed_by_closed_track_clear_of_the_ground": stopped & (np.arange(10) == 1),
         "freed_by_torque_x2": outcomes == "stalled",
@@ -157,7 +157,7 @@ def test_stops_tell_outcomes_mechanisms_and_what_frees_the_robot(table: xr.Datas
     assert (first.mechanism, first.of_mechanism) == ("undercut", 5)
     assert (first.jammed, first.unnatural_stops, first.unnatural_passes) == (6, 4, 0)
     assert (first.freed_by_torque, first.freed_by_friction, first.freed_by_no_belly) == (0, 3, 0)
-    assert (first.passing, second.passing) == (0, 0)
+    assert (first.transient, second.transient) == (0, 0)
     assert first.depth == pytest.approx(2.5e-3)  # of 0 to 5 mm
     assert first.root_depth == pytest.approx(1.25e-3)
     assert (second.count, second.cleared, second.seized, second.stalled) == (39, 2, 1, 36)

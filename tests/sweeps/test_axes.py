@@ -230,7 +230,7 @@ NO_STOP = {
     "stop_side": [""],
     "stop_carrier": [""],
     "stop_bodies": [""],
-    "passing": [False],
+    "transient": [False],
     "jammed": [False],
     "stop_edge": [-1],
 }

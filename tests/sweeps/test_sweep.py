@@ -129,7 +129,7 @@ def test_stops_have_their_mechanism_and_others_none(table: xr.Dataset) -> None:
     assert (table["mechanism"].where(cleared, "") == "").all()
     for name in ("symptom", "stop_bodies", "stop_carrier", "belly_side", "then_closed_track"):
         assert (table[name].where(cleared, "") == "").all(), name
-    for name in ("jammed", "passing", "tried_closed_track", "freed_by_closed_track"):
+    for name in ("jammed", "transient", "tried_closed_track", "freed_by_closed_track"):
         assert not table[name].where(cleared, False).any(), name
     assert table["stop_x"].where(cleared).isnull().all()
     assert "tried_torque_x2" not in table

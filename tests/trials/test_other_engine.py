@@ -41,7 +41,7 @@ def jams() -> list[c2d.Run]:
         ]
         for run in c2d.simulate_many(fitting, on_error="record"):
             why = run.diagnosis
-            if why is not None and why.jammed and why.stalled_share == 0.0 and not why.passing:
+            if why is not None and why.jammed and why.stalled_share == 0.0 and not why.transient:
                 found.append(run)
     return found[:COUNT]
 

@@ -81,12 +81,12 @@ class Diagnosis:
     ----------
     outcome : Outcome
         Which kind of stop it is, after what was tried: "seized" if the robot is `jammed` and a
-        closed track gets free, else the symptom; "timed_out" if it was `passing`.
+        closed track gets free, else the symptom; "timed_out" if it was `transient`.
     symptom : Outcome
         What is seen, before anything is tried: cycling, hung_up, stalled or slipping.
-    passing : bool
+    transient : bool
         Whether the stop would not have lasted: the unchanged robot got free when it went on, or
-        when its track was built anew.
+        when its track was rebuilt.
     trials : tuple of TrialResult
         The trials so far and their results; `Run.trials` and `Run.what_if` add to it.
     freed_by : tuple of str
@@ -134,7 +134,7 @@ class Diagnosis:
 
     outcome: Outcome
     symptom: Outcome
-    passing: bool
+    transient: bool
     trials: tuple[TrialResult, ...]
     jammed: bool
     mechanism: Mechanism | None
@@ -219,7 +219,7 @@ def sentence(d: Diagnosis) -> str:
     """
     clauses = (_intrusion, _bearers, _belly, _drives, _progress, _balance)
     facts = ": ".join(filter(None, (_head(d), "; ".join(filter(None, (f(d) for f in clauses))))))
-    if d.passing:
+    if d.transient:
         return f"{facts}. {_continuation(d)}"
     tried = "; ".join(filter(None, (trial_text(d, each) for each in d.trials)))
     return f"{facts}. Tried: {tried}{_belt_limit(d)}" if tried else facts
@@ -231,8 +231,8 @@ def trial_text(d: Diagnosis, tried: TrialResult) -> str:
 
 
 def _head(d: Diagnosis) -> str:
-    if d.passing:
-        return f"in passing, {_word(d.symptom)}"
+    if d.transient:
+        return f"temporarily {_word(d.symptom)}"
     where = _where(d.intrusion) if d.outcome == Outcome.SEIZED and d.intrusion else ""
     on_end = d.outcome == Outcome.HUNG_UP and d.belly_side in ("tail", "nose")
     return f"{_word(d.outcome)}{where}" + (f" on the {d.belly_side} of its hull" if on_end else "")
@@ -243,10 +243,10 @@ def _word(outcome: Outcome) -> str:
 
 
 def _continuation(d: Diagnosis) -> str:
-    """Say which control got out of a passing stop."""
+    """Say which control got out of a transient stop."""
     control = next(tried for tried in d.trials if tried.freed)
     by_itself = control.name == "unchanged"
-    text = "It goes on by itself" if by_itself else "With its track built anew it goes on"
+    text = "It goes on by itself" if by_itself else "With its track rebuilt it goes on"
     return f"{text}: {_result(d, control)}"
 
 
@@ -318,7 +318,7 @@ def _intrusion(d: Diagnosis) -> str:
     piece = d.intrusion
     if piece is None:
         return ""
-    where = "" if d.outcome == Outcome.SEIZED and not d.passing else _where(piece)
+    where = "" if d.outcome == Outcome.SEIZED and not d.transient else _where(piece)
     roots = ""
     if _has_grousers(piece) and piece.bodies[0] != piece.bodies[1]:
         is_past = piece.root_depth > _LEAST_DEPTH

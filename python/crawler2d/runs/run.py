@@ -199,7 +199,7 @@ class Run(ShownRun):
             nothing to change on the robot:
 
             - "unchanged": the run goes on; "rebuilt": its own track is built anew. If either frees
-              it, the stop was passing, and no more is claimed of it;
+              it, the stop was transient, and no more is claimed of it;
             - "closed track": `ClosedTrack` of its own, in this pose; "closed track, clear of the
               ground": the same at rest, in the nearest pose in which no ground is inside it. A pose
               with an edge between two wheels is one that no belt comes to. "closed smooth track":

@@ -172,7 +172,7 @@ def stop_columns(
 
     columns: dict[str, Column] = {
         "symptom": (str, "", [str(each) for each in of("symptom", "")]),
-        "passing": (bool, "", of("passing", False)),
+        "transient": (bool, "", of("transient", False)),
         "mechanism": (str, "", [str(each or "") for each in of("mechanism", "")]),
         "jammed": (bool, "", of("jammed", False)),
         "belly_side": (str, "", of("belly_side", "")),

@@ -119,7 +119,7 @@ def sweep(
 
         - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
           memory, its workers were lost, or a fault of the program), and `error` says why;
-        - of a stop, else "", False, NaN or -1: `symptom`, `passing`, `mechanism`, `jammed` and
+        - of a stop, else "", False, NaN or -1: `symptom`, `transient`, `mechanism`, `jammed` and
           `belly_side` as in `Diagnosis`; where it is: `stop_x` [m], `stop_angle` [rad]; and where
           ground is inside a track: `stop_edge`, `stop_side`, `stop_carrier`, `stop_bodies`, such as
           "1-2";
