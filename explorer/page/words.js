@@ -119,7 +119,7 @@ class Sentence {
       const of = d.stalled_share === 1 ? "" : `${percent(d.stalled_share)} of `;
       return `${of}the motors are at their torque limit`;
     }
-    if (d.symptom === "cycling") return "it moves to and fro";
+    if (d.symptom === "cycling") return "it moves back and forth";
     if (d.outcome !== "slipping" || !this.onTrack.some((row) => row.normal_force > 0)) return "";
     const slip = mean(this.onTrack, (row) => Math.abs(row.surface_speed));
     return slip > this.words.least_slip ? `the track slips at ${fixed(slip, 2)} m/s` : "";

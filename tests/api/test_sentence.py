@@ -163,7 +163,7 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
             "belt from the start: past here after 3.3 s, then clears",
         ),
         (tried("torque x 2", outcome=OUT.STALLED), "twice the torque: is stalled"),
-        (tried("one motor", outcome=OUT.CYCLING), "one motor for all wheels: goes to and fro"),
+        (tried("one motor", outcome=OUT.CYCLING), "one motor for all wheels: moves back and forth"),
         (tried("flippers level", outcome=OUT.HUNG_UP), "flippers level: hangs on its belly"),
         # A robot that rattles is tried from several instants.
         (
@@ -332,7 +332,7 @@ def test_where_ground_inside_is_not_what_stops_the_robot_it_is_told_beside() -> 
         ),
         (
             {"outcome": "cycling", "progress": 0.031},
-            "cycling: it moves to and fro; it still creeps at 3 % of the commanded speed",
+            "cycling: it moves back and forth; it still creeps at 3 % of the commanded speed",
         ),
         (
             {"outcome": "slipping", "certified": False, "imbalance": 0.034},

@@ -42,7 +42,7 @@ def test_each_seizure_is_driven_again_under_each_assumption_and_reported() -> No
     (blows,) = found.assumed
     assert (blows.obstacle, blows.assumption, blows.made) == ("step of 75 mm", "restitution", 18)
     assert blows.seized <= 18
-    assert any("With rebound (restitution 0 to 1)" in each for each in conclusion(found))
+    assert any("With bouncing contacts (restitution 0 to 1)" in each for each in conclusion(found))
     again = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)
     assert again.assumed == found.assumed
 

@@ -164,10 +164,10 @@ def test_runs_take_a_tenth_a_third_and_all_of_the_speed_in_turn(found: c2d.Audit
         heights = own["drawn_height"].values
         assert 0.95 * 0.075 <= heights.min() < 0.97 * 0.075
         assert 1.03 * 0.075 < heights.max() <= 1.05 * 0.075
-    said = "0.038, 0.126 and 0.378 m/s in turn, obstacles times 0.95 to 1.05"
+    said = "0.038, 0.126 and 0.378 m/s in turn, obstacle sizes times 0.95 to 1.05"
     text = " ".join(repr(found).split())
     assert f"Verdicts: at most 20 runs, at {said}" in text
-    assert f"in fresh runs at {said}" in text
+    assert f"in new runs at {said}" in text
     assert found.repairs[0].seized_at["step of 75 mm"][0.038].rate == 0.0
 
 
@@ -269,8 +269,11 @@ def test_what_a_user_says_is_unknown_counts() -> None:
 @pytest.mark.parametrize(
     ("unknown", "many"),
     [
-        ({"robot.drivetrain.max_torque": c2d.uniform(3.0, 6.0)}, "2 robots, 1 run each"),
-        ({"terrain.friction": c2d.uniform(0.5, 1.0)}, "2 floors, 1 run each"),
+        (
+            {"robot.drivetrain.max_torque": c2d.uniform(3.0, 6.0)},
+            "2 samples of the robot, 1 run each",
+        ),
+        ({"terrain.friction": c2d.uniform(0.5, 1.0)}, "2 samples of the floor, 1 run each"),
     ],
 )
 def test_only_what_differs_is_said_to_be_drawn(unknown: Any, many: str) -> None:
@@ -297,13 +300,13 @@ def test_columns_stand_below_their_heads_whatever_the_obstacles_are_called() -> 
         ({"vary": {"drive.speed": stats.norm(0.3, 0.01)}}, "at norm(0.3, 0.01)"),
         (
             {"drive": c2d.Drive(schedule=((0.0, 0.3),))},
-            "at the speeds of its schedule, obstacles times 0.95 to 1.05",
+            "at the speeds of its schedule, obstacle sizes times 0.95 to 1.05",
         ),
     ],
 )
 def test_an_audit_says_at_which_speeds_it_drove(how: Any, said: str) -> None:
     few = c2d.audit(SEIZING, STEP, unknown={}, repair=False, **how, **QUIET)
-    assert f"Verdicts: at most 1 run, {said}; intervals of 95 %" in " ".join(str(few).split())
+    assert f"Verdicts: at most 1 run, {said}; 95 % intervals" in " ".join(str(few).split())
 
 
 def test_terrains_of_a_users_own_keep_their_friction() -> None:
@@ -438,8 +441,8 @@ def test_wheels_on_the_right_have_the_names_of_the_file_where_each_track_has_its
         robot=robot, reading=absolem, verdicts=[SimpleNamespace(where=f"1-{first + 1}")]
     )
     assert words.wheel_names(audit) == (
-        f"on the left, wheel 1 is left_track_wheel7; on the right, wheel {first + 1} is"
-        " right_track_wheel7"
+        "in the file, on the left, wheel 1 is left_track_wheel7;"
+        f" on the right, wheel {first + 1} is right_track_wheel7"
     )
 
 
@@ -533,12 +536,12 @@ def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit
     alone = replace(repair, cleared_beside={**repair.cleared_beside, "gap 90 mm": none})
     assert worst_rates(alone)[0] == none
     text = repair_sentence(alone)
-    assert "the belt clears none of the fresh runs on gap 90 mm (0 to compare with)" in text
+    assert "the belt clears none of the new runs on gap 90 mm (0 to compare with)" in text
     assert "nan" not in text
     assert found.repaired is not None
     changed = replace(found, repaired=found.repaired._replace(repairs=(alone,)))
-    assert "none of the fresh runs on gap 90 mm" in changed.summary
-    assert "none of the fresh runs on gap 90 mm" in changed.to_html()
+    assert "none of the new runs on gap 90 mm" in changed.summary
+    assert "none of the new runs on gap 90 mm" in changed.to_html()
 
 
 def test_too_few_runs_to_show_that_it_does_not_seize_are_said_to_be(found: c2d.Audit) -> None:

@@ -43,7 +43,7 @@ def test_the_command_prints_the_short_form(capsys: Any) -> None:
     status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
     assert status in (0, 1)
     assert out.startswith("cart: 3 round wheels in a line")
-    assert "Verdicts: at most 2 robots on floors, 1 run each" in out
+    assert "Verdicts: at most 2 samples of robot and floor, 1 run each" in out
 
 
 @pytest.mark.usefixtures("one_obstacle")

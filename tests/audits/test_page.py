@@ -174,7 +174,7 @@ def test_the_page_begins_with_the_answer_and_the_worst_replay(found: c2d.Audit, 
     assert f"{name}: {subject}" == words.subject(found)
     assert answer(page) == (
         "It seizes on 1 of 1 obstacles where a belt clears: step of 75 mm (100 % of the runs),"
-        " between wheels 1 and 2 of the chassis. What ends that, confirmed in fresh runs:"
+        " between wheels 1 and 2 of the chassis. What prevents that, confirmed in new runs:"
         " chassis: 5 wheels in place of 4."
     )
     before = page.tags[: [each.get("class") for _, each in page.tags].index("runs")]
@@ -220,7 +220,7 @@ def test_every_figure_of_a_file_has_its_value_and_its_source(
 
 
 def test_what_is_not_known_is_there_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
-    rows = file_page.rows("unknown, and drawn for every sample")
+    rows = file_page.rows("uncertain, varied over the samples")
     assert [row[1] for row in rows] == [
         words.range_of(path, each) for path, each in of_file.unknown.items()
     ]
@@ -322,7 +322,7 @@ def test_how_it_was_made_names_runs_seed_and_command(of_file: c2d.Audit, file_pa
     made = int((of_file.table["outcome"] != "").sum())
     assert made < 48
     said = rows["runs behind the verdicts"]
-    assert said.startswith(f"{made}: at most 12 robots, 1 run each")
+    assert said.startswith(f"{made}: at most 12 samples of the robot, 1 run each")
     assert rows["seed of the draws"] == "3"
     assert c2d.__version__ in rows["crawler2d"]
     *_, (_, again) = file_page.all("pre")

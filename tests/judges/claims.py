@@ -20,7 +20,7 @@ from crawler2d.parameters.terrain import Lanes
 from tests.judges.judge import Judge
 
 STOPS = {
-    "goes to and fro": "cycling",
+    "moves back and forth": "cycling",
     "hangs on its belly": "hung_up",
     "is stalled": "stalled",
     "slips": "slipping",
@@ -97,7 +97,7 @@ class Claims:
             "the ground at": lambda: self.is_inside(clause),
             "carries": lambda: abs(judge.belly_share() - share) < 0.02,
             "torque limit": lambda: abs(judge.stalled_share() - share) < 0.02,
-            "to and fro": lambda: judge.to_and_fro() > 0.9 * judge.criteria.cycling_distance,
+            "back and forth": lambda: judge.to_and_fro() > 0.9 * judge.criteria.cycling_distance,
             "creeps": lambda: abs(self.run.metrics["progress"] - share) < 0.01,
             "the track slips": lambda: self.is_slipping(clause),
             "no contact forces": lambda: judge.opinion().imbalance > judge.criteria.imbalance,

@@ -284,7 +284,7 @@ def test_forward_is_the_side_of_the_links_called_front(tmp_path: Path) -> None:
 
 def test_forward_is_x_where_no_name_tells(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(pair("a", 0.2) + pair("b", -0.2)))
-    assert reading.notes[0] == "by convention, x is forward: +x is forward"
+    assert reading.notes[0] == "no link is called front or rear: +x is forward"
 
 
 def across_x(name: str) -> str:

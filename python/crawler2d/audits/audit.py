@@ -76,11 +76,11 @@ class Audit(AuditRecord):
     assumed : tuple of Assumption
         Whether seizures depend on rotors of the motors, or on restitution.
     repairs, repaired : tuple of Repair, and RepairSearch or None
-        Changes that end the seizures, and all of the search for them.
+        Changes that prevent the seizures, and the whole search for them.
     table : xarray.Dataset
         The runs behind the verdicts.
     vary, unknown, drive, call
-        Over what the rates are taken, how the robot was driven, and the arguments.
+        What the rates are taken over, how the robot was driven, and the arguments.
     """
 
     @property
@@ -214,10 +214,10 @@ def audit(
     progress: bool | Progress | None = True,
     **reading: Unpack[ReadKeywords],
 ) -> Audit:
-    """Find out whether a model of a robot seizes where a belt would not, and what ends that.
+    """Find out whether a model of a robot seizes where a belt would not, and what prevents that.
 
-    The robot and the same robot on belts drive over the standard obstacles again and again,
-    resampling its unknown parameters. The rules of lint, verdicts and repairs are in
+    The robot and the same robot on belts drive over the standard obstacles many times, with its
+    uncertain parameters resampled. The rules of lint, verdicts and repairs are in
     ``docs/conventions.md``, "Audit".
 
     Parameters
@@ -227,15 +227,15 @@ def audit(
     obstacles : mapping of str to terrain, optional
         What to drive over, by label, in place of the standard obstacles. They keep their friction.
     vary : mapping of str to distribution, optional
-        What differs from run to run; see `sweep`. None takes start, contact and, of random step
+        What varies from run to run; see `sweep`. None takes start, contact and, of random step
         fields, the field; a tenth, a third and all of the speed in turn; and heights, rises, radii
         and widths of obstacles within 5 %.
     unknown : mapping of str to distribution, optional
-        What is not known, in the same form. None takes, of a file, narrow ranges for what it states
-        and wide ones for estimates; of a preset and of another robot those of `unknowns`; and the
-        friction of the floor. ``{}`` takes everything as known.
+        Uncertain parameters, in the same form. None takes narrow ranges for what a file states and
+        wide ones for estimates; for a preset or another robot those of `unknowns`; and the friction
+        of the floor. ``{}`` takes everything as known.
     samples : int, optional
-        Most samples of the unknowns, each a robot on a floor, 1 to 100,000; an obstacle is left as
+        Largest number of samples of the uncertain parameters, 1 to 100,000; an obstacle is left as
         soon as its verdict is certain. Fewer than 35 cannot show that it does not seize. None takes
         80, or 36 if it is to be `quick`.
     repeats : int

@@ -261,7 +261,7 @@ def unknown_of_file(
     """
     ranges: dict[str, tuple[Distribution, str]] = {}
     stated, about = reading.sources, scaled(1.0 - _ROUNDED, 1.0 + _ROUNDED)
-    slack = "2 % of the axle distance for what is mounted or left off"
+    slack = "2 % of the axle distance, for parts added or removed"
     for axis in (0, 1):
         place = shifted(-0.02, 0.02, unit="robot.outline.axle_distance")
         source = f"{stated['robot.center_of_mass']}; {slack}"

@@ -75,7 +75,7 @@ def _robot(audit: AuditSetup) -> Iterator[str]:
         yield from _wrap(f"estimates, not stated in the file: {names or 'none'}")
         for note in read.notes:
             yield from _wrap(f"note: {note}")
-    yield "  unknown, and drawn for every sample:" if audit.unknown else "  nothing is unknown"
+    yield "  uncertain, varied over the samples:" if audit.unknown else "  nothing is uncertain"
     sources = audit.unknown.sources if isinstance(audit.unknown, Ranges) else {}
     for path, distribution in audit.unknown.items():
         source = f" [{sources[path]}]" if path in sources else ""
@@ -108,7 +108,7 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
         else:
             holds = words.holding_friction([p.friction for p in alike])
             deep = words.span([1e3 * p.depth for p in alike], ".1f")
-            text = f"{deep} mm deep; the walls alone hold an edge {holds}"
+            text = f"{deep} mm deep; their walls alone hold an edge {holds}"
         yield from _wrap(f"{carrier}: {what}, {text}")
 
 
@@ -130,7 +130,7 @@ def _jams(audit: AuditRecord) -> Iterator[str]:
     yield from _wrap(words.missing_results(audit))
     jammed = [each for each in audit.verdicts if each.where]
     if jammed:
-        yield "  where it is jammed, how often at each speed, and how many a change frees there:"
+        yield "  where it jams, how often at each speed, and how many a change frees there:"
         yield from _columns([words.JAM_HEAD, *map(words.jam_row, jammed)])
         yield from _wrap(words.wheel_names(audit))
 

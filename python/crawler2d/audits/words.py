@@ -99,7 +99,7 @@ def population(audit: AuditSetup) -> str:
     levels = audit.vary.get("drive.speed")
     factors = levels.factors if isinstance(levels, Levels) else (1.0,)
     speeds = audit.drive.speed * np.array(factors)
-    text = f"at most {many}, {_speeds_and_sizes(speeds, audit)}; intervals of 95 %"
+    text = f"at most {many}, {_speeds_and_sizes(speeds, audit)}; 95 % intervals"
     least = least_samples()
     if (samples if audit.unknown else repeats) < least:
         text += f'; "does not seize" takes {least} or more'
@@ -110,8 +110,8 @@ def _what_differs(audit: AuditSetup) -> str:
     """Name what differs from sample to sample: robots, floors, or both."""
     on_floors = {path.startswith("terrain.") for path in audit.unknown}
     if on_floors == {True}:
-        return "floors"
-    return "robots on floors" if True in on_floors else "robots"
+        return "samples of the floor"
+    return "samples of robot and floor" if True in on_floors else "samples of the robot"
 
 
 def _speeds_and_sizes(levels: NDArray[np.float64], audit: AuditSetup) -> str:
@@ -127,7 +127,7 @@ def _speeds_and_sizes(levels: NDArray[np.float64], audit: AuditSetup) -> str:
     sizes = audit.vary.get("terrain.height")
     if not isinstance(sizes, Scaled):
         return f"at {speeds}"
-    return f"at {speeds}, obstacles times {sizes.low:g} to {sizes.high:g}"
+    return f"at {speeds}, obstacle sizes times {sizes.low:g} to {sizes.high:g}"
 
 
 def missing_results(audit: AuditRecord) -> str:
@@ -177,7 +177,7 @@ def wheel_names(audit: AuditRecord) -> str:
     right: list[str] = []
     for body in sorted(bodies & names.keys()):
         (left if body < count else right).append(f"{body} is {names[body]}")
-    parts = (("on the left", left), ("on the right", right))
+    parts = (("in the file, on the left", left), ("on the right", right))
     return "; ".join(f"{side}, wheel {', '.join(called)}" for side, called in parts if called)
 
 
@@ -242,20 +242,20 @@ def conclusion(audit: AuditRecord) -> list[str]:
 def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
     """Say how often the robot seizes under each assumption, and which verdicts depend on it."""
     heads = {
-        "rotor": "With a real drive, which holds its speed and has rotors",
-        "restitution": "With rebound",
+        "rotor": "With rotor inertia, as in real motors",
+        "restitution": "With bouncing contacts",
     }
     for name, head in heads.items():
         own = [each for each in assumed if each.assumption == name]
         if own:
-            runs = ", ".join(f"{each.obstacle} {each.seized} of {each.made}" for each in own)
+            runs = ", ".join(f"{each.obstacle} in {each.seized} of {each.made}" for each in own)
             loose = [each.obstacle for each in own if not each.holds]
             verdicts = f"the verdict{'s' * (len(loose) > 1)} on {', '.join(loose)}"
             effect = f"{verdicts} may depend" if loose else "no verdict depends"
             drawn = ", ".join(
                 f"{_path_text(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
             )
-            yield f"{head} ({drawn}), it seizes in: {runs}; {effect} on that."
+            yield f"{head} ({drawn}), it seizes on: {runs}; {effect} on that."
 
 
 def _path_text(path: str) -> str:
@@ -302,7 +302,7 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
 
 def search_sentence(search: RepairSearch, audit: AuditSetup) -> str:
     """Say what the search for repairs found, and in which runs."""
-    runs = f"in fresh runs {_speeds_and_sizes(search.table['speed'].values, audit)}"
+    runs = f"in new runs {_speeds_and_sizes(search.table['speed'].values, audit)}"
     if any(each.confirmed for each in search.repairs):
         return f"the best of {search.tried} candidates, {runs}"
     return f"none of {search.tried} candidates was confirmed {runs}"
@@ -340,7 +340,7 @@ def comparison(repair: Repair) -> str:
     if cleared.runs:
         return f"clears at worst {rate(cleared)} of the runs that the belt clears where it seized"
     alone = [name for name, each in repair.cleared_beside.items() if not each.runs]
-    return f"the belt clears none of the fresh runs on {', '.join(alone)} (0 to compare with)"
+    return f"the belt clears none of the new runs on {', '.join(alone)} (0 to compare with)"
 
 
 def wheels_per_side(repair: Repair) -> str:

@@ -46,7 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="print JSON; progress goes to standard error"
     )
-    samples = f"largest number of samples of the uncertain parameters (default: {SAMPLES}, with --quick {QUICK};"
+    samples = "largest number of samples of the uncertain parameters"
+    samples += f" (default: {SAMPLES}, with --quick {QUICK};"
     samples += f" fewer than {least_samples()} cannot show that it does not seize)"
     parser.add_argument("--samples", type=int, metavar="N", help=samples)
     repeats = f"runs of each sample (default: {REPEATS})"

@@ -37,8 +37,8 @@ _NAMES = ("on four wheels", "on a belt")
 _HEIGHT = 0.075
 """[m] Of the step."""
 _NEXT = (
-    ("Does your own model seize, and what repairs it?", "crawler2d audit MODEL.sdf"),
-    ("What becomes of a scenario of yours?", "crawler2d run SCENARIO.json --html run.html"),
+    ("Does your own model seize, and what would fix it?", "crawler2d audit MODEL.sdf"),
+    ("What happens in a scenario of your own?", "crawler2d run SCENARIO.json --html run.html"),
     (
         "The run on wheels, in Python:",
         "import crawler2d as c2d\n"

@@ -263,7 +263,7 @@ def spaces_of(task: Task) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:
 
 
 def metadata_of(task: Task) -> dict[str, Any]:
-    """Say how many pictures a film in real time has in a second: one a step."""
+    """Frames per second of a video in real time: one a step."""
     return METADATA | {"render_fps": max(round(1.0 / task.dt), 1)}
 
 

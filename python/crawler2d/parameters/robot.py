@@ -176,10 +176,10 @@ class Robot(Parameters, path="robot"):
         return replace(_add_arms(self, self.flippers, -1.0), flippers=None)
 
     def without_rotors(self) -> Robot:
-        """Remove the rotors of all motors: the drives of a simulator that has none.
+        """Remove the rotor inertia of all motors, as in a simulator that does not model it.
 
         The engine rapier takes only such robots, and most published simulations have such drives.
-        With its rotors a robot gets over more edges.
+        With rotor inertia a robot gets over more edges.
 
         Returns
         -------
@@ -382,13 +382,14 @@ class Robot(Parameters, path="robot"):
         track_width: float | None = None,
         chassis_width: float | None = None,
     ) -> str:
-        """Write the robot before an obstacle, as a world for Gazebo or a scene for MuJoCo.
+        """Write the robot in front of an obstacle, as a world for Gazebo or a scene for MuJoCo.
 
         It stands where a `Scenario` starts it. The ground is the profile of the terrain, extruded
         across twice the width of the robot, under each track its own if the two differ: boxes and,
         where it slopes, convex prisms on a plane at the lowest height, or below that where the
-        tracks have unlike friction. The robot is that of `to_sdf` or `to_mjcf`, with the friction
-        of the terrain between the two, however the engine combines it. Gravity is 9.81 m/s^2.
+        tracks have different friction. The robot is that of `to_sdf` or `to_mjcf`, with the
+        friction of the terrain between the two, however the engine combines it. Gravity is 9.81
+        m/s^2.
 
         ``gz sim -r world.sdf`` runs the world: its wheels and belts obey the topic
         ``/model/NAME/cmd_vel``; ``python -m mujoco.viewer --mjcf=scene.xml`` runs the scene.
@@ -481,7 +482,7 @@ class Robot(Parameters, path="robot"):
         max_speed: float = 1.0,
         track: Track | None = None,
     ) -> Robot:
-        """Make a robot from three figures; rules set the others, see the notes.
+        """Make a robot from three numbers; rules set the others, see the notes.
 
         Parameters
         ----------
@@ -501,7 +502,7 @@ class Robot(Parameters, path="robot"):
         Returns
         -------
         Robot
-            Use `dataclasses.replace` to change single figures.
+            Use `dataclasses.replace` to change single values.
 
         Raises
         ------

@@ -252,8 +252,8 @@ class SeizureCriteria(Parameters, path="criteria"):
     torque_limit : float
         [-] Fraction of the torque limit from which a motor counts as at its limit, on average.
     cycling_distance : float
-        [m] A robot that moves to and fro by this much within a stop window is cycling: more than
-        the rattle of jammed grousers, less than the spacing of any wheels.
+        [m] A robot that moves back and forth by this much within a stop window is cycling: more
+        than the rattle of jammed grousers, less than the spacing of any wheels.
     imbalance : float
         [-] Fraction of the weight that may be unbalanced in the equilibrium of a stationary state.
     mean_imbalance : float
@@ -263,8 +263,8 @@ class SeizureCriteria(Parameters, path="criteria"):
     escape_distance : float
         [m] Advance that counts as escaping from a stop.
     escape_time : float
-        [s] Time that a robot has in a trial to escape from a stop, besides that in which it would
-        drive `escape_distance` as commanded.
+        [s] Time that a robot has in a trial to escape from a stop, in addition to the time in which
+        it would drive `escape_distance` as commanded.
     """
 
     stop_window: float = 1.0

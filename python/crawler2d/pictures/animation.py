@@ -1,4 +1,4 @@
-"""Runs as a film: their side views with the contact forces, as a GIF or an MP4."""
+"""Runs as a video: their side views with the contact forces, as a GIF or an MP4."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def animate(
     width: int,
     counted: Callable[[int], AbstractContextManager[Callable[[int], None]]],
 ) -> Path:
-    """Write runs as one film; see `Run.animate` and `crawler2d.animate`.
+    """Write runs as one video; see `Run.animate` and `crawler2d.animate`.
 
     Given the number of frames, `counted` opens what is called with the number of frames drawn
     since its last call. The file appears once it is complete.

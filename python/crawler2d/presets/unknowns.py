@@ -1,7 +1,7 @@
-"""Ranges of what is not known of a robot and its floor, for `unknown` of a sweep.
+"""Ranges of the uncertain parameters of a robot and its floor, for `unknown` of a sweep.
 
-It is the same in every run, so it is sampled in an outer loop: each sample is a possible robot on a
-possible floor, and has a rate of its own.
+They are the same in every run but not known exactly, so they are sampled in an outer loop: each
+sample is a possible robot on a possible floor, and has its own rate.
 
 >>> import crawler2d as c2d
 >>> robot = c2d.robots.engineer(flippers=None)
@@ -57,7 +57,7 @@ _ARMS = "robot.flippers.torque_limit"
 OF_ARMS = (_ARMS, ROTOR_OF_ARM)
 """Paths that a robot without flippers does not have."""
 
-_OF_FILE = "the sum over the links of its file; 10 mm for what is mounted or left off"
+_OF_FILE = "the sum over the links of its file; 10 mm for parts added or removed"
 _MOTORS = "the preset's is an estimate: half to twice"
 _BY_ROUGH = "0.016 to 0.1 s times rated torque squared over power, both from ROUGH"
 
@@ -134,7 +134,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
 
 
 def of_restitution(robot: Robot) -> Ranges:
-    """List what is not known of impacts on the ground: the coefficient of restitution.
+    """List the uncertain parameter of impacts: the coefficient of restitution.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def of_restitution(robot: Robot) -> Ranges:
 
 
 def of_robot(robot: Robot) -> Ranges:
-    """List what is not known of a robot: centre of mass, torque, rotors, clearance of the belly.
+    """List uncertain parameters of a robot: centre of mass, torque, rotors, ground clearance.
 
     Of Absolem and MARV also the mass and the torque of the flippers, which were published twice.
 
@@ -167,7 +167,7 @@ def of_robot(robot: Robot) -> Ranges:
     -------
     Ranges
         For `unknown`; printing it shows each range and where it comes from. Those of a preset rest
-        on what its docstring says of its figures; those of another robot are general. The inertia
+        on what its docstring says of its values; those of another robot are general. The inertia
         of a rotor is then 0.016 to 0.1 s, in which the rated torque of eight in ten catalogue
         motors runs them up, times the largest torque over the largest speed; one that the robot
         states is taken as known. A preset after `Robot.without_rotors` has none.
@@ -199,7 +199,7 @@ def of_robot(robot: Robot) -> Ranges:
 
 
 def of_ground() -> Ranges:
-    """List what is not known of the ground: the friction of the floor.
+    """List the uncertain parameter of the ground: the friction of the floor.
 
     Returns
     -------

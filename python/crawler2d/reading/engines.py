@@ -60,7 +60,7 @@ _RATES = ("_acceleration", "_linear_acceleration")
 _QUICKEST = 1e6  # [m/s^2]
 _SIDES = ("left", "right")
 
-_WITHIN_A_STEP = "the commanded speed within one step, as far as the torque limit allows"
+_WITHIN_A_STEP = "the commanded speed is reached within one step, if the torque limit allows"
 _AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (read in its source)"
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
 WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple

@@ -221,7 +221,7 @@ def side_view(tree: Tree, surfaces: Surfaces, forward: str | None, tolerance: fl
     elif by_names := _sign_by_names(tree, ahead):
         sign, reason = by_names
     elif is_parallel(ahead, np.array([1.0, 0.0, 0.0])):
-        sign, reason = float(np.sign(ahead[0])), "by convention, x is forward"
+        sign, reason = float(np.sign(ahead[0])), "no link is called front or rear"
     else:
         rule = 'is ambiguous, as no link is called front or rear: pass forward="+y" or "-y"'
         raise ScenarioError("forward", forward, rule)

@@ -57,7 +57,7 @@ _ENDS = {
     Outcome.DETRACKED: "throws its track",
     Outcome.TIMED_OUT: "is still moving",
     Outcome.SEIZED: "seizes",
-    Outcome.CYCLING: "goes to and fro",
+    Outcome.CYCLING: "moves back and forth",
     Outcome.HUNG_UP: "hangs on its belly",
     Outcome.STALLED: "is stalled",
     Outcome.SLIPPING: "slips",
@@ -415,7 +415,7 @@ def _drives(d: Diagnosis) -> str:
         of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
         return f"{of}the motors are at their torque limit"
     if d.symptom == Outcome.CYCLING:
-        return "it moves to and fro"
+        return "it moves back and forth"
     track = d.contacts["body_kind"] != BodyKind.BELLY
     forces = d.contacts["normal_force"][track]
     if d.outcome != Outcome.SLIPPING or forces.sum() == 0.0:

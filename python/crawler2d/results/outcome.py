@@ -14,7 +14,7 @@ OUTCOMES = {
     "left_terrain": "an end axle went beyond the end of the ground, or a metre below all of it",
     "cleared": "the robot is past the goal",
     "seized": "stopped with ground jammed in a track; closed, that track gets free",
-    "cycling": "stopped, moving to and fro by more than criteria.cycling_distance",
+    "cycling": "stopped, moving back and forth by more than criteria.cycling_distance",
     "hung_up": "stopped with criteria.belly_load of the load or more on the belly",
     "stalled": "stopped with at least half of the motors on the ground at their torque limit",
     "slipping": "stopped while the track slips",
@@ -46,7 +46,7 @@ MECHANISMS = {
 
 TRIALS = {
     "unchanged": "the run goes on: a control",
-    "rebuilt": "its own track is built anew in this pose: a control of what follows",
+    "rebuilt": "its own track is built again in this pose: a control for the next trials",
     "closed track": "a belt round the bodies of each track, with grousers if the model has some",
     "closed track, clear of the ground": (
         "the same belt, at rest in the nearest pose in which no ground is inside it"

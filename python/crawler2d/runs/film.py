@@ -35,9 +35,9 @@ def animate(
     width: int = 800,
     progress: bool | Progress | None = True,
 ) -> Path:
-    """Write one film of several runs, at the same time, to the same scale.
+    """Write one video of several runs, at the same time, to the same scale.
 
-    Every run has a picture of its own: the side view with the contact forces. A run that has ended
+    Every run has its own picture: the side view with the contact forces. A run that has ended
     stands still, with its outcome in the title, until the last one ends. A branch stands still
     until the time at which it branched off.
 
@@ -48,7 +48,7 @@ def animate(
     path : str or path-like
         Where to write it: a ``.gif`` or an ``.mp4``, see `Run.animate`.
     labels : sequence of str, optional
-        What to call each run; None takes the models of their tracks.
+        Label of each run; None takes the models of their tracks.
     fps : float
         [1/s] Frames per second, from 1 to 50.
     speed : float

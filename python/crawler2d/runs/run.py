@@ -124,10 +124,10 @@ class Run(ShownRun):
         """Continue from an instant of this run with something changed.
 
         The run is repeated bit by bit up to that instant, and continues from the same pose and
-        speeds; all that is not changed goes on as before. Another torque or friction, a push, or a
-        belly taken off change nothing else. Of another track or belly, only pose and speeds are
-        those of the run: ground that is inside it is let out without a push, the track is dented
-        there, and the dent heals as the robot moves on. So it is with any branch of a run in
+        speeds; everything else stays as it was. Another torque or friction, a push, or removing the
+        belly change nothing else. With another track or belly only pose and speeds carry over:
+        where ground is inside it, the track is dented, which does not push the robot, and the dent
+        goes away as the robot moves on. So it is with any branch of a run in
         rapier: crawler2d's own dynamics move it, at the run's time step.
 
         Parameters
@@ -198,7 +198,7 @@ class Run(ShownRun):
             Each change, by `Trial.name`, and its result, in this order, without those that have
             nothing to change on the robot:
 
-            - "unchanged": the run goes on; "rebuilt": its own track is built anew. If either frees
+            - "unchanged": the run goes on; "rebuilt": its own track is built again. If either frees
               it, the stop was transient, and no more is claimed of it;
             - "closed track": `ClosedTrack` of its own, in this pose; "closed track, clear of the
               ground": the same at rest, in the nearest pose in which no ground is inside it. A pose
@@ -322,8 +322,8 @@ class Run(ShownRun):
         Returns
         -------
         EscapeForce
-            [N] A tuple: the last level that did not move it on and the first that did. Its `tips`
-            says whether that push tipped it over.
+            [N] A tuple: the highest level that did not move it on and the lowest that did. Its
+            `tips` says whether that push tipped it over.
 
         Raises
         ------
@@ -372,10 +372,9 @@ class Run(ShownRun):
 
         What crawler2d's own dynamics moved is moved by rapier, and the other way round, at that
         engine's default accuracy; nothing else differs. A run without history, or of another build,
-        is simulated again. Where both stop at different places, or one
-        does not, statics tells which stop is an equilibrium. Runs of gear wheels and of many small
-        wheels are chaotic: of these compare rates, by a `sweep` or `compare` over
-        ``solver.engine``.
+        is simulated again. Where both stop at different places, or one does not stop, a static
+        analysis finds which stop is an equilibrium. Runs of gear wheels and of many small wheels
+        are chaotic: for these compare rates, with a `sweep` or `compare` over ``solver.engine``.
 
         Parameters
         ----------

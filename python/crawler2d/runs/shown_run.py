@@ -1,4 +1,4 @@
-"""What a run is looked at and written as: pictures, films, pages, data sets, files."""
+"""What a run is looked at and written as: pictures, videos, pages, data sets, files."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class ShownRun(Record):
         width: int = 800,
         progress: bool | Progress | None = True,
     ) -> Path:
-        """Write a film of the side view with the contact forces, which ends with the outcome.
+        """Write a video of the side view with the contact forces, which ends with the outcome.
 
         `crawler2d.animate` puts several runs into one. The comment of the file is `provenance`.
 
@@ -149,7 +149,7 @@ class ShownRun(Record):
             Whether the view moves with the robot. False shows all that it visits; None does so
             unless the robot would be too small to see.
         width : int
-            [px] Width of the film, from 200 to 4000.
+            [px] Width of the video, from 200 to 4000.
         progress : bool or callable
             As for `simulate_many`; frames are counted.
 

@@ -153,8 +153,8 @@ class Simulation(TakesKeywords):
         Parameters
         ----------
         duration : float
-            [s] By how much; the last step ends there. In pieces of other lengths the steps are
-            others, and the state differs a little.
+            [s] By how much; the last step ends there. If the time is split into other pieces, the
+            steps differ, and the state differs a little.
 
         Raises
         ------
@@ -313,8 +313,8 @@ class Simulation(TakesKeywords):
         -------
         Run
             To be plotted, saved and explained like any other. Its scenario does not hold what was
-            commanded, so it cannot be repeated: `parent` says from where it set out, and `branch`
-            and `trials` are refused.
+            commanded, so it cannot be repeated: `parent` says where it started from, and `branch`
+            and `trials` raise an error.
 
         Raises
         ------

@@ -228,14 +228,13 @@ def what_decides(
     outcome: str = "cleared",
     **how: Unpack[RateSampling],
 ) -> FigureDataset:
-    """Find which of the unknowns decides whether the robot gets over.
+    """Find which uncertain parameters matter most for the outcome: a global sensitivity analysis.
 
-    The outcome differs between runs because of what is not known of robot and floor, and because of
-    what varies from run to run. Sobol indices say how much of that variance comes from each: of
-    each unknown, and of all that varies from run to run together, drawn independently of each
-    other. They are estimated from runs of their own: of n such factors, n + 2 times `samples`. Then
-    each unknown is moved over its range, all others as in the scenario, to find where the rate
-    passes one half.
+    The outcome differs between runs because of the uncertain parameters of robot and floor, and
+    because of what varies from run to run. Sobol indices say how much of that variance comes from
+    each uncertain parameter, and from all that varies from run to run together. They are estimated
+    from separate runs: n + 2 times `samples` for n such factors. Then each parameter is moved over
+    its range, all others as in the scenario, to find where the rate crosses one half.
 
     Parameters
     ----------

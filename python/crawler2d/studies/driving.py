@@ -284,8 +284,8 @@ def max_speed(
     Each model stands on the scenario's level ground, or on the slope of its ramp, without end, and
     drives off. Its speed is the mean over two windows, each of 20 grouser pitches or more, after a
     run-up that is made longer until the two windows agree within 3 %, up to eight times as long.
-    What limits it is found by doing: the same runs with the commanded speed, the torque or the
-    friction doubled, each alone.
+    What limits it is found by repeating the runs with the commanded speed, the torque or the
+    friction doubled, one at a time.
 
     Parameters
     ----------

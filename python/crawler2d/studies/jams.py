@@ -62,12 +62,12 @@ def jam_chart(
     the borders of a region are curves, of which a point is computed for each height.
 
     Poses on one contact or two, in which a robot leans or balances, are left out here, as are
-    motors' limits: see `crawler2d.jams`. That a robot can jam does not say that it comes there.
+    motors' limits: see `crawler2d.jams`. That a robot can jam does not mean that it gets there.
 
     Parameters
     ----------
     scenario : Scenario
-        Robot and ground; what friction the ground has is of no matter.
+        Robot and ground; the friction of the ground does not matter.
     models : mapping of str to track or fields, optional
         As for `compare`; None takes the scenario's own robot. Tracks of round wheels, or belts.
     x : str

@@ -53,7 +53,7 @@ def ride(
     ----------
     scenario : Scenario
         Each run is one of it, from the start to its end, with the standstill of a stop; `ended` and
-        `speed` tell what was ridden.
+        `speed` say what it covers.
     models : mapping of str to track or fields, optional
         As for `compare`; None takes the scenario's own robot.
     repeats : int
@@ -70,7 +70,7 @@ def ride(
           mean square;
         - `rocking` [rad/s]: rate of change of the chassis angle, root mean square;
         - `swing` [rad]: from the smallest to the greatest chassis angle;
-        - `speed` [m/s]: way along the chassis by the time that the run took;
+        - `speed` [m/s]: distance along the chassis by the time that the run took;
         - `ended`: how most runs ended;
         - and the columns of `sweep`.
 
@@ -144,9 +144,9 @@ def odometry(
 
     Odometry with the circumscribed radius reads how far the surface of the track has run. On level
     ground it reads too much where the track slides, and where it rolls on less than that radius, as
-    a gear wheel does between its tips. Which of the two it is, is found by doing: the same runs
-    with the friction doubled; what remains of the error there is not sliding. On uneven ground the
-    two ways differ even without either.
+    a gear wheel does between its tips. To tell the two apart, the same runs are repeated with the
+    friction doubled; the error that remains is not sliding. On uneven ground the two distances
+    differ even without either.
 
     Parameters
     ----------
@@ -159,10 +159,10 @@ def odometry(
         Dimensions `model`, `change` (unchanged, and the friction doubled), `sample` if there are
         unknowns, and `repeat`:
 
-        - `odometry_error` [-]: the way that odometry reads over the way that was made, less 1;
-        - `slip` [-]: the mean slip ratio, 1 less the way that was made over the one that was read;
-        - `rolling_radius` [m]: the radius with which odometry would read the way that was made; NaN
-          unless all wheels of the chassis have the same radius;
+        - `odometry_error` [-]: the distance that odometry reads over that travelled, less 1;
+        - `slip` [-]: the mean slip ratio, 1 less the distance travelled over that read;
+        - `rolling_radius` [m]: the radius with which odometry would be right; NaN unless all wheels
+          of the chassis have the same radius;
         - `odometry_error_with` [-]: the error unchanged, and with the friction doubled;
         - `ended`: how most runs of each change ended;
         - and the columns of `sweep`.

@@ -59,11 +59,10 @@ def search(
 ) -> FigureDataset:
     """Find the cheapest candidate that clears every terrain, such as the one with fewest wheels.
 
-    In the search every run has a draw of its own of what varies *and* of what is not known: a fresh
-    robot on a fresh floor. All candidates are simulated a few times, the better half twice as
-    often, and so on down to two. What wins so has also been lucky; so winner and runner-up are
-    simulated once more, with draws that nothing in the search has had, and only those runs say how
-    often they succeed.
+    In the search every run has its own draw of what varies *and* of the uncertain parameters:
+    another robot on another floor. All candidates are simulated a few times, the better half twice
+    as often, and so on down to two (successive halving). The winner has also been lucky, so winner
+    and runner-up are simulated again with new draws, and only those runs give their success rates.
 
     Parameters
     ----------
@@ -73,8 +72,8 @@ def search(
         The candidates, as the models of `compare`. One that breaks a rule, such as wheels that do
         not fit, is left out.
     objective : callable, optional
-        What is to be small among the candidates that reach the goal: takes a `Scenario` and returns
-        a number. None counts the wheels of one side, which every candidate must then have.
+        The cost to minimize among the candidates that reach the goal: takes a `Scenario`, returns a
+        number. None counts the wheels of one side, which every candidate must then have.
     terrains : mapping of str to terrain, or sequence of terrains, optional
         All of them must be cleared: a candidate is as good as its lowest rate over them. None takes
         the scenario's own.

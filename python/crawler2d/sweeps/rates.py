@@ -222,7 +222,7 @@ def _warn_of_few(rates: xarray.Dataset) -> None:
     cause = f"what varied hardly moves the robot ({varied})" if varied else "nothing varied"
     reason = (
         f"should have more than {_FEW} distinct final poses in every cell: where {cause}, rates say"
-        " little of other robots or floors (unknown= gives a band over what is not known)"
+        " little of other robots or floors (unknown= gives a band over uncertain parameters)"
     )
     few_text = f"{_FEW} or fewer in {few} of {rates['count'].size} cells"
     warn("table", few_text, reason)

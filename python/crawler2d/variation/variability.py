@@ -1,6 +1,6 @@
-"""Ranges of what differs between runs of one robot on one ground, for `vary` of a sweep.
+"""Ranges of what varies between runs of one robot on one ground, for `vary` of a sweep.
 
-A rate over it is how often the robot would get over if it tried again and again.
+A rate over them is how often the robot would succeed if it tried many times.
 
 >>> import crawler2d as c2d
 >>> c2d.variability.of_start() | c2d.variability.of_contact()

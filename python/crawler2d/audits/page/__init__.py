@@ -161,11 +161,11 @@ def _diagnosis(audit: AuditRecord, each: Replay) -> str:
     if any(other.outcome == Outcome.SEIZED for other in others):
         text += " In this run the other robot seizes, too."
     draws = (
-        f"Sample {each.sample}, repeat {each.repeat} of the runs, counted from 0{among}. Drawn"
-        f" for it: {', '.join(_drawn(audit, each)) or 'nothing'}."
+        f"Sample {each.sample}, repeat {each.repeat} of the runs, counted from 0{among}. Its random"
+        f" values: {', '.join(_drawn(audit, each)) or 'none'}."
     )
     head = f"<p>Tried at the stop: {escape(tried)}.</p>" if tried else ""
-    more = sections.fold("what was tried, and which run it is", f"{head}<p>{escape(draws)}</p>")
+    more = sections.fold("what was tried, and details of this run", f"{head}<p>{escape(draws)}</p>")
     return f'<p class="diagnosis">{escape(text)}</p>{more}'
 
 

@@ -27,10 +27,10 @@ _MOST = 1.5  # friction
 _SHADES = 6  # of pairs of wheels
 
 _ABOUT = (
-    "A step, by height and friction: where there is a pose in which the model stands still with its"
-    " drives running, on three contacts. It is computed, not sampled. Outside the coloured areas"
-    " nothing can hold it so; inside, it depends on whether it comes there. Motors have any torque,"
-    " flippers are raised as before the obstacles."
+    "Heights and frictions of a step at which the model can stand still on three contacts with its"
+    " motors running; computed, not sampled. Outside the coloured areas there is no such pose;"
+    " inside, the robot jams if it gets into one. Motor torque is unlimited, flippers are raised as"
+    " in front of the obstacles."
 )
 
 

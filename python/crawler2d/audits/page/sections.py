@@ -69,10 +69,10 @@ _LONG = re.compile(r"\d+\.\d{4,}")
 """Numbers with more digits than are worth reading."""
 
 _JAMS = (
-    "the last columns are about the runs that seized: between which wheels most are jammed, and how"
-    " many of all; how often it seizes at each speed, the slowest first; the range of frictions of"
-    " the floor; and how many a change frees: a belt closed round the wheels in this pose, or the"
-    " same set clear of the ground, twice the torque, twice the friction"
+    "the last columns are about the runs that seized: between which wheels most of them jammed, and"
+    " how many of all; how often the robot seizes at each speed, the slowest first; the range of"
+    " floor friction; and how many of these runs a change frees: a belt round the wheels in this"
+    " pose, or the same belt set clear of the ground, twice the torque, twice the friction"
 )
 
 
@@ -103,7 +103,7 @@ def answer_section(audit: AuditRecord) -> str:
         return text
     if repair.confirmed:
         what = escape(change(audit, repair))
-        return f"{text} What ends that, confirmed in fresh runs: <strong>{what}</strong>."
+        return f"{text} What prevents that, confirmed in new runs: <strong>{what}</strong>."
     return f"{text} No repair was confirmed."
 
 
@@ -139,7 +139,7 @@ def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
     )
     below = "".join(f"<p>{escape(note)}</p>" for note in notes if note)
     table = _grid(head, rows, label="verdicts", look="wide")
-    return table + fold("in words, and what the columns mean", below)
+    return table + fold("explanation of the results and columns", below)
 
 
 def _class(word: str) -> str:
@@ -175,7 +175,7 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
         return f"<p>{none} repairs were searched for.</p>"
     head = (
         "repair",
-        "in fresh runs",
+        "in new runs",
         "clears at worst, of what the belt clears where it seized",
         "seizes at worst",
         "on",
@@ -234,11 +234,11 @@ def robot_section(audit: AuditRecord) -> str:
         _wheel_table(audit),
         fold("pockets and slots between wheels", draw_pockets(audit.robot, audit.pockets)),
         _figure_table(audit),
-        _range_table(audit.unknown, "unknown, and drawn for every sample"),
+        _range_table(audit.unknown, "uncertain, varied over the samples"),
     ]
     if read is not None and read.notes:
         notes = "".join(f"<li>{escape(note)}</li>" for note in read.notes)
-        parts.append(fold("decisions of the reader", f"<ul>{notes}</ul>"))
+        parts.append(fold("decisions made while reading the file", f"<ul>{notes}</ul>"))
     return f"<p>{escape(words.robot_sentence(audit))}</p>{''.join(parts)}"
 
 
