@@ -112,6 +112,6 @@ def test_the_sample_seizes_on_a_step_that_a_belt_climbs() -> None:
     few: Any = {"samples": 48, "repair": False, "threads": 2, "progress": False}
     found = c2d.audit(rover, step, unknown=floors, **few)
     (verdict,) = found.verdicts
-    assert verdict.word == "seizes"
+    assert verdict.result == "seizes"
     assert verdict.belt_cleared.rate > 0.9
     assert verdict.instead == verdict.there[1]

@@ -30,7 +30,11 @@ from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
 def test_touching_wheels_seize_on_a_step_that_the_belt_clears(found: c2d.Audit) -> None:
     (verdict,) = found.verdicts
     assert found.seizes
-    assert (verdict.word, verdict.outcome, verdict.belt_outcome) == ("seizes", "seized", "cleared")
+    assert (verdict.result, verdict.outcome, verdict.belt_outcome) == (
+        "seizes",
+        "seized",
+        "cleared",
+    )
     assert (verdict.seized.rate, verdict.belt_cleared.rate) == (1.0, 1.0)
     assert (verdict.where, verdict.carrier) == ("1-2", "chassis")
     assert found.belt.reason == "BeltTrack, along the outline"
@@ -176,7 +180,7 @@ def test_a_robot_that_seizes_only_when_it_is_slow_is_found_to_seize() -> None:
     how: Any = {"unknown": {}, "repeats": 12, "repair": False, **QUIET}
     (verdict,) = c2d.audit(SEIZING, edge, **how).verdicts
     assert [share.rate for share in verdict.seized_at.values()] == [1.0, 1.0, 0.0]
-    assert verdict.word == "seizes"
+    assert verdict.result == "seizes"
     fast = c2d.variability.of_start() | c2d.variability.of_contact()
     (alone,) = c2d.audit(SEIZING, edge, vary=fast, **how).verdicts
     assert list(alone.seized_at) == [0.378]
@@ -225,7 +229,7 @@ def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
 def test_as_plain_data_it_is_json(found: c2d.Audit) -> None:
     plain = json.loads(json.dumps(plain_of(found), allow_nan=False))
     assert plain["seizes"] is True
-    assert plain["verdicts"][0]["word"] == "seizes"
+    assert plain["verdicts"][0]["result"] == "seizes"
     assert plain["repairs"][0]["robot"]["track"]["count"] == 5
     assert plain["pockets"][0]["depth"] is None  # a slot has no bottom
 
@@ -236,7 +240,7 @@ def test_a_robot_that_does_not_seize_is_not_repaired() -> None:
     assert not found.seizes
     assert found.repaired is None
     assert found.repairs == ()
-    assert found.verdicts[0].word == "does not seize"
+    assert found.verdicts[0].result == "does not seize"
     assert "It was not found to seize" in found.summary
 
 
@@ -288,7 +292,7 @@ def test_columns_stand_below_their_heads_whatever_the_obstacles_are_called() -> 
     at = next(k for k, line in enumerate(lines) if line.startswith("  obstacle"))
     columns = [(found.start(), found[0]) for found in re.finditer(r"\S+(?: \S+)*", lines[at + 1])]
     assert columns[1] == (lines[at].index("runs"), "1")
-    assert columns[-1] == (lines[at].index("verdict"), few.verdicts[0].word)
+    assert columns[-1] == (lines[at].index("verdict"), few.verdicts[0].result)
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def made(of_file: c2d.Audit) -> Made:
         return dataclasses.replace(
             seizing,
             obstacle=label,
-            word=word,
+            result=word,
             seized=share(hits),
             seized_at={0.1 * k: share(*each) for k, each in enumerate(at, 1)},
         )

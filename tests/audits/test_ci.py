@@ -29,7 +29,7 @@ ODD = (
 def check(of_file: c2d.Audit) -> Check:
     """A cart that seizes on the first of two steps, and breaks two rules of lint."""
     assert of_file.reading is not None
-    assert [each.word for each in of_file.verdicts] == ["seizes", "not certain"]
+    assert [each.result for each in of_file.verdicts] == ["seizes", "not certain"]
     return check_of(of_file.reading.path, dataclasses.replace(of_file, lint=ODD))
 
 

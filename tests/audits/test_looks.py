@@ -62,7 +62,7 @@ def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> 
                     going[hits] = chance
                     continue
                 held += chance * (verdict.seized.low <= rate <= verdict.seized.high)
-                seizes += chance * (verdict.word == "seizes")
+                seizes += chance * (verdict.result == "seizes")
         fixed = [
             (wilson(k, samples), comb(samples, k) * rate**k * (1.0 - rate) ** (samples - k))
             for k in range(samples + 1)
@@ -84,8 +84,8 @@ def test_a_verdict_on_a_part_that_seizes_is_that_on_all_runs(draws: int) -> None
         for made in look_counts(36):
             table = part_of(own[:made], belt[:made], 36, levels=3)
             verdict = verdict_of(table, "step")
-            if made < 36 and verdict.word == "seizes" and is_certain(table, verdict):
-                assert whole.word == "seizes"
+            if made < 36 and verdict.result == "seizes" and is_certain(table, verdict):
+                assert whole.result == "seizes"
                 left += 1
                 break
     assert left > draws / 3
@@ -107,14 +107,14 @@ def test_the_belt_fails_for_certain_once_neither_can_reach_95_percent(
     """Of 36 samples, two that fail are too many; and none may have seized in place of the belt."""
     table = part_of(own, belt, 36)
     verdict = verdict_of(table, "step")
-    assert verdict.word == "belt fails, too"
+    assert verdict.result == "belt fails, too"
     assert is_certain(table, verdict) is certain
 
 
 def test_fewer_runs_than_a_quarter_of_the_samples_are_not_enough() -> None:
     table = part_of(["hung_up"] * 9, ["hung_up"] * 9, 80)
     verdict = verdict_of(table, "step")
-    assert verdict.word == "belt fails, too"
+    assert verdict.result == "belt fails, too"
     assert not is_certain(table, verdict)
 
 
@@ -122,4 +122,4 @@ def test_what_never_seizes_is_never_left_early() -> None:
     for made in look_counts(36):
         verdict, certain = seen(0, made, 36)
         assert not certain
-    assert verdict.word == "does not seize"
+    assert verdict.result == "does not seize"

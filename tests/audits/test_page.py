@@ -182,7 +182,7 @@ def test_the_page_begins_with_the_answer_and_the_worst_replay(found: c2d.Audit, 
 
 
 def test_the_answer_says_in_which_runs_it_seizes_against_the_rule(of_file: c2d.Audit) -> None:
-    weak = dataclasses.replace(of_file.verdicts[0], word="not certain")
+    weak = dataclasses.replace(of_file.verdicts[0], result="not certain")
     sentence = answer(Page(dataclasses.replace(of_file, verdicts=(weak,)).to_html()))
     assert sentence.startswith(
         "By the rule it seizes nowhere, but in runs over 1 of 1 obstacles: step"

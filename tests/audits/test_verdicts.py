@@ -66,7 +66,7 @@ def test_it_clears_less_than_the_belt_where_the_intervals_are_apart(
 ) -> None:
     belt = ends(cleared=32, slipping=SAMPLES - 32)
     found = verdict(ends(cleared=clears, slipping=SAMPLES - clears), belt)
-    assert found.word == "belt fails, too"
+    assert found.result == "belt fails, too"
     assert found.clears_less is less
 
 
@@ -77,14 +77,14 @@ def test_it_clears_less_than_the_belt_where_the_intervals_are_apart(
 def test_it_seizes_where_the_lower_bound_is_above_5_percent(seized: int, word: str) -> None:
     assert (wilson(seized, SAMPLES).low > 0.05) is (word == "seizes")
     assert (wilson(seized, SAMPLES).high < 0.10) is (word == "does not seize")
-    assert verdict(ends(seized=seized, cleared=SAMPLES - seized), CLEARED).word == word
+    assert verdict(ends(seized=seized, cleared=SAMPLES - seized), CLEARED).result == word
 
 
 @pytest.mark.parametrize(("clears", "word"), [(38, "seizes"), (37, "belt fails, too")])
 def test_a_belt_that_clears_in_95_percent_need_not_be_paired(clears: int, word: str) -> None:
     """Of the five that seize, the belt clears three or two."""
     belt = ends(hung_up=SAMPLES - clears, cleared=clears)
-    assert verdict(ends(seized=5, hung_up=35), belt).word == word
+    assert verdict(ends(seized=5, hung_up=35), belt).result == word
 
 
 @pytest.mark.parametrize(("of_belt", "word"), [(5, "seizes"), (4, "belt fails, too")])
@@ -92,7 +92,7 @@ def test_elsewhere_seized_runs_count_that_the_belt_clears(of_belt: int, word: st
     """It seizes on twenty floors; the belt gets over on some of these, and stands on all others."""
     assert (wilson(of_belt, SAMPLES).low > 0.05) is (word == "seizes")
     found = verdict(ends(seized=20, slipping=20), ends(cleared=of_belt, slipping=SAMPLES - of_belt))
-    assert found.word == word
+    assert found.result == word
     assert found.seized_alone.rate == of_belt / SAMPLES
 
 
@@ -107,13 +107,13 @@ def test_a_repair_is_held_against_the_belt() -> None:
 
 def test_where_the_model_clears_the_belt_may_fail() -> None:
     belt = ends(slipping=SAMPLES)
-    assert verdict(CLEARED, belt).word == "does not seize"
-    assert verdict(ends(hung_up=SAMPLES), belt).word == "belt fails, too"
+    assert verdict(CLEARED, belt).result == "does not seize"
+    assert verdict(ends(hung_up=SAMPLES), belt).result == "belt fails, too"
 
 
 def test_a_model_that_hangs_where_the_belt_clears_does_not_seize() -> None:
     found = verdict(ends(hung_up=SAMPLES), CLEARED)
-    assert (found.word, found.outcome, found.belt_outcome) == (
+    assert (found.result, found.outcome, found.belt_outcome) == (
         "does not seize",
         "hung_up",
         "cleared",
@@ -122,7 +122,7 @@ def test_a_model_that_hangs_where_the_belt_clears_does_not_seize() -> None:
 
 def test_without_any_result_nothing_is_certain() -> None:
     found = verdict(ends(diverged=SAMPLES), CLEARED)
-    assert found.word == "not certain"
+    assert found.result == "not certain"
     assert (found.seized.runs, found.seized.low, found.seized.high) == (0, 0.0, 1.0)
 
 
@@ -168,7 +168,7 @@ def test_a_model_that_seizes_at_one_of_the_speeds_seizes(clears: int, word: str)
     rows = rows.assign_coords(speed=(("sample", "repeat"), np.where(slow, 0.04, 0.4)))
     found = verdict_of(rows, "step")
     assert found.seized.low < 0.05 < found.seized_at[0.04].low
-    assert found.word == word
+    assert found.result == word
 
 
 @pytest.mark.parametrize(("slow", "confirmed"), [(1, True), (2, False), (3, False)])

@@ -364,7 +364,7 @@ def audit(
         assumed = {} if "unknown" in setup.call.own else assumptions_of(own, unknown)
         verdicts, others, table = _drive(setup, runs, assumed, write, show)
         repairs = None
-        if repair and any(each.word == "seizes" for each in verdicts):
+        if repair and any(each.result == "seizes" for each in verdicts):
             repairs = search_repairs(
                 own,
                 setup.belt,
@@ -406,7 +406,7 @@ def _drive(
         write(row_of(setup, verdict))
         verdicts.append(verdict)
         tables.append(table)
-        if verdict.word == "seizes":
+        if verdict.result == "seizes":
             others += check_assumptions(assumed, runs, setup.robot, (name, ground), count)
     return tuple(verdicts), tuple(others), xr.concat(tables, "terrain")
 

@@ -176,7 +176,7 @@ def _name(path: Path, baseline: Path) -> str:
 
 
 def _verdict(verdict: Verdict) -> Plain:
-    kept: Plain = {"word": verdict.word}
+    kept: Plain = {"word": verdict.result}
     if verdict.where:
         kept["where"] = f"{verdict.where} of the {verdict.carrier}"
     rates = [verdict.seized, *verdict.seized_at.values()]

@@ -135,7 +135,7 @@ def _seizures(found: AuditRecord | LintResult) -> Iterator[Issue]:
     read = found.reading
     names = names_of(found.robot, read)
     for verdict in found.verdicts:
-        if verdict.word == SEIZES:
+        if verdict.result == SEIZES:
             bodies = [int(body) for body in verdict.where.split("-") if body]
             wheels = [names[body] for body in bodies if body in names]
             yield Issue(
@@ -203,7 +203,7 @@ def _suite(check: Check) -> XML:
     for verdict in () if check.found is None else check.found.verdicts:
         issues = [issue for issue in check.issues if issue.obstacle == verdict.obstacle]
         out = (
-            f"{verdict.obstacle}: {verdict.word}; clears {words.rate(verdict.cleared)}, seizes"
+            f"{verdict.obstacle}: {verdict.result}; clears {words.rate(verdict.cleared)}, seizes"
             f" {words.rate(verdict.seized)}, belt clears"
             f" {words.percent(verdict.belt_cleared.rate)}"
         )

@@ -134,7 +134,7 @@ def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change
     read = audit.reading
     assert read is not None
     if repair is None:
-        worst = min(each.belt_cleared.rate for each in audit.verdicts if each.word == "seizes")
+        worst = min(each.belt_cleared.rate for each in audit.verdicts if each.result == "seizes")
         label = f"not confirmed: belts moved by a track plugin ({audit.belt.reason})"
         label += f"; the belt cleared {words.percent(worst)} or more where the file seized"
     else:
@@ -153,10 +153,10 @@ def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change
 
 def _after(audit: AuditRecord, repair: Repair) -> float:
     """[-] Return how often a repair seizes in fresh runs, over the obstacles that seized."""
-    names = [each.obstacle for each in audit.verdicts if each.word == "seizes"]
+    names = [each.obstacle for each in audit.verdicts if each.result == "seizes"]
     return float(np.nanmean([repair.seized[name].rate for name in names]))
 
 
 def _before(audit: AuditRecord) -> float:
     """[-] Return how often the robot as it is seizes there."""
-    return float(np.mean([v.seized.rate for v in audit.verdicts if v.word == "seizes"]))
+    return float(np.mean([v.seized.rate for v in audit.verdicts if v.result == "seizes"]))

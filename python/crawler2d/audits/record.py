@@ -233,8 +233,8 @@ class AuditRecord(AuditSetup):
 
     @property
     def seizes(self) -> bool:
-        """Whether it seizes, by the rule of `Verdict.word`, on an obstacle that the belt clears."""
-        return any(each.word == "seizes" for each in self.verdicts)
+        """Whether it seizes, by `Verdict.result`, on an obstacle that the belt clears."""
+        return any(each.result == "seizes" for each in self.verdicts)
 
     @property
     def repairs(self) -> tuple[Repair, ...]:

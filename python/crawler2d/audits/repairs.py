@@ -149,7 +149,7 @@ def search_repairs(
         Counts the runs.
     """
     worst_first = sorted(verdicts, key=lambda each: -each.seized.rate)
-    seizing = [each for each in worst_first if each.word == "seizes"]
+    seizing = [each for each in worst_first if each.result == "seizes"]
     carriers = {"chassis" if each.carrier == "chassis" else "flippers" for each in seizing}
     every = candidates_of(robot, carriers)
     spaces = [[each for each in every if each.kind == kind] for kind in ("wheels", "gears")]
@@ -169,7 +169,7 @@ def search_repairs(
     over = {
         each.obstacle: grounds[each.obstacle]
         for each in worst_first
-        if each.word != "belt fails, too"
+        if each.result != "belt fails, too"
     }
     models = {OWN: robot, **{each.what: each.robot for each in chosen}}
     fresh = _drive(models, over, reference=reference, seizing=names, runs=runs, show=show)

@@ -207,7 +207,7 @@ class Verdict:
     ----------
     obstacle : str
         Its label.
-    word : {"seizes", "belt fails, too", "does not seize", "not certain"}
+    result : {"seizes", "belt fails, too", "does not seize", "not certain"}
         By the rule in ``docs/conventions.md``, "Audit".
     cleared, seized : Proportion
         Of the model's runs.
@@ -235,7 +235,7 @@ class Verdict:
     """
 
     obstacle: str
-    word: str
+    result: str
     cleared: Proportion
     seized: Proportion
     belt_cleared: Proportion
@@ -271,7 +271,7 @@ def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
     where, carrier, there = _commonest_jam(own)
     return Verdict(
         obstacle=obstacle,
-        word=verdict_word(
+        result=verdict_word(
             cleared,
             [seized, *seized_at.values()],
             belt_cleared,
@@ -375,11 +375,11 @@ def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
     if table.sizes["repeat"] > 1:
         return False
     own, belt = (ObstacleRuns(table, model, verdict.obstacle) for model in (OWN, BELT))
-    if verdict.word == "belt fails, too":
+    if verdict.result == "belt fails, too":
         is_quarter = (own.ends != "").sum() >= _QUARTER * own.ends.size
         fails = min(int((each.has_result & ~each.cleared).sum()) for each in (own, belt))
         return bool(is_quarter and verdict.instead == 0 and fails > (1.0 - CLEARS) * own.ends.size)
-    return verdict.word == "seizes" and own.least_rate(own.seized & belt.cleared) > SEIZES
+    return verdict.result == "seizes" and own.least_rate(own.seized & belt.cleared) > SEIZES
 
 
 def least_samples() -> int:

@@ -146,7 +146,7 @@ def verdict_row(each: Verdict) -> tuple[str, ...]:
         rate(each.seized),
         percent(each.belt_cleared.rate) if each.belt_outcome else NOT_DRIVEN,
         each.outcome.replace("_", " "),
-        each.word,
+        each.result,
     )
 
 
@@ -196,11 +196,11 @@ def reservation(audit: AuditSetup) -> str:
 def conclusion(audit: AuditRecord) -> list[str]:
     """Say in sentences whether the verdict is void, where it seizes, and what is not certain."""
     sentences = [reservation(audit)] if reservation(audit) else []
-    seized = [each for each in audit.verdicts if each.word == "seizes"]
+    seized = [each for each in audit.verdicts if each.result == "seizes"]
     others = [
         f"{each.obstacle} ({each.instead} of {each.there[1]})"
         for each in audit.verdicts
-        if each.word != "seizes" and each.seized.low > SEIZES
+        if each.result != "seizes" and each.seized.low > SEIZES
     ]
     count = len(audit.verdicts)
     if not _has_wheels_for_tracks(audit.robot):
@@ -228,12 +228,12 @@ def conclusion(audit: AuditRecord) -> list[str]:
     behind = [
         f"{each.obstacle} ({percent(each.cleared.rate)}, belt {percent(each.belt_cleared.rate)})"
         for each in audit.verdicts
-        if each.word != "seizes" and each.clears_less
+        if each.result != "seizes" and each.clears_less
     ]
     if behind:
         text = "It clears less often than the belt where it was not found to seize"
         sentences.append(f"{text}: {', '.join(behind)}.")
-    unsure = [each.obstacle for each in audit.verdicts if each.word == "not certain"]
+    unsure = [each.obstacle for each in audit.verdicts if each.result == "not certain"]
     if unsure:
         sentences.append(f"Not certain, for want of runs: {', '.join(unsure)}.")
     return sentences

@@ -74,7 +74,7 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
     robot seized nowhere, it is the run that came closest to a seizure.
     """
     seized = [each for each in audit.verdicts if each.where]
-    worst_first = sorted(seized, key=lambda each: (each.word != "seizes", -each.seized.rate))
+    worst_first = sorted(seized, key=lambda each: (each.result != "seizes", -each.seized.rate))
     replays = [_seizure(audit, each) for each in worst_first] or _closest(audit)
     repair = sections.best_repair(audit)
     if repair is not None:

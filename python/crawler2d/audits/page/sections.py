@@ -79,10 +79,10 @@ _JAMS = (
 def answer_section(audit: AuditRecord) -> str:
     """Say in a sentence or two where the robot seizes, and what ends that."""
     every, repair = audit.verdicts, best_repair(audit)
-    certain = [each for each in every if each.word == "seizes"]
+    certain = [each for each in every if each.result == "seizes"]
     seized = certain or [each for each in every if each.where]
     if not seized:
-        unsure = sum(each.word == "not certain" for each in every)
+        unsure = sum(each.result == "not certain" for each in every)
         but = f"; {unsure} of them need more runs to be certain" if unsure else ""
         return (
             f'<strong class="good">It seized in no run over {len(every)} obstacles</strong>{but}.'
@@ -128,7 +128,7 @@ def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
         name, *cells = (escape(cell) for cell in words.verdict_row(each))
         if each.obstacle in replays:
             name = f'<a href="#replay-{replays[each.obstacle]}">{name}</a>'
-        cells[-1] = f'<strong class="{_class(each.word)}">{cells[-1]}</strong>'
+        cells[-1] = f'<strong class="{_class(each.result)}">{cells[-1]}</strong>'
         if jams:
             jam = words.jam_row(each)[1:] if each.where else ("",) * len(words.JAM_HEAD[1:])
             cells += map(escape, jam)
