@@ -25,7 +25,7 @@ STUDIES: dict[str, Callable[[Any], Any]] = {
         scenario, ("terrain.height", [0.1, 0.2]), ("terrain.friction", [0.3, 0.6])
     ),
     "success": c2d.studies.success,
-    "what_decides": c2d.studies.what_decides,
+    "sensitivity": c2d.studies.sensitivity,
 }
 
 

@@ -133,7 +133,7 @@ def _strips(at: NDArray[np.float64], costs: NDArray[np.float64]) -> list[tuple[f
     return list(itertools.pairwise(edges))
 
 
-def plot_decides(data: xarray.Dataset, ax: Axes | None, show: str = "indices") -> Axes:
+def plot_sensitivity(data: xarray.Dataset, ax: Axes | None, show: str = "indices") -> Axes:
     """Draw one model: the indices of every unknown, or with ``show="boundary"`` their ranges."""
     drawings = {"indices": _indices, "boundary": _boundary}
     if show not in drawings:
@@ -407,7 +407,7 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "policy": plot_policy,
     "comparison": plot_comparison,
     "search": plot_search,
-    "what_decides": plot_decides,
+    "sensitivity": plot_sensitivity,
     "success": plot_outcomes,
     "max_speed": plot_measured,
     "acceleration": plot_measured,

@@ -25,13 +25,13 @@ and `certify` simulate nothing, and take none of them; `certify` returns a `Cert
 
 from crawler2d.studies.boundary import critical
 from crawler2d.studies.certificates import certify
-from crawler2d.studies.decides import what_decides
 from crawler2d.studies.driving import acceleration, braking_distance, max_speed
 from crawler2d.studies.jams import jam_chart
 from crawler2d.studies.maps import seizure_map
 from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope, success
 from crawler2d.studies.riding import odometry, real_time_factor, ride
 from crawler2d.studies.search import search
+from crawler2d.studies.sensitivity import sensitivity
 
 __all__ = [
     "acceleration",
@@ -48,8 +48,8 @@ __all__ = [
     "ride",
     "search",
     "seizure_map",
+    "sensitivity",
     "success",
-    "what_decides",
 ]
 
 

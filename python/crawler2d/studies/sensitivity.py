@@ -1,303 +1,359 @@
-"""Sobol indices of a yes-or-no outcome: points, design of runs, estimates and intervals."""
+"""Sensitivity of an outcome to uncertain parameters: Sobol indices, and where the rate changes."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
-from crawler2d.errors import raise_first
+from crawler2d.common.keywords import takes_keywords
+from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies.campaign import Campaign, Counts, Tally
-from crawler2d.studies.candidates import FreshDraws
-from crawler2d.sweeps.axes import short_names
+from crawler2d.results.outcome import rate_label
+from crawler2d.studies.boundary import (
+    LONG_NAMES,
+    Crossing,
+    Line,
+    Range,
+    check_ends,
+    line_over,
+    range_of,
+)
+from crawler2d.studies.campaign import Campaign, RateSampling, Tally, campaign, counting
+from crawler2d.studies.sobol import COVERAGE, RUN_TO_RUN, Design, bounds, estimate, rate_of
+from crawler2d.studies.tables import Models, check_study, paths_of, read_models
+from crawler2d.sweeps.axes import field_attributes
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
+    import xarray
     from numpy.typing import NDArray
 
-__all__ = ["COVERAGE", "RUN_TO_RUN", "Design", "Indices", "bounds", "estimate", "points", "rate_of"]
+    from crawler2d.sweeps.figure_dataset import FigureDataset
 
-COVERAGE = (
-    "intervals of 95 % held indices known in closed form in 0.91 to 1.00 of 200 designs or more"
-    " with 64 to 1024 points"
-)
-"""How often `bounds` holds the truth, as measured with edges both simple and as rough as chance."""
+__all__ = ["sensitivity"]
 
-# What is added to the count of each of the eight kinds of point: Jeffreys's prior, whose intervals
-# cover well near 0, too (Brown, Cai, DasGupta 2001). The first-order index takes all eight kinds,
-# the total index little more than whether a swap changed the outcome: of these two each gets a
-# half, too, spread over its four kinds. Without it, an unknown whose few swaps all left the outcome
-# as it was would have an interval of 0 to 0.
-_ADDED_FIRST, _ADDED_TOTAL = 1.0 / 2.0, 1.0 / 8.0
+_LONG_NAMES = {
+    "first": "first-order index",
+    "first_low": "its lower bound",
+    "first_high": "its upper bound",
+    "total": "total index",
+    "total_low": "its lower bound",
+    "total_high": "its upper bound",
+    **LONG_NAMES,
+    "range_low": "lower end of the range",
+    "range_high": "upper end of the range",
+    "own": "the scenario's own value",
+    "tried": "value along the range",
+    "tried_rate": "rate at that value",
+    "count": "number of runs of the rate",
+    "caveat": "why there are no indices",
+    "outcome": "outcome of each run of the design",
+}
 
-# With so many, bounds vary by about 2 % of the interval's width.
-_RESAMPLES = 4000
-
-# Bits of the points' numbers: with SciPy's 30, some would be exactly 0, where a normal distribution
-# is infinite.
-_BITS = 64
-
-
-class Indices(NamedTuple):
-    """Shares of the variance of the outcome, by factor.
-
-    Attributes
-    ----------
-    first : ndarray, shape (d,)
-        [-] By how much it would shrink if this factor were known.
-    total : ndarray, shape (d,)
-        [-] How much of it would be left if all others were known.
-    """
-
-    first: NDArray[np.float64]
-    total: NDArray[np.float64]
-
-
-def points(count: int, sizes: Sequence[int], seed: int) -> NDArray[np.float64]:
-    """Place the points of a Saltelli design, from 0 to 1: scrambled Sobol points.
-
-    Parameters
-    ----------
-    count : int
-        Of points in A, a power of two.
-    sizes : sequence of int
-        Numbers that each factor takes; those of a factor are swapped as a block.
-    seed : int
-        Of the scrambling. The first points of a larger design with the same seed are these.
-
-    Returns
-    -------
-    ndarray, shape (2 + d, count, sum of sizes)
-        A; B; then for each factor A with the numbers of that factor from B.
-
-    References
-    ----------
-    Saltelli, A., Annoni, P., Azzini, I., Campolongo, F., Ratto, M., Tarantola, S. (2010). Variance
-    based sensitivity analysis of model output. Computer Physics Communications 181, 259-270.
-
-    Examples
-    --------
-    >>> a, b, a_first, a_second = points(4, [1, 2], seed=0)
-    >>> np.array_equal(a_first[:, 0], b[:, 0]), np.array_equal(a_first[:, 1:], a[:, 1:])
-    (True, True)
-    """
-    qmc = extra("scipy.stats.qmc", "sensitivity")
-    width = sum(sizes)
-    rng = np.random.default_rng((seed, *b"points"))
-    both = qmc.Sobol(2 * width, rng=rng, bits=_BITS).random(count)
-    a, b = both[:, :width], both[:, width:]
-    owner = np.repeat(np.arange(len(sizes)), sizes)
-    swapped = [np.where(owner == factor, b, a) for factor in range(len(sizes))]
-    return np.stack([a, b, *swapped])
-
-
-def estimate(
-    f_a: NDArray[np.float64], f_b: NDArray[np.float64], f_ab: NDArray[np.float64]
-) -> Indices:
-    """Estimate first-order and total Sobol indices.
-
-    Parameters
-    ----------
-    f_a, f_b : ndarray, shape (n,)
-        The output at A and at B; n is a power of two.
-    f_ab : ndarray, shape (d, n)
-        At A with each factor from B, of two factors or more.
-
-    Returns
-    -------
-    Indices
-        Unbiased but for the variance they are divided by, so that small ones may be estimated below
-        0; those of a factor that changes no output are 0.
-
-    Examples
-    --------
-    Of the sum of two numbers from 0 to 1, each decides half:
-
-    >>> pages = points(256, [1, 1], seed=0)
-    >>> f_a, f_b, *f_ab = pages.sum(axis=2)
-    >>> first, total = estimate(f_a, f_b, np.array(f_ab))
-    >>> first.round(2).tolist(), total.round(2).tolist()
-    ([0.5, 0.5], [0.5, 0.5])
-    """
-    stats = extra("scipy.stats", "sensitivity")
-    outputs = {"f_A": f_a[None], "f_B": f_b[None], "f_AB": f_ab[:, None]}
-    found = stats.sobol_indices(func=outputs, n=f_a.size)
-    return Indices(found.first_order, found.total_order)
-
-
-def bounds(
-    f_a: NDArray[np.float64],
-    f_b: NDArray[np.float64],
-    f_ab: NDArray[np.float64],
-    confidence: float = 0.95,
-    seed: int = 0,
-) -> tuple[Indices, Indices]:
-    """Bound the indices of an output of 0 and 1 by a Bayesian bootstrap.
-
-    Parameters
-    ----------
-    f_a, f_b, f_ab
-        See `estimate`; 0 or 1.
-    confidence : float
-        [-] Between 0 and 1.
-    seed : int
-        Of the resampling.
-
-    Returns
-    -------
-    pair of Indices
-        Lower and upper bounds from 0 to 1, unless the estimate lies outside: they hold it. They
-        take the points for independent, and are too wide where the edge between yes and no is
-        simple, for there Sobol points are better than that. See `COVERAGE`.
-
-    Notes
-    -----
-    For one factor a point is one of eight kinds, by its outputs at A, B and the swap. Their shares
-    have a Dirichlet distribution around what was counted; each draw of them gives an index. The
-    bootstrap of SciPy was not taken because it cannot be seeded, and because where few of the swaps
-    change the output it often resamples none: for a total index of 0.02, its intervals of 95 % from
-    64 points held it in 0.45 of 200 designs.
-
-    References
-    ----------
-    Rubin, D. B. (1981). The Bayesian bootstrap. Annals of Statistics 9, 130-134.
-
-    Brown, L. D., Cai, T. T., DasGupta, A. (2001). Interval estimation for a binomial proportion.
-    Statistical Science 16, 101-133.
-    """
-    rng = np.random.default_rng((seed, *b"bounds"))
-    tail = 0.5 * (1.0 - confidence)
-    drawn = []
-    for page in f_ab:
-        kinds = np.bincount((4 * f_a + 2 * f_b + page).astype(int), minlength=8)
-        first = _of_fractions(rng.dirichlet(kinds + _ADDED_FIRST, _RESAMPLES)).first
-        total = _of_fractions(rng.dirichlet(kinds + _ADDED_TOTAL, _RESAMPLES)).total
-        drawn.append((first, total))
-    low, high = np.quantile(drawn, [tail, 1.0 - tail], axis=2).clip(0.0, 1.0)
-    high[:, 0] = np.minimum(high[:, 0], high[:, 1])  # a first-order index is at most the total one
-    own = np.stack(estimate(f_a, f_b, f_ab), axis=1)
-    return Indices(*np.minimum(low, own).T), Indices(*np.maximum(high, own).T)
-
-
-def _of_fractions(fractions: NDArray[np.float64]) -> Indices:
-    """Compute the indices of a factor from the fractions of the eight kinds, shape (..., 8)."""
-    a, b, swapped = np.indices((2, 2, 2)).reshape(3, 8)
-    rate = fractions @ (0.5 * (a + b))
-    variance = rate * (1.0 - rate)
-    moved = fractions @ (b * (swapped - a)) - rate * (fractions @ (swapped - a))
-    return Indices(moved / variance, 0.5 * (fractions @ (swapped - a) ** 2) / variance)
-
-
-RUN_TO_RUN = "run to run"
-"""All that varies from run to run, as one factor."""
-
-_INFORMATIVE = (0.1, 0.9)
-"""[-] Rates outside which too few runs have the rarer outcome to estimate indices."""
-
-
-class Design:
-    """The points that all models share, and the runs at them.
-
-    Parameters
-    ----------
-    study : Campaign
-        What simulates; it has no unknowns of its own.
-    unknowns : Variation
-        What is not known: each path is a factor.
-    samples : int
-        Points in A, a power of two.
-    counts : callable
-        Which runs have the outcome.
-
-    Attributes
-    ----------
-    unknowns : Variation
-        What is not known.
-    factors : dict of str to str
-        Names of the unknowns by path.
-    is_varied : bool
-        Whether there is a factor of what varies from run to run, the last one.
-    matrices : list of str
-        Names of the sets of points: A, B, then A with each factor from B.
-    """
-
-    def __init__(self, study: Campaign, unknowns: Variation, samples: int, counts: Counts) -> None:
-        self._study, self._samples, self._counts = study, samples, counts
-        self.unknowns = unknowns
-        self.factors = short_names(list(unknowns.distributions))
-        varied = list(study.planner.variation.distributions)
-        self.is_varied = bool(varied)
-        names = [*self.factors.values(), *([RUN_TO_RUN] if varied else [])]
-        self.matrices = ["A", "B", *(f"A, {name} of B" for name in names)]
-        sizes = [1] * len(self.factors) + ([len(varied)] if varied else [])
-        self._points = points(samples, sizes, study.planner.seed)
-
-    def run(self, cell: Scenario, label: str) -> list[Tally]:
-        """Simulate A, then B, then the rest, unless the rate makes indices uncertain.
-
-        Returns
-        -------
-        list of Tally
-            One per matrix that was simulated.
-
-        Raises
-        ------
-        ScenarioError
-            If a draw breaks a rule; nothing of its matrix has been simulated.
-        SimulationDiverged
-            If a run has no result.
-        """
-        tallies: list[Tally] = []
-        for matrices in ([0], [1], range(2, len(self.matrices))):
-            new = [self._plan(cell, label, matrix) for matrix in matrices]
-            self._study.settings += len(new)
-            self._study.simulate([(tally, self._samples) for tally in new])
-            raise_first(row.error for tally in new for row in tally.rows)
-            tallies += new
-            if not _INFORMATIVE[0] <= rate_of(tallies) <= _INFORMATIVE[1]:
-                break
-        return tallies
-
-    def _plan(self, cell: Scenario, label: str, matrix: int) -> Tally:
-        study = self._study
-        (world,) = study.planner.worlds(cell, (f"model={label}", f"matrix={self.matrices[matrix]}"))
-        columns = self._points[matrix].T
-        planner = FreshDraws(
-            _fixed(study.planner.variation, columns[len(self.factors) :]),
-            _fixed(self.unknowns, columns[: len(self.factors)]),
-            study.planner.seed,
-            self._samples,
-        )
-        return Tally(world, study.until, self._counts, planner=planner)
-
-
-def rate_of(matrices: list[Tally]) -> float:
-    """Return the rate at A and B; the other points are not independent of these."""
-    return float(np.mean([tally.successes / len(tally.rows) for tally in matrices[:2]]))
+_INDICES = ("first", "first_low", "first_high", "total", "total_low", "total_high")
 
 
 @dataclass(frozen=True, slots=True)
-class _FixedDraws(Variation):
-    """Draws from given numbers instead of random ones."""
+class ModelResult:
+    """The runs of one model.
 
-    given: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    Attributes
+    ----------
+    matrices : list of Tally
+        The runs of the design.
+    lines : list of pair of Range and Line
+        By unknown: its range, and the values that were tried along it, if it is a line.
+    """
 
-    def numbers(
-        self,
-        seed: int,  # noqa: ARG002 - of random ones
-        count: int,
-        *,
-        kind: str = "",  # noqa: ARG002
-        first: int = 0,  # noqa: ARG002
-    ) -> dict[str, NDArray[np.float64]]:
-        """Return the first numbers of every path."""
-        return {path: each[:count] for path, each in self.given.items()}
+    matrices: list[Tally]
+    lines: list[tuple[Range, Line | None]]
 
 
-def _fixed(variation: Variation, columns: NDArray[np.float64]) -> _FixedDraws:
-    numbers = dict(zip(variation.distributions, columns, strict=True))
-    return _FixedDraws(variation.distributions, variation.optional, variation.text, numbers)
+def sensitivity_table(
+    study: Campaign,
+    design: Design,
+    models: Sequence[Any],
+    results: Sequence[ModelResult],
+    outcome: str,
+) -> FigureDataset:
+    """Arrange the results.
+
+    Parameters
+    ----------
+    study, design
+        What was done.
+    models : sequence of str or number
+        Labels.
+    results : sequence of ModelResult
+        By model.
+    outcome : str
+        What the rates are rates of.
+
+    Returns
+    -------
+    FigureDataset
+        As `sensitivity` says.
+    """
+    from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
+
+    xr = extra("xarray", "analysis")
+    names = [*design.factors.values(), *([RUN_TO_RUN] if design.is_varied else [])]
+    units = [field_attributes([path]).get("units", "1") for path in design.factors]
+    rest = [""] * (len(names) - len(units))  # what varies is no field
+    whole = len(design.matrices)
+    rates = [rate_of(each.matrices) for each in results]
+    complete = [len(each.matrices) == whole for each in results]
+    seed, confidence = study.planner.seed, study.until.confidence
+    indices = np.stack(
+        [
+            _indices(each.matrices, confidence, seed)
+            if is_complete
+            else np.full((6, len(names)), np.nan)
+            for each, is_complete in zip(results, complete, strict=True)
+        ],
+        axis=1,
+    )
+    both = ("model", "unknown")
+    dataset = xr.Dataset(
+        {
+            "rate": ("model", rates),
+            "count": ("model", [sum(len(t.rows) for t in each.matrices[:2]) for each in results]),
+            "caveat": ("model", [_caveat(*each) for each in zip(rates, complete, strict=True)]),
+            **{name: (both, values) for name, values in zip(_INDICES, indices, strict=True)},
+            "outcome": (
+                ("model", "matrix", "sample"),
+                [_outcomes(each.matrices, whole) for each in results],
+            ),
+        },
+        {
+            "model": list(models),
+            "unknown": names,
+            "path": ("unknown", [*design.factors, *rest]),
+            "unit": ("unknown", [*units, *rest]),
+            "matrix": design.matrices,
+        },
+    )
+    boundaries = _boundaries(xr, results, models, list(design.factors.values()))
+    gaps = {"rises": Crossing().rises, "monotone": Crossing().monotone}
+    dataset = dataset.merge(boundaries.reindex(unknown=names, fill_value=gaps))
+    for name, text in _LONG_NAMES.items():
+        dataset[name].attrs["long_name"] = text
+    dataset["rate"].attrs["long_name"] = rate_label(outcome)
+    for name in ("rate", "count", "tried_rate", *_INDICES):
+        dataset[name].attrs["units"] = "1"
+    lines = [line for each in results for _, line in each.lines if line is not None]
+    tallies = [tally for line in lines for each in line.tallies.values() for tally in each]
+    tallies += [tally for each in results for tally in each.matrices]
+    attributes = {**study.attributes("sensitivity", tallies), "unknown": design.unknowns.text}
+    return FigureDataset(dataset.data_vars, dataset.coords).assign_attrs(
+        outcome=outcome,
+        population="; ".join(filter(None, [attributes["unknown"], attributes["vary"]])),
+        until=str(study.until),
+        confidence_level=confidence,
+        interval="Bayesian bootstrap",
+        coverage=COVERAGE,
+        samples=dataset.sizes["sample"],
+        seed=seed,
+        **attributes,
+    )
+
+
+def _indices(matrices: Sequence[Tally], confidence: float, seed: int) -> NDArray[np.float64]:
+    """Estimate the indices of a model, in the order of their columns."""
+    f_a, f_b, *f_ab = (
+        np.array([tally.counts(row) for row in tally.rows], dtype=float) for tally in matrices
+    )
+    swapped = np.array(f_ab)
+    low, high = bounds(f_a, f_b, swapped, confidence, seed)
+    own = estimate(f_a, f_b, swapped)
+    parts = ((own.first, low.first, high.first), (own.total, low.total, high.total))
+    return np.concatenate(parts)
+
+
+def _caveat(rate: float, is_complete: bool) -> str:
+    return "" if is_complete else f"cannot tell from a rate of {rate:.2f}"
+
+
+def _outcomes(matrices: Sequence[Tally], whole: int) -> list[list[str]]:
+    outcomes = [[row.outcome for row in tally.rows] for tally in matrices]
+    return outcomes + [[""] * len(outcomes[0])] * (whole - len(outcomes))
+
+
+def _boundaries(
+    xr: Any, results: Sequence[ModelResult], models: Sequence[Any], names: Sequence[str]
+) -> xarray.Dataset:
+    """Arrange crossings, ranges, and what was tried along them, by model and unknown."""
+    lines = [[line for _, line in each.lines] for each in results]
+    crossings = [[Crossing() if ln is None else ln.crossing() for ln in row] for row in lines]
+    rates = [[{} if ln is None else ln.rates() for ln in row] for row in lines]
+    longest = max(len(each) for row in rates for each in row)
+    tried = np.full((2, len(models), len(names), longest), math.nan)
+    for place in np.ndindex(tried.shape[1:3]):
+        own = rates[place[0]][place[1]]
+        tried[(slice(None), *place, slice(len(own)))] = [list(own), list(own.values())]
+    columns: dict[str, Any] = {
+        name: [[getattr(each, name) for each in row] for row in crossings]
+        for name in Crossing._fields
+    }
+    columns["range_low"] = [[along.first[0] for along, _ in each.lines] for each in results]
+    columns["range_high"] = [[along.first[1] for along, _ in each.lines] for each in results]
+    columns["own"] = [[along.own for along, _ in each.lines] for each in results]
+    both = ("model", "unknown")
+    dataset: xarray.Dataset = xr.Dataset(
+        {
+            **{name: (both, values) for name, values in columns.items()},
+            "tried": ((*both, "place"), tried[0]),
+            "tried_rate": ((*both, "place"), tried[1]),
+        },
+        {"model": list(models), "unknown": list(names)},
+    )
+    return dataset
+
+
+_FEWEST, _MOST = 32, 2**16
+"""Points of a design."""
+
+
+@takes_keywords
+def sensitivity(
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    outcome: str = "cleared",
+    **how: Unpack[RateSampling],
+) -> FigureDataset:
+    """Find which uncertain parameters matter most for the outcome: a global sensitivity analysis.
+
+    The outcome differs between runs because of the uncertain parameters of robot and floor, and
+    because of what varies from run to run. Sobol indices say how much of that variance comes from
+    each uncertain parameter, and from all that varies from run to run together. They are estimated
+    from separate runs: n + 2 times `samples` for n such factors. Then each parameter is moved over
+    its range, all others as in the scenario, to find where the rate crosses one half.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What all runs share.
+    models : mapping of str to track or fields, optional
+        As for `compare`; None takes the scenario's own robot.
+    outcome : str
+        Name of an `Outcome`, or "stopped" for any stop.
+    **how
+        See `crawler2d.studies`. `unknown` must be given. `samples`, a power of two from 32 to
+        65536, is 256 unless given. `until` is for the rates along the ranges; its confidence is
+        that of the indices, too.
+
+    Returns
+    -------
+    FigureDataset
+        Dimensions `model`; `unknown`, by the last part of its path, and last "run to run" if
+        anything varies; `place`, the values that were tried of each; and `matrix` and `sample`, the
+        points of the design: A, B, and A with one factor of B. For each model and unknown:
+
+        - `first`: the fraction of the variance that would go if this one were known; `total`: the
+          fraction that would be left if all others were; with `..._low` and `..._high`. The
+          difference is its interaction with the others. An estimate may lie below 0;
+        - `bracket_low`, `bracket_high`, `rises`, `monotone`: as of `critical`, over the range of
+          the distribution (1 to 99 % of an unbounded one), all elements of a path with ``[*]``
+          together, with the values of the first; NaN also for whole numbers and "run to run";
+        - `range_low`, `range_high`, `own`: ends of the range, and the scenario's own value;
+        - `tried`, `tried_rate`: the values along the range, and the rate at each.
+
+        For each model: `rate` over all that varies or is not known, of `count` runs; and `caveat`,
+        empty if the indices are there. They are NaN where the rate is not from 0.1 to 0.9, because
+        too few runs have the rarer outcome; then only those for the rate are made. `outcome`
+        is that of every run of the design, "" of those that were not made; a store keeps the runs.
+
+        `plot` draws the indices of one model, and ``plot(show="boundary")`` the ranges.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument breaks a rule, or a value in the range of an unknown does.
+    SimulationDiverged
+        If a run of the design has no result.
+    ImportError
+        If SciPy or xarray is missing; the message names the extra to install.
+
+    References
+    ----------
+    Sobol, I. M. (2001). Global sensitivity indices for nonlinear mathematical models and their
+    Monte Carlo estimates. Mathematics and Computers in Simulation 55, 271-280. The estimator is
+    described in `crawler2d.studies.sobol`; how often intervals held known indices is in the
+    attribute `coverage`.
+
+    Examples
+    --------
+    Friction decides whether a belt climbs a slope; motors that are strong enough do not matter:
+
+    >>> import math
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None)
+    >>> base = c2d.Scenario(robot, c2d.terrains.ramp(math.atan(0.7)))
+    >>> unknown = {
+    ...     "terrain.friction": c2d.uniform(0.5, 1.0),
+    ...     "robot.drivetrain.max_torque": c2d.uniform(30.0, 40.0),
+    ... }
+    >>> until = c2d.Until(threshold=0.5, min_runs=5, max_runs=10)  # quick
+    >>> found = c2d.studies.sensitivity(
+    ...     base, unknown=unknown, samples=32, until=until, progress=False
+    ... )
+    >>> found["unknown"].values.tolist()
+    ['friction', 'max_torque', 'run to run']
+    >>> found["first"].values.round(1).tolist()
+    [[1.0, 0.0, 0.0]]
+    >>> round(found["bracket_low"].sel(unknown="friction").item(), 2)
+    0.7
+    """
+    check_study(scenario)
+    extra("scipy.stats", "sensitivity")  # fail before the runs if it is missing
+    counts = counting(outcome)
+    samples = _power_of_two(how.get("samples", 256))
+    fields = read_models(scenario, models)
+    swept = paths_of(fields)
+    unknowns = _unknowns(scenario, how.pop("unknown", None), swept)
+    how.pop("samples", None)
+    with campaign(scenario, how, [*swept, *unknowns.distributions], threshold=0.5) as study:
+        if len(unknowns.distributions) < 2 and not study.planner.variation.distributions:
+            rule = "must have two paths or more where nothing varies from run to run"
+            raise ScenarioError("unknown", unknowns.text, rule)
+        design = Design(study, unknowns, samples, counts)
+        cells = {label: scenario.replace(own) for label, own in fields.items()}
+        ranges = {
+            (label, name): range_of(unknowns, path, cell)
+            for label, cell in cells.items()
+            for path, name in design.factors.items()
+        }
+        for (label, name), along in ranges.items():
+            if along.is_line:
+                check_ends(study, along.at, along.first, (f"model={label}", name))
+        results = []
+        for label, cell in cells.items():
+            matrices = design.run(cell, str(label))
+            lines = []
+            for name in design.factors.values():
+                along = ranges[label, name]
+                line = line_over(study, along, (f"model={label}", name), counts)
+                lines.append((along, line))
+            results.append(ModelResult(matrices, lines))
+        return sensitivity_table(study, design, list(fields), results, outcome)
+
+
+def _power_of_two(value: object) -> int:
+    number = whole_number(value, "samples", _FEWEST, _MOST)
+    if number & (number - 1):
+        raise ScenarioError("samples", number, "must be a power of two")
+    return number
+
+
+def _unknowns(scenario: Scenario, given: object, swept: list[str]) -> Variation:
+    if not given or not isinstance(given, Mapping):
+        rule = "must be a mapping from paths to distributions, such as unknowns.of_ground()"
+        raise ScenarioError("unknown", given, rule)
+    return Variation.read(scenario, given, swept, "unknown")

@@ -1,15 +1,15 @@
 """
-What decides the outcome?
-=========================
+Which parameters matter most?
+=============================
 
 Nobody knows exactly where the centre of mass is, how strong the motors are, or what the floor is
-like. Sobol indices say how much of the outcome each decides, so what to measure first.
+like. Sobol indices say how much of the outcome depends on each, so what to measure first.
 """
 
 import crawler2d as c2d
 
 robot = c2d.robots.engineer(flippers=None)
-found = c2d.studies.what_decides(
+found = c2d.studies.sensitivity(
     c2d.Scenario(robot, c2d.terrains.step(0.08)),
     unknown=c2d.unknowns.of_robot(robot) | c2d.unknowns.of_ground(),
     samples=64,

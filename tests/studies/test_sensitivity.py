@@ -1,4 +1,4 @@
-"""Which unknown decides: indices known in closed form, and slopes that friction decides."""
+"""Sensitivity to uncertain parameters: indices known in closed form, slopes of known friction."""
 
 import math
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from scipy import stats  # type: ignore[import-untyped]
 
 import crawler2d as c2d
 from crawler2d.studies.boundary import range_of
-from crawler2d.studies.sensitivity import Indices, bounds, estimate, points
+from crawler2d.studies.sobol import Indices, bounds, estimate, points
 from crawler2d.sweeps.store import stored_rows
 from crawler2d.variation.draws import Variation
 from tests.shared import ROBOT, refused
@@ -28,7 +28,7 @@ QUICK = c2d.Until(threshold=0.5, min_runs=5, max_runs=10)
 
 def found_of(scenario: Any = SLOPE, **how: Any) -> Any:
     given = {"unknown": UNKNOWN, "samples": 32, "until": QUICK, "progress": False, **how}
-    return c2d.studies.what_decides(scenario, **given)
+    return c2d.studies.sensitivity(scenario, **given)
 
 
 @pytest.fixture(scope="module")
@@ -292,7 +292,7 @@ def test_what_is_wrong_is_refused_by_name() -> None:
     for how, path in cases:
         assert refused(lambda how=how: found_of(**how)).path == path
     with pytest.raises(c2d.ScenarioError, match="unknown"):
-        c2d.studies.what_decides(SLOPE)
+        c2d.studies.sensitivity(SLOPE)
 
 
 def test_a_figure_draws_one_model_or_its_boundaries() -> None:
