@@ -242,10 +242,13 @@ def test_what_is_no_time_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None
 
 def test_a_run_that_did_not_stop_has_no_stop_to_branch_at() -> None:
     run = c2d.simulate(CLEARING, record="summary")
-    for call in (run.branch, run.trials, run.what_if, run.escape_force):
+    error = refused(run.branch)
+    assert (error.path, error.value) == ("at", "stop")
+    assert error.rule.startswith("must be a time from 0 to")
+    for call in (run.trials, run.what_if, run.escape_force):
         error = refused(call)
-        assert (error.path, error.value) == ("at", "stop")
-        assert "not in a stop" in error.rule
+        assert error.path == "run"
+        assert error.rule.startswith("must have ended in a stop, not as cleared")
     assert run.branch(at=1.0, duration=0.1).outcome is c2d.Outcome.TIMED_OUT
 
 

@@ -166,6 +166,14 @@ def test_a_list_of_outcomes_has_a_rate() -> None:
     assert rate(iter(outcomes))["count"].item() == 3
 
 
+def test_runs_are_refused_with_what_makes_a_table_of_them() -> None:
+    robot = c2d.robots.engineer(flippers=None)
+    runs: Any = c2d.simulate_many([c2d.Scenario(robot, c2d.terrains.flat(), duration=0.1)])
+    with pytest.raises(c2d.ScenarioError, match=r"write rate\(table\(runs\), dim=\"run\"\)"):
+        rate(runs)
+    assert rate(c2d.table(runs), dim="run")["count"].item() == 1
+
+
 def test_no_outcomes_have_no_rate() -> None:
     found = rate([])
     assert np.isnan(found["rate"].item())

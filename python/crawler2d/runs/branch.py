@@ -36,6 +36,7 @@ __all__ = [
     "refuse_without_result",
     "run_of_trial",
     "simulate_branch",
+    "stop_time",
     "trial_at",
     "trial_names",
     "trials_at",
@@ -177,6 +178,33 @@ def refuse_without_result(run: Record) -> None:
 
 def branch_time(run: Record, at: float | str) -> float:
     """[s] The instant given by `at`: a time of the run, or the stop it ended in."""
+    _refuse_unrepeatable(run)
+    end = run.metrics["time"]
+    if isinstance(at, str) and at == "stop":
+        if run.diagnosis is None:
+            rule = f"must be a time from 0 to {end:.6g} s: the run ended as {run.outcome}"
+            raise ScenarioError("at", at, rule)
+        return run.diagnosis.time
+    try:
+        time = real_number(at, "at")
+    except ScenarioError:
+        time = math.nan
+    if not 0.0 <= time <= end:
+        raise ScenarioError("at", at, f'must be "stop" or a time from 0 to {end:.6g} s')
+    return time
+
+
+def stop_time(run: Record) -> float:
+    """[s] The stop that a run ended in."""
+    _refuse_unrepeatable(run)
+    if run.diagnosis is None:
+        rule = f"must have ended in a stop, not as {run.outcome}: `reason` says why it ended"
+        raise ScenarioError("run", run, rule)
+    return run.diagnosis.time
+
+
+def _refuse_unrepeatable(run: Record) -> None:
+    """Refuse a run that cannot be repeated bit by bit."""
     refuse_without_result(run)
     build = _core.build_info()["build_id"]
     if run.build["build_id"] != build:
@@ -185,22 +213,6 @@ def branch_time(run: Record, at: float | str) -> float:
             " simulate(run.scenario) makes such a run"
         )
         raise ScenarioError("run", run, rule)
-    if isinstance(at, str) and at == "stop":
-        if run.diagnosis is None:
-            rule = (
-                'must be given as a time (else it is "stop"):'
-                f" the run ended as {run.outcome}, not in a stop; see its `reason`"
-            )
-            raise ScenarioError("at", at, rule)
-        return run.diagnosis.time
-    end = run.metrics["time"]
-    try:
-        time = real_number(at, "at")
-    except ScenarioError:
-        time = math.nan
-    if not 0.0 <= time <= end:
-        raise ScenarioError("at", at, f'must be "stop" or a time from 0 to {end:.6g} s')
-    return time
 
 
 def branch_scenario(

@@ -23,6 +23,7 @@ from crawler2d.runs.branch import (
     refuse_without_result,
     run_of_trial,
     simulate_branch,
+    stop_time,
     trial_at,
     trial_names,
     trials_at,
@@ -224,7 +225,7 @@ class Run(ShownRun):
         >>> [trial.name for trial in run.trials() if trial.freed]
         ['closed track', 'belt', 'friction x 2']
         """
-        time = branch_time(self, "stop")
+        time = stop_time(self)
         results = trials_at(self, time, trial_names("all"))
         self._add_to_diagnosis(*results)
         return tuple(Trial.of(each, partial(self._run_of_trial, time, each)) for each in results)
@@ -269,7 +270,7 @@ class Run(ShownRun):
         >>> run.what_if("torque x 2").freed, run.what_if(track=c2d.BeltTrack()).freed
         (False, True)
         """
-        time = branch_time(self, "stop")
+        time = stop_time(self)
         changes: Any = {"track": track, "friction": friction, "max_torque": max_torque}
         changes |= {"belly": belly, "drive": drive}
         if name is not None:
@@ -330,7 +331,7 @@ class Run(ShownRun):
         ScenarioError
             If the run did not end in a stop, or is a branch itself; without gravity.
         """
-        time = branch_time(self, "stop")
+        time = stop_time(self)
         return EscapeForce(*_core.escape_force(self.scenario.to_json(), time))
 
     def tip_over(self) -> TipOver:

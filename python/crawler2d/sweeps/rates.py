@@ -14,6 +14,7 @@ from crawler2d.common.extras import extra
 from crawler2d.common.keywords import read_choice, takes_keywords
 from crawler2d.errors import ScenarioError, warn
 from crawler2d.results.outcome import Outcome, rate_label
+from crawler2d.results.record import Record
 from crawler2d.sweeps.statistics import clustered, read_level
 
 if TYPE_CHECKING:
@@ -237,6 +238,9 @@ def _texts(outcomes: object) -> list[str]:
     if not isinstance(outcomes, Iterable):
         raise ScenarioError("table", outcomes, "must be what sweep returned, or outcomes in a list")
     names = list(Outcome)
+    outcomes = list(outcomes)
+    if any(isinstance(outcome, Record) for outcome in outcomes):
+        raise ScenarioError("table", "runs", 'must be a table: write rate(table(runs), dim="run")')
     return [
         "" if outcome is None else read_choice(outcome, f"outcomes[{index}]", names)
         for index, outcome in enumerate(outcomes)
