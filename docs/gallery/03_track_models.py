@@ -2,7 +2,7 @@
 Every track model on one step
 =============================
 
-One robot, one step of 75 mm, and what stands for its track. Mass, centre of mass and moment of
+One robot, one step of 75 mm, and each model of its track. Mass, centre of mass and moment of
 inertia are the same.
 """
 

@@ -2,8 +2,8 @@
 Barrier, knife edge, gap, stairs
 ================================
 
-Ground is an outline in side view, with sharp or rounded edges. Here with the robot on a belt, as it
-gets over.
+Terrain is an outline in side view, with sharp or rounded edges. Here a robot on a belt drives over
+it.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 A map over height and friction
 ==============================
 
-Each cell is simulated until it is certain how most runs end; where one end meets another, the grid
-is made finer.
+Each cell is simulated until it is certain how most runs end; where the outcome changes from cell to
+cell, the grid is refined.
 """
 
 import crawler2d as c2d

@@ -2,9 +2,9 @@
 Rates with intervals
 ====================
 
-A single run can be luck. `sweep` simulates each combination many times, here from other starts on
-six floors of unknown friction, and `rate` says how often a run clears: a rate with an interval on
-each floor, a band over the floors.
+A single run can be luck. `sweep` simulates each combination many times, here from varied starts on
+six floors of uncertain friction, and `rate` says how often a run clears: a rate with an interval on
+each floor, and a band over the floors.
 """
 
 import crawler2d as c2d

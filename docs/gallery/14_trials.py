@@ -2,7 +2,7 @@
 What would free it?
 ===================
 
-In each trial one thing is changed in the pose of the stop, and the robot drives on.
+Each trial changes one thing in the pose of the stop and lets the robot drive on.
 """
 
 import crawler2d as c2d

@@ -216,7 +216,7 @@ def test_a_note_says_what_a_commanded_speed_does(tmp_path: Path) -> None:
     for engine, words in (
         ("gz", "within one step"),
         ("mujoco", "kv times the error"),
-        ("isaac", "not run"),
+        ("isaac", "not tested"),
     ):
         notes = read(tmp_path, stated(), engine=engine).notes
         assert [words in note for note in notes if note.startswith("motors in")] == [True]

@@ -168,7 +168,7 @@ def test_a_flipper_that_pivots_off_the_end_axle_is_refused(tmp_path: Path) -> No
 
 def test_flippers_that_differ_from_end_to_end_are_refused(tmp_path: Path) -> None:
     text = urdf(WHEELS, flippers(), flippers(x=-0.2, tip="-0.25 0 0"))
-    refused(tmp_path, text, "must be alike at both ends")
+    refused(tmp_path, text, "must be the same at both ends")
 
 
 def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: Path) -> None:
@@ -255,7 +255,7 @@ def test_flippers_at_one_end_without_wheels_on_the_chassis_are_refused(tmp_path:
 
 def test_unevenly_spaced_wheels_on_flippers_at_both_ends_are_refused(tmp_path: Path) -> None:
     text = urdf(WHEELS, flippers(), flippers(x=-0.2, tip="-0.2 0 0"))
-    refused(tmp_path, text, "must be alike at both ends and have evenly spaced wheels")
+    refused(tmp_path, text, "must be the same at both ends and have evenly spaced wheels")
 
 
 def test_one_joint_may_turn_both_flippers_and_each_has_half_its_torque(tmp_path: Path) -> None:

@@ -522,7 +522,7 @@ RULES = (
         file=_friction,
     ),
     Rule("balance", "warning", "The centre of mass of a wheel is on its axle.", file=_balance),
-    Rule("sides", "note", "Left and right are alike.", file=_sides),
+    Rule("sides", "note", "Left and right are the same.", file=_sides),
     Rule("overlap", "note", "Wheels of one side do not push each other apart.", file=_overlaps),
     Rule("other", "warning", "Reader and simulator have no other warnings.", file=_warnings),
 )

@@ -1,4 +1,4 @@
-"""Flippers: arms that pivot on the end axles of a robot, each with a track of its own."""
+"""Flippers: arms that pivot on the end axles of a robot, each with its own track."""
 
 from __future__ import annotations
 

@@ -247,7 +247,7 @@ class Robot(Parameters, path="robot"):
         Returns
         -------
         Axes
-            With x and y in metres, to one scale.
+            With x and y in metres, at equal scale.
 
         Raises
         ------

@@ -175,7 +175,7 @@ class Scenario(ScenarioBase):
         Returns
         -------
         Axes
-            With x and y in metres, to one scale.
+            With x and y in metres, at equal scale.
 
         Raises
         ------

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["FIGURES"]
 
 _FAINT = 0.35
-"""[-] Opacity of candidates that were left behind."""
+"""[-] Opacity of eliminated candidates."""
 
 _GAP = 2.0
 """[-] Candidates that would fit between one cost and the next."""
@@ -66,7 +66,7 @@ def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
     at = _places(costs, [name in two for name in names])
     rounds = data["round"].to_numpy()
     rate, low, high = _lowest(data, "rate", "low", "high")
-    for last, opacity, text in ((False, _FAINT, "left behind"), (True, 1.0, "in the last round")):
+    for last, opacity, text in ((False, _FAINT, "eliminated"), (True, 1.0, "in the last round")):
         chosen = (rounds == rounds.max()) == last
         label = f"{text}: {chosen.sum()}, rates of the search"
         if not chosen.any():
@@ -153,8 +153,8 @@ def _indices(data: xarray.Dataset, ax: Axes) -> None:
     data = data.isel(unknown=order)
     at = np.arange(order.size)
     for name, label, color, down in (
-        ("total", "total: left if all others were known", ORANGE, _BAR / 2.0),
-        ("first", "first order: gone if it were known", BLUE, -_BAR / 2.0),
+        ("total", "total: what remains if all others were known", ORANGE, _BAR / 2.0),
+        ("first", "first order: what goes if it were known", BLUE, -_BAR / 2.0),
     ):
         own, low, high = (data[key].to_numpy() for key in (name, f"{name}_low", f"{name}_high"))
         ax.barh(at + down, own, _BAR, color=color, label=label)
@@ -182,9 +182,9 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
     outcome = data.attrs["outcome"].replace("_", " ")
     styles: dict[str, Any] = {
         "outcome": {"color": GREEN, "linewidth": 7.0, "label": f"most runs: {outcome}"},
-        "range": {"color": GRAY, "linewidth": 2.0, "label": "range of the unknown"},
+        "range": {"color": GRAY, "linewidth": 2.0, "label": "range"},
         "own": {"color": BLACK, "markersize": 6.0, "label": "the scenario's own value"},
-        "half": {"color": BLUE, "linewidth": 2.0, "label": "rate of one half"},
+        "half": {"color": BLUE, "linewidth": 2.0, "label": "rate crosses one half"},
     }
     for k in range(data.sizes["unknown"]):
         row = data.isel(unknown=k)
@@ -232,7 +232,7 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
         frameon=False,
     )
     over = populations({"vary": data.attrs["vary"]}, banded=False)
-    _entitle(data, ax, "one unknown moved at a time, the others as in the scenario", over)
+    _entitle(data, ax, "one parameter varied at a time, the others as in the scenario", over)
 
 
 def _parts(row: xarray.Dataset) -> list[tuple[float, float]]:

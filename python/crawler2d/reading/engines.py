@@ -61,7 +61,7 @@ _QUICKEST = 1e6  # [m/s^2]
 _SIDES = ("left", "right")
 
 _WITHIN_A_STEP = "the commanded speed is reached within one step, if the torque limit allows"
-_AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (read in its source)"
+_AT_ANY_LOAD = "the commanded speed at any load, as contact surface motion (from its source code)"
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
 WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple
 
@@ -125,7 +125,7 @@ ENGINES: dict[str, EngineLaws] = {
         usual_friction=1.0,
         command=_WITHIN_A_STEP,
         surface=_AT_ANY_LOAD,
-        basis="run in DART 6.20 by itself",
+        basis="tested in DART 6.20 alone",
         ignored={"armature": "SDF and DART have no rotor inertia"},
     ),
     # Friction: the smaller, by ODEPhysics::Collide.
@@ -140,7 +140,7 @@ ENGINES: dict[str, EngineLaws] = {
         usual_friction=1.0,
         command=_WITHIN_A_STEP,
         surface=_AT_ANY_LOAD,
-        basis="read in its source, not run",
+        basis="from its source code, not tested",
         ignored={
             "velocity": "it holds for commanded forces only",
             "friction": "the motor of a commanded speed takes its place",
@@ -158,7 +158,7 @@ ENGINES: dict[str, EngineLaws] = {
         usual_friction=0.5,
         command=_WITHIN_A_STEP,
         surface="",
-        basis="run in PyBullet 3.2.7",
+        basis="tested in PyBullet 3.2.7",
         ignored={
             "effort": "only the argument force= limits a motor, which else has 100,000 N m",
             "velocity": "every joint has a limit of 100 rad/s instead",
@@ -176,8 +176,8 @@ ENGINES: dict[str, EngineLaws] = {
         combination="max",
         usual_friction=1.0,
         command="a torque of kv times the error of the speed, within forcerange",
-        surface="the commanded speed at any load, as surfacevel of the geom (run in MuJoCo 4.0)",
-        basis="run in MuJoCo 4.0",
+        surface="the commanded speed at any load, as surfacevel of the geom (tested in MuJoCo 4.0)",
+        basis="tested in MuJoCo 4.0",
         has_gain=True,
         ignored={
             "velocity": "MuJoCo has no limit of a joint's speed: ctrlrange limits the command"
@@ -196,7 +196,7 @@ ENGINES: dict[str, EngineLaws] = {
         command="a torque of the drive's damping times the error of the speed, within maxForce;"
         " the import sets the damping, and here the speed is held",
         surface="",
-        basis="read in its importer and its documentation, not run",
+        basis="from its importer and documentation, not tested",
         ignored={
             "damping": "the strength of the drive, which the import sets, takes its place",
             "friction": "PhysX takes it as a coefficient of the load on the joint",

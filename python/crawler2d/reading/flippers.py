@@ -383,7 +383,7 @@ def _refuse_unlike(log: ReadLog, front: AtEnd, rear: AtEnd, tolerance: float) ->
     for name in ("length", "root_radius", "tip_radius"):
         first, second = getattr(front, name), getattr(rear, name)
         if abs(first - second) > tolerance:
-            rule = f"must be alike at both ends, within {tolerance:g}"
+            rule = f"must be the same at both ends, within {tolerance:g}"
             rear.pair.refuse(f"{name} {second:.6g} and {first:.6g}", rule)
     if abs(front.pair.mass - rear.pair.mass) > _ALIKE * front.pair.mass:
         value = f"{rear.pair.mass:.4g} and {front.pair.mass:.4g} kg"
@@ -395,7 +395,7 @@ def _refuse_unlike(log: ReadLog, front: AtEnd, rear: AtEnd, tolerance: float) ->
         reason = "are at another angle than the front ones: the angle of those is used for both"
         log.add_warning(rear.pair.path, value, reason)
     if not _is_same(front.track, rear.track):
-        rule = "must be alike at both ends and have evenly spaced wheels, or a belt"
+        rule = "must be the same at both ends and have evenly spaced wheels, or a belt"
         rear.pair.refuse(f"{rear.track!r} and {front.track!r}", rule)
 
 

@@ -259,7 +259,7 @@ def _belt_limit(d: Diagnosis) -> str:
 
 
 def _is_past(tried: TrialResult) -> bool:
-    """Whether a belt got past the stop, be it to tip over farther on."""
+    """Whether a belt got past the stop, even if it tipped over farther on."""
     is_lost = tried.outcome in (Outcome.TIPPED_OVER, Outcome.LEFT_TERRAIN)
     return tried.freed or (is_lost and tried.distance > 0.0)
 

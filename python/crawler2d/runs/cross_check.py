@@ -213,7 +213,7 @@ class CrossCheck(Generic[R]):
         Returns
         -------
         Axes
-            With x and y in metres, to one scale.
+            With x and y in metres, at equal scale.
 
         Raises
         ------

@@ -25,7 +25,7 @@ _STEPS = 100
 def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
     """Change numbers of a scenario with sliders, and see how the robot drives then.
 
-    Each change simulates the scenario anew, which for belts and round wheels takes a core a
+    Each change simulates the scenario again, which for belts and round wheels takes a core a
     tenth of a second at most. Sliders begin at the nearest of their values to that of the scenario.
 
     Parameters

@@ -66,7 +66,7 @@ class ShownRun(Record):
         Returns
         -------
         Axes
-            With x and y in metres, to one scale.
+            With x and y in metres, at equal scale.
 
         Raises
         ------

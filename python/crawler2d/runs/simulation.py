@@ -349,7 +349,7 @@ class Simulation(TakesKeywords):
         Returns
         -------
         Axes
-            With x and y in metres, to one scale.
+            With x and y in metres, at equal scale.
 
         Raises
         ------

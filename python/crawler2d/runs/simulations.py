@@ -199,7 +199,7 @@ class Simulations(TakesKeywords):
         which: ArrayLike | None = None,
         scenarios: Sequence[Scenario | _core.PreparedScenario] | None = None,
     ) -> None:
-        """Set some out anew, bit by bit as if they were new.
+        """Reset some to their start, bit by bit as if they were new.
 
         Parameters
         ----------
