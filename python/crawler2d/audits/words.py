@@ -242,7 +242,7 @@ def conclusion(audit: AuditRecord) -> list[str]:
 def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
     """Say how often the robot seizes under each assumption, and which verdicts depend on it."""
     heads = {
-        "rotor": "With rotor inertia, as in real motors",
+        "rotor": "With a real drive, which holds its speed and has rotor inertia",
         "restitution": "With bouncing contacts",
     }
     for name, head in heads.items():
