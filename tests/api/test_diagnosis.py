@@ -216,6 +216,14 @@ def test_a_diagnosis_survives_pickling_with_everything(
     assert pickle.loads(pickle.dumps(run)).parent is None
 
 
+def test_a_diagnosis_of_an_older_file_has_a_field_of_its_former_name(
+    stops: dict[str, c2d.Run],
+) -> None:
+    values = why(stops["straddled"]).to_dict()
+    values["passing"] = values.pop("transient")
+    assert c2d.Diagnosis.from_core(values).transient is False
+
+
 def test_a_mechanism_is_not_a_reason(stops: dict[str, c2d.Run]) -> None:
     """An edge between two grousers of one wheel jams no track."""
     d = why(stops["interlocked"])

@@ -154,8 +154,10 @@ class Diagnosis:
 
     @classmethod
     def from_core(cls, result: Mapping[str, Any]) -> Diagnosis:
-        """Convert the dictionary that the core returns."""
+        """Convert the dictionary that the core returns, or one of an older file."""
         values = dict(result)
+        if "passing" in values:  # its former name, in files of November 2026
+            values["transient"] = values.pop("passing")
         mechanism, inside = values["mechanism"], values["intrusion"]
         values["outcome"] = Outcome(values["outcome"])
         values["symptom"] = Outcome(values["symptom"])
