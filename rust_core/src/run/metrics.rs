@@ -52,7 +52,7 @@ metrics! {
     path_length ["m"] "how far the chassis frame has actually moved, along its own axis"
     max_angle ["rad"] "largest angle of the chassis, nose up > 0"
     min_angle ["rad"] "smallest angle of the chassis"
-    max_penetration ["m"] "deepest overlap of any part with the ground; more than softness explains is doubted"
+    max_penetration ["m"] "deepest overlap of any part with the ground; more than softness explains gets a warning"
     drive_work ["J"] "work of the motors of the tracks, without those of the flippers"
     stopped_time ["s"] "time spent in stops"
     time_to_free ["s"] "longest stop from which the robot freed itself; 0 if there was none"
