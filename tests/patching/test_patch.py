@@ -198,7 +198,7 @@ def test_motors_that_share_evenly_still_do_with_other_wheels_on_one_carrier(
         assert found.max_torque == pytest.approx(was.max_torque)
         assert found.rotor_inertia == pytest.approx(was.rotor_inertia)
         assert found.torque_sharing == "wheel"
-        assert not [doubt for doubt in again.doubts if "rotor" in doubt]
+        assert not [each for each in again.warnings if "rotor" in each]
 
 
 @pytest.mark.parametrize("name", CARTS)

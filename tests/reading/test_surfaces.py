@@ -162,15 +162,15 @@ def test_what_rolls_freely_takes_no_servo_from_the_others(tmp_path: Path) -> Non
     assert drivetrain.controller == c2d.PI(gain=3.0 * 10.0 + 4.0 * 10.0)
 
 
-def test_wheels_on_flippers_that_roll_freely_are_doubted(tmp_path: Path) -> None:
+def test_wheels_on_flippers_that_roll_freely_get_a_warning(tmp_path: Path) -> None:
     """They are simulated with motors, as those of the chassis are."""
     pytest.importorskip("mujoco")
     text = (FILES / "cart.xml").read_text(encoding="utf-8")
     text = re.sub(r'<velocity joint="\w+_flipper_(root|tip)_joint".*?/>', "", text)
     reading = read(tmp_path, text, "cart.xml")
-    (doubt,) = [each for each in reading.doubts if "roll freely" in each]
-    assert "left_flipper_root" in doubt
-    assert "read as driven" in doubt
+    (warning,) = [each for each in reading.warnings if "roll freely" in each]
+    assert "left_flipper_root" in warning
+    assert "read as driven" in warning
     assert reading.robot.drivetrain.max_torque == pytest.approx(3.0 * 5.0)
     assert reading.robot.drivetrain.torque_sharing == "track"
 
