@@ -1,12 +1,13 @@
 """Whether tests notice small faults in the package: each of a random sample must fail a test.
 
-    python -m tests.mutants.package [ROOM ...] [--sample 400] [--seed 1] [--again]
+    python -m tests.mutants.package [ROOM ...] [--sample 400] [--seed 1] [--seconds 30] [--again]
 
 A room is a folder or file of the package, `ROOMS` by default. Each mutant is tried with the tests
-that execute its line, quickest first; `make coverage-python` leaves in `out/coverage` which these
-are and how long they take. `out/mutants` keeps the survivors, and `--again` tries those alone. The
-exit status is 1 if there are others than `EQUIVALENT` argues away. Needs fork, and some three
-seconds a mutant.
+that execute its line, those first that are quick and have noticed others; `make coverage-python`
+leaves in `out/coverage` which these are and how long they take. Those beyond `--seconds` in all are
+left out: a survivor has survived the others. `out/mutants` keeps the survivors, and `--again` tries
+those alone. The exit status is 1 if there are others than `EQUIVALENT` argues away. Needs fork, and
+some three seconds a mutant.
 """
 
 import argparse
@@ -22,7 +23,8 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -39,21 +41,26 @@ LIBRARIES = (
 
 ROOMS = ("sweeps", "variation", "audits", "reading", "patching")
 
-# [s] Of the tests that are tried on a mutant, with coverage: a survivor of these has survived.
-LONGEST = 120.0
+# [s] Of those that are tried first: most mutants end there, and few test modules are imported.
+FIRST = 2.0
 
 BROKEN = "no test ran"
 
 
 class Tests:
-    """Which tests execute a line, and how long each takes, from a run of all with coverage."""
+    """Which tests execute a line, and how long each takes, from a run of all with coverage.
 
-    def __init__(self) -> None:
+    How many mutants each test has `noticed` is counted.
+    """
+
+    def __init__(self, longest: float) -> None:
         from coverage import CoverageData  # noqa: PLC0415 - of the group `coverage`
 
         self.data = CoverageData(str(KNOWN / "data"))
         self.data.read()
         self.contexts = functools.cache(self.data.contexts_by_lineno)
+        self.longest = longest
+        self.noticed = Counter[str]()
         self.seconds = {
             name_of(case): float(case.attrib["time"])
             for case in ElementTree.parse(KNOWN / "tests.xml").iter("testcase")
@@ -61,25 +68,43 @@ class Tests:
         }
 
     def of(self, mutant: Mutant) -> list[str]:
-        """Return the tests that can notice a mutant, quickest first; none if it never runs."""
+        """Return the tests that can notice a mutant, the most promising first.
+
+        There are none if it never runs.
+        """
         contexts = self.contexts(str(mutant.file))
         found = [context for line in mutant.lines for context in contexts.get(line, ())]
         tests = {context.rpartition("|")[0] for context in found}
+        if tests == {""}:  # in another process, which a test starts by way of the same file
+            found = [context for line in contexts.values() for context in line]
+            tests = {context.rpartition("|")[0] for context in found}
         # What a fixture does is told of the first test alone that asks for it.
         files = {context.partition("::")[0] for context in found if context.endswith("|setup")}
         tests |= {test for test in self.seconds if test.partition("::")[0] in files}
-        if "" in tests and len(tests) == 1:  # in another process
+        if tests == {""}:  # or of another file of the room
             room = mutant.file.relative_to(PACKAGE).parts[0].removesuffix(".py")
             tests = {test for test in self.seconds if test.startswith(f"tests/{room}/")}
         chosen, total = list[str](), 0.0
-        for test in sorted(
-            tests & self.seconds.keys(), key=lambda test: (self.seconds[test], test)
-        ):
+        for test in sorted(tests & self.seconds.keys(), key=self.cost):
             total += self.seconds[test]
-            if chosen and total > LONGEST:
+            if chosen and total > self.longest:
                 break
             chosen.append(test)
         return chosen
+
+    def cost(self, test: str) -> tuple[float, str]:
+        """What a test costs for a mutant that it notices, about; tests of equal times by name."""
+        return self.seconds[test] / (1 + self.noticed[test]), test
+
+    def batches(self, chosen: list[str]) -> Iterator[list[str]]:
+        """Yield the first tests, and then the others, if there are more."""
+        total, count = 0.0, 0
+        while count < len(chosen) and (not count or total < FIRST):
+            total += self.seconds[chosen[count]]
+            count += 1
+        yield chosen[:count]
+        if chosen[count:]:
+            yield chosen[count:]
 
     def drop(self, tests: Iterable[str]) -> None:
         """Try these no more."""
@@ -157,15 +182,20 @@ def notices(mutant: Mutant, tests: Tests, number: int) -> str:
         return ""
     before = mutant.file.stat()
     seconds = 20 + 5 * sum(tests.seconds[test] for test in chosen)
+    failed = ""
     try:
         mutant.file.write_text(mutant.source(), encoding="utf-8")
         os.utime(mutant.file, (number, number))  # of no byte code that there is
-        failed = next(iter(failures(chosen, seconds, "-x")), "")
+        for batch in tests.batches(chosen):
+            failed = next(iter(failures(batch, seconds, "-x")), "")
+            if failed:
+                break
     finally:
         mutant.file.write_text(mutant.text, encoding="utf-8")
         os.utime(mutant.file, ns=(before.st_atime_ns, before.st_mtime_ns))
     if failed == BROKEN and failures(chosen, seconds, "--collect-only"):
         raise SystemExit(f"these tests do not run without a mutant: {chosen}")
+    tests.noticed[failed] += 1
     return failed
 
 
@@ -193,12 +223,13 @@ def main() -> int:
     parser.add_argument("rooms", nargs="*", metavar="ROOM", default=ROOMS)
     parser.add_argument("--sample", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=30.0, help="of tests for each mutant")
     parser.add_argument("--again", action="store_true")
     asked = parser.parse_args()
     for library in LIBRARIES:
         importlib.import_module(library)
     sys.dont_write_bytecode = True
-    tests = Tests()
+    tests = Tests(asked.seconds)
     unexplained = 0
     with tempfile.TemporaryDirectory() as folder:
         copied(Path(folder))
