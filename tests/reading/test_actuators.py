@@ -294,6 +294,19 @@ def test_a_motor_of_mujoco_has_the_smaller_of_two_limits(
     assert reading.robot.drivetrain.max_torque == pytest.approx(6.0 * wanted)
 
 
+@pytest.mark.parametrize(("limits", "line"), [("-20 20", 45), ("-40 40", 81)])
+def test_a_torque_has_the_line_of_the_smaller_of_two_limits(
+    tmp_path: Path, limits: str, line: int
+) -> None:
+    """That of the joint, in line 45, or that of its servo, 30 N m in line 81."""
+    pytest.importorskip("mujoco")
+    joint = '<joint name="left_flipper_joint"'
+    text = (FILES / "cart.xml").read_text()
+    text = text.replace(joint, f'{joint} actuatorfrcrange="{limits}"')
+    found = read(tmp_path, text, "cart.xml").sources["robot.flippers.torque_limit"]
+    assert found == f"cart.xml:{line}, 84"
+
+
 @pytest.mark.parametrize(
     ("settings", "wanted"),
     [

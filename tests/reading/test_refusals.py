@@ -131,9 +131,14 @@ def test_a_model_without_anything_that_turns_is_refused(tmp_path: Path) -> None:
     refused(tmp_path, urdf(), "must have wheels .round collision shapes")
 
 
-def test_wheels_with_upright_axles_are_refused(tmp_path: Path) -> None:
-    text = urdf(pair("a", 0.2, axis="0 0 1", origin=""), pair("b", -0.2, axis="0 0 1", origin=""))
-    refused(tmp_path, text, "must have wheels with horizontal axes")
+def test_wheels_with_upright_or_slanted_axles_are_refused(tmp_path: Path) -> None:
+    for axis, turn, rule in (
+        ("0 0 1", "0", "must have wheels .round collision shapes on horizontal joints"),
+        ("0 3 1", "-1.2490457723982544", "must have wheels with horizontal axes"),
+    ):
+        across = f'<origin rpy="{turn} 0 0"/>'
+        text = urdf(*(pair(end, x, axis=axis, origin=across) for end, x in (("a", 1), ("b", 0))))
+        refused(tmp_path, text, rule)
 
 
 def test_a_single_pair_of_wheels_is_refused(tmp_path: Path) -> None:
@@ -191,12 +196,17 @@ def test_a_skid_that_rubs_on_level_ground_gets_a_warning(tmp_path: Path) -> None
     assert "rubs on level ground" in read(tmp_path, urdf(WHEELS, shapes=skid)).warnings[0]
 
 
-def test_a_lidar_that_turns_touches_nothing(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "shape", ['<box size="0.1 0.1 0.1"/>', '<cylinder radius="0.05" length="0.04"/>']
+)
+def test_a_lidar_that_turns_touches_nothing(tmp_path: Path, shape: str) -> None:
+    """Neither is one that is round about its axis a wheel with an upright axle."""
     lidar = link("lidar", 'type="continuous"><axis xyz="0 0 1"/>', "0.1 0 0.2").replace(
-        "</link>", collision('<box size="0.1 0.1 0.1"/>') + "</link>"
+        "</link>", collision(shape) + "</link>"
     )
     reading = read(tmp_path, urdf(WHEELS, lidar))
     assert reading.robot.belly is None
+    assert len(reading.wheels) == 4
     assert any(note.startswith("lidar: move by themselves") for note in reading.notes)
 
 

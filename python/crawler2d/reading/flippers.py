@@ -383,8 +383,8 @@ def _refuse_unlike(log: ReadLog, front: AtEnd, rear: AtEnd, tolerance: float) ->
     for name in ("length", "root_radius", "tip_radius"):
         first, second = getattr(front, name), getattr(rear, name)
         if abs(first - second) > tolerance:
-            rule = f"must be the same at both ends, within {tolerance:g}"
-            rear.pair.refuse(f"{name} {second:.6g} and {first:.6g}", rule)
+            rule = f"must be the same at both ends, within {1e3 * tolerance:g} mm"
+            rear.pair.refuse(f"{name} {second:.6g} and {first:.6g} m", rule)
     if abs(front.pair.mass - rear.pair.mass) > _ALIKE * front.pair.mass:
         value = f"{rear.pair.mass:.4g} and {front.pair.mass:.4g} kg"
         log.add_warning(

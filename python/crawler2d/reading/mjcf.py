@@ -217,9 +217,11 @@ class _Model:
         (joint,) = joints
         motor = self.motors.get(joint["name"], {})
         lower, upper = joint["range"] or (-math.inf, math.inf)
-        efforts = [e for e in (joint["effort"], motor.get("effort")) if e is not None and e >= 0.0]
         axis = unit(pose.along(joint["axis"]))
         joint_at, motor_at = self.where(joint), self.where(motor or joint)
+        limits = [(joint["effort"], joint_at), (motor.get("effort"), motor_at)]
+        limits = [limit for limit in limits if limit[0] is not None and limit[0] >= 0.0]
+        effort, effort_at = min(limits, key=lambda limit: limit[0], default=(None, joint_at))
         return Joint(
             name=joint["name"],
             kind=joint["kind"],
@@ -229,7 +231,7 @@ class _Model:
             axis=pose.turn[:, 2] if axis is None else axis,
             lower=lower,
             upper=upper,
-            effort=min(efforts, default=None),
+            effort=effort,
             velocity=motor.get("velocity"),
             stiffness=joint["stiffness"],
             damping=joint["damping"] + motor.get("damping", 0.0),
@@ -237,7 +239,7 @@ class _Model:
             armature=joint["armature"] + motor.get("armature", 0.0),
             gain=motor.get("gain"),
             at=joint_at,
-            effort_at=motor_at if motor.get("effort") is not None else joint_at,
+            effort_at=effort_at,
             velocity_at=motor_at,
             gain_at=motor_at,
         )

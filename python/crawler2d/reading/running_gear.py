@@ -263,8 +263,8 @@ def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     ]
     if not axes:
         rule = (
-            "must have wheels (round collision shapes on joints without limits, bare or with equal"
-            " grousers evenly round them) or tracks that a plugin moves or tracks= names"
+            "must have wheels (round collision shapes on horizontal joints without limits, bare or"
+            " with equal grousers evenly round them) or tracks that a plugin moves or tracks= names"
         )
         count = sum(shape.kind in _DRUMS for link in tree.links for shape in link.shapes)
         got = f"{count} round shapes, none of them a wheel" if count else "no round shape"

@@ -17,6 +17,7 @@ from crawler2d.model_tree import Array, Shape, Tree
 from crawler2d.reading.log import ReadingWarning, list_names
 from crawler2d.reading.parts import moved_links
 from crawler2d.reading.wheels import (
+    UPRIGHT,
     corners_of,
     is_parallel,
     radius_about,
@@ -38,7 +39,6 @@ _BELOW = 0.01
 _HORIZONTAL = 0.02  # of the upward part of a direction
 _SHOWN = 4  # names of links
 _MOST_AXES = 100  # that are compared with all
-_UPRIGHT = 0.5  # [-] An axis with a larger upward part is no axle, but that of a lidar, say.
 _LISTED = 5  # names of links
 
 
@@ -134,7 +134,7 @@ def refuse_unread(tree: Tree) -> None:
     links = tree.by_name
     is_on_wheels = bool(tops)  # or would be, if its turning parts were round
     for child, joint in tree.joints.items():
-        if joint.is_unlimited and abs(joint.axis[2]) <= _UPRIGHT:
+        if joint.is_unlimited and abs(joint.axis[2]) <= UPRIGHT:
             turning = [links[name] for name in hanging[child]]
             if any(link.shapes for link in turning):
                 is_on_wheels = True

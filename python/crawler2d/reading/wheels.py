@@ -12,6 +12,7 @@ from crawler2d.model_tree import Array, Joint, Link, Shape, Tree, Where
 __all__ = [
     "ALIKE",
     "PARALLEL",
+    "UPRIGHT",
     "Arm",
     "Grousers",
     "Runner",
@@ -27,6 +28,9 @@ __all__ = [
 
 PARALLEL = 0.05
 """[rad] Axes within this angle count as parallel: files have 3.1415 for pi, and toe-in."""
+
+UPRIGHT = 0.5
+"""[-] An axis with a larger upward part is no axle, but that of a lidar, say."""
 
 # A wheel may be off its axis by rounding: relative to its radius.
 _OFF_AXIS = 0.02
@@ -288,14 +292,15 @@ def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
 def wheel_shapes(tree: Tree) -> dict[str, list[tuple[Link, Shape]]]:
     """Return the shapes of each wheel by its link.
 
-    A wheel turns without limit. All that turns with it is round about its axis, or one of equal
-    grousers evenly round it.
+    A wheel turns without limit about an axle, which does not stand upright. All that turns with it
+    is round about its axis, or one of equal grousers evenly round it.
     """
     hanging, links = subtrees(tree), tree.by_name
     wheels = {}
     for child, joint in tree.joints.items():
         names = hanging[child]
-        if not joint.is_unlimited or any(not tree.joints[n].is_locked for n in names[1:]):
+        is_axle = joint.is_unlimited and abs(joint.axis[2]) <= UPRIGHT
+        if not is_axle or any(not tree.joints[n].is_locked for n in names[1:]):
             continue
         pairs = [(links[name], shape) for name in names for shape in links[name].shapes]
         shapes = [shape for _, shape in pairs]
