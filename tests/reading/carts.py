@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
+from tests.reading.said import check_said
 
 FILES = Path(__file__).parent / "files"
 ROBOTS = Path(__file__).parent.parent / "robots"
@@ -79,10 +80,12 @@ def link(name: str, joint: str, xyz: str = "0 0 0", parent: str = "hull") -> str
 
 
 def read(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> c2d.Reading:
-    """Read a text as a file; its warnings are in the reading."""
+    """Read a text as a file; what it notes and warns of is in the reading, and kept word for word."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
-    return quietly(path, **how)
+    reading = quietly(path, **how)
+    check_said([*reading.notes, *reading.warnings], folder)
+    return reading
 
 
 def quietly(path: Path, **how: Any) -> c2d.Reading:
@@ -120,6 +123,7 @@ def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: 
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
         read(folder, text, name, **how)
     assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
+    check_said([str(caught.value)], folder)
 
 
 def left_out(folder: Path, text: str, reason: str, name: str = "cart.urdf", **how: Any) -> None:
