@@ -4,12 +4,15 @@ With CRAWLER2D_KEEP_ACCOUNTS=1 in the environment the accounts are written anew.
 from what was kept is a fault, or is meant.
 """
 
+import math
 import os
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import crawler2d as c2d
 from tests.reading.carts import WHEELS, pair, quietly, urdf
 from tests.reading.telling import account
 from tests.reading.test_gear_wheels import gear
@@ -59,6 +62,7 @@ def test_a_file_is_read_as_its_account_says(tmp_path: Path, name: str) -> None:
         ("odd.sdf", {"mesh": "leave_out"}),
         ("odd.sdf", {"scale": 0.5}),
         ("odd.xml", {"engine": "gz"}),
+        ("bare.urdf", {"engine": "mujoco"}),
     ],
     ids=lambda value: value if isinstance(value, str) else "-".join(map(str, *value.items())),
 )
@@ -68,3 +72,27 @@ def test_a_keyword_changes_these_lines_of_an_account(
     usual = told(tmp_path, name)
     changed = [line for line in told(tmp_path, name, **how) if line not in usual]
     compare(changed, f"{name}.{'-'.join(map(str, *how.items()))}")
+
+
+@pytest.mark.parametrize("name", ["odd.urdf", "drums.urdf", "gears.urdf"])
+def test_a_robot_is_the_same_wherever_it_stands_in_its_model(tmp_path: Path, name: str) -> None:
+    """Moved by meters and turned, on a link of its own; rounding leaves 1e-12 of that."""
+    text = GENERATED[name] if name in GENERATED else (KEPT / name).read_text(encoding="utf-8")
+    usual, moved = tmp_path / "usual.urdf", tmp_path / "moved.urdf"
+    usual.write_text(text, encoding="utf-8")
+    link = "hull" if name in GENERATED else "base"
+    ground = f"""<link name="ground"/><joint name="j" type="fixed"><parent link="ground"/>
+        <child link="{link}"/><origin xyz="3 -7 0.5" rpy="0 0 {math.pi / 2}"/></joint></robot>"""
+    moved.write_text(text.replace("</robot>", ground), encoding="utf-8")
+    forward = {} if name == "odd.urdf" else {"forward": "+y"}
+    found, wanted = quietly(moved, **forward), quietly(usual)
+    assert [float(each) for each in numbers(found)] == pytest.approx(
+        [float(each) for each in numbers(wanted)], abs=1e-8
+    )
+    assert len(found.doubts) == len(wanted.doubts)
+
+
+def numbers(reading: c2d.Reading) -> list[str]:
+    """Return the figures of a robot, and of its wheels, as text."""
+    said = repr(reading.robot) + repr(reading.wheels["radius"].tolist())
+    return re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", said)

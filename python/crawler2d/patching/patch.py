@@ -271,15 +271,39 @@ def _diff(old: str, new: str, name: str) -> list[str]:
     """List the lines of a unified diff of two texts of a file."""
     # Lines that stand in every link are told apart, so that no wheel is taken for another.
     before, after = (_marked(text.splitlines(keepends=True)) for text in (old, new))
-    lines = difflib.unified_diff(before, after, name, f"{name} (other wheels)")
-    return [line[0] + line.partition(_MARK)[2] if _MARK in line else line for line in lines]
+    marked = difflib.unified_diff(before, after, name, f"{name} (other wheels)")
+    lines = [line[0] + line.partition(_MARK)[2] if _MARK in line else line for line in marked]
+    is_changed = [line[0] in "-+" for line in lines]
+    for start in range(len(lines) - 1, 2, -1):
+        if is_changed[start] and not is_changed[start - 1]:
+            _join_ends(lines, start)
+    return lines
+
+
+def _join_ends(lines: list[str], start: int) -> None:
+    """Join equal lines at the end of what goes and of what comes there: only their marks differ."""
+    middle = _end_of_run(lines, start, "-")
+    end = _end_of_run(lines, middle, "+")
+    gone, new = lines[start:middle], lines[middle:end]
+    same: list[str] = []
+    while gone and new and gone[-1][1:] == new[-1][1:]:
+        gone.pop()
+        same.insert(0, f" {new.pop()[1:]}")
+    lines[start:end] = [*gone, *new, *same]
+
+
+def _end_of_run(lines: list[str], start: int, sign: str) -> int:
+    end = start
+    while end < len(lines) and lines[end].startswith(sign):
+        end += 1
+    return end
 
 
 def _marked(lines: list[str]) -> list[str]:
     """Put the last name above or in a line before it."""
     name, marked = "", []
     for line in lines:
-        named = re.search(r"""\bname\s*=\s*["']([^"']*)""", line)
+        named = re.search(r"""\b(?:name|reference)\s*=\s*["']([^"']*)""", line)
         name = named[1] if named else name
         marked.append(f"{name}{_MARK}{line}")
     return marked
