@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from tests.reading.said import check_said
+from tests.said import check_said
 
 FILES = Path(__file__).parent / "files"
 ROBOTS = Path(__file__).parent.parent / "robots"
+SAID = Path(__file__).with_name("said.txt")
 
 XACRO = '<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 HULL = '<link name="hull"><inertial><mass value="{mass}"/>{tensor}</inertial>{shapes}</link>'
@@ -84,7 +85,7 @@ def read(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> c2d.Re
     path = folder / name
     path.write_text(text, encoding="utf-8")
     reading = quietly(path, **how)
-    check_said([*reading.notes, *reading.warnings], folder)
+    check_said(SAID, [*reading.notes, *reading.warnings], folder)
     return reading
 
 
@@ -123,7 +124,7 @@ def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: 
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
         read(folder, text, name, **how)
     assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
-    check_said([str(caught.value)], folder)
+    check_said(SAID, [str(caught.value)], folder)
 
 
 def left_out(folder: Path, text: str, reason: str, name: str = "cart.urdf", **how: Any) -> None:

@@ -1,5 +1,6 @@
 """Small sweeps that several tests make."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -8,7 +9,10 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.sweeps.sweep import sweep
+from tests.said import check_said
 from tests.shared import ROBOT
+
+SAID = Path(__file__).with_name("said.txt")
 
 BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=4.0)
 BRIEF = BASE.replace({"duration": 0.05})
@@ -21,10 +25,11 @@ def quiet(base: Scenario, over: Any, **options: Any) -> xr.Dataset:
 
 
 def refusal(base: Any, over: Any, **options: Any) -> c2d.ScenarioError:
-    """Why a sweep is refused; nothing may run before that."""
+    """Why a sweep is refused, word for word; nothing may run before that."""
     calls: list[int] = []
     with pytest.raises(c2d.ScenarioError) as caught:
         sweep(base, over, **{"progress": lambda done, _: calls.append(done), **options})
     assert calls == []
     assert caught.value.rule.startswith("must")
+    check_said(SAID, [str(caught.value)])
     return caught.value

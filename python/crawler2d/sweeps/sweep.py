@@ -273,7 +273,8 @@ def compare(
         An `xarray.Dataset` whose `plot` draws the differences: the table of `sweep` with the
         dimensions `model` and `repeat`. In addition, for each model, with 95 % intervals:
 
-        - `rate`, `rate_low`, `rate_high`: rate of clearing, Wilson's interval;
+        - `rate`, `rate_low`, `rate_high`: rate of clearing, Wilson's interval; and `distinct`, as
+          of `rate`;
         - `difference`, `difference_low`, `difference_high`: that rate minus the reference's,
           Newcombe's interval for paired data;
         - `both`, `only_model`, `only_reference`, `neither`: how many pairs cleared in this way;

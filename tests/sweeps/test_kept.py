@@ -1,0 +1,79 @@
+"""What tables of sweeps, their rates and comparisons are made of, and what is drawn: as in `kept`.
+
+With CRAWLER2D_KEEP_TABLES=1 in the environment it is written anew. Each difference from what was
+kept is a fault, or is meant. Figures of runs are left out, as results move with the physics.
+"""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.common.units import METRICS
+from tests.sweeps.small import BASE, BRIEF, MODELS, quiet
+
+KEPT = Path(__file__).parent / "kept"
+
+DRAWN = {
+    "start.approach": c2d.shifted(-0.1, 0.1),
+    "terrain.friction": c2d.scaled(0.9, 1.1),
+    "robot.belly[*][1]": c2d.shifted(-0.01, 0.0),
+}
+UNKNOWN = {
+    "robot.mass": c2d.uniform(8.0, 12.0),
+    "robot.center_of_mass[0]": c2d.shifted(-0.02, 0.02),
+}
+
+
+def described(dataset: xr.Dataset) -> str:
+    """Write down dimensions, attributes and columns but those of metrics, with what is drawn."""
+    lines = [f"dimensions: {dict(dataset.sizes)}"]
+    lines += [
+        f"{name} = {value}"
+        for name, value in dataset.attrs.items()
+        if name != "scenario" and not str(name).startswith("build_")
+    ]
+    for name, each in dataset.variables.items():
+        if name in METRICS:
+            continue
+        attributes = ", ".join(f"{key} {value!r}" for key, value in each.attrs.items())
+        lines.append(f"{name} over {', '.join(map(str, each.dims))}: {attributes}")
+        if name in dataset.coords or str(name).startswith(("drawn_", "unknown_", "seed")):
+            values = [f"{value:.9g}" for value in each.values.ravel() if each.dtype.kind == "f"]
+            lines.append(f"  {', '.join(values or map(str, each.values.ravel()))}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def of_unknowns() -> xr.Dataset:
+    base = BRIEF.replace({"robot.belly": [(-0.1, 0.0), (0.1, 0.0), (0.0, 0.05)]})
+    over = {
+        "terrain.height": [0.02, 0.03],
+        ("drive.speed", "robot.track"): {
+            "slow": (0.1, c2d.BeltTrack()),
+            "fast": (0.2, c2d.ForceTrack()),
+        },
+    }
+    how = {"samples": 2, "seed": 7, "wall_time": True, "trials": "all"}
+    return quiet(base, over, vary=DRAWN, unknown=UNKNOWN, **how)
+
+
+TABLES: dict[str, Callable[[], xr.Dataset]] = {
+    "sweep": lambda: quiet(BRIEF, {"robot.track": MODELS}, repeats=3, seed=2**63),
+    "unknowns": of_unknowns,
+    "compare": lambda: c2d.compare(BASE, MODELS, repeats=2, reference="line of 3", progress=False),
+    "runs": lambda: c2d.table(c2d.simulate_many([BRIEF], trials=("torque x 2",))),
+    "rate": lambda: c2d.rate(quiet(BRIEF, {"robot.track": MODELS}, vary={}), "timed_out"),
+    "band": lambda: c2d.rate(of_unknowns(), "stopped", confidence_level=0.9),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_is_made_of_these_columns(name: str) -> None:
+    found, kept = described(TABLES[name]()), KEPT / f"{name}.txt"
+    if os.environ.get("CRAWLER2D_KEEP_TABLES"):
+        kept.parent.mkdir(exist_ok=True)
+        kept.write_text(found, encoding="utf-8")
+    assert found == kept.read_text(encoding="utf-8")
