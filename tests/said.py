@@ -34,6 +34,7 @@ def check_said(file: Path, sentences: Iterable[str], folder: Path | None = None)
 
 
 def plain(sentence: str, folder: Path | None) -> str:
-    """Write a sentence on one line, without what differs from run to run."""
+    """Write a sentence on one line of ASCII, without what differs from run to run."""
     told = sentence if folder is None else sentence.replace(str(folder), "FOLDER")
-    return OTHERS.sub(r"\1", " ".join(ELSEWHERE.sub("ELSEWHERE", told).split()))
+    told = OTHERS.sub(r"\1", " ".join(ELSEWHERE.sub("ELSEWHERE", told).split()))
+    return told.encode("unicode_escape").decode()
