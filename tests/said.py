@@ -9,12 +9,19 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-# Where pytest's folders are, and what libraries say, which differs from version to version.
+import pytest
+
+import crawler2d as c2d
+
+ROOT = str(Path(__file__).parents[1])
+# Where pytest's folders and objects are, and what libraries say, which differs by version.
 ELSEWHERE = re.compile(r"(file://)?/\S*/pytest-of-[^/]+/pytest-\d+/(popen-gw\d+/)?[^/ ]+")
+ADDRESS = re.compile(r"x[0-9a-f]{8,}>")
 OTHERS = re.compile(r"(that (trimesh reads|MuJoCo compiles|expands)\b).*")
 
 
@@ -36,5 +43,14 @@ def check_said(file: Path, sentences: Iterable[str], folder: Path | None = None)
 def plain(sentence: str, folder: Path | None) -> str:
     """Write a sentence on one line of ASCII, without what differs from run to run."""
     told = sentence if folder is None else sentence.replace(str(folder), "FOLDER")
-    told = OTHERS.sub(r"\1", " ".join(ELSEWHERE.sub("ELSEWHERE", told).split()))
+    told = ELSEWHERE.sub("ELSEWHERE", told).replace(ROOT, "ROOT")
+    told = OTHERS.sub(r"\1", " ".join(ADDRESS.sub("x...>", told).split()))
     return told.encode("unicode_escape").decode()
+
+
+@contextmanager
+def refusing(file: Path, match: str | None = None) -> Iterator[pytest.ExceptionInfo[c2d.ScenarioError]]:
+    """Expect a refusal whose sentence is kept in a file."""
+    with pytest.raises(c2d.ScenarioError, match=match) as caught:
+        yield caught
+    check_said(file, [str(caught.value)])

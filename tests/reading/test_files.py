@@ -14,8 +14,9 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import FILES, WHEELS, XACRO, collision, left_out, read, refused, urdf
+from tests.reading.carts import FILES, SAID, WHEELS, XACRO, collision, left_out, read, refused, urdf
 from tests.reading.odd_files import ODD
+from tests.said import refusing
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix")
 
@@ -67,7 +68,7 @@ def test_dev_zero_is_not_read_as_a_mesh(tmp_path: Path, name: str) -> None:
 def test_a_model_that_is_no_file_is_refused(tmp_path: Path, what: str, suffix: str) -> None:
     path = tmp_path / f"cart.{suffix}"
     ODD[what](path)
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         c2d.read_robot(path, trusted=True)
     if what != "elsewhere":  # a file, which its user named, but no model
         assert caught.value.path == "path"
@@ -235,7 +236,7 @@ def test_packages_of_the_ros_path_are_read(tmp_path: Path, monkeypatch: pytest.M
     assert read(cart, text, "cart.xacro", **how).robot.belly is not None
     (package / "package.xml").unlink()
     os.mkfifo(package / "package.xml")
-    with pytest.raises(c2d.ScenarioError, match=r"looked for in .* and in ROS_PACKAGE_PATH"):
+    with refusing(SAID, r"looked for in .* and in ROS_PACKAGE_PATH"):
         read(cart, text, "cart.xacro", missing="refuse", **how)
 
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import crawler2d as c2d
 from crawler2d.reading.loading import ReadOptions, load_model
 from crawler2d.reading.surfaces import refuse_unread
 from tests.reading.carts import (
     FILES,
+    SAID,
     SIDES,
     TENSOR,
     WHEELS,
@@ -26,6 +26,7 @@ from tests.reading.carts import (
     urdf,
 )
 from tests.robots.tree_keys import keys
+from tests.said import refusing
 
 LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
 
@@ -540,7 +541,7 @@ def test_a_mesh_that_alone_gives_a_body_its_mass_is_named_if_it_is_missing(tmp_p
     assert wheel in text
     text = text.replace(wheel, '<geom type="mesh" mesh="m"/>', 1)
     mesh = '<asset><mesh name="m" file="m.stl"/></asset><worldbody>'
-    with pytest.raises(c2d.ScenarioError, match="must be a regular file") as caught:
+    with refusing(SAID, "must be a regular file") as caught:
         read(tmp_path, text.replace("<worldbody>", mesh), "cart.xml")
     assert (caught.value.path, caught.value.value) == ("cart.xml:8: meshes[m]", "m.stl")
 
@@ -560,7 +561,5 @@ def test_the_public_tank_of_meshes_is_refused_with_what_it_lacks() -> None:
     missing = b'<xacro:include filename="controller.xacro"/>'
     assert missing in data
     tree = load_model(data.replace(missing, b""), key.file, ReadOptions(packages=key.packages)).tree
-    with pytest.raises(
-        c2d.ScenarioError, match=r"there is no file .*wheel\.stl.* provide its mesh"
-    ):
+    with refusing(SAID, r"there is no file .*wheel\.stl.* provide its mesh"):
         refuse_unread(tree)

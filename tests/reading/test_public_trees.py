@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import quietly
+from tests.reading.carts import SAID, quietly
 from tests.robots.tree_keys import Key, keys
+from tests.said import refusing
 
 # sekirei2020_gazebo has its belts by macros of a package that is not there: what is left of it is
 # the other file, as its key says.
@@ -83,5 +84,5 @@ def test_a_file_without_shapes_on_the_ground_is_refused_in_a_sentence_with_its_c
 ) -> None:
     key = keys()[name]
     assert "cure" in key.data
-    with pytest.raises(c2d.ScenarioError, match=said):
+    with refusing(SAID, said):
         quietly(key.file)

@@ -16,8 +16,9 @@ from crawler2d.reading.files import VARIABLES, Files
 from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.parsing import parse_xml
 from crawler2d.reading.xacro import expand_xacro
-from tests.reading.carts import WHEELS, XACRO, collision, quietly, read, refused, urdf
+from tests.reading.carts import SAID, WHEELS, XACRO, collision, quietly, read, refused, urdf
 from tests.robots.tree_keys import Key, keys
+from tests.said import refusing
 
 pytest.importorskip("xacrodoc")
 OLD = '<robot name="cart" xmlns:xacro="http://ros.org/wiki/xacro">'
@@ -200,7 +201,7 @@ def test_an_include_with_entities_is_refused(tmp_path: Path) -> None:
     bomb = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa">]>\n<robot name="&a;"/>'
     (tmp_path / "part.xacro").write_text(bomb)
     text = urdf('<xacro:include filename="part.xacro"/>', WHEELS).replace(OLD_NAME, XACRO)
-    with pytest.raises(c2d.ScenarioError, match="must have no document type") as caught:
+    with refusing(SAID, "must have no document type") as caught:
         read(tmp_path, text, "cart.xacro")
     assert caught.value.path == "part.xacro:1"
 
@@ -208,7 +209,7 @@ def test_an_include_with_entities_is_refused(tmp_path: Path) -> None:
 def test_what_needs_an_include_that_was_left_out_says_so(tmp_path: Path) -> None:
     lost = '<xacro:include filename="$(find parts)/sizes.xacro"/>'
     text = urdf(WHEELS, mass="${hull_mass}").replace(OLD_NAME, XACRO + lost)
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         read(tmp_path, text, "cart.xacro")
     assert re.fullmatch(
         r"cart\.xacro:1 must be xacro that expands, for which it may need what was left out,"
@@ -222,7 +223,7 @@ def test_a_refusal_after_an_include_was_left_out_notes_that(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = urdf('<xacro:include filename="$(find parts)/w.xacro"/>').replace(OLD_NAME, XACRO)
-    with pytest.raises(c2d.ScenarioError, match="must have wheels") as caught:
+    with refusing(SAID, "must have wheels") as caught:
         read(tmp_path, text, "cart.xacro")
     (note,) = caught.value.__notes__
     assert re.match(r"cart\.xacro:1 is left out: .* got \$\(find parts\)/w\.xacro", note)
@@ -302,7 +303,7 @@ def test_the_name_of_the_package_as_a_folder_tells_it_of_others(clone: Path) -> 
 def test_two_files_that_may_be_meant_are_not_taken(clone: Path) -> None:
     part(clone / "one" / "urdf")
     part(clone / "two" / "urdf")
-    with pytest.raises(c2d.ScenarioError, match="must have wheels") as caught:
+    with refusing(SAID, "must have wheels") as caught:
         read(clone / "models", INCLUDE, "cart.xacro")
     assert "is left out" in caught.value.__notes__[0]
 
@@ -310,7 +311,7 @@ def test_two_files_that_may_be_meant_are_not_taken(clone: Path) -> None:
 def test_a_name_alone_tells_no_file(clone: Path) -> None:
     part(clone / "anywhere")
     text = INCLUDE.replace("/urdf/", "/")
-    with pytest.raises(c2d.ScenarioError, match="must have wheels"):
+    with refusing(SAID, "must have wheels"):
         read(clone / "models", text, "cart.xacro")
 
 
@@ -357,7 +358,7 @@ def test_a_path_does_not_lead_out_of_the_tree(clone: Path, tmp_path: Path) -> No
     (clone / "urdf" / "wheels.xacro").symlink_to(tmp_path / "out" / "urdf" / "wheels.xacro")
     for name in ("urdf/wheels.xacro", "../out/urdf/wheels.xacro", "./urdf/../../out/urdf/w.xacro"):
         text = INCLUDE.replace("urdf/wheels.xacro", name)
-        with pytest.raises(c2d.ScenarioError, match="must have wheels") as caught:
+        with refusing(SAID, "must have wheels") as caught:
             read(clone / "models", text, "cart.xacro")
         assert any("is left out" in note for note in caught.value.__notes__)
 
@@ -372,7 +373,7 @@ def test_a_tree_in_the_folder_for_temporary_files_is_searched_alone(
     (tmp_path / "clone" / "package.xml").write_text("<package><name>own</name></package>")
     monkeypatch.setattr(tempfile, "tempdir", None)
     monkeypatch.setenv("TMPDIR", str(tmp_path))
-    with pytest.raises(c2d.ScenarioError, match="must have wheels") as caught:
+    with refusing(SAID, "must have wheels") as caught:
         read(own / "models", INCLUDE, "cart.xacro")
     assert f"found in {tmp_path / 'clone'} and below, or" in caught.value.__notes__[0]
 
@@ -402,18 +403,18 @@ def test_an_argument_without_a_value_is_that_of_a_setting(tmp_path: Path) -> Non
         "sizes.yaml:4 is taken for the argument load, which has no default: arguments= sets it,"
         " got 5",
     )
-    with pytest.raises(c2d.ScenarioError, match=r"arguments=\{name: value\}, got rest, list$"):
+    with refusing(SAID, r"arguments=\{name: value\}, got rest, list$"):
         with_arguments(tmp_path / "urdf", "hull", "rest", "list")
 
 
 def test_all_arguments_without_a_value_are_named_at_once(tmp_path: Path) -> None:
     own = '<xacro:arg name="known" default="1"/><xacro:if value="$(arg d)"><a/></xacro:if>'
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         with_arguments(tmp_path, "a", "b", "known", "c", own=own)
     rule = "must have a value for each argument, by a default or by arguments={name: value}"
     assert str(caught.value) == f"cart.xacro:1 {rule}, got d, a, b, c"
     own += "${1 / $(arg e)}"
-    with pytest.raises(c2d.ScenarioError, match="got d, e, a, b, c"):
+    with refusing(SAID, "got d, e, a, b, c"):
         with_arguments(tmp_path, "a", "b", "known", "c", own=own)
 
 
@@ -422,18 +423,18 @@ def test_settings_that_differ_are_not_taken(tmp_path: Path) -> None:
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "a.yaml").write_text("\nhull: 4")
     rule = r"got hull; files of settings differ: hull is 3 in a\.yaml:1, 4 in b/a\.yaml:2$"
-    with pytest.raises(c2d.ScenarioError, match=rule):
+    with refusing(SAID, rule):
         with_arguments(tmp_path, "hull")
     assert with_arguments(tmp_path, "hull", arguments={"hull": 8}).robot.mass == 12.0
     (tmp_path / "a.yaml").write_text("hull: 3\nload: 5")
-    with pytest.raises(c2d.ScenarioError, match=rule):
+    with refusing(SAID, rule):
         with_arguments(tmp_path, "hull", "load")
 
 
 def test_settings_are_not_asked_on_request_and_for_a_default(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("hull: 3\nload: 5")
     rule = "must have a value for each argument"
-    with pytest.raises(c2d.ScenarioError, match=rule):
+    with refusing(SAID, rule):
         with_arguments(tmp_path, "hull", missing="refuse")
     own = '<xacro:arg name="hull" default="8"/>'
     assert with_arguments(tmp_path, "hull", own=own).warnings == ()
@@ -463,7 +464,7 @@ def test_settings_that_are_odd_files_keep_nobody_waiting(tmp_path: Path) -> None
 
 def test_an_argument_from_settings_is_evaluated_as_carefully_as_any(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("hull: ().__class__")
-    with pytest.raises(c2d.ScenarioError, match="trusted=True allows it"):
+    with refusing(SAID, "trusted=True allows it"):
         with_arguments(tmp_path, "hull")
 
 

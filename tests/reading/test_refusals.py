@@ -9,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from tests.reading.carts import (
     LIMIT,
+    SAID,
     SIDES,
     WHEELS,
     collision,
@@ -21,6 +22,7 @@ from tests.reading.carts import (
     urdf,
     wheel,
 )
+from tests.said import refusing
 
 
 def on_links(kind: str) -> str:
@@ -217,7 +219,7 @@ def test_a_lidar_that_turns_touches_nothing(tmp_path: Path, shape: str) -> None:
 def test_an_argument_that_is_none_of_its_values_is_refused(
     tmp_path: Path, argument: str, value: object
 ) -> None:
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         read(tmp_path, urdf(WHEELS), **{argument: value})  # type: ignore[arg-type]
     assert caught.value.path == argument
 
@@ -227,7 +229,7 @@ def test_an_argument_that_is_none_of_its_values_is_refused(
 def test_packages_and_arguments_that_are_no_pairs_are_refused(
     tmp_path: Path, argument: str, value: object
 ) -> None:
-    with pytest.raises(c2d.ScenarioError, match=r" by (their )?name") as caught:
+    with refusing(SAID, r" by (their )?name") as caught:
         read(tmp_path, urdf(WHEELS), **{argument: value})  # type: ignore[arg-type]
     assert caught.value.path.startswith(argument)
 
@@ -327,14 +329,14 @@ def test_xacro_that_does_not_expand_is_refused_with_its_line(
     pytest.importorskip("xacrodoc")
     how: Any = {"trusted": True, "missing": "refuse"}
     refused(tmp_path, f"{XACRO}{text}</robot>", rule, "cart.xacro", **how)
-    with pytest.raises(c2d.ScenarioError, match=rf"^cart\.xacro:{line} "):
+    with refusing(SAID, rf"^cart\.xacro:{line} "):
         read(tmp_path, f"{XACRO}{text}</robot>", "cart.xacro", **how)
 
 
 def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     text = f'{XACRO}<xacro:macro name="wheel" params=""><link name="w"/></xacro:macro></robot>'
-    with pytest.raises(c2d.ScenarioError, match="is read through the file that calls them"):
+    with refusing(SAID, "is read through the file that calls them"):
         read(tmp_path, text, "cart.xacro", trusted=True)
 
 

@@ -9,7 +9,19 @@ import pytest
 import crawler2d as c2d
 from crawler2d.reading.files import LARGEST_MODEL
 from crawler2d.reading.parsing import parse_xml
-from tests.reading.carts import FILES, SIDES, WHEELS, XACRO, collision, pair, read, refused, urdf
+from tests.reading.carts import (
+    FILES,
+    SAID,
+    SIDES,
+    WHEELS,
+    XACRO,
+    collision,
+    pair,
+    read,
+    refused,
+    urdf,
+)
+from tests.said import refusing
 
 SDF = (FILES / "cart.sdf").read_text(encoding="utf-8")
 MJCF = (FILES / "cart.xml").read_text(encoding="utf-8")
@@ -99,13 +111,13 @@ def test_a_model_has_a_link_and_no_more_than_any_robot(
 
 
 def test_an_sdf_model_without_a_link_is_refused_at_its_line(tmp_path: Path) -> None:
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         read(tmp_path, '<sdf version="1.9">\n<model name="none"/></sdf>', "none.sdf")
     assert (caught.value.path, caught.value.rule) == ("none.sdf:2", "must have a link")
 
 
 def test_a_file_that_is_too_large_is_not_parsed() -> None:
-    with pytest.raises(c2d.ScenarioError, match=f"^large must have at most {LARGEST_MODEL} bytes"):
+    with refusing(SAID, f"^large must have at most {LARGEST_MODEL} bytes"):
         parse_xml(b" " * (LARGEST_MODEL + 1), "large")
 
 
@@ -116,25 +128,25 @@ def latin(text: str) -> bytes:
 def test_what_is_scaled_or_expanded_must_be_utf_8(tmp_path: Path) -> None:
     path = tmp_path / "cart.urdf"
     path.write_bytes(latin(urdf(WHEELS)))
-    with pytest.raises(c2d.ScenarioError, match="must be UTF-8, to be scaled"):
+    with refusing(SAID, "must be UTF-8, to be scaled"):
         c2d.read_robot(path, scale=2.0)
     pytest.importorskip("xacrodoc")
     path = tmp_path / "cart.xacro"
     path.write_bytes(latin(f"{XACRO}</robot>"))
-    with pytest.raises(c2d.ScenarioError, match="must be UTF-8, which xacro reads"):
+    with refusing(SAID, "must be UTF-8, which xacro reads"):
         c2d.read_robot(path)
 
 
 def test_files_are_not_included_by_a_pattern(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     text = f'{XACRO}<xacro:include filename="*.xacro"/></robot>'
-    with pytest.raises(c2d.ScenarioError, match=r"\*\.xacro must include files by their names"):
+    with refusing(SAID, r"\*\.xacro must include files by their names"):
         read(tmp_path, text, "cart.xacro")
 
 
 def test_a_model_that_mjcf_does_not_have_is_refused_with_those_that_it_has(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         read(tmp_path, MJCF, "cart.xml", model="tank")
     assert (caught.value.path, caught.value.value) == ("model", "tank")
     assert caught.value.rule == "must be one of hull"

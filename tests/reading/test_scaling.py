@@ -9,7 +9,8 @@ import pytest
 import crawler2d as c2d
 from crawler2d.patching.patch import patch_file
 from crawler2d.reading.loading import _scale_lengths
-from tests.reading.carts import FILES, ROBOTS, pair, quietly, read, urdf
+from tests.reading.carts import FILES, ROBOTS, SAID, pair, quietly, read, urdf
+from tests.said import refusing
 
 
 @pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "absolem.sdf", "marv.sdf"])
@@ -106,15 +107,15 @@ def test_limits_of_slides_and_tensors_are_scaled_and_no_angles() -> None:
 
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), 1e9, "0.1", True])
 def test_a_scale_that_is_none_is_refused(scale: object) -> None:
-    with pytest.raises(c2d.ScenarioError, match="scale"):
+    with refusing(SAID, "scale"):
         quietly(ROBOTS / "absolem.sdf", scale=scale)
 
 
 def test_mjcf_is_not_scale_lengths() -> None:
-    with pytest.raises(c2d.ScenarioError, match="must be 1 for MJCF"):
+    with refusing(SAID, "must be 1 for MJCF"):
         quietly(FILES / "cart.xml", scale=0.1)
 
 
 def test_a_file_in_millimetres_is_refused_with_the_scale_that_corrects_it(tmp_path: Path) -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"scale=0\.001 would correct that"):
+    with refusing(SAID, r"scale=0\.001 would correct that"):
         read(tmp_path, urdf(pair("front", 200.0), pair("rear", -200.0)))
