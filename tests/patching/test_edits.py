@@ -10,9 +10,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.patching.patch import _check, patch_file
+from tests.kept import refusing
 from tests.patching.test_patch import SAID, on_chassis
 from tests.reading.carts import ACROSS, FILES, ROUND, WHEELS, link, pair, quietly, urdf
-from tests.said import refusing
 
 CART = {
     name: (FILES / f"cart.{name}").read_text(encoding="utf-8") for name in ("urdf", "sdf", "xml")

@@ -1,10 +1,5 @@
-"""Patches of files with a bit of everything, line by line: as kept in `kept`.
+"""Patches of files with a bit of everything, line by line: as kept in `kept`."""
 
-With CRAWLER2D_KEEP_PATCHES=1 in the environment they are written anew. Each difference from what
-was kept is a fault, or is meant.
-"""
-
-import os
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,6 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.patching.patch import patch_file
+from tests.kept import check_kept
 from tests.patching.test_edits import GEAR, with_gears
 from tests.patching.test_patch import on_chassis, with_own_flippers
 from tests.reading.carts import FILES, quietly
@@ -72,11 +68,7 @@ def test_a_patch_changes_the_lines_that_it_changed_before(name: str) -> None:
     reading = quietly(path)
     patch = patch_file(reading, change(reading))
     text = NUMBER.sub(rounded, "\n".join([patch.summary, *patch.left, patch.diff]))
-    kept = KEPT / f"{name}.diff"
-    if os.environ.get("CRAWLER2D_KEEP_PATCHES"):
-        kept.parent.mkdir(exist_ok=True)
-        kept.write_text(text, encoding="utf-8")
-    assert text == kept.read_text(encoding="utf-8")
+    check_kept(KEPT / f"{name}.diff", text)
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -15,6 +15,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.patching.patch import _left, _summary, add_label, patch_file
 from crawler2d.writing.document import Document, spans_of
+from tests.kept import refusing
 from tests.reading.carts import (
     FILES,
     LIMIT,
@@ -27,7 +28,6 @@ from tests.reading.carts import (
     urdf,
     wheel,
 )
-from tests.said import refusing
 
 SAID = Path(__file__).with_name("said.txt")
 CARTS = ("cart.sdf", "cart.urdf", "cart.xml")

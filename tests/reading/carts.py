@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from tests.said import check_said
+from tests.kept import check_said
 
 FILES = Path(__file__).parent / "files"
 ROBOTS = Path(__file__).parent.parent / "robots"

@@ -1,11 +1,6 @@
-"""What is read of files with a bit of everything, all of it, line by line: as kept in `accounts`.
-
-With CRAWLER2D_KEEP_ACCOUNTS=1 in the environment the accounts are written anew. Each difference
-from what was kept is a fault, or is meant.
-"""
+"""What is read of files with a bit of everything, all of it, as kept line by line in `accounts`."""
 
 import math
-import os
 import re
 from pathlib import Path
 from typing import Any
@@ -13,6 +8,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
+from tests.kept import check_kept
 from tests.reading.carts import WHEELS, pair, quietly, urdf
 from tests.reading.telling import account
 from tests.reading.test_gear_wheels import gear
@@ -41,16 +37,9 @@ def told(folder: Path, name: str, **how: Any) -> list[str]:
     return account(quietly(path, **how)).splitlines()
 
 
-def compare(lines: list[str], name: str) -> None:
-    kept = KEPT / f"{name}.txt"
-    if os.environ.get("CRAWLER2D_KEEP_ACCOUNTS"):
-        kept.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
-    assert lines == kept.read_text(encoding="utf-8").splitlines()
-
-
 @pytest.mark.parametrize("name", ["odd.urdf", "odd.sdf", "odd.xml", *GENERATED])
 def test_a_file_is_read_as_its_account_says(tmp_path: Path, name: str) -> None:
-    compare(told(tmp_path, name), name)
+    check_kept(KEPT / f"{name}.txt", "\n".join(told(tmp_path, name)))
 
 
 @pytest.mark.parametrize(
@@ -71,7 +60,8 @@ def test_a_keyword_changes_these_lines_of_an_account(
 ) -> None:
     usual = told(tmp_path, name)
     changed = [line for line in told(tmp_path, name, **how) if line not in usual]
-    compare(changed, f"{name}.{'-'.join(map(str, *how.items()))}")
+    kept = KEPT / f"{name}.{'-'.join(map(str, *how.items()))}.txt"
+    check_kept(kept, "\n".join(changed))
 
 
 @pytest.mark.parametrize("name", ["odd.urdf", "drums.urdf", "gears.urdf"])

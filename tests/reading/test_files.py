@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
+from tests.kept import refusing
 from tests.reading.carts import FILES, SAID, WHEELS, XACRO, collision, left_out, read, refused, urdf
 from tests.reading.odd_files import ODD
-from tests.said import refusing
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix")
 

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
+from tests.kept import refusing
 from tests.reading.carts import (
     FILES,
     SAID,
@@ -23,7 +24,6 @@ from tests.reading.carts import (
     urdf,
     wheel,
 )
-from tests.said import refusing
 
 SDF = quietly(FILES / "cart.sdf")
 

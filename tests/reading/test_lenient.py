@@ -10,6 +10,7 @@ import pytest
 
 from crawler2d.reading.loading import ReadOptions, load_model
 from crawler2d.reading.surfaces import refuse_unread
+from tests.kept import refusing
 from tests.reading.carts import (
     FILES,
     SAID,
@@ -26,7 +27,6 @@ from tests.reading.carts import (
     urdf,
 )
 from tests.robots.tree_keys import keys
-from tests.said import refusing
 
 LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
 

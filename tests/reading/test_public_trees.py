@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from tests.kept import refusing
 from tests.reading.carts import SAID, quietly
 from tests.robots.tree_keys import Key, keys
-from tests.said import refusing
 
 # sekirei2020_gazebo has its belts by macros of a package that is not there: what is left of it is
 # the other file, as its key says.

@@ -16,9 +16,9 @@ from crawler2d.reading.files import VARIABLES, Files
 from crawler2d.reading.log import ReadingWarning
 from crawler2d.reading.parsing import parse_xml
 from crawler2d.reading.xacro import expand_xacro
+from tests.kept import refusing
 from tests.reading.carts import SAID, WHEELS, XACRO, collision, quietly, read, refused, urdf
 from tests.robots.tree_keys import Key, keys
-from tests.said import refusing
 
 pytest.importorskip("xacrodoc")
 OLD = '<robot name="cart" xmlns:xacro="http://ros.org/wiki/xacro">'

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
+from tests.kept import refusing
 from tests.reading.carts import (
     LIMIT,
     SAID,
@@ -22,7 +23,6 @@ from tests.reading.carts import (
     urdf,
     wheel,
 )
-from tests.said import refusing
 
 
 def on_links(kind: str) -> str:

@@ -9,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.reading.files import LARGEST_MODEL
 from crawler2d.reading.parsing import parse_xml
+from tests.kept import refusing
 from tests.reading.carts import (
     FILES,
     SAID,
@@ -21,7 +22,6 @@ from tests.reading.carts import (
     refused,
     urdf,
 )
-from tests.said import refusing
 
 SDF = (FILES / "cart.sdf").read_text(encoding="utf-8")
 MJCF = (FILES / "cart.xml").read_text(encoding="utf-8")

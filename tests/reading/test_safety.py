@@ -9,8 +9,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.reading import parsing
+from tests.kept import refusing
 from tests.reading.carts import FILES, SAID, WHEELS, XACRO, read, urdf
-from tests.said import refusing
 
 pytestmark = pytest.mark.usefixtures("children_of_its_own")
 

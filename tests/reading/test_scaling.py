@@ -9,8 +9,8 @@ import pytest
 import crawler2d as c2d
 from crawler2d.patching.patch import patch_file
 from crawler2d.reading.loading import _scale_lengths
+from tests.kept import refusing
 from tests.reading.carts import FILES, ROBOTS, SAID, pair, quietly, read, urdf
-from tests.said import refusing
 
 
 @pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "absolem.sdf", "marv.sdf"])

@@ -9,7 +9,7 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.sweeps.sweep import sweep
-from tests.said import check_said
+from tests.kept import check_said
 from tests.shared import ROBOT
 
 SAID = Path(__file__).with_name("said.txt")

@@ -1,10 +1,8 @@
 """What tables of sweeps, their rates and comparisons are made of, and what is drawn: as in `kept`.
 
-With CRAWLER2D_KEEP_TABLES=1 in the environment it is written anew. Each difference from what was
-kept is a fault, or is meant. Figures of runs are left out, as results move with the physics.
+Figures of runs are left out, as results move with the physics.
 """
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +11,7 @@ import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
+from tests.kept import check_kept
 from tests.sweeps.small import BASE, BRIEF, MODELS, quiet
 
 KEPT = Path(__file__).parent / "kept"
@@ -72,8 +71,4 @@ TABLES: dict[str, Callable[[], xr.Dataset]] = {
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_table_is_made_of_these_columns(name: str) -> None:
-    found, kept = described(TABLES[name]()), KEPT / f"{name}.txt"
-    if os.environ.get("CRAWLER2D_KEEP_TABLES"):
-        kept.parent.mkdir(exist_ok=True)
-        kept.write_text(found, encoding="utf-8")
-    assert found == kept.read_text(encoding="utf-8")
+    check_kept(KEPT / f"{name}.txt", described(TABLES[name]()))

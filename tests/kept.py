@@ -1,8 +1,8 @@
-"""All that is said in some tests, word for word: kept in files called `said.txt`.
+"""Texts that tests keep as a whole: what is said, and accounts of what is read or made.
 
-A sentence that is not there is a fault or a new wording. With CRAWLER2D_KEEP_SAID=1 in the
-environment the tests add what is missing, if one process runs them; what is said no more goes if
-the file is emptied before.
+What differs from the kept text is a fault, or is meant. With CRAWLER2D_KEEP=1 in the environment
+the tests write it anew, if one process runs them: look at the difference before it is committed.
+Sentences in `said.txt` are only added; what is said no more goes if that file is emptied before.
 """
 
 from __future__ import annotations
@@ -18,11 +18,20 @@ import pytest
 
 import crawler2d as c2d
 
+IS_KEPT_ANEW = os.environ.get("CRAWLER2D_KEEP") == "1"
 ROOT = str(Path(__file__).parents[1])
 # Where pytest's folders and objects are, and what libraries say, which differs by version.
 ELSEWHERE = re.compile(r"(file://)?/\S*/pytest-of-[^/]+/pytest-\d+/(popen-gw\d+/)?[^/ ]+")
 ADDRESS = re.compile(r"x[0-9a-f]{8,}>")
 OTHERS = re.compile(r"(that (trimesh reads|MuJoCo compiles|expands)\b).*")
+
+
+def check_kept(file: Path, text: str) -> None:
+    """Compare a text with that of a file."""
+    if IS_KEPT_ANEW:
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    assert text.splitlines() == file.read_text(encoding="utf-8").splitlines()
 
 
 @cache
@@ -34,7 +43,7 @@ def check_said(file: Path, sentences: Iterable[str], folder: Path | None = None)
     """Compare sentences with those that a file keeps; a folder is told as FOLDER."""
     kept = kept_in(file)
     said = {plain(each, folder) for each in sentences}
-    if os.environ.get("CRAWLER2D_KEEP_SAID") and not said <= kept:
+    if IS_KEPT_ANEW and not said <= kept:
         kept |= said
         file.write_text("".join(f"{each}\n" for each in sorted(kept)), encoding="utf-8")
     assert said <= kept, f"not in {file}: {sorted(said - kept)}"
@@ -49,7 +58,9 @@ def plain(sentence: str, folder: Path | None) -> str:
 
 
 @contextmanager
-def refusing(file: Path, match: str | None = None) -> Iterator[pytest.ExceptionInfo[c2d.ScenarioError]]:
+def refusing(
+    file: Path, match: str | None = None
+) -> Iterator[pytest.ExceptionInfo[c2d.ScenarioError]]:
     """Expect a refusal whose sentence is kept in a file."""
     with pytest.raises(c2d.ScenarioError, match=match) as caught:
         yield caught
