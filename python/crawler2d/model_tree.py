@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "NOWHERE",
+    "TWO_TURNS",
     "Array",
     "Friction",
     "Joint",
@@ -58,6 +59,9 @@ class Where:
 
 NOWHERE = Where("", 0)
 """Of parts that do not come from a file."""
+
+TWO_TURNS = 4.0 * math.pi * (1.0 - 1e-3)
+"""[rad] A range of as much is no limit, as for wheels: files round it."""
 
 Array = NDArray[np.float64]
 
@@ -392,7 +396,7 @@ class Joint:
     @property
     def is_unlimited(self) -> bool:
         """Whether it is a hinge that can turn at least twice, as wheels do."""
-        return self.kind == "hinge" and self.upper - self.lower >= 4.0 * math.pi * (1.0 - 1e-3)
+        return self.kind == "hinge" and self.upper - self.lower >= TWO_TURNS
 
 
 def _default_lines(part: Shape | Link | Joint, *names: str) -> None:

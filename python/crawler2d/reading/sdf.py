@@ -12,6 +12,7 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import (
+    TWO_TURNS,
     Array,
     Friction,
     Joint,
@@ -225,7 +226,7 @@ def _turns(joint: Element) -> bool:
         )
     )
     kind = joint.attributes.get("type")
-    return kind == "continuous" or (kind == "revolute" and upper - lower >= 4.0 * math.pi)
+    return kind == "continuous" or (kind == "revolute" and upper - lower >= TWO_TURNS)
 
 
 class _Model:

@@ -1,0 +1,76 @@
+"""Where rules of the reader begin to hold: the last figure on either side of each."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from tests.reading.carts import FILES, WHEELS, pair, read, refused, urdf
+from tests.reading.test_gear_wheels import gear, wheel_of
+from tests.reading.test_surfaces import motors
+
+
+def turns(count: int) -> list[float]:
+    return [2.0 * math.pi * k / count for k in range(count)]
+
+
+def test_a_gear_wheel_has_three_grousers_at_least(tmp_path: Path) -> None:
+    three = [gear(name, x, turns=turns(3)) for name, x in (("front", 0.2), ("rear", -0.2))]
+    assert wheel_of(tmp_path, *three).grouser_count == 3
+    two = [gear(name, x, turns=turns(2)) for name, x in (("front", 0.2), ("rear", -0.2))]
+    refused(tmp_path, urdf(*two), "must have wheels")
+
+
+def test_a_heavy_link_keeps_a_moment_of_inertia_that_it_cannot_have(tmp_path: Path) -> None:
+    usual, large = urdf(WHEELS), urdf(WHEELS).replace('iyy="0.2"', 'iyy="9"', 1)
+    found = read(tmp_path, large)
+    before = read(tmp_path, usual).robot.moment_of_inertia
+    assert found.robot.moment_of_inertia == pytest.approx(before + 8.8, rel=1e-12)
+    assert "is kept" in found.doubts[0]
+
+
+def test_a_light_link_has_no_more_than_the_reach_of_the_robot_allows(tmp_path: Path) -> None:
+    """8 of its 12 kg are the hull; 0.09 kg are light, and 0.13 kg are not."""
+    for mass, is_light in ((0.09, True), (0.13, False)):
+        mast = f"""<link name="mast"><inertial><mass value="{mass}"/><inertia ixx="9" ixy="0"
+        ixz="0" iyy="9" iyz="0" izz="9"/></inertial></link><joint name="m" type="fixed">
+        <parent link="hull"/><child link="mast"/></joint>"""
+        found = read(tmp_path, urdf(WHEELS, mast))
+        assert ("is taken as" if is_light else "is kept") in found.doubts[0]
+        assert (found.robot.moment_of_inertia < 9.0) is is_light
+
+
+def test_names_of_more_than_four_wheels_are_counted(tmp_path: Path) -> None:
+    free = [pair(f"w{n}", 0.05 * n, radius="0.05") for n in range(-1, 2)]
+    reading = read(tmp_path, urdf(WHEELS, *free, motors("front", "rear")))
+    assert reading.doubts[0].endswith("left_w-1, right_w-1, left_w0, right_w0 and 2 more")
+
+
+def test_what_is_doubted_is_warned_of(tmp_path: Path) -> None:
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(WHEELS, '<link name="stray"/>'), encoding="utf-8")
+    with pytest.warns(c2d.ScenarioWarning, match=r"^cart\.urdf:33: link\[stray\] is left out"):
+        c2d.read_robot(path)
+
+
+TURN = "<limit><lower>-{0}</lower><upper>{0}</upper><effort>5</effort><velocity>10</velocity>"
+FREE = "<limit><effort>5</effort><velocity>10</velocity>"
+
+
+@pytest.mark.parametrize(("limit", "is_wheel"), [("6.2831", True), ("6.27", False)])
+def test_two_turns_are_no_limit_but_for_the_rounding_of_a_file(
+    tmp_path: Path, limit: str, *, is_wheel: bool
+) -> None:
+    """Also where a world has two models, of which the one that drives is read."""
+    text = (FILES / "cart.sdf").read_text(encoding="utf-8")
+    turned = text.replace(FREE, TURN.format(limit))
+    assert turned.count("<lower>") == 8 + text.count("<lower>")
+    crate = '<model name="crate"><link name="l"/></model>'
+    world = turned.replace("<model name", f"<world name='w'>{crate}<model name", 1)
+    world = world.replace("</sdf>", "</world></sdf>")
+    if is_wheel:
+        assert len(read(tmp_path, turned, "cart.sdf").wheels) == 10
+        assert len(read(tmp_path, world, "cart.sdf").wheels) == 10
+    else:
+        refused(tmp_path, turned, "must lie within the envelope of its flipper", "cart.sdf")
