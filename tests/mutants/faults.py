@@ -23,6 +23,8 @@ EQUIVALENT = [
     ("if more > 0", "0 -> -1", "wheels come in pairs, and without a difference nothing is told"),
     ("if more > 0", "0 -> 1", "wheels come in pairs, and without a difference nothing is told"),
     ("_MASS = ", "0.0001 -> 0.000101", "far above what rounding leaves, either"),
+    ('if sign == "+"', "1.0 -> 1.01", "of a direction the sign alone counts"),
+    ("seconds = int(used", "1 -> 2", "the timer ends it before"),
     (
         "_SCALARS = (bool",
         "(bool, int, float, str, type(None)) -> (int, float, str, type(None))",

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
+from crawler2d.reading.xacro import Settings
 from tests.reading.carts import FILES, WHEELS, pair, read, refused, urdf
 from tests.reading.test_gear_wheels import gear, wheel_of
 from tests.reading.test_surfaces import motors
@@ -74,3 +75,51 @@ def test_two_turns_are_no_limit_but_for_the_rounding_of_a_file(
         assert len(read(tmp_path, world, "cart.sdf").wheels) == 10
     else:
         refused(tmp_path, turned, "must lie within the envelope of its flipper", "cart.sdf")
+
+
+class Folder:
+    """Files of settings in memory, each read within its limit."""
+
+    def __init__(self, texts: dict[str, str]) -> None:
+        self.texts = texts
+        self.folder = self
+        self.packages = self
+
+    def files(self, suffixes: tuple[str, ...]) -> list[Path]:
+        return [Path(name) for name in self.texts if name.endswith(suffixes)]
+
+    def read(self, name: str, *, at: str, most: int) -> bytes:
+        if len(self.texts[name]) > most:
+            raise c2d.ScenarioError(at, len(self.texts[name]), f"must have at most {most} bytes")
+        return self.texts[name].encode()
+
+    def __fspath__(self) -> str:
+        return "."
+
+
+def test_settings_are_looked_up_in_a_hundred_files_of_a_megabyte_together() -> None:
+    many = {f"{n}.yaml": f"a{n}: {n}\n" for n in range(101)}
+    found, differing = Settings(Folder(many)).of(["a0", "a99", "a100"])  # type: ignore[arg-type]
+    assert (sorted(found), differing) == (["a0", "a99"], [])
+    large = {f"{n}.yml": f"a{n}: {n}\n".ljust(64_000, "#") for n in range(17)}
+    large |= {"larger.yml": "b: 1\n".ljust(64_001, "#"), "text.txt": "c: 1\n"}
+    settings = Settings(Folder(large))  # type: ignore[arg-type]
+    # Fifteen have 960,000 bytes, and 40,000 are left.
+    assert [settings.have(f"a{n}") for n in (0, 14, 15)] == [True, True, False]
+    assert not settings.have("b")
+    assert not settings.have("c")
+
+
+def test_settings_that_differ_are_named_with_their_files_and_lines() -> None:
+    texts = {"a.yaml": "x: 1\ny: 'b' # c\n", "b.yaml": "\nx: 2\nz: ~\nw: [1]\nv: d#e\nu: 5 # six\n"}
+    settings = Settings(Folder(texts))  # type: ignore[arg-type]
+    assert settings.of(["x"]) == ({}, ["x is 1 in a.yaml:1, 2 in b.yaml:2"])
+    found, differing = settings.of(["y", "v", "u"])
+    assert differing == []
+    assert {name: (each.file, each.line, each.value) for name, each in found.items()} == {
+        "y": ("a.yaml", 2, "b"),
+        "v": ("b.yaml", 5, "d#e"),
+        "u": ("b.yaml", 6, "5"),
+    }
+    assert not settings.have("z")
+    assert not settings.have("w")

@@ -34,6 +34,8 @@ def changed(text: str, old: str, new: str) -> str:
 
 POSE = "<pose>-0.25 0.25 0 0 0 0</pose>"
 AXIS = "<axis><xyz>0 1 0</xyz><limit><effort>5</effort><velocity>10</velocity></limit></axis>"
+HULL = """<inertial><mass>16</mass>
+        <inertia><ixx>0.125</ixx><iyy>0.5</iyy><izz>0.5</izz></inertia></inertial>"""
 MU = "<mu>0.75</mu>"
 BROKEN_SDF = {
     "a frame that is not there": (
@@ -54,6 +56,12 @@ BROKEN_SDF = {
     "a mass below 0": ("<mass>1</mass>", "<mass>-1</mass>", "must have a mass >= 0 kg, got -1"),
     "a joint that turns about nothing": (AXIS, "", "must have an axis"),
     "a friction below 0": (MU, "<mu>-0.1</mu>", "must be >= 0, got -0.1"),
+    "a mass of a shape whose volume is not known": (
+        HULL,
+        '<inertial auto="true"/><collision name="cone"><geometry><cone><radius>0.1</radius>'
+        "<length>0.1</length></cone></geometry></collision>",
+        "must state mass and inertia, or be of boxes, cylinders, capsules, spheres, got auto",
+    ),
     "a shape of two": (
         "<geometry><box>",
         "<geometry><sphere><radius>0.1</radius></sphere><box>",
