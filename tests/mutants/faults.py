@@ -24,6 +24,7 @@ EQUIVALENT = [
     ("if more > 0", "0 -> 1", "wheels come in pairs, and without a difference nothing is told"),
     ("_MASS = ", "0.0001 -> 0.000101", "far above what rounding leaves, either"),
     ('if sign == "+"', "1.0 -> 1.01", "of a direction the sign alone counts"),
+    ("self.models[1:]", "1 -> 0", "the model itself is the first, and nothing names it by a scope"),
     ("seconds = int(used", "1 -> 2", "the timer ends it before"),
     (
         "_SCALARS = (bool",

@@ -5,9 +5,11 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.reading.wheels import farthest
 from tests.kept import check_kept
 from tests.reading.carts import WHEELS, pair, quietly, urdf
 from tests.reading.telling import account
@@ -86,3 +88,19 @@ def numbers(reading: c2d.Reading) -> list[str]:
     """Return the figures of a robot, and of its wheels, as text."""
     said = repr(reading.robot) + repr(reading.wheels["radius"].tolist())
     return re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", said)
+
+
+def test_the_farthest_point_of_a_shape_is_a_corner_or_beyond_its_axis() -> None:
+    shapes = {
+        each.name: each for link in quietly(KEPT / "odd.urdf").tree.links for each in link.shapes
+    }
+    origin = np.zeros(3)
+    found = {name: farthest(shapes[name], origin) for name in ("body", "nose", "tail", "lidar")}
+    # The box is turned about z, by which no corner gets farther; its middle is 0.3 m up.
+    assert found["body"] == pytest.approx(math.sqrt(0.15**2 + 0.25**2 + 0.35**2))
+    assert found["nose"] == pytest.approx(math.hypot(0.3, 0.3) + 0.05)
+    # Of a capsule or cylinder it is at most the sum of the distance and of half the diagonal.
+    assert found["tail"] == pytest.approx(math.hypot(0.3, 0.32) + math.hypot(0.03, 0.05) + 0.03)
+    assert found["lidar"] == pytest.approx(0.45 + math.hypot(0.04, 0.025))
+    lid = shapes["lid"]
+    assert farthest(lid, lid.pose.place) == pytest.approx(0.2, rel=2e-3)  # of chords

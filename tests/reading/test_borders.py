@@ -7,7 +7,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.reading.xacro import Settings
-from tests.reading.carts import FILES, WHEELS, pair, read, refused, urdf
+from tests.reading.carts import FILES, SIDES, WHEELS, link, pair, read, refused, urdf
 from tests.reading.test_gear_wheels import gear, wheel_of
 from tests.reading.test_surfaces import motors
 
@@ -75,6 +75,18 @@ def test_two_turns_are_no_limit_but_for_the_rounding_of_a_file(
         assert len(read(tmp_path, world, "cart.sdf").wheels) == 10
     else:
         refused(tmp_path, turned, "must lie within the envelope of its flipper", "cart.sdf")
+
+
+def test_a_weight_off_the_axle_counts_by_the_square_of_its_distance(tmp_path: Path) -> None:
+    """0.5 kg with 0.003 kg m^2 of its own, 30 mm ahead and 40 mm up, on each of four wheels."""
+    weights = (
+        link(f"{side}_{end}_weight", 'type="fixed">', "0.03 0 0.04", parent=f"{side}_{end}")
+        for side, _ in SIDES
+        for end in ("front", "rear")
+    )
+    inertia = 0.003 + 0.003 + 0.5 * 0.05**2
+    found = read(tmp_path, urdf(WHEELS, *weights)).robot.track_mass
+    assert found == pytest.approx(4.0 * inertia / 0.08**2, rel=1e-9)
 
 
 class Folder:

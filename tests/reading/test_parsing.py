@@ -5,7 +5,7 @@ import math
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.parsing import Element, parse_xml, real
+from crawler2d.reading.parsing import Element, _exit_name, parse_xml, real
 
 
 def element(text: str) -> Element:
@@ -98,3 +98,8 @@ def test_a_file_is_xml_of_a_limited_size(text: str, rule: str) -> None:
         assert element(text).tag == "a"
     else:
         assert said_by(element, text).startswith(rule)
+
+
+def test_the_end_of_a_child_is_named_by_its_signal_or_its_status() -> None:
+    ends = {0: "status 0", 3: "status 3", -9: "SIGKILL", -27: "SIGPROF", -200: "signal 200"}
+    assert {status: _exit_name(status) for status in ends} == ends
