@@ -180,9 +180,9 @@ def _name_of(carrier: Carrier) -> str:
 
 
 def _is_same_carrier(was: Carrier, now: Carrier) -> bool:
-    if was.surface != "wheels" or now.surface != "wheels":
-        return was.surface == now.surface
-    return len(was.wheels) == len(now.wheels) and all(
+    if was.surface != now.surface or len(was.wheels) != len(now.wheels):
+        return False
+    return all(
         _deviation(first, second) <= _SAME and _has_same_outline(first, second)
         for first, second in zip(was.wheels, now.wheels, strict=True)
     )
