@@ -47,6 +47,7 @@ CASES: dict[str, tuple[Path, Callable[[c2d.Reading], c2d.Robot]]] = {
     "odd-urdf-moved": (ODD / "odd.urdf", moved),
     "odd-urdf-fewer": (ODD / "odd.urdf", fewer),
     "odd-xml-flippers": (ODD / "odd.xml", with_own_flippers),
+    "cart-xacro-two": (FILES / "cart.xacro", lambda reading: on_chassis(reading, 2)),
     **{
         f"cart-{suffix}-{name}": (FILES / f"cart.{suffix}", change)
         for suffix in ("sdf", "urdf", "xml")
@@ -63,8 +64,9 @@ CASES: dict[str, tuple[Path, Callable[[c2d.Reading], c2d.Robot]]] = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_patch_changes_the_lines_that_it_changed_before(name: str) -> None:
     path, change = CASES[name]
-    if path.suffix == ".xml":
-        pytest.importorskip("mujoco")
+    for suffix, library in ((".xml", "mujoco"), (".xacro", "xacrodoc")):
+        if path.suffix == suffix:
+            pytest.importorskip(library)
     reading = quietly(path)
     patch = patch_file(reading, change(reading))
     text = NUMBER.sub(rounded, "\n".join([patch.summary, *patch.left, patch.diff]))

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import _left, _summary, add_label, patch_file
+from crawler2d.patching.patch import _check, _left, _summary, add_label, patch_file
 from crawler2d.writing.document import Document, spans_of
 from tests.kept import refusing
 from tests.reading.carts import (
@@ -452,3 +452,18 @@ def test_a_file_that_begins_with_a_mark_of_its_byte_order_gets_a_label(
     assert text.startswith("\ufeff<")
     assert text.count("<!-- four wheels -->") == text.count("\ufeff") == 1
     assert reread(reading, text, tmp_path).robot.track == c2d.LineOfWheels(4)
+
+
+@pytest.mark.parametrize("name", ["cart.xacro", "cart.urdf.xacro"])
+def test_what_a_xacro_expands_to_is_read_again_as_a_urdf(name: str, tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    shutil.copy(FILES / "cart.xacro", tmp_path / name)
+    reading = quietly(tmp_path / name)
+    robot = on_chassis(reading, 4)
+    patch = patch_file(reading, robot)
+    path = tmp_path / "changed.urdf"
+    path.write_text(patch.text, encoding="utf-8")
+    assert quietly(path).robot.track == robot.track
+    broken = reading.text.replace('<mass value="16"', '<mass value="-16"')
+    with refusing(SAID, "^the changed file, read again: cart.urdf:"):
+        _check(reading, robot, broken)
