@@ -181,19 +181,19 @@ def notices(mutant: Mutant, tests: Tests, number: int) -> str:
     if not chosen:
         return ""
     before = mutant.file.stat()
-    seconds = 20 + 5 * sum(tests.seconds[test] for test in chosen)
     failed = ""
     try:
         mutant.file.write_text(mutant.source(), encoding="utf-8")
         os.utime(mutant.file, (number, number))  # of no byte code that there is
         for batch in tests.batches(chosen):
+            seconds = 10 + 5 * sum(tests.seconds[test] for test in batch)
             failed = next(iter(failures(batch, seconds, "-x")), "")
             if failed:
                 break
     finally:
         mutant.file.write_text(mutant.text, encoding="utf-8")
         os.utime(mutant.file, ns=(before.st_atime_ns, before.st_mtime_ns))
-    if failed == BROKEN and failures(chosen, seconds, "--collect-only"):
+    if failed == BROKEN and failures(chosen, 60, "--collect-only"):
         raise SystemExit(f"these tests do not run without a mutant: {chosen}")
     tests.noticed[failed] += 1
     return failed
