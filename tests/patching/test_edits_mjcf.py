@@ -37,32 +37,43 @@ def test_torques_of_mjcf_are_limited_in_three_places(tmp_path: Path) -> None:
     assert found["velocity@kv"] == {(SQUARE,)}
 
 
-@pytest.mark.parametrize("gear", ["", ' gear="2"'])
+SERVO = '<velocity kv="10" forcerange="-5 5" ctrlrange="-10 10"/>'
+OF_CLASS = ("<default>", f'<default><default class="m">{SERVO}</default>')
+OF_WHEELS = r"<velocity (joint=\"\w+_(?:rear|middle|front)_joint\") [^/]*/>"
+
+
+@pytest.mark.parametrize("gear", ["", ' gear="2"', ' gear="2 0 0 0 0 0"'])
 def test_a_servo_gets_the_changed_limits_that_it_has_of_its_class(
     gear: str, tmp_path: Path
 ) -> None:
     """Those of the class stay: others have them, too. What a servo states itself is multiplied."""
-    servo = '<velocity kv="10" forcerange="-5 5" ctrlrange="-10 10"/>'
     reading = mjcf(
         tmp_path,
-        ("<default>", f'<default><default class="m">{servo}</default>'),
-        (
-            r"<velocity (joint=\"\w+_(?:rear|middle|front)_joint\") [^/]*/>",
-            rf'<velocity \1 class="m"{gear}/>',
-        ),
+        OF_CLASS,
+        (OF_WHEELS, rf'<velocity \1 class="m"{gear}/>'),
         ('(left_rear_joint" class="m")', r'\1 kv="10"'),
     )
     text = resized(reading, 0.1)
-    assert servo in text
+    assert SERVO in text
     limits = 'forcerange="-4 4" ctrlrange="-12.5 12.5"'
     assert text.count(f'class="m"{gear} {limits} kv="6.4"/>') == 5
     assert text.count(f'class="m" kv="6.4"{gear} {limits}/>') == 1
 
 
-def test_a_rotor_of_a_class_stays_there_while_a_wheel_only_moves(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "changes",
+    [
+        [("<default>", '<default><joint armature="0.01"/>')],
+        [OF_CLASS, (OF_WHEELS, r'<velocity \1 class="m"/>')],
+    ],
+    ids=["rotor", "servo"],
+)
+def test_what_is_of_a_class_stays_there_while_a_wheel_only_moves(
+    changes: list[tuple[str, str]], tmp_path: Path
+) -> None:
     reading = mjcf(
         tmp_path,
-        ("<default>", '<default><joint armature="0.01"/>'),
+        *changes,
         (r'_middle" pos="0.0 ', '_middle" pos="0.02 '),
     )
     text = patch_file(reading, on_chassis(reading, 3)).text
