@@ -13,8 +13,9 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.sweeps.axes import COLUMNS, _dimensions, stop_columns
 from crawler2d.sweeps.rates import rate
 from crawler2d.sweeps.sweep import sweep
+from tests.kept import refusing
 from tests.shared import ROBOT, VARIANTS
-from tests.sweeps.small import quiet, refusal
+from tests.sweeps.small import SAID, quiet, refusal
 
 BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=0.05)
 
@@ -203,7 +204,7 @@ def test_no_axis_takes_the_name_of_a_column_of_the_table_or_of_its_rates() -> No
     ],
 )
 def test_what_is_no_axis_is_refused_by_name(over: Any, path: str, hint: str) -> None:
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         quiet(BASE, over)
     assert caught.value.path == path
     assert caught.value.rule.startswith("must")

@@ -22,7 +22,9 @@ from crawler2d.variation.distributions import (
     uniform_int,
 )
 from crawler2d.variation.draws import Variation, uniform_numbers
+from tests.kept import refusing
 from tests.shared import ROBOT, VARIANTS
+from tests.sweeps.small import SAID
 
 DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.friction"]
 
@@ -79,7 +81,7 @@ def test_a_frozen_distribution_of_scipy_gives_its_quantiles() -> None:
     assert draw(base, vary, 0.9)["terrain.seed"] == 4.0
     text = Variation.read(base, vary, []).text
     assert text == "terrain.friction: norm(0.8, 0.05); terrain.seed: randint(3, 5)"
-    with pytest.raises(c2d.ScenarioError, match="uniform_int"):
+    with refusing(SAID, "uniform_int"):
         draw(base, {"terrain.seed": stats.norm(0.8, 0.05)})
 
 
@@ -92,7 +94,7 @@ def test_every_element_gets_the_same_shift() -> None:
 
 def test_a_number_has_no_elements_to_draw() -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    with pytest.raises(c2d.ScenarioError, match="must be a path of elements, got"):
+    with refusing(SAID, "must be a path of elements, got"):
         draw(base, {"terrain.height[*]": uniform(0.05, 0.06)})
 
 
@@ -112,7 +114,7 @@ def test_every_octave_of_log_uniform_has_the_same_share() -> None:
         ends = value(distribution, 0.0), value(distribution, math.nextafter(1.0, 0.0))
         assert distribution.low <= ends[0] <= ends[1] <= distribution.high
     for low in (0.0, -1.0):
-        with pytest.raises(c2d.ScenarioError, match="low must be > 0, got"):
+        with refusing(SAID, "low must be > 0, got"):
             LogUniform(low, 1.0)
 
 
@@ -141,7 +143,7 @@ def test_every_whole_number_of_its_bounds_has_the_same_share() -> None:
 )
 def test_bounds_are_finite_numbers_in_order(low: Any, high: Any, message: str) -> None:
     for distribution in (uniform, LogUniform, scaled):
-        with pytest.raises(c2d.ScenarioError) as caught:
+        with refusing(SAID) as caught:
             distribution(low, high)
         assert str(caught.value) == message
 
@@ -158,7 +160,7 @@ def test_bounds_are_finite_numbers_in_order(low: Any, high: Any, message: str) -
     ],
 )
 def test_bounds_of_whole_numbers_are_whole_and_in_order(low: Any, high: Any, message: str) -> None:
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         uniform_int(low, high)
     assert str(caught.value) == message
 
@@ -352,7 +354,7 @@ def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
 )
 def test_what_is_no_variation_is_refused_by_name(vary: Any, message: str) -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         Variation.read(base, vary, ["terrain.height"])
     assert str(caught.value).startswith(message)
 
@@ -367,7 +369,7 @@ def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> No
     assert refused == (plan.drawn["terrain.friction"] > 100.0).tolist()
     assert 0 < sum(refused) < 10
     lanes = VARIANTS["belt-lanes"]
-    with pytest.raises(c2d.ScenarioError, match=r"must be a known field, got .*: Lanes has"):
+    with refusing(SAID, r"must be a known field, got .*: Lanes has"):
         draw(lanes, vary)
 
 
@@ -394,7 +396,7 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
         ("gears-diagonal-barrier", "solver.iterations"),
     ]:
         cell = VARIANTS[name]
-        with pytest.raises(c2d.ScenarioError) as caught:
+        with refusing(SAID) as caught:
             draw(cell, {path: distribution})
         assert str(caught.value) == (
             f"{path} must be drawn as a whole number, got {distribution}; use"
@@ -410,9 +412,7 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
 )
 def test_only_a_number_is_scaled(path: str, held: Any) -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    with pytest.raises(
-        c2d.ScenarioError, match=r"must be a number for a distribution to vary about, got "
-    ) as caught:
+    with refusing(SAID, r"must be a number for a distribution to vary about, got ") as caught:
         draw(base, {path: scaled(0.9, 1.1)})
     assert caught.value.path == path
     assert held is None or caught.value.value == held
@@ -420,5 +420,5 @@ def test_only_a_number_is_scaled(path: str, held: Any) -> None:
 
 def test_a_path_that_is_no_field_lists_the_fields() -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    with pytest.raises(c2d.ScenarioError, match=r"did you mean height\?"):
+    with refusing(SAID, r"did you mean height\?"):
         draw(base, {"terrain.hight": uniform(0.0, 0.1)})

@@ -19,7 +19,8 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.sweeps import collect
 from crawler2d.sweeps.store import stored_rows
-from tests.sweeps.small import BASE, MODELS, quiet
+from tests.kept import refusing
+from tests.sweeps.small import BASE, MODELS, SAID, quiet
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
@@ -170,5 +171,5 @@ def test_an_error_of_the_progress_is_no_fault_of_the_executor() -> None:
 
 
 def test_what_is_no_executor_is_refused() -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"must be a concurrent\.futures\.Executor"):
+    with refusing(SAID, r"must be a concurrent\.futures\.Executor"):
         quiet(BASE, {}, executor=4)

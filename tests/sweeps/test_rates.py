@@ -9,6 +9,8 @@ import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.sweeps.rates import rate
+from tests.kept import refusing
+from tests.sweeps.small import SAID
 
 TABLE = xr.Dataset(
     {
@@ -153,7 +155,7 @@ def test_poses_are_told_apart_in_steps_of_1_mm_and_a_tenth_of_a_degree(
 def test_a_dimension_called_as_a_result_is_refused_by_name(name: str) -> None:
     table = TABLE.rename(height=name)
     rule = f"table must have no other dimension or coordinate of that name, got {name}: rename it"
-    with pytest.raises(c2d.ScenarioError, match=f"^{rule}$"):
+    with refusing(SAID, f"^{rule}$"):
         rate(table)
     assert rate(table, dim=name)["count"].dims == ("repeat",)
 
@@ -199,7 +201,7 @@ def test_no_outcomes_have_no_rate() -> None:
 def test_an_unknown_name_is_refused_with_the_nearest(
     arguments: tuple[Any, ...], path: str, hint: str
 ) -> None:
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         rate(*arguments)
     assert caught.value.path == path
     assert hint in caught.value.rule
@@ -210,7 +212,7 @@ def test_an_unknown_name_is_refused_with_the_nearest(
 def test_a_data_set_that_has_lost_what_it_is_of_has_no_figure() -> None:
     pytest.importorskip("matplotlib")
     bare = rate(TABLE).mean("height", keep_attrs=False)
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         bare.plot()
     assert (caught.value.path, caught.value.value) == ("plot", "none")
     assert caught.value.rule.startswith("must be of a data set with a figure: use plot.scatter")

@@ -13,8 +13,9 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.results.record import diagnosis_json, read_diagnosis
 from crawler2d.sweeps.store import Store, stored_rows
+from tests.kept import refusing
 from tests.shared import NO_DASK
-from tests.sweeps.small import BASE, MODELS, quiet
+from tests.sweeps.small import BASE, MODELS, SAID, quiet
 from tests.sweeps.stores import as_version_1, change, opened
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
@@ -138,7 +139,7 @@ def test_what_is_no_store_is_refused_and_left_alone(
 def test_a_place_where_no_file_can_be_is_refused(tmp_path: Path) -> None:
     with pytest.raises(c2d.StoreError, match="cannot be opened: No such"):
         quiet(BASE, {}, repeats=1, store=tmp_path / "nowhere" / "a.sqlite")
-    with pytest.raises(c2d.ScenarioError, match="must be the path of a file"):
+    with refusing(SAID, "must be the path of a file"):
         quiet(BASE, {}, repeats=1, store=7)
     with pytest.raises(c2d.StoreError, match="does not exist"):
         c2d.table(tmp_path / "none.sqlite")

@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
-from tests.sweeps.small import BASE, BRIEF, MODELS, quiet
+from tests.kept import refusing
+from tests.sweeps.small import BASE, BRIEF, MODELS, SAID, quiet
 
 
 def test_the_table_of_a_batch_has_the_columns_of_a_sweep() -> None:
@@ -51,7 +52,7 @@ def test_an_interrupted_batch_is_a_table_of_what_was_finished() -> None:
 
 def test_nothing_is_an_empty_table_and_what_is_no_run_is_refused() -> None:
     assert c2d.table([]).sizes == {"run": 0}
-    with pytest.raises(c2d.ScenarioError, match=r"runs\[0\] must be a Run"):
+    with refusing(SAID, r"runs\[0\] must be a Run"):
         c2d.table([BASE])  # type: ignore[list-item]
 
 
