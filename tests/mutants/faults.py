@@ -25,6 +25,7 @@ EQUIVALENT = [
     ("_MASS = ", "0.0001 -> 0.000101", "far above what rounding leaves, either"),
     ('if sign == "+"', "1.0 -> 1.01", "of a direction the sign alone counts"),
     ("self.models[1:]", "1 -> 0", "the model itself is the first, and nothing names it by a scope"),
+    ('is_changed = [line[0] in "-+"', "'-+' -> '-+x'", "no line of a diff begins so"),
     ("range(len(lines) - 1", "1 -> 2", "the last line alone joins with none"),
     ("seconds = int(used", "1 -> 2", "the timer ends it before"),
     (

@@ -11,9 +11,11 @@ import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
+from crawler2d.sweeps.axes import COLUMNS
 from tests.kept import check_kept
 from tests.sweeps.small import BASE, BRIEF, MODELS, quiet
 
+OF_DRAWS = ("drawn_", "unknown_")
 KEPT = Path(__file__).parent / "kept"
 
 DRAWN = {
@@ -28,7 +30,10 @@ UNKNOWN = {
 
 
 def described(dataset: xr.Dataset) -> str:
-    """Write down dimensions, attributes and columns but those of metrics, with what is drawn."""
+    """Write down dimensions, attributes and columns but those of metrics, with what is drawn.
+
+    The kind of a column is that of NumPy, such as u for whole numbers without a sign.
+    """
     lines = [f"dimensions: {dict(dataset.sizes)}"]
     lines += [
         f"{name} = {value}"
@@ -39,8 +44,10 @@ def described(dataset: xr.Dataset) -> str:
         if name in METRICS:
             continue
         attributes = ", ".join(f"{key} {value!r}" for key, value in each.attrs.items())
-        lines.append(f"{name} over {', '.join(map(str, each.dims))}: {attributes}")
-        if name in dataset.coords or str(name).startswith(("drawn_", "unknown_", "seed")):
+        lines.append(
+            f"{name} ({each.dtype.kind}) over {', '.join(map(str, each.dims))}: {attributes}"
+        )
+        if name in dataset.coords or str(name).startswith((*OF_DRAWS, "seed")):
             values = [f"{value:.9g}" for value in each.values.ravel() if each.dtype.kind == "f"]
             lines.append(f"  {', '.join(values or map(str, each.values.ravel()))}")
     return "".join(f"{line}\n" for line in lines)
@@ -55,7 +62,7 @@ def of_unknowns() -> xr.Dataset:
             "fast": (0.2, c2d.ForceTrack()),
         },
     }
-    how = {"samples": 2, "seed": 7, "wall_time": True, "trials": "all"}
+    how = {"samples": 2, "seed": 2**63 - 1, "wall_time": True, "trials": "all"}
     return quiet(base, over, vary=DRAWN, unknown=UNKNOWN, **how)
 
 
@@ -72,3 +79,10 @@ TABLES: dict[str, Callable[[], xr.Dataset]] = {
 @pytest.mark.parametrize("name", TABLES)
 def test_a_table_is_made_of_these_columns(name: str) -> None:
     check_kept(KEPT / f"{name}.txt", described(TABLES[name]()))
+
+
+@pytest.mark.parametrize("name", ["unknowns", "band"])
+def test_an_axis_takes_the_name_of_no_column(name: str) -> None:
+    table = TABLES[name]()
+    columns = {each for each in map(str, table.data_vars) if not each.startswith(OF_DRAWS)}
+    assert columns <= {*COLUMNS, *METRICS}

@@ -191,7 +191,7 @@ def test_no_outcomes_have_no_rate() -> None:
         ((TABLE, "cleared", "repeats"), "dim", "did you mean repeat?"),
         ((TABLE, "cleared", ["repeat", "hight"]), "dim", "did you mean height?"),
         ((TABLE, "cleared", 3), "dim", "must be one of height, repeat"),
-        ((xr.Dataset({"time": 1.0}),), "table", "must be one of time"),
+        ((xr.Dataset({"time": 1.0}),), "table", "must have a column outcome"),
         ((TABLE, "stoped"), "outcome", "did you mean stopped?"),
         ((["cleared", "siezed"],), "outcomes[1]", "did you mean seized?"),
         ((["cleared", "stopped"],), "outcomes[1]", "must be one of"),
@@ -206,7 +206,9 @@ def test_an_unknown_name_is_refused_with_the_nearest(
     assert caught.value.path == path
     assert hint in caught.value.rule
     # A hint is the end of the rule, and so is the last of the names where there is none.
-    assert caught.value.rule.endswith(("?)", "timed_out, stopped", "timed_out", "repeat", "time"))
+    assert caught.value.rule.endswith(
+        ("?)", "timed_out, stopped", "timed_out", "repeat", "outcome")
+    )
 
 
 def test_a_data_set_that_has_lost_what_it_is_of_has_no_figure() -> None:

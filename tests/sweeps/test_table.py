@@ -54,6 +54,8 @@ def test_nothing_is_an_empty_table_and_what_is_no_run_is_refused() -> None:
     assert c2d.table([]).sizes == {"run": 0}
     with refusing(SAID, r"runs\[0\] must be a Run"):
         c2d.table([BASE])  # type: ignore[list-item]
+    with refusing(SAID, r"^runs must be several: give|^runs must be several, got"):
+        c2d.table(3)  # type: ignore[arg-type]
 
 
 def test_tables_and_rates_go_to_netcdf_and_back_and_to_parquet(tmp_path: Path) -> None:

@@ -142,7 +142,9 @@ def rates_of(
     counted = [str(each) for each in Outcome if each.is_stop] if wanted == _STOPPED else [wanted]
     if isinstance(table, xr.Dataset):
         runs = table
-        read_choice("outcome", "table", [str(name) for name in runs.data_vars])
+        if "outcome" not in runs:
+            columns = ", ".join(map(str, runs.data_vars)) or "none"
+            raise ScenarioError("table", columns, "must have a column outcome")
     else:
         runs = xr.Dataset({"outcome": ("repeat", np.array(_texts(table), dtype=str))})
     outcomes = runs["outcome"]
