@@ -9,7 +9,7 @@ import crawler2d as c2d
 from crawler2d.reading.xacro import Settings
 from tests.reading.carts import FILES, SIDES, WHEELS, link, pair, read, refused, urdf
 from tests.reading.test_gear_wheels import gear, wheel_of
-from tests.reading.test_surfaces import motors
+from tests.reading.test_surfaces import arms, motors
 
 
 def turns(count: int) -> list[float]:
@@ -87,6 +87,20 @@ def test_a_weight_off_the_axle_counts_by_the_square_of_its_distance(tmp_path: Pa
     inertia = 0.003 + 0.003 + 0.5 * 0.05**2
     found = read(tmp_path, urdf(WHEELS, *weights)).robot.track_mass
     assert found == pytest.approx(4.0 * inertia / 0.08**2, rel=1e-9)
+
+
+def test_a_flipper_pivots_within_a_twentieth_of_the_axle_distance_from_its_end(
+    tmp_path: Path,
+) -> None:
+    """Of 0.4 m: beyond the tolerance of 1 mm with a doubt, beyond a tenth of that with a note."""
+    told = "joint[left_arm0.181_joint] pivots 19 mm off the end axle, here on it, got front"
+    assert told in read(tmp_path, urdf(WHEELS, arms(0.181, 0.2))).doubts
+    near = read(tmp_path, urdf(WHEELS, arms(0.1995, 0.2)))
+    assert "the front flippers pivot 0.5 mm off the end axle, here on it" in near.notes
+    assert not [doubt for doubt in near.doubts if "pivot" in doubt]
+    on_it = read(tmp_path, urdf(WHEELS, arms(0.19995, 0.2)))
+    assert not [each for each in (*on_it.notes, *on_it.doubts) if "pivot" in each]
+    refused(tmp_path, urdf(WHEELS, arms(0.179, 0.2)), "must pivot within 5% of the axle distance")
 
 
 class Folder:
