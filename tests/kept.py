@@ -22,6 +22,8 @@ IS_KEPT_ANEW = os.environ.get("CRAWLER2D_KEEP") == "1"
 ROOT = str(Path(__file__).parents[1])
 # Where pytest's folders and objects are, and what libraries say, which differs by version.
 ELSEWHERE = re.compile(r"(file://)?/\S*/pytest-of-[^/]+/pytest-\d+/(popen-gw\d+/)?[^/ ]+")
+PATH = re.compile(r"\bgot (FOLDER|ELSEWHERE)[^;:,]*")
+"""As a value, of which the end is left out if the folder of pytest has a long name."""
 ADDRESS = re.compile(r"x[0-9a-f]{8,}>")
 OTHERS = re.compile(r"(that (trimesh reads|MuJoCo compiles|expands)\b).*")
 
@@ -52,7 +54,7 @@ def check_said(file: Path, sentences: Iterable[str], folder: Path | None = None)
 def plain(sentence: str, folder: Path | None) -> str:
     """Write a sentence on one line of ASCII, without what differs from run to run."""
     told = sentence if folder is None else sentence.replace(str(folder), "FOLDER")
-    told = ELSEWHERE.sub("ELSEWHERE", told).replace(ROOT, "ROOT")
+    told = PATH.sub("got a path", ELSEWHERE.sub("ELSEWHERE", told).replace(ROOT, "ROOT"))
     told = OTHERS.sub(r"\1", " ".join(ADDRESS.sub("x...>", told).split()))
     return told.encode("unicode_escape").decode()
 
