@@ -36,7 +36,7 @@ def account(reading: c2d.Reading) -> str:
         reach = f"{len(each.outline)} corners, {told(low)} to {told(high)}"
         lines.append(f"silhouette {each.kind} of {each.link} at {each.at}: {reach}")
     lines += [f"note: {note}" for note in reading.notes]
-    lines += [f"doubt: {doubt}" for doubt in reading.doubts]
+    lines += [f"warning: {warning}" for warning in reading.warnings]
     text = "".join(f"{line.rstrip()}\n" for line in lines)
     return text.replace(str(reading.path.parent), "FOLDER")
 

@@ -81,7 +81,7 @@ def test_a_robot_is_the_same_wherever_it_stands_in_its_model(tmp_path: Path, nam
     assert [float(each) for each in numbers(found)] == pytest.approx(
         [float(each) for each in numbers(wanted)], abs=1e-8
     )
-    assert len(found.doubts) == len(wanted.doubts)
+    assert len(found.warnings) == len(wanted.warnings)
 
 
 def numbers(reading: c2d.Reading) -> list[str]:

@@ -51,7 +51,9 @@ def test_rotors_in_proportion_to_their_wheels_are_alike(tmp_path: Path) -> None:
         text = text.replace(joint, f'{joint} armature="0.0025"')
     reading = read(tmp_path, text, "cart.xml")
     assert reading.robot.drivetrain.rotor_inertia == pytest.approx(5.0 * 0.01, rel=1e-12)
-    assert not [warning for warning in reading.warnings if "rotor" in warning or "armature" in warning]
+    assert not [
+        warning for warning in reading.warnings if "rotor" in warning or "armature" in warning
+    ]
 
 
 def test_the_armature_of_an_actuator_counts_by_the_square_of_its_gear(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def test_a_heavy_link_keeps_a_moment_of_inertia_that_it_cannot_have(tmp_path: Pa
     found = read(tmp_path, large)
     before = read(tmp_path, usual).robot.moment_of_inertia
     assert found.robot.moment_of_inertia == pytest.approx(before + 8.8, rel=1e-12)
-    assert "is kept" in found.doubts[0]
+    assert "is kept" in found.warnings[0]
 
 
 def test_a_light_link_has_no_more_than_the_reach_of_the_robot_allows(tmp_path: Path) -> None:
@@ -38,14 +38,14 @@ def test_a_light_link_has_no_more_than_the_reach_of_the_robot_allows(tmp_path: P
         ixz="0" iyy="9" iyz="0" izz="9"/></inertial></link><joint name="m" type="fixed">
         <parent link="hull"/><child link="mast"/></joint>"""
         found = read(tmp_path, urdf(WHEELS, mast))
-        assert ("is taken as" if is_light else "is kept") in found.doubts[0]
+        assert ("is taken as" if is_light else "is kept") in found.warnings[0]
         assert (found.robot.moment_of_inertia < 9.0) is is_light
 
 
 def test_names_of_more_than_four_wheels_are_counted(tmp_path: Path) -> None:
     free = [pair(f"w{n}", 0.05 * n, radius="0.05") for n in range(-1, 2)]
     reading = read(tmp_path, urdf(WHEELS, *free, motors("front", "rear")))
-    assert reading.doubts[0].endswith("left_w-1, right_w-1, left_w0, right_w0 and 2 more")
+    assert reading.warnings[0].endswith("left_w-1, right_w-1, left_w0, right_w0 and 2 more")
 
 
 def test_what_is_doubted_is_warned_of(tmp_path: Path) -> None:
@@ -94,12 +94,12 @@ def test_a_flipper_pivots_within_a_twentieth_of_the_axle_distance_from_its_end(
 ) -> None:
     """Of 0.4 m: beyond the tolerance of 1 mm with a doubt, beyond a tenth of that with a note."""
     told = "joint[left_arm0.181_joint] pivots 19 mm off the end axle, here on it, got front"
-    assert told in read(tmp_path, urdf(WHEELS, arms(0.181, 0.2))).doubts
+    assert told in read(tmp_path, urdf(WHEELS, arms(0.181, 0.2))).warnings
     near = read(tmp_path, urdf(WHEELS, arms(0.1995, 0.2)))
     assert "the front flippers pivot 0.5 mm off the end axle, here on it" in near.notes
-    assert not [doubt for doubt in near.doubts if "pivot" in doubt]
+    assert not [doubt for doubt in near.warnings if "pivot" in doubt]
     on_it = read(tmp_path, urdf(WHEELS, arms(0.19995, 0.2)))
-    assert not [each for each in (*on_it.notes, *on_it.doubts) if "pivot" in each]
+    assert not [each for each in (*on_it.notes, *on_it.warnings) if "pivot" in each]
     refused(tmp_path, urdf(WHEELS, arms(0.179, 0.2)), "must pivot within 5% of the axle distance")
 
 

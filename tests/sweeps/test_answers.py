@@ -10,7 +10,10 @@ from crawler2d import _core
 from crawler2d.sweeps import collect
 from tests.sweeps.small import BRIEF
 
-RUNS = [_core.Passed(BRIEF.to_json()), _core.Passed(BRIEF.replace({"duration": 0.06}).to_json())]
+RUNS = [
+    _core.PreparedScenario(BRIEF.to_json()),
+    _core.PreparedScenario(BRIEF.replace({"duration": 0.06}).to_json()),
+]
 BUILD = collect._build()
 
 
