@@ -81,7 +81,7 @@ def link(name: str, joint: str, xyz: str = "0 0 0", parent: str = "hull") -> str
 
 
 def read(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> c2d.Reading:
-    """Read a text as a file; what it notes and warns of is in the reading, and kept word for word."""
+    """Read a text as a file; its notes and warnings are in the reading, and kept."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     reading = quietly(path, **how)
