@@ -216,7 +216,23 @@ mod tests {
     use super::*;
     use crate::geometry::Disc;
 
-    /// Averaged over where it comes from and goes to, of which a share lies on an arc and the rest on a run.
+    #[test]
+    fn a_point_moves_with_a_grouser_that_it_is_on_and_else_with_the_belt() {
+        let disc = |x: f64| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.1,
+        };
+        let belt = Arc::new(Envelope::new(&[disc(-0.3), disc(0.3)]));
+        let arc = 0.1 * 0.5 * TAU;
+        let grouser = Grouser::new(&belt, 0.5 * arc, 0.02, 0.008);
+        let place = grouser.place(0.0).translation;
+        let on_run = belt.motion_at(arc + 0.3, 0.0);
+        let turns = |point: Vector| grouser.motion_where(0.0, point).turn.abs();
+        assert!((turns(place) - 10.0).abs() < 1e-9 && on_run.turn == 0.0);
+        let far = belt.point_at(arc + 0.3);
+        assert!(turns(far) < 1e-9);
+    }
+
     #[test]
     fn near_a_joint_the_motion_is_mixed_with_that_beyond_it() {
         let disc = |x: f64| Disc {
@@ -246,6 +262,7 @@ mod tests {
         }
     }
 
+    /// Averaged over where it comes from and goes to, of which a share lies on an arc and the rest on a run.
     #[test]
     fn a_grouser_moves_as_its_motion_says() {
         let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {

@@ -349,6 +349,21 @@ mod tests {
     }
 
     #[test]
+    fn an_arc_is_cut_into_equal_pieces_and_a_run_is_one() {
+        let pieces: Vec<f64> = stadium().positions(0.5).collect();
+        // Half a turn takes seven pieces of at most 0.5 rad.
+        let (arc, run) = (0.1 * std::f64::consts::PI, 0.5);
+        assert_eq!(pieces.len(), 2 * (7 + 1));
+        for (i, position) in pieces.iter().enumerate() {
+            let (half, k) = (i / 8, i % 8);
+            let expected = half as f64 * (arc + run) + arc * k as f64 / 7.0;
+            assert!((position - expected).abs() < 1e-12, "{i}: {position}");
+        }
+        let points = stadium().polyline(0.5);
+        assert!(points.iter().all(|p| stadium().depth(*p).abs() < 1e-12));
+    }
+
+    #[test]
     fn a_hull_stands_on_the_run_below_its_centre_of_mass() {
         assert!(stadium().standing_angle(Vector::ZERO).abs() < 1e-15);
         // Its front is higher by as much as it is larger.

@@ -189,6 +189,15 @@ mod tests {
     }
 
     #[test]
+    fn a_pin_far_from_the_tips_or_on_the_axle_meets_no_tooth() {
+        let teeth = Teeth::new(11, 0.04, 0.0);
+        let at = |over: f64| direction(0.3) * (teeth.tip_radius + over);
+        assert!(teeth.flanks(at(1.1e-3), 1e-3).is_none());
+        assert!(teeth.flanks(at(0.9e-3), 1e-3).is_some());
+        assert!(teeth.flanks(Vector::ZERO, 1e-3).is_none());
+    }
+
+    #[test]
     fn a_pin_in_its_seat_touches_the_flank_that_drives_it() {
         for count in [7, 11, 14] {
             let teeth = Teeth::new(count, 0.04, 0.0);
