@@ -56,9 +56,12 @@ def uncompiled() -> Iterator[int]:
     for message in cargo("check", "--lib"):
         if message["reason"] != "compiler-message" or message["message"]["level"] != "error":
             continue
+        # Of a match that lacks an arm, the fault is in what follows.
+        is_match = (message["message"]["code"] or {}).get("code") == "E0004"
         for span in message["message"]["spans"]:
             if span["is_primary"]:
-                yield fault_at((TREE / span["file_name"]).read_bytes(), span)
+                source = (TREE / span["file_name"]).read_bytes()
+                yield fault_behind(source, span) if is_match else fault_at(source, span)
 
 
 def fault_at(source: bytes, span: Any) -> int:
@@ -69,6 +72,11 @@ def fault_at(source: bytes, span: Any) -> int:
     found = [at[1]] if at else SWITCH.findall(source[line:begin])[-1:]
     found += SWITCH.findall(source[begin:end]) + SWITCH.findall(source[:begin])[::-1]
     return int(found[0])
+
+
+def fault_behind(source: bytes, span: Any) -> int:
+    """Return the number of the next fault behind a place."""
+    return int(SWITCH.findall(source[span["byte_end"] :])[0])
 
 
 def programs() -> Iterator[Path]:
