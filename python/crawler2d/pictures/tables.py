@@ -384,7 +384,7 @@ def plot_comparison(data: xarray.Dataset, ax: Axes | None) -> Axes:
     for k, name in enumerate(names):
         won, lost = data["only_model"].to_numpy()[k], data["only_reference"].to_numpy()[k]
         text = f"clears {data['rate'].to_numpy()[k]:.0%}"
-        text += "" if name == reference else f"; only it {won}, only {reference} {lost} times"
+        text += "" if name == reference else f"; cleared alone: {won}, {reference} alone: {lost}"
         ax.text(1.07, k, text, fontsize="x-small", va="center", parse_math=False)
     ax.set_yticks(at, list(map(str, names)), parse_math=False)
     ax.set(xlim=(-1.05, 1.05), ylim=(len(names) - 0.4, -0.6))
