@@ -365,3 +365,13 @@ fn nothing_moves_faster_than_light() {
         assert_eq!(state.is_finite(), is_slower);
     }
 }
+
+#[test]
+fn a_push_acts_along_the_axis_of_the_chassis_beside_the_reaction_of_its_motor() {
+    let (dynamics, _) = setup(|s| s.robot.center_of_mass = [0.05, 0.02]);
+    let model = dynamics.model();
+    let push = push_axis(model, 0.3);
+    assert_relative_eq!(push.unit, direction(0.3), epsilon = 1e-15);
+    assert_relative_eq!(push.lever + push.spin_lever, 0.02, epsilon = 1e-15);
+    assert_relative_eq!(push.spin_lever, model.drive_radius);
+}

@@ -214,3 +214,23 @@ fn chains_report_the_deepest_shoe_in_their_guide() {
     ];
     assert_relative_eq!(dynamics.chain_reading().guide_penetration, 3e-4);
 }
+
+#[test]
+fn shoes_that_run_go_round_with_the_chassis_and_once_round_their_chain() {
+    let (dynamics, _) = whirling(Bushing::default());
+    let mut state = State::at_rest(&dynamics.model, Vector::ZERO, 0.2, 0.0);
+    state.angular_velocity = 0.7;
+    let speed = 0.4;
+    state.run_shoes(&dynamics.model, speed);
+    let rule = &dynamics.chains[0].rule;
+    let shoes = &state.shoes[rule.shoes.clone()];
+    let turns = shoes.iter().map(|shoe| 0.7 - shoe.twist.turn);
+    // Each shoe turns as the place of its middle does: a whole number of them is on each arc.
+    let round = turns.sum::<f64>() * rule.path.pitch / std::f64::consts::TAU;
+    assert_relative_eq!(round, speed, max_relative = 0.1);
+    for shoe in shoes {
+        let over_chassis = shoe.twist.velocity - state.velocity_at(shoe.center);
+        assert_relative_eq!(over_chassis.length(), speed, max_relative = 0.05);
+        assert!(over_chassis.dot(shoe.along()) > 0.9 * speed);
+    }
+}
