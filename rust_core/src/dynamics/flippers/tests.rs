@@ -219,6 +219,30 @@ fn a_step_is_off_by_what_its_rates_differ_from_the_mean_of_those_at_its_ends() {
 }
 
 #[test]
+fn any_value_of_a_state_that_is_no_number_is_seen() {
+    let (_, state) = built(&scenario(5.0));
+    assert!(state.is_finite());
+    let spoils: [fn(&mut State, f64); 9] = [
+        |state, value| state.center.y = value,
+        |state, value| state.velocity.x = value,
+        |state, value| state.angle = value,
+        |state, value| state.angular_velocity = value,
+        |state, value| state.drives[0].spin = value,
+        |state, value| state.drives[0].position = value,
+        |state, value| state.drives[0].integral = value,
+        |state, value| state.flippers[1].angle = value,
+        |state, value| state.flippers[1].rate = value,
+    ];
+    for spoil in spoils {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut state = state.clone();
+            spoil(&mut state, value);
+            assert!(!state.is_finite());
+        }
+    }
+}
+
+#[test]
 fn arms_and_chassis_together_are_the_robot() {
     let scenario = scenario(30.0);
     let robot = &scenario.robot;
