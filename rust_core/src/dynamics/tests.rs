@@ -375,3 +375,16 @@ fn a_push_acts_along_the_axis_of_the_chassis_beside_the_reaction_of_its_motor() 
     assert_relative_eq!(push.lever + push.spin_lever, 0.02, epsilon = 1e-15);
     assert_relative_eq!(push.spin_lever, model.drive_radius);
 }
+
+#[test]
+fn a_controller_pushes_by_the_sum_of_its_errors_from_the_beginning_of_a_step() {
+    let (gain, integral) = (2.0, 30.0);
+    let (mut dynamics, mut state) = setup(|s| {
+        s.gravity = 0.0;
+        s.robot.drivetrain.controller = Some(crate::scenario::Pi { gain, integral });
+    });
+    // Nothing is wrong now, and errors have added up to 50 N.
+    state.drives[0].integral = 50.0;
+    dynamics.take(&mut state, &[], 0.0, 1e-5);
+    assert_relative_eq!(state.drives[0].force, 50.0, max_relative = 1e-2);
+}
