@@ -4,6 +4,7 @@ use super::*;
 use crate::run::Simulation;
 use crate::scenario::{Surface, Terrain};
 
+mod doubts;
 mod rules;
 
 fn engineer() -> Scenario {
@@ -113,4 +114,30 @@ fn what_differs_is_built_for_itself_and_as_it_would_be_alone() {
         assert_eq!(beside.model.parts.len(), alone.model.parts.len());
         assert_eq!(beside.ground.lanes.len(), alone.ground.lanes.len());
     }
+}
+
+#[test]
+fn the_corners_of_lanes_are_those_of_the_tracks_and_of_the_belly() {
+    let lane = |count: u32, edge_radius| {
+        Box::new(Terrain::Points {
+            points: (0..count).map(|i| [f64::from(i), 0.0]).collect(),
+            goal: 1.0,
+            surface: Surface {
+                edge_radius,
+                ..Surface::sharp(0.9)
+            },
+            segment_friction: None,
+        })
+    };
+    let lanes = |middle| Terrain::Lanes {
+        left: lane(2, 0.0),
+        right: lane(5, 0.0),
+        middle,
+    };
+    assert_eq!(corners(&lanes(Some(lane(4, 0.0)))), 2 + 5 + 4);
+    // Without a profile of its own the belly has all edges of both tracks'.
+    assert_eq!(corners(&lanes(None)), 2 * (2 + 5));
+    // 90 facets for each corner, and at most a million together.
+    assert_eq!(corners(&lane(3, 0.01)), 3 + 3 * 90);
+    assert_eq!(corners(&lane(20_000, 0.01)), 20_000 + 1_000_000);
 }

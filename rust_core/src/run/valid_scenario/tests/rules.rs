@@ -143,7 +143,7 @@ belt | | /gravity | 9.81 | [1111111111,1111111111,1111111111,1111111111,11111111
 "#;
 
 /// Texts that are no scenario: a part of the belt's, what stands in its place, the error.
-const TEXTS: [[&str; 3]; 8] = [
+const TEXTS: [[&str; 3]; 9] = [
     [
         r#"{"schema""#,
         r#"{{"schema""#,
@@ -180,6 +180,11 @@ const TEXTS: [[&str; 3]; 8] = [
         "scenario must not be nested more than 12 levels deep",
     ],
     [r#""schema": 2,"#, "", "schema must be given, got nothing"],
+    [
+        r#""mass":21.2"#,
+        r#""mas":21.2"#,
+        "robot.mass must be given (is mas a misspelling of it?), got nothing",
+    ],
 ];
 
 fn shared(name: &str) -> Value {
@@ -201,7 +206,7 @@ fn shared(name: &str) -> Value {
 const BELT: &str = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
 
 /// A shared scene, or one made of it.
-fn scene(name: &str) -> Value {
+pub(super) fn scene(name: &str) -> Value {
     let shared = |name, field: &str, value| {
         let mut scene = shared(name);
         put(&mut scene, field, value);
@@ -238,7 +243,7 @@ fn scene(name: &str) -> Value {
 }
 
 /// A value as the table writes it: JSON, or a name for a long one.
-fn value(text: &str) -> Value {
+pub(super) fn value(text: &str) -> Value {
     match text {
         "CHAIN" => shared("chain")["robot"]["track"].take(),
         "ARMS" => shared("flippers")["robot"]["flippers"].take(),
@@ -246,7 +251,7 @@ fn value(text: &str) -> Value {
     }
 }
 
-fn put(scene: &mut Value, field: &str, value: Value) {
+pub(super) fn put(scene: &mut Value, field: &str, value: Value) {
     *place_of(scene, field).expect("its object is there") = value;
 }
 
