@@ -280,8 +280,7 @@ impl Model {
             // Shoes and arms: at most a corner beyond the hull that they travel round.
             _ if part.mount != Mount::Chassis => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
-            // Never beyond the circles of the belt's hull.
-            Shape::Grouser(_) => 0.0,
+            // Grousers have no discs: they are never beyond the circles of the belt's hull.
             _ => part
                 .discs()
                 .map(|(tip, _)| from_center(&tip.center) + tip.radius)

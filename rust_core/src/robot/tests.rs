@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 
-use super::{Model, MotorRule, Part, Shape, start_position};
-use crate::geometry::{Rotation, Vector};
+use super::{BodyKind, Model, MotorRule, Mount, Part, Shape, start_position};
+use crate::geometry::{Pose, Rotation, Vector};
 use crate::scenario::{
     ClosedSurface, ClosedTrack, Ends, HybridWheels, Pi, Robot, Scenario, Surface, Terrain, Track,
     Wheel,
@@ -201,6 +201,8 @@ fn chassis_and_wheels_are_the_robot() {
                 // A uniform disc.
                 let of_disc = 0.5 * wheel.mass * wheel.radius * wheel.radius;
                 assert_relative_eq!(wheel.moment_of_inertia, of_disc, max_relative = 1e-13);
+                let area = std::f64::consts::PI * wheel.radius.powi(2);
+                assert_relative_eq!(wheel.area, area, max_relative = 1e-15);
             }
             let side = wheel.clone().of_one_side();
             assert_relative_eq!(2.0 * side.mass, wheel.mass);
@@ -365,4 +367,58 @@ fn a_closed_track_has_grousers_as_high_as_the_track_that_it_closes() {
         assert_relative_eq!(heights(ClosedSurface::Own), own, epsilon = 1e-12);
         assert!(heights(ClosedSurface::Smooth) < 1e-15);
     }
+}
+
+#[test]
+fn a_closed_track_covers_a_belly_that_lies_inside_it() {
+    let mut robot = on_all_tracks().remove(0);
+    // The outline reaches up to 0.064 m.
+    for (top, count) in [(0.06, 0), (0.07, 1)] {
+        robot.belly = Some(vec![[-0.1, 0.0], [0.1, 0.0], [0.0, top]]);
+        let closed = model(&closed(&robot, ClosedSurface::Own));
+        assert_eq!(closed.belly().count(), count, "up to {top} m");
+    }
+}
+
+#[test]
+fn a_belt_on_an_arm_has_its_sprocket_at_the_pivot() {
+    let model = model(&on_arms(0.3)[0]);
+    let running = model.running_at_start(0.0);
+    let mut sprockets = 0;
+    for body in model.outlines() {
+        let (BodyKind::Sprocket, Mount::Flipper(k)) = (body.kind, body.mount) else {
+            continue;
+        };
+        sprockets += 1;
+        let (origin, _) = body.place(&model, &running);
+        let mount = running.mounted(body.mount, Pose::IDENTITY);
+        let off = mount.transform_point(origin) - model.flippers[k].pivot;
+        assert!(off.length() < 1e-15, "arm {k}: {off} m");
+        assert_relative_eq!(body.radius.expect("it is round"), 0.064);
+    }
+    assert_eq!(sprockets, 2);
+}
+
+/// 180 chords of a circle: its area is smaller by a share of 2/3 (pi/180)^2.
+#[test]
+fn a_wheel_is_drawn_as_a_circle() {
+    let robot = on_all_tracks().remove(5);
+    let model = model(&robot);
+    let mut wheels = 0;
+    for body in model.outlines() {
+        let Some(radius) = body.radius else { continue };
+        wheels += 1;
+        for corner in &body.outline {
+            assert_relative_eq!(corner.length(), radius, max_relative = 1e-14);
+        }
+        let next = body.outline.iter().cycle().skip(1);
+        let pairs = body.outline.iter().zip(next);
+        let area: f64 = pairs.map(|(a, b)| 0.5 * (a.x * b.y - a.y * b.x)).sum();
+        let circle = std::f64::consts::PI * radius * radius;
+        assert_relative_eq!(area, circle, max_relative = 3e-4);
+    }
+    let Track::Hybrid(placed) = &robot.track else {
+        panic!("it is hybrid")
+    };
+    assert_eq!(wheels, placed.placements.len());
 }

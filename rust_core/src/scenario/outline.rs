@@ -258,3 +258,50 @@ fn read_discs(f: &mut Fields) -> Checked<Vec<[f64; 3]>> {
 fn written([x, y, radius]: &[f64; 3]) -> String {
     format!("[{x}, {y}, {radius}]")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outline(discs: &[[f64; 3]]) -> TrackOutline {
+        TrackOutline {
+            discs: discs.to_vec(),
+            grouser_height: 0.01,
+            grouser_pitch: 0.05,
+            grouser_thickness: 0.005,
+        }
+    }
+
+    /// At either end, the axle of a small disc is farther out than that of a large one which reaches farther.
+    #[test]
+    fn the_end_discs_are_those_that_reach_farthest() {
+        let (rear, front) = ([-0.2, 0.0, 0.1], [0.2, 0.0, 0.08]);
+        let small = [[-0.22, 0.2, 0.02], [0.21, 0.2, 0.03]];
+        let outline = outline(&[small[1], rear, small[0], front]);
+        assert_eq!(outline.end_discs(), [rear, front]);
+        assert_eq!(outline.discs_between(), small);
+        let sizes = [
+            (outline.axle_distance(), 0.4),
+            (outline.rear_radius(), 0.1),
+            (outline.front_radius(), 0.08),
+            (outline.belt_radius(), 0.09),
+            (outline.smallest_radius(), 0.02),
+            (outline.largest_radius(), 0.1),
+        ];
+        for (found, expected) in sizes {
+            // Rounding of numbers below 1.
+            assert!((found - expected).abs() < 1e-15, "{found} m, {expected} m");
+        }
+    }
+
+    #[test]
+    fn of_two_discs_that_reach_equally_far_the_higher_one_is_an_end() {
+        let discs = [
+            [-0.25, 0.0, 0.0625],
+            [-0.25, 0.25, 0.0625],
+            [0.25, 0.25, 0.0625],
+            [0.25, 0.0, 0.0625],
+        ];
+        assert_eq!(outline(&discs).end_discs(), [discs[1], discs[2]]);
+    }
+}

@@ -315,3 +315,66 @@ impl RunningGear {
             .chain(of(BodyKind::Roller, self.rollers.clone()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Model;
+    use crate::scenario::Scenario;
+
+    fn robot(text: &str) -> Robot {
+        Scenario::from_json(text)
+            .expect("the shared scenario is valid")
+            .robot
+    }
+
+    /// With plates 4 mm thick and grousers 12 mm high and 6 mm thick.
+    #[test]
+    fn a_shoe_is_a_plate_with_a_grouser_in_its_middle() {
+        let robot = robot(include_str!(
+            "../../../../tests/scenarios/engineer_chain_step.json"
+        ));
+        let of = |shape| -> Vec<Vec<[f64; 2]>> {
+            let pieces = shapes(&robot, shape, 0.05, 0.004);
+            let corners =
+                |(_, corners): (_, Vec<Vector>)| corners.into_iter().map(<[f64; 2]>::from);
+            pieces
+                .into_iter()
+                .map(|piece| corners(piece).collect())
+                .collect()
+        };
+        let plate = [
+            [-0.025, -0.002],
+            [0.025, -0.002],
+            [0.025, 0.002],
+            [-0.025, 0.002],
+        ];
+        let grouser = [
+            [-0.003, -0.002],
+            [0.003, -0.002],
+            [0.003, 0.014],
+            [-0.003, 0.014],
+        ];
+        assert_eq!(of(ShoeShape::Rectangle), [plate, grouser]);
+        let [rear, front] = [grouser[3], grouser[2]];
+        let whole = [plate[0], plate[1], plate[2], front, rear, plate[3]];
+        assert_eq!(of(ShoeShape::Trapezoid), [whole]);
+    }
+
+    #[test]
+    #[allow(clippy::float_cmp)] // a limit of 0 is exact
+    fn only_the_shoes_of_a_chain_on_wheels_rub_on_the_ground() {
+        let robot = robot(include_str!(
+            "../../../../tests/scenarios/engineer_sprocket_step.json"
+        ));
+        let model = Model::new(&robot).expect("it is valid");
+        let mut wheels = 0;
+        for part in model.track_parts() {
+            let is_wheel = !matches!(part.mount, Mount::Shoe(_));
+            wheels += usize::from(is_wheel);
+            let most = if is_wheel { 0.0 } else { f64::INFINITY };
+            assert_eq!(part.friction_limit, most, "{:?}", part.kind);
+        }
+        assert!(wheels > 2, "{wheels} wheels");
+    }
+}

@@ -142,3 +142,37 @@ fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
     let discs = outline_discs(outline).into_iter();
     Envelope::new(&discs.map(|disc| disc.grown(-radius)).collect::<Vec<_>>())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    /// Their centres go round two half circles of 0.05 m and two straight runs of 0.4 m: a quarter of the way is half of
+    /// a half circle and of a run.
+    #[test]
+    fn wheels_of_a_given_radius_stand_evenly_round_the_outline() {
+        let outline = TrackOutline {
+            discs: TrackOutline::two_discs(0.4, [0.07; 2]),
+            grouser_height: 0.0,
+            grouser_pitch: 0.05,
+            grouser_thickness: 0.0,
+        };
+        let wheels = CircumferentialWheels {
+            count: 4,
+            wheel_radius: Some(0.02),
+            wheel: Wheel::Round,
+        };
+        let found = circumferential(&outline, &wheels).expect("they fit");
+        // What is left of a quarter beyond the rear half circle is so far behind the middle.
+        let behind = 0.5 * PI * 0.05;
+        let expected = [(-0.2, -0.05), (-behind, 0.05), (0.2, 0.05), (behind, -0.05)];
+        assert_eq!(found.len(), 4);
+        for (disc, (x, y)) in found.iter().zip(expected) {
+            let off = disc.center - Vector::new(x, y);
+            assert!(off.length() < 1e-12, "{} is not at ({x}, {y})", disc.center);
+            assert!((disc.radius - 0.02).abs() < 1e-15, "{} m", disc.radius);
+        }
+    }
+}
