@@ -101,3 +101,36 @@ fn advance_until(
     }
     Ok(false)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{ForceSupport, ForceTrack, Scenario, Track};
+
+    /// The Engineer without motor force on skids of some friction, 1 m in front of a step.
+    fn skids(skid_friction: f64) -> ValidScenario {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.robot.track = Track::Force(ForceTrack {
+            support: ForceSupport::Skids,
+            skid_friction,
+            wheel_count: 5,
+        });
+        scenario.robot.drivetrain.max_torque = 0.0;
+        scenario.start.approach = 1.0;
+        ValidScenario::new(&scenario).expect("it is valid")
+    }
+
+    /// Of its weight, 21.2 kg x 9.81 m/s^2 = 207.972 N, the first level is a hundredth, and each is 1.1 times the one before:
+    /// 1.1^16 / 100 = 0.0459, 1.1^17 / 100 = 0.0505.
+    #[test]
+    fn the_force_lies_between_two_levels_from_a_hundredth_of_the_weight_on() {
+        for (friction, low, high) in [(0.0, 0.0, 2.079_72), (0.048, 9.556_26, 10.511_88)] {
+            let found = escape_force(&skids(friction), 0.1, &Cancel::default());
+            let found = found.expect("it stays finite");
+            assert!((found.low - low).abs() < 1e-4, "{found:?}");
+            assert!((found.high - high).abs() < 1e-4, "{found:?}");
+            assert!(!found.tips, "{found:?}");
+        }
+    }
+}

@@ -214,3 +214,61 @@ fn explained(simulation: &Simulation, speed: f64) -> f64 {
     let load = simulation.weight() + model.motors as f64 * model.motor.force;
     load / (own * omega * omega) + speed / omega * (mass / own).sqrt() + UNSEEN_DEPTH.value()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::ValidScenario;
+    use crate::scenario::{Scenario, Track};
+    use crate::terrain::Side;
+
+    /// The Engineer on a belt, or on a chain of 40 shoes of 60 g.
+    fn simulation(on_chain: bool) -> Simulation {
+        let text = if on_chain {
+            include_str!("../../../tests/scenarios/engineer_chain_step.json")
+        } else {
+            include_str!("../../../tests/scenarios/engineer_belt_step.json")
+        };
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        if let Track::Segmental(chain) = &mut scenario.robot.track {
+            chain.shoe_count = Some(40);
+        }
+        Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"))
+    }
+
+    #[test]
+    fn the_stopped_time_is_that_of_all_stops_and_of_nothing_else() {
+        let event = |kind, start, end| Event {
+            kind,
+            start,
+            end,
+            side: Side::Both,
+            edge: -1,
+            bodies: None,
+            depth: 0.0,
+            root_depth: 0.0,
+            force: 0.0,
+        };
+        let events = [
+            event(EventKind::Stop, 1.0, 3.0),
+            event(EventKind::Intrusion, 0.0, 100.0),
+            event(EventKind::Stop, 5.0, 9.5),
+        ];
+        let found = Metrics::of(&simulation(false), &events).stopped_time;
+        assert!((found - 6.5).abs() < 1e-12, "{found} s");
+    }
+
+    /// The contacts have 1000 Hz: 6283.2 /s. On a belt one is as stiff as for 21.2 kg, and bears 207.97 N of weight and
+    /// 2 x 6 N m / 0.052 m = 230.77 N of force: 0.52 um. On a chain it is as stiff as for 15 g, and a blow of 1 m/s goes
+    /// deeper by the square root of 21.2 / 0.015 = 37.59: 5.98 mm in place of 0.16 mm.
+    #[test]
+    fn what_softness_and_blows_explain_depends_on_the_mass_that_a_contact_is_as_stiff_as() {
+        let depths = |on_chain| [0.0, 1.0].map(|speed| explained(&simulation(on_chain), speed));
+        let [rest, blow] = depths(false);
+        assert!((rest - 1.000_524e-3).abs() < 1e-9, "{rest} m");
+        assert!((blow - rest - 1.591_55e-4).abs() < 1e-9, "{blow} m");
+        let [rest, blow] = depths(true);
+        assert!((rest - 1.0e-3 - 0.74e-3).abs() < 1e-5, "{rest} m");
+        assert!((blow - rest - 5.983e-3).abs() < 1e-6, "{blow} m");
+    }
+}

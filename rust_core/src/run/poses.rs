@@ -75,8 +75,8 @@ pub fn poses(checked: &ValidScenario, trace: &Trace, cancel: &Cancel) -> Result<
     let bodies = model.outlines();
     let samples = trace.chassis_angle.len();
     Columns::of(model).check(trace)?;
-    let numbers = samples * (4 * bodies.len() + 3 * model.flippers.len() + 2);
-    ask("the poses of a run", 8 * numbers as u64)?;
+    let bytes = bytes_of([samples, bodies.len(), model.flippers.len()]);
+    ask("the poses of a run", bytes)?;
     let mut found = Poses {
         samples,
         count: bodies.len(),
@@ -102,6 +102,12 @@ pub fn poses(checked: &ValidScenario, trace: &Trace, cancel: &Cancel) -> Result<
         found.add(model, &bodies, &sample, &running);
     }
     Ok(found)
+}
+
+/// Bytes of the poses of so many samples, of a robot with so many bodies and ends with flippers.
+fn bytes_of([samples, bodies, flippers]: [usize; 3]) -> u64 {
+    let numbers = samples * (4 * bodies + 3 * flippers + 2);
+    8 * numbers as u64
 }
 
 impl Poses {

@@ -1,5 +1,8 @@
 //! What is kept of a run: the history of its state and contacts as columns, and the memory that this takes.
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::TryReserveError;
 
 use super::step_length::SAME_TIME;
@@ -386,11 +389,7 @@ pub(crate) fn batch_budget(
     threads: usize,
 ) -> Result<Budget, LimitError> {
     let terrain_of = |checked: &ValidScenario| corners(&checked.scenario().terrain);
-    let corners = scenarios.iter().map(terrain_of);
-    let largest = corners.clone().max().unwrap_or(0);
-    let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
-    let given_back = corners.map(|corners| BYTES_A_RUN + corners * BYTES_AN_EDGE);
-    let kept = built + given_back.sum::<u64>();
+    let kept = bytes_besides(scenarios.iter().map(terrain_of), threads);
     let mut recorded: u64 = 0;
     if record.history {
         for checked in scenarios {
@@ -403,6 +402,14 @@ pub(crate) fn batch_budget(
     budget.check(&described(scenarios, record), kept.saturating_add(recorded))?;
     budget.take("a batch", kept)?;
     Ok(budget)
+}
+
+/// Bytes of a batch on grounds of so many corners, without its records: each thread builds one ground at a time.
+fn bytes_besides(corners: impl Iterator<Item = u64> + Clone, threads: usize) -> u64 {
+    let largest = corners.clone().max().unwrap_or(0);
+    let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
+    let given_back = corners.map(|corners| BYTES_A_RUN + corners * BYTES_AN_EDGE);
+    built + given_back.sum::<u64>()
 }
 
 fn described(scenarios: &[ValidScenario], record: Record) -> String {

@@ -210,6 +210,13 @@ mod tests {
     }
 
     #[test]
+    fn a_step_that_ends_near_its_limit_ends_there() {
+        assert_eq!(arrive(2.0 - 0.9e-9, 2.0), 2.0);
+        assert_eq!(arrive(2.0 + 0.9e-9, 2.0), 2.0);
+        assert_eq!(arrive(2.0 - 1.1e-9, 2.0), 2.0 - 1.1e-9);
+    }
+
+    #[test]
     fn a_step_that_was_cut_short_says_nothing_against_a_longer_one() {
         let (mut control, _) = after(4e-3, 0.6);
         let wanted = control.wanted;

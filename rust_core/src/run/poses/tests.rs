@@ -185,3 +185,22 @@ fn tips_of_grousers_lie_on_the_envelope_of_the_tips() {
         }
     }
 }
+
+#[test]
+fn the_memory_for_poses_is_that_of_all_their_numbers() {
+    for (name, scenario) in scenarios() {
+        let (_, trace) = after(&scenario, 0);
+        let found = poses_of(&scenario, &trace);
+        let columns = [
+            &found.bodies,
+            &found.arms,
+            &found.travels,
+            &found.centers_of_mass,
+        ];
+        let numbers = columns.map(Vec::len).into_iter().sum::<usize>();
+        let bytes = bytes_of([found.samples, found.count, found.flippers]);
+        assert_eq!(bytes, 8 * numbers as u64, "{name}");
+    }
+    // Per sample 5 poses of three numbers, 5 travels, 2 poses of arms and a point.
+    assert_eq!(bytes_of([10, 5, 2]), 10 * (15 + 5 + 6 + 2) * 8);
+}

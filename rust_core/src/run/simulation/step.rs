@@ -382,6 +382,20 @@ mod tests {
         }
     }
 
+    /// The step ends 10 us after the strike. Where less than 10 us are left then, a step that may be as long takes them.
+    #[test]
+    fn a_step_with_a_strike_leaves_no_short_rest() {
+        for (strike, h, left, piece) in [
+            (10e-6, 25e-6, 25e-6, 25e-6),
+            (10e-6, 35e-6, 35e-6, 20e-6),
+            (12e-6, 22e-6, 25e-6, 22e-6),
+        ] {
+            let (found, strikes) = cut_at_strike(strike, h, left);
+            assert!((found - piece).abs() < 1e-15, "{found} s, {piece} s");
+            assert!(strikes);
+        }
+    }
+
     #[test]
     fn tips_that_come_and_go_within_a_step_strike() {
         let mut found = 0;

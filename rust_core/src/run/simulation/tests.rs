@@ -235,3 +235,130 @@ fn a_branch_has_the_motors_of_its_own_torque() {
     assert!(drives.dynamics.fits(&with, lanes) && stands.dynamics.fits(&without, lanes));
     assert!(!drives.dynamics.fits(&without, lanes) && !stands.dynamics.fits(&with, lanes));
 }
+
+/// Half of the stiffness times the square of the travel, less the pre-tension times the travel, of both tracks.
+#[test]
+fn a_tensioner_gives_its_pre_tension_and_takes_its_stiffness() {
+    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let Track::Segmental(chain) = &mut scenario.robot.track else {
+        panic!("it is a chain")
+    };
+    chain.pre_tension = Some(100.0);
+    chain.tensioner_stiffness = Some(50_000.0);
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let energy = |simulation: &mut Simulation, travel: f64| {
+        simulation.state.idlers[0].travel = travel;
+        simulation.energy()
+    };
+    let before = energy(&mut simulation, 0.0);
+    for (travel, stored) in [(1e-3, -0.15), (-1e-3, 0.25)] {
+        let gained = energy(&mut simulation, travel) - before;
+        // Rounding of an energy of some joules.
+        assert!((gained - stored).abs() < 1e-12, "{gained} J");
+    }
+}
+
+#[test]
+#[allow(clippy::float_cmp)] // a sign is exact
+fn the_direction_is_that_of_the_command() {
+    for (speed, direction) in [(0.4, 1.0), (-0.4, -1.0)] {
+        let mut scenario = skids();
+        scenario.drive.speed = speed;
+        let checked = ValidScenario::new(&scenario).expect("it is valid");
+        assert_eq!(Simulation::new(&checked).direction(), direction);
+    }
+}
+
+#[test]
+fn a_robot_that_stays_is_over_unless_a_push_has_just_risen() {
+    let scenario = skids();
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    while !simulation.is_over() {
+        assert!(simulation.time() < scenario.duration, "it stands");
+        simulation.step().expect("the state stays finite");
+    }
+    assert!(simulation.ended_as().is_none());
+    simulation.raise_push(1.0, 0.1).expect("it is a force");
+    assert!(!simulation.is_over(), "it may leave");
+}
+
+/// Without friction, and with a track of almost no mass, it gains speed as a free mass does: 42.4 N on 21.2 kg are 2 m/s^2, half
+/// as much while they rise.
+#[test]
+fn a_push_moves_a_robot_in_either_engine() {
+    for engine in [Engine::Own, Engine::Rapier] {
+        let mut scenario = skids();
+        scenario.solver.engine = engine;
+        (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(1e-3));
+        if let Track::Force(track) = &mut scenario.robot.track {
+            track.skid_friction = 0.0;
+        }
+        (scenario.start.approach, scenario.robot.track_mass) = (1.0, 1e-3);
+        let checked = ValidScenario::new(&scenario).expect("it is valid");
+        let mut simulation = Simulation::new(&checked);
+        run_until(&mut simulation, 0.1);
+        simulation.raise_push(42.4, 0.2).expect("it is a force");
+        for (time, speed) in [(0.3, 0.2), (0.5, 0.6)] {
+            run_until(&mut simulation, time);
+            let found = simulation.reading().velocity.x;
+            assert!(
+                (found - speed).abs() < 0.01 * speed,
+                "{engine:?}: {found} m/s at {time} s"
+            );
+        }
+    }
+}
+
+#[test]
+#[allow(clippy::float_cmp)] // times are handed on
+fn what_rounding_leaves_of_a_step_is_no_step() {
+    let checked = ValidScenario::new(&skids()).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    simulation.step().expect("the state stays finite");
+    let (steps, limit) = (simulation.steps(), simulation.time() + 4e-10);
+    simulation
+        .step_until(limit)
+        .expect("there is nothing to do");
+    assert_eq!((simulation.steps(), simulation.time()), (steps, limit));
+}
+
+/// Its arms are on their way from 0.8 rad to 1.2 rad.
+#[test]
+fn a_branch_of_a_heavier_robot_goes_on_at_its_speed_and_with_its_arms_where_they_are() {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let gait = r#"{"kind":"hold","angle":1.2,"schedule":null,"front":null,"rear":null}"#;
+    let mut value = serde_json::to_value(&scenario).expect("it is JSON");
+    value["drive"]["gait"] = serde_json::from_str(gait).expect("it is JSON");
+    scenario = Scenario::from_json(&value.to_string()).expect("it is valid");
+    let mut heavier = scenario.clone();
+    heavier.robot.mass += 1.0;
+    let mut armless = heavier.clone();
+    armless.robot.flippers = None;
+    armless.drive.gait = None;
+    let [own, heavier, armless] =
+        [scenario, heavier, armless].map(|s| ValidScenario::new(&s).expect("it is valid"));
+    let mut simulation = Simulation::new(&own);
+    run_until(&mut simulation, 0.2);
+    let angles = |simulation: &Simulation| simulation.now().flipper_angles().collect::<Vec<_>>();
+    let before = (simulation.reading(), angles(&simulation));
+    assert!(before.1[0] > 0.9, "{:?}", before.1);
+    for (variant, arms) in [(&heavier, before.1.clone()), (&armless, vec![])] {
+        let branch = simulation.branch(variant);
+        let now = branch.reading();
+        assert!((now.track_speed - before.0.track_speed).abs() < 1e-12);
+        assert!((now.track_position - before.0.track_position).abs() < 1e-12);
+        assert_eq!(angles(&branch).len(), arms.len());
+        for (found, angle) in angles(&branch).iter().zip(&arms) {
+            assert!((found - angle).abs() < 1e-12, "{found} rad, {angle} rad");
+        }
+    }
+    // One that gets arms has them where the scenario starts them.
+    let mut bare = Simulation::new(&armless);
+    run_until(&mut bare, 0.1);
+    let arms = angles(&bare.branch(&own));
+    assert!((arms[0] - 0.8).abs() < 1e-12, "{arms:?}");
+}

@@ -1,0 +1,67 @@
+//! What the samples of a run say, and the memory that is set aside for them.
+
+use super::*;
+use crate::scenario::Terrain;
+
+/// The Engineer with a belt on level ground.
+fn level() -> Scenario {
+    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    if let Terrain::Step { surface, .. } = scenario.terrain {
+        let friction = surface.friction;
+        let length = 5.0;
+        scenario.terrain = Terrain::Flat { length, friction };
+    }
+    scenario
+}
+
+/// It speeds up with 0.2 m/s^2, for which the friction of 0.9 is plenty: only softness and creep are left.
+#[test]
+fn a_belt_on_level_ground_hardly_slips() {
+    let checked = ValidScenario::new(&level()).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let budget = Budget::new().expect("there is memory");
+    let record = Record {
+        sample_interval: 0.1,
+        ..Record::default()
+    };
+    let mut recorder = Recorder::new(&simulation, record, &budget).expect("it fits");
+    while simulation.time() < 0.5 {
+        simulation.step_until(0.5).expect("the state stays finite");
+        recorder.step(&simulation).expect("it fits");
+    }
+    let (trace, contacts) = recorder.finish(&simulation).expect("it fits");
+    assert_eq!(trace.time.len(), 6);
+    assert!(trace.slip_ratio[0].abs() < 1e-15, "it stands");
+    for (k, slip) in trace.slip_ratio.iter().enumerate().skip(1) {
+        let time = 0.1 * k as f64;
+        assert!((trace.time[k] - time).abs() < 1e-9);
+        let speed = trace.track_speed[k];
+        assert!((speed - 0.2 * time).abs() < 2e-3, "{speed} m/s at {time} s");
+        assert!(slip.abs() < 0.02, "{slip} at {time} s");
+        // The mean over an interval accelerates the robot, and turns its track.
+        let force = trace.tractive_effort[k];
+        assert!((force - 21.2 * 0.2).abs() < 0.1, "{force} N at {time} s");
+        let force = trace.drive_force[k];
+        assert!(
+            (force - (21.2 + 2.4) * 0.2).abs() < 0.1,
+            "{force} N at {time} s"
+        );
+        let bears: f64 = (contacts.time.iter().zip(&contacts.normal_force))
+            .filter(|(at, _)| (**at - time).abs() < 1e-9)
+            .map(|(_, force)| force)
+            .sum();
+        assert!((bears - 21.2 * 9.81).abs() < 0.5, "{bears} N at {time} s");
+    }
+}
+
+/// A thread has a stack of 2 MiB, and 600 bytes for each corner of the largest ground; a run gives back 64 KiB, and 128
+/// bytes for each corner of its own.
+#[test]
+fn a_batch_needs_room_for_its_threads_and_for_what_its_runs_give_back() {
+    let found = bytes_besides([1000, 3000].into_iter(), 2);
+    let threads = 2 * (2_097_152 + 1_800_000);
+    let runs = (65_536 + 128_000) + (65_536 + 384_000);
+    assert_eq!(found, threads + runs);
+    assert_eq!(bytes_besides([].into_iter(), 1), 2_097_152);
+}
