@@ -2,7 +2,8 @@
 
 use approx::assert_relative_eq;
 
-use super::{BodyKind, Model, MotorRule, Mount, Part, Shape, start_position};
+use super::outline::Body;
+use super::{BodyKind, ChainOfShoes, Model, MotorRule, Mount, Part, Shape, start_position};
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::scenario::{
     ClosedSurface, ClosedTrack, Ends, HybridWheels, Pi, Robot, Scenario, Surface, Terrain, Track,
@@ -421,4 +422,51 @@ fn a_wheel_is_drawn_as_a_circle() {
         panic!("it is hybrid")
     };
     assert_eq!(wheels, placed.placements.len());
+}
+
+#[test]
+fn two_chains_have_half_of_each_spring_damper_and_wheel() {
+    let mut robot = on_all_tracks().remove(6);
+    let Track::Segmental(chain) = &mut robot.track else {
+        panic!("it is a chain")
+    };
+    (chain.pin_stiffness, chain.pin_damping) = (2.0, 0.01);
+    let (whole, sides) = (model(&robot), on_two_lanes(&robot));
+    let whole = &whole.chains[0];
+    for side in &sides.chains {
+        let inertia = |chain: &ChainOfShoes| chain.sprocket.as_ref().map_or(0.0, |s| s.inertia);
+        for (of_side, of_both) in [
+            (side.bushing.stiffness, whole.bushing.stiffness),
+            (side.bushing.damping, whole.bushing.damping),
+            (side.tensioner.stiffness, whole.tensioner.stiffness),
+            (side.tensioner.damping, whole.tensioner.damping),
+            (inertia(side), inertia(whole)),
+        ] {
+            assert!(of_both > 0.0);
+            assert_relative_eq!(2.0 * of_side, of_both);
+        }
+        assert_relative_eq!(side.tensioner.stop, whole.tensioner.stop);
+    }
+}
+
+/// A track that has run by the radius of a wheel has turned it by 1 rad, clockwise.
+#[test]
+fn what_a_track_runs_round_turns_with_it() {
+    let robots = on_all_tracks();
+    for (robot, belt) in [(&robots[0], true), (&robots[6], false)] {
+        let model = model(robot);
+        let radius = if belt { 0.064 } else { model.drive_radius };
+        let [before, after] = [0.0, radius].map(|run| model.running_at_start(run));
+        let is_sprocket = |body: &&Body| body.kind == BodyKind::Sprocket;
+        let bodies = model.outlines();
+        let sprocket = bodies.iter().find(is_sprocket).expect("it has one");
+        let turned = sprocket.place(&model, &after).1 - sprocket.place(&model, &before).1;
+        assert_relative_eq!(turned, -1.0, max_relative = 1e-12);
+        let farthest = sprocket
+            .outline
+            .iter()
+            .map(|c| c.length())
+            .fold(0.0, f64::max);
+        assert!(farthest > 0.04 && farthest < 0.064 + 1e-9, "{farthest} m");
+    }
 }

@@ -258,6 +258,37 @@ mod tests {
         assert!((found - 6.5).abs() < 1e-12, "{found} s");
     }
 
+    /// On the belt 1.0005 mm are explained at rest.
+    #[test]
+    fn a_depth_is_doubted_if_it_exceeds_what_is_explained_in_a_run_from_its_start() {
+        let simulation = simulation(false);
+        let doubt = |is_anew, deepest| {
+            let seen = Sinkage {
+                is_anew,
+                deepest,
+                ..Sinkage::from(&simulation)
+            };
+            seen.doubt(&simulation)
+        };
+        assert!(Sinkage::from(&simulation).is_anew, "it is at its start");
+        assert_eq!(doubt(true, 1.0004e-3), None);
+        assert_eq!(doubt(false, 2e-3), None);
+        let found = doubt(true, 1.0006e-3).expect("it is deeper");
+        let reason = "is usually at most 0.0010 m, what softness and blows explain:";
+        assert!(found.reason.starts_with(reason), "{}", found.reason);
+        assert!((found.value - 1.0006e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_fastest_point_moves_as_the_robot_turns_and_its_track_runs() {
+        let simulation = simulation(false);
+        let place = ValidScenario::new(simulation.scenario()).expect("it is valid");
+        let running = Simulation::driven_at(&place, simulation.reading().position, 0.0);
+        // At rest, with a track that runs at the command.
+        let found = speed(&running, 0.3);
+        assert!((found - 0.4).abs() < 1e-12, "{found} m/s");
+    }
+
     /// The contacts have 1000 Hz: 6283.2 /s. On a belt one is as stiff as for 21.2 kg, and bears 207.97 N of weight and
     /// 2 x 6 N m / 0.052 m = 230.77 N of force: 0.52 um. On a chain it is as stiff as for 15 g, and a blow of 1 m/s goes
     /// deeper by the square root of 21.2 / 0.015 = 37.59: 5.98 mm in place of 0.16 mm.

@@ -320,7 +320,7 @@ impl RunningGear {
 mod tests {
     use super::*;
     use crate::robot::Model;
-    use crate::scenario::Scenario;
+    use crate::scenario::{Scenario, Track};
 
     fn robot(text: &str) -> Robot {
         Scenario::from_json(text)
@@ -359,6 +359,64 @@ mod tests {
         let [rear, front] = [grouser[3], grouser[2]];
         let whole = [plate[0], plate[1], plate[2], front, rear, plate[3]];
         assert_eq!(of(ShoeShape::Trapezoid), [whole]);
+    }
+
+    /// The Engineer weighs 207.972 N, of which a track pulls with a fortieth, and its track 2.4 kg. Both tracks together have
+    /// twice what one has.
+    #[test]
+    fn a_tensioner_pulls_with_a_share_of_the_weight_and_is_damped_for_the_track() {
+        let mut robot = robot(include_str!(
+            "../../../../tests/scenarios/engineer_chain_step.json"
+        ));
+        let Track::Segmental(mut track) = robot.track.clone() else {
+            panic!("it is a chain")
+        };
+        let found = tensioner(&robot, &track, 0.05);
+        let check = |found: f64, expected: f64| {
+            let off = found / expected - 1.0;
+            assert!(off.abs() < 1e-12, "{found}, {expected}");
+        };
+        check(found.pre_tension, 2.0 * 5.1993);
+        // It has no force left after a tenth of a pitch.
+        check(found.stiffness, 2.0 * 1039.86);
+        check(found.stop, 0.003);
+        (track.pre_tension, track.tensioner_stiffness) = (Some(100.0), Some(30_000.0));
+        let found = tensioner(&robot, &track, 0.05);
+        check(found.pre_tension, 200.0);
+        check(found.stiffness, 60_000.0);
+        // The root of 2 x 30 kN/m x 2.4 kg is 379.47 N s/m.
+        check(found.damping * found.damping, 4.0 * 144_000.0);
+        track.tensioner_damping = Some(30.0);
+        check(tensioner(&robot, &track, 0.05).damping, 60.0);
+        robot.track = Track::Segmental(track);
+        let chain = &Model::new(&robot).expect("it is valid").chains[0];
+        // A rod of the length of a pitch.
+        let rod = chain.shoe_inertia / (chain.shoe_mass * chain.path.pitch);
+        check(12.0 * rod, chain.path.pitch);
+    }
+
+    /// 20 of them divide the 0.365 m between the axles into 21.
+    #[test]
+    fn road_wheels_fill_nearly_all_of_their_run() {
+        let mut robot = robot(include_str!(
+            "../../../../tests/scenarios/engineer_sprocket_step.json"
+        ));
+        let Track::Segmental(track) = &mut robot.track else {
+            panic!("it is a chain")
+        };
+        (track.road_wheel_count, track.return_roller_count) = (Some(20), Some(0));
+        let model = Model::new(&robot).expect("it is valid");
+        let wheels = model
+            .track_parts()
+            .filter(|part| part.kind == BodyKind::RoadWheel);
+        let wheels: Vec<Disc> = wheels.flat_map(|part| part.discs().map(|d| d.1)).collect();
+        assert_eq!(wheels.len(), 20);
+        for pair in wheels.windows(2) {
+            let apart = pair[1].center.x - pair[0].center.x;
+            assert!((apart - 0.365 / 21.0).abs() < 1e-6, "{apart} m");
+            let radius = pair[0].radius;
+            assert!((2.0 * radius - 0.96 * apart).abs() < 1e-12, "{radius} m");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What the samples of a run say, and the memory that is set aside for them.
 
 use super::*;
-use crate::scenario::Terrain;
+use crate::scenario::{Terrain, Track};
 
 /// The Engineer with a belt on level ground.
 fn level() -> Scenario {
@@ -38,6 +38,8 @@ fn a_belt_on_level_ground_hardly_slips() {
         assert!((trace.time[k] - time).abs() < 1e-9);
         let speed = trace.track_speed[k];
         assert!((speed - 0.2 * time).abs() < 2e-3, "{speed} m/s at {time} s");
+        let command = trace.commanded_speed[k];
+        assert!((command - 0.2 * time).abs() < 1e-9, "{command} m/s");
         assert!(slip.abs() < 0.02, "{slip} at {time} s");
         // The mean over an interval accelerates the robot, and turns its track.
         let force = trace.tractive_effort[k];
@@ -53,6 +55,9 @@ fn a_belt_on_level_ground_hardly_slips() {
             .sum();
         assert!((bears - 21.2 * 9.81).abs() < 0.5, "{bears} N at {time} s");
     }
+    // All of the weight presses a contact in by g / (2 pi 1000 Hz)^2 = 0.25 um.
+    let deepest = contacts.penetration.iter().copied().fold(0.0, f64::max);
+    assert!(deepest > 1e-8 && deepest < 1e-6, "{deepest} m");
 }
 
 /// A thread has a stack of 2 MiB, and 600 bytes for each corner of the largest ground; a run gives back 64 KiB, and 128
@@ -64,4 +69,29 @@ fn a_batch_needs_room_for_its_threads_and_for_what_its_runs_give_back() {
     let runs = (65_536 + 128_000) + (65_536 + 384_000);
     assert_eq!(found, threads + runs);
     assert_eq!(bytes_besides([].into_iter(), 1), 2_097_152);
+}
+
+/// A sample has 14 numbers, 3 for each drive, 3 for each shoe and 2 for the arms at each end, a contact 15; 8 bytes each.
+#[test]
+fn a_sample_needs_room_for_its_numbers_and_for_contacts_of_half_of_the_parts() {
+    let columns = Columns {
+        parts: 0,
+        drives: 2,
+        shoes: 3,
+        flippers: 1,
+    };
+    assert_eq!(Trace::bytes(columns), 8 * (14 + 6 + 9 + 2));
+    assert_eq!(ContactTable::bytes(columns), 8 * 15);
+    // A belt and a belly: two contacts all the same.
+    let belt = level();
+    let bytes = |robot| bytes_of_sample(&Model::new(robot).expect("it is valid"));
+    assert_eq!(bytes(&belt.robot), 8 * (14 + 3) + 2 * 8 * 15);
+    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
+    let mut chain = Scenario::from_json(text).expect("the shared scenario is valid");
+    if let Track::Segmental(track) = &mut chain.robot.track {
+        track.shoe_count = Some(40);
+    }
+    // 40 plates and grousers, the guide and the belly.
+    let expected = 8 * (14 + 3 + 3 * 40) + 41 * 8 * 15;
+    assert_eq!(bytes(&chain.robot), expected);
 }

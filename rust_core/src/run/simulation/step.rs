@@ -331,6 +331,14 @@ mod tests {
         simulation
     }
 
+    #[test]
+    fn a_robot_starts_with_its_lowest_tip_on_the_ground_whatever_its_phase() {
+        for phase in [0.0, 0.004, 0.013, 0.031] {
+            let gap = on_gears(phase).gap_after(0.0);
+            assert!(gap.abs() < 1e-9, "{gap} m at {phase} m");
+        }
+    }
+
     /// At its start everything is at rest, and the ground farther away than contacts are searched for then.
     #[test]
     fn a_long_step_sees_the_ground_that_it_falls_on() {

@@ -343,12 +343,15 @@ fn a_branch_of_a_heavier_robot_goes_on_at_its_speed_and_with_its_arms_where_they
         [scenario, heavier, armless].map(|s| ValidScenario::new(&s).expect("it is valid"));
     let mut simulation = Simulation::new(&own);
     run_until(&mut simulation, 0.2);
+    simulation.raise_push(3.0, 0.1).expect("it is a force");
     let angles = |simulation: &Simulation| simulation.now().flipper_angles().collect::<Vec<_>>();
     let before = (simulation.reading(), angles(&simulation));
     assert!(before.1[0] > 0.9, "{:?}", before.1);
     for (variant, arms) in [(&heavier, before.1.clone()), (&armless, vec![])] {
         let branch = simulation.branch(variant);
         let now = branch.reading();
+        assert!((now.position - before.0.position).length() < 1e-12);
+        assert_eq!(branch.commands.push, simulation.commands.push);
         assert!((now.track_speed - before.0.track_speed).abs() < 1e-12);
         assert!((now.track_position - before.0.track_position).abs() < 1e-12);
         assert_eq!(angles(&branch).len(), arms.len());
@@ -361,4 +364,65 @@ fn a_branch_of_a_heavier_robot_goes_on_at_its_speed_and_with_its_arms_where_they
     run_until(&mut bare, 0.1);
     let arms = angles(&bare.branch(&own));
     assert!((arms[0] - 0.8).abs() < 1e-12, "{arms:?}");
+}
+
+/// With its arms at an angle of 0, at which the scenario has its mass and moment of inertia.
+#[test]
+fn bodies_of_a_simulation_add_up_to_the_robot() {
+    let texts = [
+        include_str!("../../../../tests/scenarios/engineer_sprocket_step.json"),
+        include_str!("../../../../tests/scenarios/engineer_flippers_step.json"),
+    ];
+    for text in texts {
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        if let Some(flippers) = &mut scenario.robot.flippers {
+            flippers.angle = 0.0;
+        }
+        let robot = scenario.robot.clone();
+        let checked = ValidScenario::new(&scenario).expect("it is valid");
+        let simulation = Simulation::new(&checked);
+        let center = simulation.center_of_mass() - simulation.reading().position;
+        assert!((center - Vector::from(robot.center_of_mass)).length() < 1e-12);
+        let share = simulation.moment_of_inertia() / robot.moment_of_inertia;
+        assert!((share - 1.0).abs() < 1e-12, "{share}");
+        assert!((simulation.weight() / robot.mass - 9.81).abs() < 1e-12);
+        assert!((simulation.half_length() - 0.1825).abs() < 1e-15);
+    }
+}
+
+/// Rods of 1.55 kg and 0.34 m at 0.8 rad, on a chassis at 1 m/s: turning at 2 rad/s their middle moves by 0.34 m/s, of which
+/// 0.34 m/s sin 0.8 = 0.2439 m/s backwards.
+#[test]
+fn an_arm_that_turns_upwards_takes_speed_from_its_middle() {
+    let text = include_str!("../../../../tests/scenarios/engineer_flippers_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    simulation.state.velocity = Vector::new(1.0, 0.0);
+    let before = simulation.energy();
+    simulation.state.flippers[0].rate = 2.0;
+    // Half of 1.55 kg times 0.34^2 / 3 m^2 times the square of the rate, less 1.55 kg x 1 m/s x 0.2439 m/s.
+    let expected = 0.119_453 - 0.378_047;
+    let gained = simulation.energy() - before;
+    assert!((gained - expected).abs() < 2e-6, "{gained} J");
+}
+
+/// Pins of both tracks with 2 x 4 N m/rad: a shoe of a straight run that turns by 0.01 rad bends two of them.
+#[test]
+fn a_bent_pin_stores_half_of_its_stiffness_times_the_square_of_its_angle() {
+    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    if let Track::Segmental(chain) = &mut scenario.robot.track {
+        chain.pin_stiffness = 4.0;
+    }
+    let checked = ValidScenario::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked);
+    let before = simulation.energy();
+    let is_straight = |pair: &[Shoe]| pair[0].bend(&pair[1]).abs() < 1e-9;
+    let mut runs = simulation.state.shoes.windows(3);
+    let straight = runs.position(|run| run.windows(2).all(is_straight));
+    let middle = straight.expect("it has a straight run") + 1;
+    simulation.state.shoes[middle].angle += 0.01;
+    let gained = simulation.energy() - before;
+    assert!((gained - 8e-4).abs() < 1e-10, "{gained} J");
 }
