@@ -284,7 +284,7 @@ mod tests {
     use super::*;
     use crate::robot::Running;
     use crate::run::ValidScenario;
-    use crate::scenario::Scenario;
+    use crate::scenario::{Scenario, Track, Wheel};
 
     /// [m] How far the tips of gear wheels reach into the ground at their lowest.
     const DIP: f64 = 5e-6;
@@ -331,10 +331,18 @@ mod tests {
         simulation
     }
 
+    /// Their phases are no mirror image of themselves: which way they turn matters.
     #[test]
     fn a_robot_starts_with_its_lowest_tip_on_the_ground_whatever_its_phase() {
         for phase in [0.0, 0.004, 0.013, 0.031] {
-            let gap = on_gears(phase).gap_after(0.0);
+            let mut scenario = on_gears(phase).scenario;
+            if let Track::Line(line) = &mut scenario.robot.track
+                && let Wheel::Gear(wheel) = &mut line.wheel
+            {
+                wheel.phase_fraction = 0.2;
+            }
+            let checked = ValidScenario::new(&scenario).expect("it is valid");
+            let gap = Simulation::new(&checked).gap_after(0.0);
             assert!(gap.abs() < 1e-9, "{gap} m at {phase} m");
         }
     }
