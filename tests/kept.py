@@ -22,8 +22,8 @@ IS_KEPT_ANEW = os.environ.get("CRAWLER2D_KEEP") == "1"
 ROOT = str(Path(__file__).parents[1])
 # Where pytest's folders and objects are, and what libraries say, which differs by version.
 ELSEWHERE = re.compile(r"(file://)?/\S*/pytest-of-[^/]+/pytest-\d+/(popen-gw\d+/)?[^/ ]+")
-PATH = re.compile(r"\bgot (FOLDER|ELSEWHERE)[^;:,]*")
-"""As a value, of which the end is left out if the folder of pytest has a long name."""
+PATH = re.compile(r"\bgot (FOLDER|ELSEWHERE|ROOT)[^;:,]*")
+"""As a value, of which the end is left out if its folder has a long name."""
 ADDRESS = re.compile(r"x[0-9a-f]{8,}>")
 OTHERS = re.compile(r"(that (trimesh reads|MuJoCo compiles|expands)\b).*")
 

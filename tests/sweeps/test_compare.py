@@ -74,7 +74,7 @@ def test_the_figure_has_each_difference_with_its_interval(
     bounds = [np.atleast_1d(shown[f"difference_{end}"]) for end in ("low", "high")]
     np.testing.assert_array_equal(ends.T, bounds)
     lost = found["only_reference"].sel(model="skids").item()
-    assert any(f"only belt {lost} times" in text.get_text() for text in ax.texts)
+    assert any(f"belt alone: {lost}" in text.get_text() for text in ax.texts)
 
 
 def test_rates_and_differences_are_those_of_the_pairs(found: xr.Dataset) -> None:
