@@ -2,7 +2,7 @@
 
 use crawler2d_core::{
     ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Friction,
-    Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
+    Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
     ShoeShape, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline, ValidScenario,
     Wheel,
 };
@@ -181,12 +181,22 @@ fn drawn_terrain(draw: &mut Draw) -> Terrain {
             barrier_yaw: draw.between(-1.0, 1.0),
             surface: Surface::sharp(draw.between(0.0, 2.0)),
         }),
-        2 => Terrain::Lanes {
+        2 => drawn_lanes(draw, seed.is_multiple_of(2)),
+        _ => drawn_lane(draw),
+    }
+}
+
+fn drawn_lanes(draw: &mut Draw, has_middle: bool) -> Terrain {
+    loop {
+        let lanes = Terrain::Lanes {
             left: Box::new(drawn_lane(draw)),
             right: Box::new(drawn_lane(draw)),
-            middle: seed.is_multiple_of(2).then(|| Box::new(drawn_lane(draw))),
-        },
-        _ => drawn_lane(draw),
+            middle: has_middle.then(|| Box::new(drawn_lane(draw))),
+        };
+        // The goal of one may be beyond the end of another.
+        if Ground::new(&lanes, engineer().robot.gauge).is_ok() {
+            return lanes;
+        }
     }
 }
 
