@@ -230,7 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_direction_within_rounding_of_the_tangent_has_not_to_turn_round_once() {
+    fn a_direction_within_rounding_of_the_tangent_does_not_turn_at_all() {
         let disc = |x: f64, radius: f64| Disc {
             center: Vector::new(x, 0.0),
             radius,

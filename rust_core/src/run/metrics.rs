@@ -220,7 +220,6 @@ mod tests {
     use super::*;
     use crate::run::ValidScenario;
     use crate::scenario::{Scenario, Track};
-    use crate::terrain::Side;
 
     /// The Engineer on a belt, or on a chain of 40 shoes of 60 g.
     fn simulation(on_chain: bool) -> Simulation {
@@ -238,21 +237,14 @@ mod tests {
 
     #[test]
     fn the_stopped_time_is_that_of_all_stops_and_of_nothing_else() {
-        let event = |kind, start, end| Event {
-            kind,
-            start,
-            end,
-            side: Side::Both,
-            edge: -1,
-            bodies: None,
-            depth: 0.0,
-            root_depth: 0.0,
-            force: 0.0,
+        let intrusion = Event {
+            kind: EventKind::Intrusion,
+            ..Event::stop(0.0, 100.0, None)
         };
         let events = [
-            event(EventKind::Stop, 1.0, 3.0),
-            event(EventKind::Intrusion, 0.0, 100.0),
-            event(EventKind::Stop, 5.0, 9.5),
+            Event::stop(1.0, 3.0, None),
+            intrusion,
+            Event::stop(5.0, 9.5, None),
         ];
         let found = Metrics::of(&simulation(false), &events).stopped_time;
         assert!((found - 6.5).abs() < 1e-12, "{found} s");

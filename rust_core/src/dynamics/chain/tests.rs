@@ -132,7 +132,7 @@ fn a_chain_is_off_once_it_goes_round_one_of_its_ends_alone_or_none() {
 }
 
 #[test]
-fn an_idler_is_held_by_its_spring_and_damper_and_beyond_its_stop_by_one_of_a_hundred_times_that() {
+fn an_idler_has_its_spring_and_damper_and_a_hundred_times_that_stiffness_beyond_its_stop() {
     let chain = on_wheels();
     let rule = chain.rule.tensioner;
     let (h, time) = (2e-3, 1e-3);
