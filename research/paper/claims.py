@@ -441,7 +441,7 @@ def _cross(
 ) -> FigureDataset:
     """Drive layouts without flippers over some grounds."""
     models = models_of(names, setting, flippers=False)
-    return work.success(grounds, models, work.design.claim_repeats)
+    return work.success_rate(grounds, models, work.design.claim_repeats)
 
 
 def _count(runs: FigureDataset, model: str, ground: str, label: str = "") -> _Count:
@@ -479,7 +479,7 @@ def _mass_sticks(work: Work) -> Claim:
 def _over_fields(work: Work, models: Mapping[str, Any], friction: float) -> FigureDataset:
     """Drive robots over as many fields as Table 2 has, and the same ones."""
     field = {_FIELD: c2d.terrains.random_stepfield(friction=friction)}
-    return work.success(field, models, work.design.field_repeats)
+    return work.success_rate(field, models, work.design.field_repeats)
 
 
 def _heavier(robot: c2d.Robot, motors: float) -> c2d.Robot:

@@ -100,12 +100,14 @@ class Work:
         until = c2d.Until(width=_NO_WIDTH, min_runs=repeats, max_runs=repeats)
         return RateSampling(**self.sampling, until=until)
 
-    def success(
+    def success_rate(
         self, grounds: Mapping[str, Terrain], models: Mapping[str, Any], repeats: int
     ) -> FigureDataset:
         """Drive robots over some grounds, each as often."""
         base, options = climb(next(iter(grounds.values()))), self.sampling_of(repeats)
-        return self.count(c2d.studies.success(base, terrains=grounds, models=models, **options))
+        return self.count(
+            c2d.studies.success_rate(base, terrains=grounds, models=models, **options)
+        )
 
     def count(self, figures: FigureDataset) -> FigureDataset:
         """Count what a study has tried, and return it; what two studies try counts twice."""

@@ -122,7 +122,7 @@ def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Fi
 def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) -> FigureDataset:
     """Drive some layouts over the fields in one setting; see `cross_fields`."""
     grounds = {name: replace(field, friction=setting.friction) for name, field in FIELDS.items()}
-    return work.success(grounds, models_of(names, setting), repeats)
+    return work.success_rate(grounds, models_of(names, setting), repeats)
 
 
 def cells(setting: Setting, runs: FigureDataset) -> list[FieldCell]:

@@ -14,7 +14,9 @@ ROBOT: Any = c2d.robots.engineer(flippers=None)
 STUDIES: dict[str, Callable[[Any], Any]] = {
     "certify": lambda scenario: c2d.studies.certify(scenario, {"terrain.friction": (0.3, 0.8)}),
     "compare": lambda scenario: c2d.compare(scenario, {"as it is": {}}),
-    "critical": lambda scenario: c2d.studies.critical(scenario, "terrain.friction", (0.3, 0.8)),
+    "critical_value": lambda scenario: c2d.studies.critical_value(
+        scenario, "terrain.friction", (0.3, 0.8)
+    ),
     "jam_chart": c2d.studies.jam_chart,
     "max_gap": c2d.studies.max_gap,
     "max_obstacle": c2d.studies.max_obstacle,
@@ -24,7 +26,7 @@ STUDIES: dict[str, Callable[[Any], Any]] = {
     "seizure_map": lambda scenario: c2d.studies.seizure_map(
         scenario, ("terrain.height", [0.1, 0.2]), ("terrain.friction", [0.3, 0.6])
     ),
-    "success": c2d.studies.success,
+    "success_rate": c2d.studies.success_rate,
     "sensitivity": c2d.studies.sensitivity,
 }
 
@@ -65,7 +67,7 @@ def test_flat_ground_has_no_greatest_obstacle(study: Callable[[Any], Any], rule:
 def test_a_path_that_is_no_text_is_refused_by_the_name_of_its_argument(given: Any) -> None:
     base = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
     cases: list[tuple[str, Callable[[], Any]]] = [
-        ("path", lambda: c2d.studies.critical(base, given, (0.3, 0.8))),
+        ("path", lambda: c2d.studies.critical_value(base, given, (0.3, 0.8))),
         ("over", lambda: c2d.studies.certify(base, {given: (0.3, 0.8)})),
         ("x", lambda: c2d.studies.jam_chart(base, x=given, values=[0.1])),
     ]
@@ -110,12 +112,12 @@ def test_fields_that_differ_in_their_seed_alone_get_a_warning_where_runs_draw_it
     fields = {f"field {seed}": c2d.terrains.random_stepfield(seed) for seed in (1, 2)}
     few: Any = {"until": c2d.Until(min_runs=1, max_runs=1), "progress": False}
     with pytest.warns(c2d.ScenarioWarning, match="their seed.*got field 1, field 2$"):
-        c2d.studies.success(base, terrains=fields, **few)
+        c2d.studies.success_rate(base, terrains=fields, **few)
     with warnings.catch_warnings():
         warnings.simplefilter("error", c2d.ScenarioWarning)
-        c2d.studies.success(base, terrains=fields, vary=c2d.variability.of_start(), **few)
+        c2d.studies.success_rate(base, terrains=fields, vary=c2d.variability.of_start(), **few)
         lower = c2d.terrains.random_stepfield(rise=0.01)
-        c2d.studies.success(base, terrains={**fields, "field 2": lower}, **few)
+        c2d.studies.success_rate(base, terrains={**fields, "field 2": lower}, **few)
 
 
 MEASURES = ("acceleration", "braking_distance", "max_speed", "odometry", "ride")
@@ -143,7 +145,7 @@ def test_an_approach_that_models_set_is_not_drawn() -> None:
 STEP = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
 GROUNDS = {"low": c2d.terrains.step(0.03), "high": c2d.terrains.step(0.3)}
 OF_HEIGHT: dict[str, Callable[[Any], Any]] = {
-    "critical": lambda models: c2d.studies.critical(
+    "critical_value": lambda models: c2d.studies.critical_value(
         STEP, "terrain.height", (0.03, 0.1), models=models
     ),
     "jam_chart": lambda models: c2d.studies.jam_chart(STEP, models=models, values=[0.05]),
@@ -163,7 +165,7 @@ def test_a_model_does_not_set_the_field_of_the_study(name: str) -> None:
 
 def test_a_model_does_not_replace_the_terrains_that_are_asked_for() -> None:
     model = {"on another": {"terrain": c2d.terrains.step(0.05)}}
-    error = refused(lambda: c2d.studies.success(STEP, terrains=GROUNDS, models=model))
+    error = refused(lambda: c2d.studies.success_rate(STEP, terrains=GROUNDS, models=model))
     assert error.path == "models['on another']"
     error = refused(lambda: c2d.studies.search(STEP, model, terrains=GROUNDS))
     assert error.path == "space['on another']"

@@ -15,7 +15,9 @@ STEADY: dict[str, Any] = {"vary": {"start.track_phase": c2d.uniform(0.0, 0.048)}
 
 
 def friction_of(**how: Any) -> Any:
-    return c2d.studies.critical(SLOPE, "terrain.friction", (0.3, 0.8), points=3, **STEADY, **how)
+    return c2d.studies.critical_value(
+        SLOPE, "terrain.friction", (0.3, 0.8), points=3, **STEADY, **how
+    )
 
 
 def test_a_belt_climbs_where_friction_exceeds_the_slope() -> None:
@@ -54,7 +56,7 @@ def test_where_a_model_was_not_tried_nothing_was_drawn() -> None:
 
 
 def test_where_nothing_passes_one_half_there_is_no_bracket() -> None:
-    found = c2d.studies.critical(SLOPE, "terrain.friction", (0.1, 0.3), points=2, **STEADY)
+    found = c2d.studies.critical_value(SLOPE, "terrain.friction", (0.1, 0.3), points=2, **STEADY)
     assert math.isnan(found["bracket_low"].item())
     assert found["monotone"].item()
     assert found.attrs["settings"] == 2
@@ -66,7 +68,7 @@ def test_monotone_is_a_rate_that_passes_one_half_once() -> None:
         c2d.terrains.step(0.05),
         drive=c2d.Drive(speed=0.2),
     )
-    found = c2d.studies.critical(edge, "terrain.height", (0.02, 0.16), points=8, **STEADY)
+    found = c2d.studies.critical_value(edge, "terrain.height", (0.02, 0.16), points=8, **STEADY)
     ways = found["rate"].sel(model=found["model"].values[0]).to_numpy() >= 0.5
     ways = ways[found["count"].to_numpy()[0] > 0]
     assert found["monotone"].item() == (np.count_nonzero(np.diff(ways)) <= 1)
@@ -83,7 +85,7 @@ def test_what_is_wrong_is_refused_by_name() -> None:
     ]
     for given, how, path in cases:
         with pytest.raises(c2d.ScenarioError) as caught:
-            c2d.studies.critical(SLOPE, *given, **how)
+            c2d.studies.critical_value(SLOPE, *given, **how)
         assert caught.value.path == path
 
 
@@ -92,7 +94,7 @@ def test_a_model_that_breaks_a_rule_is_refused_before_any_run() -> None:
     models: dict[str, Any] = {"as it is": {}, "weightless": {"robot.mass": -1.0}}
     how = {**STEADY, "models": models, "progress": lambda done, _: made.append(done)}
     with pytest.raises(c2d.ScenarioError, match=r"model=weightless, .*robot.mass must be"):
-        c2d.studies.critical(SLOPE, "terrain.friction", (0.3, 0.8), points=3, **how)
+        c2d.studies.critical_value(SLOPE, "terrain.friction", (0.3, 0.8), points=3, **how)
     assert set(made) <= {0}
 
 

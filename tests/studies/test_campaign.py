@@ -255,7 +255,7 @@ def test_labels_with_dollars_are_no_formulas_in_a_figure() -> None:
     how: Any = {"models": models, "progress": False}
     once = c2d.Until(min_runs=1, max_runs=1, confidence=0.995)
     highest = c2d.studies.max_obstacle(BASE, heights=[0.05], until=once, **how)
-    crossed = c2d.studies.success(BASE, terrains={dear: BASE.terrain}, until=once, **how)
+    crossed = c2d.studies.success_rate(BASE, terrains={dear: BASE.terrain}, until=once, **how)
     ridden = c2d.studies.ride(BASE, repeats=1, **how)
     for found in (highest, crossed, ridden):
         ax = found.plot()

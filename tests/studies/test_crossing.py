@@ -23,7 +23,7 @@ MODELS = {"belt": c2d.BeltTrack(), "line of 3": c2d.LineOfWheels(3)}
 def found_of(**how: Any) -> Any:
     given = {"terrains": GROUNDS, "models": MODELS, "progress": False, **how}
     given.setdefault("until", c2d.Until(width=0.5, min_runs=5, max_runs=20))
-    return c2d.studies.success(BASE, **given)
+    return c2d.studies.success_rate(BASE, **given)
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def test_every_run_over_a_field_has_a_field_of_its_own() -> None:
 def test_nothing_given_to_vary_is_the_same_as_none() -> None:
     field: Any = {"field": GROUNDS["field"]}
     few = c2d.Until(min_runs=2, max_runs=2)
-    crossed = c2d.studies.success(BASE, terrains=field, vary=None, until=few, progress=False)
+    crossed = c2d.studies.success_rate(BASE, terrains=field, vary=None, until=few, progress=False)
     assert "terrain.seed" in crossed.attrs["vary"]
     how: Any = {"first": 2, "confirm": 2, "progress": False}
     lines = [c2d.LineOfWheels(4), c2d.LineOfWheels(5)]

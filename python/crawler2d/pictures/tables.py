@@ -332,7 +332,7 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
 def _numbers(shown: xarray.DataArray) -> list[str]:
     numeric = [str(d) for d in shown.dims if d in shown.coords and shown[d].dtype.kind in "iuf"]
     if not numeric:
-        rule = "must have a dimension of numbers (studies.success draws bars, one for each model)"
+        rule = "must have a dimension of numbers (studies.success_rate draws a bar for each model)"
         raise ScenarioError("plot", "labels only", rule)
     return numeric
 
@@ -401,14 +401,14 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "max_obstacle": plot_rates,
     "max_slope": plot_rates,
     "max_gap": plot_rates,
-    "critical": plot_rates,
+    "critical_value": plot_rates,
     "seizure_map": plot_map,
     "jam_chart": plot_jam_chart,
     "policy": plot_policy,
     "comparison": plot_comparison,
     "search": plot_search,
     "sensitivity": plot_sensitivity,
-    "success": plot_outcomes,
+    "success_rate": plot_outcomes,
     "max_speed": plot_measured,
     "acceleration": plot_measured,
     "braking_distance": plot_measured,

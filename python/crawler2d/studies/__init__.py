@@ -23,12 +23,12 @@ and `certify` simulate nothing, and take none of them; `certify` returns a `Cert
 ([0.05], 2)
 """
 
-from crawler2d.studies.boundary import critical
+from crawler2d.studies.boundary import critical_value
 from crawler2d.studies.certificates import certify
 from crawler2d.studies.driving import acceleration, braking_distance, max_speed
 from crawler2d.studies.jams import jam_chart
 from crawler2d.studies.maps import seizure_map
-from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope, success
+from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope, success_rate
 from crawler2d.studies.riding import odometry, real_time_factor, ride
 from crawler2d.studies.search import search
 from crawler2d.studies.sensitivity import sensitivity
@@ -37,7 +37,7 @@ __all__ = [
     "acceleration",
     "braking_distance",
     "certify",
-    "critical",
+    "critical_value",
     "jam_chart",
     "max_gap",
     "max_obstacle",
@@ -49,7 +49,7 @@ __all__ = [
     "search",
     "seizure_map",
     "sensitivity",
-    "success",
+    "success_rate",
 ]
 
 

@@ -39,7 +39,7 @@ __all__ = [
     "Line",
     "Range",
     "check_ends",
-    "critical",
+    "critical_value",
     "line_over",
     "range_of",
 ]
@@ -57,7 +57,7 @@ LONG_NAMES = {
 
 
 @takes_keywords
-def critical(
+def critical_value(
     scenario: Scenario,
     path: str,
     between: tuple[float, float],
@@ -113,7 +113,7 @@ def critical(
     >>> import crawler2d as c2d
     >>> slope = c2d.terrains.ramp(math.atan(0.5))
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), slope)
-    >>> found = c2d.studies.critical(
+    >>> found = c2d.studies.critical_value(
     ...     base, "terrain.friction", (0.3, 0.8), points=3, progress=False
     ... )
     >>> abs(found["bracket_low"].item() - 0.5) < 0.02, found["monotone"].item()
@@ -145,7 +145,7 @@ def critical(
         empty = [Tally(none, some.until, some.counts)] * samples
         tallies = [line.tallies.get(value, empty) for line in lines for value in values]
         dims = {"model": (list(fields), {}), name: (values, field_attributes([path]))}
-        table = rate_table(study, "critical", tallies, dims)
+        table = rate_table(study, "critical_value", tallies, dims)
     return _with_crossings(table, lines)
 
 

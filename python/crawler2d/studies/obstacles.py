@@ -32,7 +32,7 @@ from crawler2d.sweeps.axes import field_attributes
 if TYPE_CHECKING:
     from crawler2d.sweeps.figure_dataset import FigureDataset
 
-__all__ = ["max_gap", "max_obstacle", "max_slope", "success"]
+__all__ = ["max_gap", "max_obstacle", "max_slope", "success_rate"]
 
 _NONE = "none up to here"
 """The limit of what clears all that was tried."""
@@ -247,7 +247,7 @@ def _limits(row: Sequence[Tally], values: Sequence[float]) -> _Limits:
 
 
 @takes_keywords
-def success(
+def success_rate(
     scenario: Scenario,
     *,
     terrains: Mapping[str, Terrain] | None = None,
@@ -292,7 +292,7 @@ def success(
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
     >>> grounds = {"step": c2d.terrains.step(0.06), "wall": c2d.terrains.step(0.3)}
-    >>> found = c2d.studies.success(base, terrains=grounds, progress=False)
+    >>> found = c2d.studies.success_rate(base, terrains=grounds, progress=False)
     >>> found["rate"].sel(terrain="step").item(), found["ended_cleared"].values.tolist()
     (1.0, [[33, 0]])
     """
@@ -310,7 +310,7 @@ def success(
         tallies = study.repeat(cells)
         no_units: dict[str, str] = {}
         dims = {"model": (list(fields), no_units), "terrain": (list(grounds), no_units)}
-        table = rate_table(study, "success", tallies, dims)
+        table = rate_table(study, "success_rate", tallies, dims)
     ends = [Counter(row.outcome for row in tally.rows) for each in tallies for tally in each]
     occurred = [each for each in (*map(str, Outcome), *NO_RESULT) if any(end[each] for end in ends)]
     shape, dimensions = table["rate"].shape, table["rate"].dims

@@ -259,8 +259,8 @@ def sensitivity(
         - `first`: the fraction of the variance that would go if this one were known; `total`: the
           fraction that would be left if all others were; with `..._low` and `..._high`. The
           difference is its interaction with the others. An estimate may lie below 0;
-        - `bracket_low`, `bracket_high`, `rises`, `monotone`: as of `critical`, over the range of
-          the distribution (1 to 99 % of an unbounded one), all elements of a path with ``[*]``
+        - `bracket_low`, `bracket_high`, `rises`, `monotone`: as of `critical_value`, over the range
+          of the distribution (1 to 99 % of an unbounded one), all elements of a path with ``[*]``
           together, with the values of the first; NaN also for whole numbers and "run to run";
         - `range_low`, `range_high`, `own`: ends of the range, and the scenario's own value;
         - `tried`, `tried_rate`: the values along the range, and the rate at each.
