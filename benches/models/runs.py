@@ -46,7 +46,7 @@ def predict(case: Case, threads: int | None) -> dict[str, Any]:
     models = {"original": ("as it is", own, True)}
     repair = next((each for each in found.repairs if each.kind == "wheels"), None)
     if repair is not None:
-        models["repair"] = (repair.what, repair.robot, repair.confirmed)
+        models["repair"] = (repair.description, repair.robot, repair.confirmed)
     return {
         name: {
             "what": what,

@@ -17,7 +17,7 @@ audit = c2d.audit(file, step, quick=True, progress=False)
 for verdict in audit.verdicts:
     print(verdict.result, "between wheels", verdict.where)
 for repair in audit.repairs:
-    print(repair.what, "- confirmed" if repair.confirmed else "- not confirmed")
+    print(repair.description, "- confirmed" if repair.confirmed else "- not confirmed")
 
 # %%
 # The robot as it was read, before that step:

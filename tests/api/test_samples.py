@@ -114,4 +114,4 @@ def test_the_sample_seizes_on_a_step_that_a_belt_climbs() -> None:
     (verdict,) = found.verdicts
     assert verdict.result == "seizes"
     assert verdict.belt_cleared.rate > 0.9
-    assert verdict.instead == verdict.there[1]
+    assert verdict.seized_alone_count == verdict.jam_counts[1]

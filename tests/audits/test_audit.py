@@ -73,7 +73,7 @@ def test_the_runs_are_there(found: c2d.Audit) -> None:
     assert dict(found.table.sizes) == {"model": 2, "terrain": 1, "sample": 20, "repeat": 1}
     assert "start.approach" in found.table.attrs["vary"]
     ends = found.table["outcome"].sel(model="model")
-    assert (ends == "seized").sum().item() == found.verdicts[0].there[1]
+    assert (ends == "seized").sum().item() == found.verdicts[0].jam_counts[1]
 
 
 def test_an_obstacle_is_left_as_soon_as_its_verdict_is_certain(found: c2d.Audit) -> None:
@@ -537,7 +537,7 @@ def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
 def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit) -> None:
     repair = found.repairs[0]
     none = proportion_of(np.zeros((20, 1), bool), np.zeros((20, 1), bool))
-    alone = replace(repair, cleared_beside={**repair.cleared_beside, "gap 90 mm": none})
+    alone = replace(repair, cleared_given_belt={**repair.cleared_given_belt, "gap 90 mm": none})
     assert worst_rates(alone)[0] == none
     text = repair_sentence(alone)
     assert "the belt clears none of the new runs on gap 90 mm (0 to compare with)" in text
@@ -572,7 +572,7 @@ def test_a_field_of_the_obstacle_is_drawn_where_repairs_are_searched(
     """Repairs are timed on level ground, which has no height."""
     given: Any = {"unknown": {}, argument: {"terrain.height": c2d.scaled(0.98, 1.02)}}
     found = c2d.audit(SEIZING, STEP, samples=9, repeats=runs, quick=True, **given, **QUIET)
-    assert found.repairs[0].what == "chassis: 5 wheels in place of 4"
+    assert found.repairs[0].description == "chassis: 5 wheels in place of 4"
     assert all(each.speed > 0.0 for each in found.repairs)
     assert found.repaired is not None
     assert dict(found.repaired.table.sizes)["terrain"] == 2

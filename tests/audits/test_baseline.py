@@ -123,7 +123,7 @@ def test_places_are_kept_from_the_root_of_the_repository(tmp_path: Path, made: M
     def changes(root: Path) -> list[Any]:
         (root / ".git").mkdir(parents=True)
         what = f"is taken to be {root}/urdf/utils.xacro: no package has that name"
-        finding = Finding(rule="other", severity="warning", what=what)
+        finding = Finding(rule="other", severity="warning", message=what)
         check = dataclasses.replace(made(lint=(finding,)), path=root / "robot" / "cart.sdf")
         return list(entry_of(check)["lint"])
 
@@ -148,7 +148,7 @@ def test_nothing_moved_is_nothing_told(made: Made, tmp_path: Path) -> None:
 
 
 WARNING = Finding(
-    rule="effort", severity="warning", what="2 of 8 wheels, left_wheel_1", where="a.sdf:12, 14"
+    rule="effort", severity="warning", message="2 of 8 wheels, left_wheel_1", where="a.sdf:12, 14"
 )
 
 
@@ -156,9 +156,9 @@ WARNING = Finding(
     ("changed", "new"),
     [
         ({"where": "a.sdf:99"}, []),
-        ({"what": "3 of 9 wheels, left_wheel_1"}, []),
+        ({"message": "3 of 9 wheels, left_wheel_1"}, []),
         ({"severity": "note"}, []),
-        ({"what": "2 of 8 wheels, left_wheel_2"}, ["effort"]),
+        ({"message": "2 of 8 wheels, left_wheel_2"}, ["effort"]),
         ({"rule": "other"}, ["other"]),
         ({"severity": "error"}, ["effort"]),
         ({"rule": "other", "severity": "note"}, []),
@@ -171,12 +171,14 @@ def test_lint_is_new_by_its_words_and_severity_and_not_by_lines_and_figures(
     found, changes = compared(made(lint=(WARNING,)), made(lint=(now,)), tmp_path)
     assert found == new
     if new:
-        assert f"new {now.severity} of lint, {now.rule}: {now.what}" in changes
+        assert f"new {now.severity} of lint, {now.rule}: {now.message}" in changes
 
 
 def test_lines_in_what_a_warning_says_are_no_change(made: Made, tmp_path: Path) -> None:
     before, now = (
-        Finding(rule="other", severity="warning", what=f"a.sdf:{line}: mesh is left out, got b.stl")
+        Finding(
+            rule="other", severity="warning", message=f"a.sdf:{line}: mesh is left out, got b.stl"
+        )
         for line in (12, 345)
     )
     assert compared(made(lint=(before,)), made(lint=(now,)), tmp_path) == ([], "")

@@ -39,7 +39,7 @@ def test_candidates_keep_what_does_not_seize() -> None:
     robot = c2d.robots.absolem(track="public")
     for each in candidates_of(robot, ["flippers"]):
         assert each.robot.track == robot.track
-        assert each.what.startswith("flippers: ")
+        assert each.description.startswith("flippers: ")
     for each in candidates_of(robot, ["chassis"]):
         assert each.robot.flippers == robot.flippers
 
@@ -60,7 +60,7 @@ def test_arms_that_take_the_robots_track_keep_their_wheels() -> None:
 def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
     placed = c2d.HybridWheels(((-0.18, 0, 0.064), (-0.06, 0, 0.064), (0.18, 0, 0.064)))
     (first, *_) = candidates_of(SEIZING.with_track(placed), ["chassis"])
-    assert first.what == "chassis: one wheel more, between wheels 1 and 2"
+    assert first.description == "chassis: one wheel more, between wheels 1 and 2"
     assert first.robot.track.placements[2] == pytest.approx((0.06, 0.0, 0.064))  # type: ignore[union-attr]
 
 
@@ -72,7 +72,7 @@ def test_the_deepest_pocket_is_that_of_the_changed_carrier_also_on_arms_at_both_
     arms = replace(built, ends="both", track=placed)
     robot = c2d.robots.engineer(flippers=arms, track=c2d.LineOfWheels(4))
     first = next(each for each in candidates_of(robot, ["flippers"]) if each.kind == "wheels")
-    assert first.what == "flippers: one wheel more, between wheels 1 and 2"
+    assert first.description == "flippers: one wheel more, between wheels 1 and 2"
     assert first.robot.flippers is not None
     assert isinstance(first.robot.flippers.track, c2d.HybridWheels)
     new = set(first.robot.flippers.track.placements) - set(placed.placements)
@@ -84,7 +84,7 @@ def test_a_wheel_inside_another_one_has_no_pocket_with_it(inner: Any) -> None:
     placed = ((-0.18, 0.0, 0.064), (-0.06, 0.0, 0.064), inner, (0.18, 0.0, 0.064))
     robot = replace(c2d.robots.engineer(flippers=None), track=c2d.HybridWheels(placed))
     first = next(each for each in candidates_of(robot, ["chassis"]) if each.kind == "wheels")
-    assert first.what.endswith("and 3")
+    assert first.description.endswith("and 3")
 
 
 @pytest.mark.parametrize("count", [2, 4, 9])

@@ -19,9 +19,11 @@ from tests.reading.carts import FILES
 from tests.walls.rooms import ROOT
 
 ODD = (
-    Finding(rule="friction", severity="error", what="friction of 5", where="cart.urdf:12, 14"),
-    Finding(rule="effort", severity="warning", what="no limit", where="cart.urdf:3 to 9, 7 lines"),
-    Finding(rule="effort", severity="note", what="a note", where=""),
+    Finding(rule="friction", severity="error", message="friction of 5", where="cart.urdf:12, 14"),
+    Finding(
+        rule="effort", severity="warning", message="no limit", where="cart.urdf:3 to 9, 7 lines"
+    ),
+    Finding(rule="effort", severity="note", message="a note", where=""),
 )
 
 

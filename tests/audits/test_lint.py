@@ -52,14 +52,14 @@ def test_ten_times_too_large() -> None:
     outline = replace(ROBOT.outline, axle_distance=3.65, front_radius=0.64, rear_radius=0.64)
     (found,) = of_robot(replace(ROBOT, outline=outline), "size")
     assert found.severity == "error"
-    assert found.what.endswith("if it is ten times too large, pass scale=0.1")
+    assert found.message.endswith("if it is ten times too large, pass scale=0.1")
     assert of_robot(ROBOT, "size") == []
 
 
 def test_too_small_is_told_without_a_guess() -> None:
     outline = replace(ROBOT.outline, axle_distance=0.03, front_radius=0.01, rear_radius=0.01)
     (found,) = of_robot(replace(ROBOT, outline=outline), "size")
-    assert "ten times" not in found.what
+    assert "ten times" not in found.message
 
 
 @pytest.mark.parametrize("mass", [0.02, 9000.0])
@@ -76,14 +76,14 @@ def test_a_robot_whose_mass_is_farther_out_than_any_part() -> None:
 def test_torque_that_no_floor_takes() -> None:
     drivetrain = replace(ROBOT.drivetrain, max_torque=300.0)
     (found,) = of_robot(replace(ROBOT, drivetrain=drivetrain), "effort")
-    assert "as good as no limit" in found.what
+    assert "as good as no limit" in found.message
     assert of_robot(ROBOT, "effort") == []
 
 
 def test_wheels_that_stand_for_no_track() -> None:
     bare = ROBOT.with_track(c2d.LineOfWheels(2, as_track=False))
     (found,) = of_robot(bare, "no track")
-    assert "237 mm are bare" in found.what
+    assert "237 mm are bare" in found.message
     assert of_robot(ROBOT, "no track") == []
 
 
@@ -104,7 +104,7 @@ def test_wheels_that_nothing_drives() -> None:
 
 def test_a_file_that_names_no_motor(tmp_path: Path) -> None:
     (found,) = of_text(tmp_path, urdf(WHEELS), "not driven")
-    assert (found.severity, found.what.split(" (")[0]) == (
+    assert (found.severity, found.message.split(" (")[0]) == (
         "note",
         "the file names no motor for 4 of 4 wheels",
     )
@@ -134,7 +134,7 @@ def test_friction_is_that_of_wheels_also_in_a_file_of_one_line(tmp_path: Path, p
 def test_effort_without_limit(tmp_path: Path) -> None:
     free = pair("front", 0.2, limit="") + pair("rear", -0.2, limit="")
     (found,) = of_text(tmp_path, urdf(free, MOTORS), "effort")
-    assert found.what.startswith("4 of 4 wheels have no effort limit")
+    assert found.message.startswith("4 of 4 wheels have no effort limit")
     assert of_text(tmp_path, urdf(WHEELS, MOTORS), "effort") == []
 
 
@@ -147,7 +147,7 @@ def test_a_wheel_that_rolls_freely_needs_no_limit_of_effort(tmp_path: Path) -> N
 def test_sides_that_differ_within_the_tolerance(tmp_path: Path) -> None:
     skew = WHEELS.replace('xyz="0.2 0.15 0.0"', 'xyz="0.2005 0.15 0.0"')
     (found,) = of_text(tmp_path, urdf(skew), "sides")
-    assert "by up to 0.5 mm" in found.what
+    assert "by up to 0.5 mm" in found.message
     assert of_text(tmp_path, urdf(WHEELS), "sides") == []
 
 
@@ -157,15 +157,15 @@ def test_wheels_out_of_balance(tmp_path: Path) -> None:
         swung = text.replace('<mass value="1"/>', f'<origin xyz="{off}"/><mass value="1"/>')
         found = of_text(tmp_path, swung, "balance")
         assert len(found) == bool(count)
-    assert found[0].what.startswith("left_front, right_front")
-    assert "off their axles by up to 10 mm" in found[0].what
+    assert found[0].message.startswith("left_front, right_front")
+    assert "off their axles by up to 10 mm" in found[0].message
 
 
 def test_an_inertia_that_breaks_the_triangle(tmp_path: Path) -> None:
     tensor = '<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.005" iyz="0" izz="0.001"/>'
     text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
     (found,) = of_text(tmp_path, text, "inertia")
-    assert "exceeds the sum of the others" in found.what
+    assert "exceeds the sum of the others" in found.message
     assert of_text(tmp_path, urdf(WHEELS), "inertia") == []
 
 
@@ -174,7 +174,7 @@ def test_an_inertia_larger_than_its_body(tmp_path: Path) -> None:
     text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
     (found,) = of_text(tmp_path, text, "inertia")
     assert found.severity == "error"
-    assert "larger than the body" in found.what
+    assert "larger than the body" in found.message
 
 
 def test_of_links_that_weigh_nothing_it_is_a_note(tmp_path: Path) -> None:
@@ -188,7 +188,7 @@ def test_wheels_without_mass(tmp_path: Path) -> None:
     text = urdf(re.sub(r"<inertial>.*?</inertial>", "", WHEELS, flags=re.DOTALL))
     (found,) = of_text(tmp_path, text, "massless")
     assert found.severity == "error"
-    assert "4 wheels have no mass" in found.what
+    assert "4 wheels have no mass" in found.message
     assert of_text(tmp_path, urdf(WHEELS), "massless") == []
 
 
@@ -214,7 +214,7 @@ OVERLAPPING = (WHEELS, pair("middle", 0.1))
 def test_wheels_that_overlap(tmp_path: Path) -> None:
     (found,) = of_text(tmp_path, urdf(*OVERLAPPING, pair("other", 0.0)), "overlap")
     assert found.severity == "note"
-    assert "switch self-collision off" in found.what
+    assert "switch self-collision off" in found.message
     assert of_text(tmp_path, urdf(WHEELS, pair("middle", 0.0)), "overlap") == []
 
 
@@ -248,7 +248,7 @@ def test_what_the_reader_warnings_is_told(tmp_path: Path) -> None:
     wide = pair("front", 2.0) + pair("rear", -2.0)
     reading = read(tmp_path, urdf(wide, mass="4000"))
     found = of_rule(lint(reading.robot, reading), "other")
-    assert "is the file in metres?" in found[0].what
+    assert "is the file in metres?" in found[0].message
 
 
 def test_what_the_simulator_warnings_is_told() -> None:

@@ -249,7 +249,7 @@ def test_lint_stands_errors_first(of_file: c2d.Audit, file_page: Page) -> None:
     items = [text for _, text in file_page.all("li") if ": " in text]
     for each in of_file.lint:
         assert any(
-            each.severity in item and each.what in item and each.where in item for item in items
+            each.severity in item and each.message in item and each.where in item for item in items
         )
     assert of_file.lint
 
@@ -268,12 +268,12 @@ def test_verdicts_are_those_of_the_audit(of_file: c2d.Audit, file_page: Page) ->
 
 def test_repairs_are_those_of_the_audit(found: c2d.Audit, page: Page) -> None:
     rows = page.rows("repairs")
-    assert [row[0] for row in rows] == [each.what for each in found.repairs]
+    assert [row[0] for row in rows] == [each.description for each in found.repairs]
     assert [row[1] for row in rows] == [words.confirmation(each) for each in found.repairs]
     assert [row[5] for row in rows] == [str(each.wheels or "belt") for each in found.repairs]
     labels = [str(each["aria-label"]) for each, _ in page.all("svg", role="img")]
     pictures = [label for label in labels if not label.startswith("where ")]
-    assert pictures[:3] == [f"the robot: {each.what}" for each in found.repairs]
+    assert pictures[:3] == [f"the robot: {each.description}" for each in found.repairs]
 
 
 def test_where_it_can_jam_is_drawn_for_the_model_and_its_best_repair(
@@ -312,7 +312,7 @@ def test_a_repair_without_a_chart_leaves_the_model_its_own(found: c2d.Audit) -> 
 
 def test_a_diff_is_shown_with_its_repair(found: c2d.Audit, page: Page) -> None:
     diff = "--- a\n+++ b\n-<radius>0.06</radius>"
-    shown = Page(audit_page(found, {found.repairs[0].what: diff}))
+    shown = Page(audit_page(found, {found.repairs[0].description: diff}))
     assert next(text for _, text in shown.all("pre")) == diff
     assert not any("what changes in the file" in text for _, text in page.all("summary"))
 
@@ -387,9 +387,9 @@ def test_a_repair_by_wheels_is_shown_before_belts_and_a_confirmed_one_before_oth
         return simulate_replays(dataclasses.replace(found, repaired=repaired))[0].other
 
     flawed = dataclasses.replace(wheels, confirmed=False)
-    assert shown(belt, gears) == f"{gears.what} (confirmed)"
+    assert shown(belt, gears) == f"{gears.description} (confirmed)"
     assert shown(belt, flawed) == "belts moved by a track plugin (confirmed)"
-    assert shown(flawed) == f"{wheels.what} (not confirmed)"
+    assert shown(flawed) == f"{wheels.description} (not confirmed)"
 
 
 def test_a_repair_that_seizes_in_the_very_run_is_said_to(found: c2d.Audit) -> None:

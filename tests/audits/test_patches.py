@@ -126,10 +126,10 @@ def test_of_confirmed_wheels_the_first_are_written_even_if_others_seize_less(
     assert first.confirmed
     seldom = {name: replace(each, rate=0.04) for name, each in first.seized.items()}
     six = audited.robot.with_track(c2d.LineOfWheels(6, wheel_radius=0.0608))
-    repairs = (replace(first, seized=seldom), replace(first, what="six wheels", robot=six))
+    repairs = (replace(first, seized=seldom), replace(first, description="six wheels", robot=six))
     change = best_change(replace(audited, repaired=audited.repaired._replace(repairs=repairs)))
     assert change is not None
-    assert change.label.startswith(f"confirmed: {first.what};")
+    assert change.label.startswith(f"confirmed: {first.description};")
 
 
 def test_what_can_be_written_neither_on_wheels_nor_on_belts_is_refused_with_both_reasons(
@@ -144,8 +144,8 @@ def test_what_can_be_written_neither_on_wheels_nor_on_belts_is_refused_with_both
         replace(helped, repaired=repaired, belt=helped.belt._replace(robot=light)).patch()
     assert caught.value.path == "repair"
     assert caught.value.rule.startswith(
-        f"must be one that can be written to a file: {wheels.what}: robot.track must have other"
-        " wheels than the file, got"
+        f"must be one that can be written to a file: {wheels.description}: robot.track must have"
+        " other wheels than the file, got"
     )
     assert "; belts: robot.moment_of_inertia must" in caught.value.rule
 
@@ -218,7 +218,7 @@ def test_a_changed_file_warns_of_nothing_that_is_in_the_lint(tmp_path: Path) -> 
         slow.to_urdf(tmp_path / "slow.urdf", friction=0.9)
     how: Any = {"unknown": {}, "repeats": 9, "quick": True, "engine": "gz", **QUIET}
     found = c2d.audit(tmp_path / "slow.urdf", STEP, **how)
-    assert any("moment_of_inertia" in each.what for each in found.lint)
+    assert any("moment_of_inertia" in each.message for each in found.lint)
     assert best_change(found) is not None
     assert "+++" in found.patch(repair=found.repairs[0])
     assert "+++" in found.to_html()

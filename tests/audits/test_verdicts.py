@@ -16,8 +16,8 @@ from crawler2d.audits.verdicts import (
     Proportion,
     Verdict,
     proportion_of,
+    result_of,
     verdict_of,
-    verdict_word,
 )
 from crawler2d.audits.words import repair_sentence, worst_rates
 from crawler2d.sweeps.statistics import wilson
@@ -128,13 +128,13 @@ def test_without_any_result_nothing_is_certain() -> None:
 
 def test_a_verdict_pairs_seized_runs_with_those_of_the_belt() -> None:
     belt = ends(cleared=30, hung_up=10)
-    assert verdict(ends(seized=20, cleared=20), belt).instead == 20 * REPEATS
-    assert verdict(ends(cleared=20, seized=20), belt).instead == 10 * REPEATS
+    assert verdict(ends(seized=20, cleared=20), belt).seized_alone_count == 20 * REPEATS
+    assert verdict(ends(cleared=20, seized=20), belt).seized_alone_count == 10 * REPEATS
 
 
 def test_a_verdict_tells_where_and_what_frees() -> None:
     found = verdict(ends(seized=20, cleared=20), CLEARED)
-    assert (found.where, found.carrier, found.there) == ("1-2", "chassis", (40, 40))
+    assert (found.where, found.carrier, found.jam_counts) == ("1-2", "chassis", (40, 40))
     freed = {each.trial: (each.freed, each.made) for each in found.freed}
     assert freed == {
         "closed track": (40, 40),
@@ -190,7 +190,7 @@ def test_a_repair_that_seizes_in_more_than_5_percent_of_the_runs_is_not_confirme
         },
     )
     robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5))
-    five = Candidate(what="five", kind="wheels", robot=robot, change=1)
+    five = Candidate(description="five", kind="wheels", robot=robot, change=1)
     repair = assess(fresh, five, ["step", "gap"], ["step"], OWN)
     assert repair.confirmed is confirmed
     assert repair.seized["gap"].low < 0.05
@@ -201,7 +201,7 @@ def test_a_repair_that_seizes_in_more_than_5_percent_of_the_runs_is_not_confirme
 
 def test_without_a_seizure_there_is_no_place() -> None:
     found = verdict(CLEARED, CLEARED)
-    assert (found.where, found.carrier, found.there, found.freed) == ("", "", (0, 0), ())
+    assert (found.where, found.carrier, found.jam_counts, found.freed) == ("", "", (0, 0), ())
     assert np.isnan(found.friction).all()
 
 
@@ -241,8 +241,8 @@ def test_the_rule_asks_in_the_order_of_its_words() -> None:
 
     often, never = of(0.5, 0.3, 0.7), of(0.0, 0.0, 0.09)
     always = of(1.0, 0.9, 1.0)
-    assert verdict_word(often, [often], always, [often]) == "seizes"
-    assert verdict_word(often, [often], often, [often]) == "seizes"
-    assert verdict_word(often, [often], often, [never]) == "belt fails, too"
-    assert verdict_word(always, [never], often, [never]) == "does not seize"
-    assert verdict_word(often, [of(0.06, 0.02, 0.2)], always, [never]) == "not certain"
+    assert result_of(often, [often], always, [often]) == "seizes"
+    assert result_of(often, [often], often, [often]) == "seizes"
+    assert result_of(often, [often], often, [never]) == "belt fails, too"
+    assert result_of(always, [never], often, [never]) == "does not seize"
+    assert result_of(often, [of(0.06, 0.02, 0.2)], always, [never]) == "not certain"

@@ -163,7 +163,7 @@ def test_a_changed_column_is_told_by_its_row(path: Path, column: str, value: str
         c2d.table(path)
     assert str(caught.value).isascii()  # what any terminal prints
     (damage,) = c2d.check_store(path)
-    assert (damage.row, damage.what) == (3, "its checksum is another")
+    assert (damage.row, damage.message) == (3, "its checksum is another")
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_a_row_that_holds_no_run_is_refused_although_its_checksum_is_right(
     assert what in str(caught.value)
     (damage,) = c2d.check_store(path)
     assert damage.row == 3
-    assert what in damage.what
+    assert what in damage.message
 
 
 def test_all_damage_is_listed(path: Path) -> None:

@@ -289,9 +289,9 @@ def audit(
     >>> robot = robot.without_rotors()
     >>> step = {"step of 75 mm": c2d.terrains.step(0.075)}
     >>> found = audit(robot, step, unknown={}, repeats=20, quick=True, progress=False)
-    >>> found.seizes, found.verdicts[0].where, found.verdicts[0].there
+    >>> found.seizes, found.verdicts[0].where, found.verdicts[0].jam_counts
     (True, '1-2', (9, 9))
-    >>> found.repairs[0].what, found.repairs[0].confirmed
+    >>> found.repairs[0].description, found.repairs[0].confirmed
     ('chassis: 5 wheels in place of 4', True)
     """
     extra("xarray", "analysis")  # fail before the runs if it is missing

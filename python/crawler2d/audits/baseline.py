@@ -103,7 +103,7 @@ def entry_of(check: Check) -> Plain:
         "build": build["build_id"],
         "robot": to_dict(check.found.robot),
         "lint": [
-            [each.severity, each.rule, _portable(each.what, check.path)]
+            [each.severity, each.rule, _portable(each.message, check.path)]
             for each in check.found.lint
         ],
     }

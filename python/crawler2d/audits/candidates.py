@@ -96,7 +96,7 @@ class Candidate:
 
     Parameters
     ----------
-    what : str
+    description : str
         What is changed, in words.
     kind : {"wheels", "gears", "belt"}
         Other numbers, sizes or places of round wheels; gear wheels in their place; or belts.
@@ -107,7 +107,7 @@ class Candidate:
         only move do not count.
     """
 
-    what: str
+    description: str
     kind: str
     robot: Robot
     change: int
@@ -256,7 +256,7 @@ def candidates_of(robot: Robot, carriers: Collection[str]) -> list[Candidate]:
     >>> import crawler2d as c2d
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
     >>> for each in candidates_of(robot, ["chassis"])[:3]:
-    ...     print(each.change, each.what)
+    ...     print(each.change, each.description)
     1 chassis: 5 wheels in place of 4
     1 chassis: 3 wheels in place of 4
     2 chassis: 6 wheels in place of 4
@@ -294,8 +294,10 @@ def _of_kind(
         changed = robot
         for _, carrier, track in changes:
             changed = _with(changed, carrier, track)
-        what = "; ".join(text for text, _, _ in changes)
-        yield Candidate(what=what, kind=kind, robot=changed, change=_change(robot, changed))
+        description = "; ".join(text for text, _, _ in changes)
+        yield Candidate(
+            description=description, kind=kind, robot=changed, change=_change(robot, changed)
+        )
 
 
 def _track_of(robot: Robot, carrier: str) -> Wheeled | None:

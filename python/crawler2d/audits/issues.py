@@ -150,7 +150,7 @@ def _seizures(found: AuditRecord | LintResult) -> Iterator[Issue]:
 def _issue(finding: Finding, reading: Reading | None) -> Issue:
     is_own = reading is not None and _has_own_lines(reading)
     lines = _lines_in(reading.tree.file, finding.where) if reading and is_own else ()
-    return Issue(rule=finding.rule, severity=finding.severity, text=finding.what, lines=lines)
+    return Issue(rule=finding.rule, severity=finding.severity, text=finding.message, lines=lines)
 
 
 def _lines_in(file: str, where: str) -> tuple[int, ...]:

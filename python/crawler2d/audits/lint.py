@@ -66,7 +66,7 @@ class Finding:
     severity : {"error", "warning", "note"}
         An error makes the model another robot than intended, a warning is probably a mistake, a
         note informs.
-    what : str
+    message : str
         What was found, with its figures.
     where : str
         File and lines; "" for a robot that was not read from a file.
@@ -74,14 +74,14 @@ class Finding:
 
     rule: str
     severity: str
-    what: str
+    message: str
     where: str = ""
 
 
 class _Break(NamedTuple):
     """What breaks a rule, and where; the severity is that of the rule unless it is given."""
 
-    what: str
+    message: str
     where: str = ""
     severity: str = ""
 
@@ -121,7 +121,9 @@ class Rule:
 
     def _finding(self, broken: _Break) -> Finding:
         severity = broken.severity or self.severity
-        return Finding(rule=self.name, severity=severity, what=broken.what, where=broken.where)
+        return Finding(
+            rule=self.name, severity=severity, message=broken.message, where=broken.where
+        )
 
 
 def lint(
@@ -149,14 +151,14 @@ def lint(
     >>> lint(c2d.robots.engineer())
     ()
     >>> marv = c2d.robots.marv(track="public")
-    >>> print(lint(marv)[0].what)
+    >>> print(lint(marv)[0].message)
     no round shape between the end wheels of the chassis, where a track should be: 279 mm are bare
     >>> robot = c2d.Robot.simple(20.0, axle_distance=4.0, radius=0.6)
     >>> [(found.rule, found.severity) for found in lint(robot)]
     [('size', 'error'), ('mass', 'warning')]
     """
     found = [each for rule in RULES for each in rule.findings(robot, reading)]
-    found += [Finding(rule="other", severity="warning", what=warning) for warning in warnings]
+    found += [Finding(rule="other", severity="warning", message=warning) for warning in warnings]
     return tuple(sorted(found, key=lambda each: SEVERITIES.index(each.severity)))
 
 

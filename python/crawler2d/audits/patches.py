@@ -77,7 +77,7 @@ def best_change(audit: AuditRecord) -> Change | None:
         try:
             return change_of(audit, repair)
         except ScenarioError as error:
-            refused.append(f"{repair.what}: {error}")
+            refused.append(f"{repair.description}: {error}")
     belts = next((each for each in audit.repairs if each.kind == "belt"), None)
     try:
         change = _on_belts(audit, audit.belt.robot, belts)
@@ -111,15 +111,15 @@ def change_of(audit: AuditRecord, repair: Repair) -> Change:
 
 
 def diffs_of(audit: AuditRecord) -> dict[str, str]:
-    """Say what each repair by wheels changes in the file, or why it cannot, by `Repair.what`."""
+    """Say by `Repair.description` what each repair by wheels changes in the file, or why not."""
     found = {}
     for repair in audit.repairs if audit.reading is not None else ():
         if repair.kind != "belt":
             try:
                 change = change_of(audit, repair)
-                found[repair.what] = f"{change.summary}\n\n{change.diff}"
+                found[repair.description] = f"{change.summary}\n\n{change.diff}"
             except ScenarioError as error:
-                found[repair.what] = f"no change of the file: {error}"
+                found[repair.description] = f"no change of the file: {error}"
     return found
 
 

@@ -53,7 +53,7 @@ class Repair:
 
     Parameters
     ----------
-    what : str
+    description : str
         What changes, in words.
     kind : {"wheels", "gears", "belt"}
         Other round wheels, gear wheels, or belts that a plugin moves.
@@ -72,14 +72,14 @@ class Repair:
         In fresh runs, by obstacle.
     seized_at : mapping of str to mapping of float to Proportion
         In fresh runs, by obstacle and speed [m/s].
-    cleared_beside : mapping of str to Proportion
-        How many of the fresh runs that the belt clears it clears, by obstacle that seized.
+    cleared_given_belt : mapping of str to Proportion
+        Of the fresh runs that the belt clears, by obstacle that seized.
     speed : float
         [-] Simulated time by computing time on level ground, each of the fastest run, relative to
         the robot as it is: above 1 it is simulated faster. It is that of this simulator.
     """
 
-    what: str
+    description: str
     kind: str
     robot: Robot
     change: int
@@ -88,7 +88,7 @@ class Repair:
     cleared: Mapping[str, Proportion]
     seized: Mapping[str, Proportion]
     seized_at: Mapping[str, Mapping[float, Proportion]]
-    cleared_beside: Mapping[str, Proportion]
+    cleared_given_belt: Mapping[str, Proportion]
     speed: float
 
 
@@ -102,8 +102,8 @@ class RepairSearch(NamedTuple):
     tried : int
         Candidates that were simulated.
     table : xarray.Dataset
-        The fresh runs: the models "model" and the repairs by `Repair.what`, the obstacles and
-        "level ground". Those that were not made have the outcome "".
+        The fresh runs: the models "model" and the repairs by `Repair.description`, the obstacles
+        and "level ground". Those that were not made have the outcome "".
     """
 
     repairs: tuple[Repair, ...]
@@ -163,15 +163,17 @@ def search_repairs(
     ]
     reference = OWN
     if belt.robot != robot:
-        reference = what = f"belts moved by a track plugin ({belt.reason})"
+        reference = description = f"belts moved by a track plugin ({belt.reason})"
         belts = wheel_count(robot) + 1
-        chosen.append(Candidate(what=what, kind="belt", robot=belt.robot, change=belts))
+        chosen.append(
+            Candidate(description=description, kind="belt", robot=belt.robot, change=belts)
+        )
     over = {
         each.obstacle: grounds[each.obstacle]
         for each in worst_first
         if each.result != "belt fails, too"
     }
-    models = {OWN: robot, **{each.what: each.robot for each in chosen}}
+    models = {OWN: robot, **{each.description: each.robot for each in chosen}}
     fresh = _drive(models, over, reference=reference, seizing=names, runs=runs, show=show)
     found = [assess(fresh, each, list(over), names, reference) for each in chosen]
     return RepairSearch(
@@ -271,22 +273,22 @@ def _drive(
     }
     samples = next(iter(courses.values())).samples
     count = RunCounter(show, samples * len(over) * (len(models) - 1))
-    left = [what for what in models if what != OWN or what == reference]
+    left = [name for name in models if name != OWN or name == reference]
     for target in look_counts(samples):
         for course in courses.values():
-            for what in left:
-                course.drive(what, target, count.next_batch())
+            for name in left:
+                course.drive(name, target, count.next_batch())
         tables = {name: course.table() for name, course in courses.items()}
-        failed = [what for what in left if _fails(tables, what, reference, seizing)]
-        left = [what for what in left if what == reference or what not in failed]
+        failed = [name for name in left if _fails(tables, name, reference, seizing)]
+        left = [name for name in left if name == reference or name not in failed]
         if set(left) <= {OWN, *failed}:
             break
     # Stops that rattle cost most, so what driving costs is measured where nothing stops.
     ground = Flat(length=5.0 * models[OWN].outline.axle_distance)
     on_level = replace(runs, vary=_on_level(runs.vary), unknown=_on_level(runs.unknown))
     level = on_level.course(models, LEVEL, ground, is_confirming=True)
-    for what in models:
-        level.drive(what, next(look_counts(samples)), count.next_batch())
+    for name in models:
+        level.drive(name, next(look_counts(samples)), count.next_batch())
     fresh: xarray.Dataset = xr.concat([*tables.values(), level.table()], "terrain")
     return fresh
 
@@ -300,11 +302,11 @@ def _on_level(draws: Mapping[str, Any]) -> Ranges:
 
 
 def _fails(
-    tables: Mapping[str, xarray.Dataset], what: str, reference: str, seizing: Sequence[str]
+    tables: Mapping[str, xarray.Dataset], model: str, reference: str, seizing: Sequence[str]
 ) -> bool:
     """Whether no runs to come can confirm a candidate."""
     for name, table in tables.items():
-        own, belt = (ObstacleRuns(table, model, name) for model in (what, reference))
+        own, belt = (ObstacleRuns(table, each, name) for each in (model, reference))
         lost, size = own.has_result & ~own.cleared & belt.cleared, own.ends.size
         if name in seizing and size - int(lost.sum()) < CLEARS * size:
             return True
@@ -321,10 +323,10 @@ def assess(
     belt: str,
 ) -> Repair:
     """Assess a candidate by its fresh runs, next to those of the belt."""
-    runs = {name: ObstacleRuns(table, chosen.what, name) for name in grounds}
+    runs = {name: ObstacleRuns(table, chosen.description, name) for name in grounds}
     seized = {name: own.proportion(own.seized) for name, own in runs.items()}
     seized_at = {name: own.by_speed(own.seized) for name, own in runs.items()}
-    cleared_beside = {
+    cleared_given_belt = {
         name: runs[name].proportion(runs[name].cleared, ObstacleRuns(table, belt, name).cleared)
         for name in seizing
     }
@@ -332,10 +334,10 @@ def assess(
     # So that fewer runs confirm no more: the rate itself counts, too, where it is over all speeds.
     seizes = any(each.low > SEIZES for each in rates)
     seizes |= any(each.rate > SEIZES for each in seized.values())
-    clears = all(each.rate >= CLEARS for each in cleared_beside.values())
+    clears = all(each.rate >= CLEARS for each in cleared_given_belt.values())
     is_whole = all((own.ends != "").all() for own in runs.values())
     return Repair(
-        what=chosen.what,
+        description=chosen.description,
         kind=chosen.kind,
         robot=chosen.robot,
         change=chosen.change,
@@ -344,8 +346,8 @@ def assess(
         cleared={name: own.proportion(own.cleared) for name, own in runs.items()},
         seized=seized,
         seized_at=seized_at,
-        cleared_beside=cleared_beside,
-        speed=_speed(table, chosen.what) / _speed(table, OWN),
+        cleared_given_belt=cleared_given_belt,
+        speed=_speed(table, chosen.description) / _speed(table, OWN),
     )
 
 

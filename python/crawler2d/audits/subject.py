@@ -327,7 +327,6 @@ def check_size(read: Reading) -> None:
     if found is None or "scale" in read.how.given:
         return
     where = read.sources["robot.outline.axle_distance"]
-    rule = (
-        f"must be given: {read.tree.file} is {found.what} [{where}], and scale=1 leaves it as it is"
-    )
+    size = f"{read.tree.file} is {found.message} [{where}]"
+    rule = f"must be given: {size}, and scale=1 leaves it as it is"
     raise ScenarioError("scale", None, rule)

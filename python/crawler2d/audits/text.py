@@ -88,7 +88,7 @@ def lint_of(lint: Sequence[Finding], title: str = "Lint") -> Iterator[str]:
     yield title if lint else "Lint: nothing found"
     for each in lint:
         where = f" [{each.where}]" if each.where else ""
-        yield from _wrap(f"{each.severity}, {each.rule}: {each.what}{where}")
+        yield from _wrap(f"{each.severity}, {each.rule}: {each.message}{where}")
 
 
 def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:

@@ -32,8 +32,8 @@ __all__ = [
     "is_certain",
     "least_samples",
     "proportion_of",
+    "result_of",
     "verdict_of",
-    "verdict_word",
 ]
 
 OWN, BELT = "model", "belt"
@@ -220,10 +220,10 @@ class Verdict:
         Between which wheels most seized runs are jammed, such as "8-9"; "" without any.
     carrier : str
         Of these wheels: "chassis", "front flipper", "rear flipper"; "" without any.
-    there : tuple of int, shape (2,)
-        How many seized runs are jammed there, of how many.
-    instead : int
-        In how many seized runs the belt, with the same draws, clears.
+    jam_counts : tuple of int, shape (2,)
+        Number of seized runs that are jammed between these wheels, and of all seized runs.
+    seized_alone_count : int
+        Number of seized runs in which the belt, with the same draws, clears.
     seized_alone : Proportion
         How often the model seizes while the belt, with the same draws, clears.
     freed : tuple of TrialCount
@@ -244,8 +244,8 @@ class Verdict:
     belt_outcome: str
     where: str
     carrier: str
-    there: tuple[int, int]
-    instead: int
+    jam_counts: tuple[int, int]
+    seized_alone_count: int
     seized_alone: Proportion
     freed: tuple[TrialCount, ...]
     friction: tuple[float, float]
@@ -268,10 +268,10 @@ def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
     belt_cleared = belt.proportion(belt.cleared)
     alone = own.seized & belt.cleared
     seized_alone = own.proportion(alone)
-    where, carrier, there = _commonest_jam(own)
+    where, carrier, jam_counts = _commonest_jam(own)
     return Verdict(
         obstacle=obstacle,
-        result=verdict_word(
+        result=result_of(
             cleared,
             [seized, *seized_at.values()],
             belt_cleared,
@@ -285,8 +285,8 @@ def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
         belt_outcome=_commonest(belt),
         where=where,
         carrier=carrier,
-        there=there,
-        instead=int(alone.sum()),
+        jam_counts=jam_counts,
+        seized_alone_count=int(alone.sum()),
         seized_alone=seized_alone,
         freed=tuple(_trial_counts(own)),
         friction=_friction(own),
@@ -294,10 +294,10 @@ def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
     )
 
 
-def verdict_word(
+def result_of(
     cleared: Proportion, seized: Sequence[Proportion], belt: Proportion, alone: Sequence[Proportion]
 ) -> str:
-    """Find the word of a verdict.
+    """Find the result of a verdict.
 
     "seizes": the lower bound of the rate of seizing, at all speeds together or at one of them, is
     above 5 %, and the belt clears in 95 % of its runs or more; or, where it clears in fewer, as on
@@ -378,7 +378,11 @@ def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
     if verdict.result == "belt fails, too":
         is_quarter = (own.ends != "").sum() >= _QUARTER * own.ends.size
         fails = min(int((each.has_result & ~each.cleared).sum()) for each in (own, belt))
-        return bool(is_quarter and verdict.instead == 0 and fails > (1.0 - CLEARS) * own.ends.size)
+        return bool(
+            is_quarter
+            and verdict.seized_alone_count == 0
+            and fails > (1.0 - CLEARS) * own.ends.size
+        )
     return verdict.result == "seizes" and own.least_rate(own.seized & belt.cleared) > SEIZES
 
 

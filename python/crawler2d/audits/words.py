@@ -165,7 +165,7 @@ def jam_row(each: Verdict) -> tuple[str, ...]:
     ]
     place = f"{each.where} of the {each.carrier}"
     speeds = "/".join(f"{100 * rate.rate:.0f}" for rate in each.seized_at.values()) + " %"
-    return each.obstacle, place, "/".join(map(str, each.there)), speeds, at, ", ".join(freed)
+    return each.obstacle, place, "/".join(map(str, each.jam_counts)), speeds, at, ", ".join(freed)
 
 
 def wheel_names(audit: AuditRecord) -> str:
@@ -198,7 +198,7 @@ def conclusion(audit: AuditRecord) -> list[str]:
     sentences = [reservation(audit)] if reservation(audit) else []
     seized = [each for each in audit.verdicts if each.result == "seizes"]
     others = [
-        f"{each.obstacle} ({each.instead} of {each.there[1]})"
+        f"{each.obstacle} ({each.seized_alone_count} of {each.jam_counts[1]})"
         for each in audit.verdicts
         if each.result != "seizes" and each.seized.low > SEIZES
     ]
@@ -284,7 +284,7 @@ def _seizing(verdict: Verdict) -> str:
     """Name an obstacle that seizes; where the belt clears less than 95 %, with how it compares."""
     if verdict.belt_cleared.rate >= CLEARS:
         return verdict.obstacle
-    of_all = f"{verdict.instead} of {verdict.there[1]} seized runs"
+    of_all = f"{verdict.seized_alone_count} of {verdict.jam_counts[1]} seized runs"
     belt = f"the belt clears {of_all}, and {percent(verdict.belt_cleared.rate)} of all"
     return f"{verdict.obstacle} ({belt})"
 
@@ -295,7 +295,7 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
     return (
         f"seizes on {verdict.obstacle} in {rate(verdict.seized)} of the runs, most often between"
         f" wheels {verdict.where} of the {verdict.carrier}{called}; the belt clears"
-        f" {verdict.instead} of {verdict.there[1]} seized runs, and"
+        f" {verdict.seized_alone_count} of {verdict.jam_counts[1]} seized runs, and"
         f" {percent(verdict.belt_cleared.rate)} of all"
     )
 
@@ -314,7 +314,7 @@ def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:
     Worst of all is that there is nothing to compare with: the belt clears none of the fresh runs.
     It seizes at worst over all speeds, or at one of them.
     """
-    cleared = min(repair.cleared_beside.values(), key=lambda each: (each.runs > 0, each.rate))
+    cleared = min(repair.cleared_given_belt.values(), key=lambda each: (each.runs > 0, each.rate))
     rates = list(repair.seized.items())
     for obstacle, at in repair.seized_at.items():
         rates += [(f"{obstacle} at {speed:g} m/s", each) for speed, each in at.items()]
@@ -328,7 +328,7 @@ def repair_sentence(repair: Repair) -> str:
     _, seized, name = worst_rates(repair)
     where = f", on {name}" if name else ""
     return (
-        f"{confirmation(repair)}: {repair.what}; {comparison(repair)}; seizes at worst in"
+        f"{confirmation(repair)}: {repair.description}; {comparison(repair)}; seizes at worst in"
         f" {rate(seized)}{where}; {wheels_per_side(repair)}; simulated {repair.speed:.2g} times as"
         " fast"
     )
@@ -339,7 +339,7 @@ def comparison(repair: Repair) -> str:
     cleared, _, _ = worst_rates(repair)
     if cleared.runs:
         return f"clears at worst {rate(cleared)} of the runs that the belt clears where it seized"
-    alone = [name for name, each in repair.cleared_beside.items() if not each.runs]
+    alone = [name for name, each in repair.cleared_given_belt.items() if not each.runs]
     return f"the belt clears none of the new runs on {', '.join(alone)} (0 to compare with)"
 
 

@@ -254,7 +254,7 @@ def _card(entry: Entry) -> str:
     if found.repairs:
         parts.append(f"<p>{escape(words.repair_sentence(found.repairs[0]))}</p>")
     lint = "".join(
-        f"<li>{escape(each.severity)}: {escape(each.what)} {escape(each.where)}</li>"
+        f"<li>{escape(each.severity)}: {escape(each.message)} {escape(each.where)}</li>"
         for each in found.lint
     )
     if lint:

@@ -243,12 +243,12 @@ class Damage:
     ----------
     row : int, optional
         Number of the row, in the order of writing; None for the file as a whole.
-    what : str
+    message : str
         What is wrong.
     """
 
     row: int | None
-    what: str
+    message: str
 
 
 def check_store(path: Place) -> tuple[Damage, ...]:
@@ -265,8 +265,7 @@ def check_store(path: Place) -> tuple[Damage, ...]:
     Returns
     -------
     tuple of Damage
-        Empty if it is sound; each has a `row`, which is None for the file as a whole, and says
-        `what` is wrong.
+        Empty if it is sound.
 
     Raises
     ------
@@ -287,7 +286,7 @@ def check_store(path: Place) -> tuple[Damage, ...]:
     ()
     """
     with contextlib.closing(open_to_read(read_store_path(path), checked=False)) as connection:
-        found = [Damage(None, what) for what in find_damage(connection)]
+        found = [Damage(None, message) for message in find_damage(connection)]
         number = 0
         try:
             for number, *values in connection.execute(f"SELECT rowid, {COLUMNS} FROM run"):

@@ -152,8 +152,8 @@ def _diagnosis(audit: AuditRecord, each: Replay) -> str:
     """Say why the robot stopped; what was tried there and drawn for the run is folded."""
     run, *others = each.runs
     why, _, tried = run.reason.partition(". Tried: ")
-    there, seized = each.verdict.there
-    among = f"; {there} of {seized} seizures on this obstacle are there" if seized else ""
+    jammed, seized = each.verdict.jam_counts
+    among = f"; {jammed} of {seized} seizures on this obstacle are there" if seized else ""
     why = why or "it clears"
     text = f"{why[0].upper()}{why[1:]}."
     if not seized:
@@ -184,7 +184,7 @@ def _drawn(audit: AuditRecord, replay: Replay) -> list[str]:
 def audit_page(
     audit: AuditRecord, diffs: Mapping[str, str] | None = None, *, threads: int | None = None
 ) -> str:
-    """Write the page of an audit, with `diffs` by `Repair.what`; see `Audit.to_html`."""
+    """Write the page of an audit, with `diffs` by `Repair.description`; see `Audit.to_html`."""
     runs = simulate_replays(audit, threads=threads)
     repair = sections.best_repair(audit)
     repaired = [] if repair is None else [(sections.change(audit, repair), repair.robot)]

@@ -116,7 +116,7 @@ def best_repair(audit: AuditRecord) -> Repair | None:
 
 def change(audit: AuditRecord, repair: Repair) -> str:
     """Say what a repair changes; the reason for the kind of belt is given elsewhere."""
-    return repair.what.removesuffix(f" ({audit.belt.reason})")
+    return repair.description.removesuffix(f" ({audit.belt.reason})")
 
 
 def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
@@ -160,7 +160,7 @@ def lint_section(audit: AuditRecord) -> str:
 def _findings(found: Sequence[Finding]) -> str:
     rows = "".join(
         f'<li><strong class="{escape(each.severity)}">{escape(each.severity)}</strong>'
-        f" <b>{escape(each.rule)}</b>: {escape(each.what)}"
+        f" <b>{escape(each.rule)}</b>: {escape(each.message)}"
         f"{f' <code>{escape(each.where)}</code>' if each.where else ''}</li>"
         for each in found
     )
@@ -188,7 +188,7 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
         kind = "good" if each.confirmed else "quiet"
         rows.append(
             (
-                escape(each.what),
+                escape(each.description),
                 f'<strong class="{kind}">{words.confirmation(each)}</strong>',
                 words.rate(cleared) if cleared.runs else escape(words.comparison(each)),
                 words.rate(seized),
@@ -198,21 +198,21 @@ def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
             )
         )
     text = f"<p>{escape(_sentence(words.search_sentence(found, audit)))}</p>"
-    drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
+    drawn = "".join(_picture(each, diffs.get(each.description)) for each in found.repairs)
     return (
         f'{text}{_grid(head, rows, label="repairs", look="many")}<div class="repairs">{drawn}</div>'
     )
 
 
 def _picture(repair: Repair, diff: str | None) -> str:
-    picture = draw_robot(repair.robot, f"the robot: {repair.what}", width=560.0, height=200.0)
+    picture = draw_robot(
+        repair.robot, f"the robot: {repair.description}", width=560.0, height=200.0
+    )
     change = ""
     if diff is not None:
         change = fold("what changes in the file", f'<pre tabindex="0">{escape(diff)}</pre>')
-    return (
-        f'<figure class="robot">{picture}<figcaption>{escape(repair.what)}</figcaption>{change}'
-        "</figure>"
-    )
+    caption = f"<figcaption>{escape(repair.description)}</figcaption>"
+    return f'<figure class="robot">{picture}{caption}{change}</figure>'
 
 
 def robot_section(audit: AuditRecord) -> str:
