@@ -112,7 +112,7 @@ def table(found: dict[str, Any]) -> str:
     }
     rows = [
         [kind, model, *_row(mine, rule)]
-        for kind, rule in (("set into the jam", holds), ("from the start", fails))
+        for kind, rule in (("from rest in the jam", holds), ("from the start", fails))
         for model, mine in groups.items()
     ]
     head = ["robot", "jams", "stays at 0 degrees", *(f"of these at {yaw}" for yaw in _YAWS[1:])]
