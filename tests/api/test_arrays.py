@@ -99,7 +99,7 @@ REFUSED: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_is_no_real_array_is_refused_at_once(name: str) -> None:
+def test_anything_but_a_real_array_is_refused_at_once(name: str) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.terrains.from_points(REFUSED[name], goal=0.0)
     assert caught.value.path == "terrain.points"
@@ -152,7 +152,7 @@ def test_a_point_may_be_any_array(center: Any) -> None:
 
 
 @pytest.mark.parametrize("center", [0.0, [0.0], [0.0, 1.0, 2.0], "ab", [True, False], [[0.0, 1.0]]])
-def test_a_point_that_is_none_is_refused(center: Any) -> None:
+def test_an_invalid_point_is_refused(center: Any) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.robots.engineer(flippers=None, center_of_mass=center)
     assert caught.value.path == "robot.center_of_mass"

@@ -70,7 +70,7 @@ def test_a_broken_scenario_ends_the_batch_before_it_begins(batch: list[Scenario]
     assert calls == []
 
 
-def test_a_broken_scenario_can_be_recorded_and_the_others_do_not_notice(
+def test_a_broken_scenario_can_be_recorded_without_affecting_the_others(
     batch: list[Scenario],
 ) -> None:
     broken = batch[1].replace({"robot.mass": -1.0})
@@ -86,7 +86,7 @@ def test_a_broken_scenario_can_be_recorded_and_the_others_do_not_notice(
         _ = runs[1].time
 
 
-def test_what_is_no_scenario_ends_the_batch(batch: list[Scenario]) -> None:
+def test_anything_but_a_scenario_ends_the_batch(batch: list[Scenario]) -> None:
     wrong: Any = [batch[0], ROBOT]
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.simulate_many(wrong, on_error="record")
@@ -159,7 +159,7 @@ def test_progress_counts_from_0_to_all(batch: list[Scenario]) -> None:
     assert counts[-1] == len(batch)
 
 
-def test_what_a_progress_callback_raises_goes_on_unchanged(batch: list[Scenario]) -> None:
+def test_an_exception_of_a_progress_callback_propagates_unchanged(batch: list[Scenario]) -> None:
     error = OSError("the display is gone")
 
     def fail(_done: int, _total: int) -> None:

@@ -135,7 +135,7 @@ def test_more_torque_changes_nothing_else() -> None:
     assert np.abs(a_little.position - rest.position).max() < 1e-7
 
 
-def test_the_belly_can_be_taken_off() -> None:
+def test_the_belly_can_be_removed() -> None:
     """A blade between the tracks stops the belly alone."""
     flat, blade = c2d.terrains.flat(), c2d.terrains.knife_edge(0.06)
     lanes = c2d.terrains.lanes(flat, flat, middle=blade)
@@ -216,7 +216,7 @@ def test_a_branch_can_keep_its_summary_alone(seized: c2d.Run) -> None:
         _ = summary.time
 
 
-def test_a_run_that_was_pickled_or_summarised_branches_alike(seized: c2d.Run) -> None:
+def test_a_pickled_or_summarised_run_has_the_same_branches(seized: c2d.Run) -> None:
     summary = c2d.simulate(SEIZING, record="summary")
     ends = [
         each.branch(track=c2d.BeltTrack(), duration=1.0).position[-1].tolist()
@@ -233,7 +233,7 @@ def test_a_branch_survives_pickling_with_its_parent(seized: c2d.Run) -> None:
 
 
 @pytest.mark.parametrize("at", [-1, 6.1, 1e9, math.nan, math.inf, None, "stopp", "", True, 1j, [1]])
-def test_what_is_no_time_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None:
+def test_a_time_outside_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None:
     error = refused(lambda: seized.branch(at=at))
     assert error.path == "at"
     end = seized.metrics["time"]

@@ -36,7 +36,7 @@ def test_low_steps_are_certified_for_seven_wheels(whole: Certificate) -> None:
     assert "rocking without rest is not excluded" in str(whole)
 
 
-def test_where_it_can_jam_a_pose_is_named_that_is_a_jam(part: Certificate) -> None:
+def test_where_it_can_jam_an_example_jam_is_named(part: Certificate) -> None:
     assert not part.holds
     assert "% where it can jam, as at terrain.height = " in str(part)
     height, friction, x, y, angle = part.witness[part.status == "jams"][0]
@@ -66,7 +66,7 @@ def test_shares_add_up_and_figures_show_them(part: Certificate) -> None:
         (0.001, "less than 1 % certified", "more than 99 % where it can jam"),
     ],
 )
-def test_what_is_not_all_is_not_called_a_hundred_percent(
+def test_an_incomplete_share_is_not_rounded_to_100_percent(
     edge: float, certified: str, jams: str
 ) -> None:
     found = Certificate(
@@ -122,7 +122,7 @@ def test_where_nothing_is_certified_there_are_no_cells() -> None:
         (OVER, {"keep_cells": "no"}, r"keep_cells must be True or False"),
     ],
 )
-def test_what_cannot_be_certified_is_refused(
+def test_models_that_cannot_be_certified_are_refused(
     over: Any, options: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(c2d.ScenarioError, match=message):
@@ -138,7 +138,7 @@ def test_a_belt_is_what_wheels_are_compared_with() -> None:
 SAMPLES = 40
 
 
-def test_what_excludes_a_cell_holds_at_each_of_its_points(whole: Certificate) -> None:
+def test_the_reason_that_excludes_a_cell_holds_at_each_of_its_points(whole: Certificate) -> None:
     """Of 1,000 cells of all kinds, 40 poses, heights and frictions each."""
     assert whole.cells is not None
     random = np.random.default_rng(0)

@@ -121,7 +121,7 @@ def test_it_survives_its_file() -> None:
         (lambda: c2d.ClosedTrack("belt"), "robot.track.of", "must be a"),  # type: ignore[arg-type]
     ],
 )
-def test_what_cannot_be_closed_is_refused(track: Any, path: str, rule: str) -> None:
+def test_tracks_that_cannot_be_closed_are_refused(track: Any, path: str, rule: str) -> None:
     error = refusal(lambda: ROBOT.with_track(track()))
     assert error.path == path
     assert error.rule.startswith(rule)

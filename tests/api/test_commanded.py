@@ -212,14 +212,14 @@ def test_an_endless_advance_with_a_gait_that_is_a_function_is_refused(duration: 
     assert caught.value.path == "duration"
 
 
-def test_a_gait_that_returns_what_is_no_pair_of_numbers_is_refused() -> None:
+def test_a_gait_that_returns_no_pair_of_numbers_is_refused() -> None:
     drive = c2d.Drive(gait=lambda _: ([0.1, 0.2], 0.3))
     sim = c2d.Simulation(Scenario(TWO_ENDS, c2d.terrains.flat(), drive=drive))
     with pytest.raises(c2d.ScenarioError, match=r"drive\.gait must return an angle, a pair"):
         sim.advance(0.1)
 
 
-def test_what_a_function_raises_gets_out_and_the_simulation_goes_on() -> None:
+def test_an_exception_of_a_gait_function_propagates_and_the_simulation_goes_on() -> None:
     def gait(state: State) -> float:
         if state.time == 0.0:
             raise ZeroDivisionError

@@ -61,9 +61,7 @@ def test_a_batch_is_counted_as_a_whole(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "much", "-1", "nan", "0"])
-def test_a_limit_of_memory_that_makes_no_sense_is_refused(
-    text: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_invalid_memory_limit_is_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CRAWLER2D_MEMORY", text)
     with pytest.raises(errors.LimitError, match="CRAWLER2D_MEMORY must be a number of GiB > 0"):
         c2d.simulate(STEP)

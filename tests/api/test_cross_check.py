@@ -40,7 +40,7 @@ def test_round_wheels_stop_in_the_same_place(check: CrossCheck[c2d.Run]) -> None
     assert abs(check.turn) < 1e-3
 
 
-def test_only_the_solver_is_the_others_own(check: CrossCheck[c2d.Run]) -> None:
+def test_scenarios_of_both_engines_differ_in_the_solver_only(check: CrossCheck[c2d.Run]) -> None:
     assert check.other.scenario == SEIZING.replace({"solver": c2d.Solver(engine="rapier")})
     back = check.other.cross_check()
     assert back.other.scenario == SEIZING
@@ -157,7 +157,7 @@ def test_a_sentence_says_who_stopped_where_and_what_holds(
     assert "an equilibrium up to 1.36 times the friction" in said
 
 
-def test_what_rapier_does_not_hold_is_refused_by_field() -> None:
+def test_scenarios_that_rapier_cannot_simulate_are_refused_by_field() -> None:
     belt = c2d.simulate(ROBOT.with_track(c2d.BeltTrack()), STEP(0.02), duration=0.1)
     error = refused(belt.cross_check)
     assert error.path == "robot.track.kind"
@@ -194,7 +194,7 @@ def test_engines_are_swept_like_any_field() -> None:
         assert own == pytest.approx(rapier, abs=1e-3)  # softer contacts, as above
 
 
-def test_a_pose_that_is_no_equilibrium_is_said_to_be_none() -> None:
+def test_a_pose_out_of_equilibrium_is_reported() -> None:
     pull = Pull(body=2, point=(0.1, 0.2), force=22.4)
     none = Balance(imbalance=0.123, tolerance=1e-3, holds_between=None, pulls=(pull,))
     assert not none.holds
@@ -249,7 +249,7 @@ def test_figures_of_the_agreement_are_those_of_its_page() -> None:
     assert found == STUDY
 
 
-def test_a_check_ends_with_what_it_is_worth(check: CrossCheck[c2d.Run]) -> None:
+def test_a_check_ends_with_the_counts_of_both_engines(check: CrossCheck[c2d.Run]) -> None:
     assert str(check).endswith("344 got over in crawler2d's own dynamics, 344 in rapier.")
 
 
@@ -277,7 +277,7 @@ def test_a_check_says_before_it_starts_how_long_it_will_take(
 
 
 @pytest.mark.parametrize(("most", "is_told"), [(1.0, False), (20.0, True)])
-def test_only_what_takes_long_is_announced(
+def test_only_long_checks_are_announced(
     most: float, is_told: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
     cross_check._announce("rapier", 1.0, most)
@@ -290,7 +290,7 @@ def test_only_what_takes_long_is_announced(
     )
 
 
-def test_what_is_no_announcement_is_refused_by_name(seized: c2d.Run) -> None:
+def test_an_invalid_announcement_is_refused_by_name(seized: c2d.Run) -> None:
     wrong: Any = "yes"
     with pytest.raises(c2d.ScenarioError, match=r"^announce must be"):
         seized.cross_check(announce=wrong)

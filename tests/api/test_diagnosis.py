@@ -72,7 +72,7 @@ def why(run: c2d.Run) -> c2d.Diagnosis:
 
 
 @pytest.mark.parametrize("name", STOPS)
-def test_every_way_to_stop_is_named_and_said(stops: dict[str, c2d.Run], name: str) -> None:
+def test_every_outcome_of_a_stop_has_a_sentence(stops: dict[str, c2d.Run], name: str) -> None:
     run, text = stops[name], str(stops[name].diagnosis)
     assert run.outcome is why(run).outcome
     assert run.outcome.is_stop
@@ -168,7 +168,7 @@ def test_a_stop_is_freed_by_what_holds_it(
         assert tried.freeing <= tried.starts
 
 
-def test_what_did_not_stop_has_no_diagnosis(run: c2d.Run) -> None:
+def test_a_run_without_a_stop_has_no_diagnosis(run: c2d.Run) -> None:
     for moving in (run, c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.5)):
         assert moving.diagnosis is None
         assert moving.mechanism is None
@@ -262,7 +262,7 @@ NEEDED = [
         ((), []),
     ],
 )
-def test_what_is_tried_beside_what_the_outcome_needs_is_asked_for(
+def test_trials_that_the_outcome_does_not_need_are_made_on_request(
     trials: Any, more: list[str]
 ) -> None:
     scenario = c2d.Scenario(*STOPS["straddled"], duration=5.0)
@@ -272,7 +272,7 @@ def test_what_is_tried_beside_what_the_outcome_needs_is_asked_for(
 
 
 @pytest.mark.parametrize("wrong", ["yes", 1, True, ["torque x 3"], [1], "torque x 2"])
-def test_what_is_no_trial_is_refused_by_name(wrong: Any) -> None:
+def test_an_unknown_trial_is_refused_by_name(wrong: Any) -> None:
     scenario = c2d.Scenario(*STOPS["straddled"], duration=0.1)
     for call in (
         lambda: c2d.simulate(scenario, trials=wrong),

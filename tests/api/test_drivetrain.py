@@ -35,7 +35,7 @@ def driven(**fields: Any) -> c2d.Robot:
         ({"controller": c2d.PI(1.0), "self_locking": True}, "robot.drivetrain.self_locking"),
     ],
 )
-def test_motors_that_none_can_be_are_refused_by_field(fields: dict[str, Any], path: str) -> None:
+def test_impossible_motors_are_refused_by_field(fields: dict[str, Any], path: str) -> None:
     assert refusal(driven(**fields)).path == path
 
 
@@ -86,7 +86,7 @@ def test_a_line_that_is_drawn_takes_the_place_of_a_curve() -> None:
     assert (of_curve == of_line).all()
 
 
-def test_what_limits_a_motor_with_a_curve_is_found() -> None:
+def test_the_limit_of_a_motor_with_a_torque_curve_is_found() -> None:
     found = []
     for base in (CURVED, FALLING):
         slope = base.replace({"terrain": c2d.terrains.ramp(0.5)})
@@ -145,7 +145,7 @@ def test_another_engine_refuses_motors_that_it_does_not_have() -> None:
     assert refusal(robot, solver=solver).path == "robot.drivetrain.self_locking"
 
 
-def test_a_lock_is_refused_where_it_has_nothing_to_do_and_says_why() -> None:
+def test_a_lock_without_a_use_is_refused_with_the_reason() -> None:
     with_controller = refusal(driven(self_locking=True, controller=c2d.PI(1.0)))
     assert "with a controller, got true: the load never reaches the motor" in str(with_controller)
     on_a_force = refusal(driven(self_locking=True).with_track(c2d.ForceTrack()))

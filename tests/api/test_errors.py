@@ -37,7 +37,7 @@ def test_an_interrupt_survives_pickling_with_its_runs(run: c2d.Run) -> None:
     assert isinstance(copy.runs[1].error, c2d.RunUnfinished)
 
 
-def test_every_error_is_in_the_tree_and_is_what_python_calls_it() -> None:
+def test_every_error_derives_from_the_base_and_from_its_python_counterpart() -> None:
     kinds: dict[type[Exception], type[Exception]] = {
         errors.ScenarioError: ValueError,
         errors.SimulationDiverged: RuntimeError,

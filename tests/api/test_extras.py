@@ -62,9 +62,7 @@ def test_a_package_that_is_not_there_names_its_extra() -> None:
         'ModuleNotFoundError("No module named \'other\'", name="other")',
     ],
 )
-def test_a_package_that_was_imported_by_half_is_not_called_missing(
-    folder: Path, error: str
-) -> None:
+def test_a_partly_imported_package_is_not_called_missing(folder: Path, error: str) -> None:
     package(folder, HALF.format(error=error))
     with pytest.raises(KeyboardInterrupt):
         extra("halved", "half")

@@ -47,13 +47,13 @@ def test_a_schedule_of_speeds_is_followed() -> None:
     assert speed == pytest.approx({0.9: 0.3, 1.9: -0.3, 2.9: 0.0}, abs=1e-6)
 
 
-def test_a_run_that_is_yet_to_be_driven_off_does_not_end_early() -> None:
+def test_a_run_whose_schedule_starts_later_does_not_end_early() -> None:
     drive = c2d.Drive(speed=0.0, schedule=((8.0, 0.4),))
     scenario = Scenario(ENGINEER, c2d.terrains.flat(length=0.2), drive=drive, duration=15.0)
     assert c2d.simulate(scenario).outcome == "cleared"
 
 
-def test_commands_take_the_flippers_out_of_the_gaits_hands() -> None:
+def test_commands_override_the_gait_of_the_flippers() -> None:
     robot = c2d.robots.absolem()
     drive = c2d.Drive(speed=0.0, gait=c2d.Climb())
     sim = c2d.Simulation(Scenario(robot, c2d.terrains.flat(), drive=drive))
@@ -216,7 +216,7 @@ def test_a_bad_gait_is_refused_by_path(gait: Any, path: str) -> None:
     assert refusal(ENGINEER, drive=c2d.Drive(gait=gait)).path == path
 
 
-def test_what_is_no_gait_is_refused_at_once() -> None:
+def test_anything_but_a_gait_is_refused_at_once() -> None:
     for make, path in (
         (lambda: c2d.Climb(reach_angle="up"), "drive.gait.reach_angle"),  # type: ignore[arg-type]
         (lambda: c2d.Drive(gait="climb"), "drive.gait"),  # type: ignore[arg-type]

@@ -113,5 +113,5 @@ def test_a_turned_barrier_needs_the_distance_of_the_tracks() -> None:
     ],
     ids=["broken terrain", "text", "complex", "truth", "ragged", "overhang"],
 )
-def test_what_has_no_height_is_refused_by_its_path(call: Any, path: str) -> None:
+def test_terrains_without_a_height_are_refused_by_path(call: Any, path: str) -> None:
     assert refused(call).path == path

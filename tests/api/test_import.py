@@ -53,7 +53,7 @@ assert callable(crawler2d.robots.engineer)
     [c2d.terrains, c2d.robots, c2d.samples, c2d.unknowns, c2d.variability, c2d.studies, c2d.envs],
     ids=lambda module: module.__name__,
 )
-def test_completion_offers_what_is_public_and_nothing_else(module: ModuleType) -> None:
+def test_completion_offers_public_names_only(module: ModuleType) -> None:
     assert dir(module) == sorted(module.__all__)
 
 
@@ -83,7 +83,7 @@ def test_the_import_brings_no_optional_package() -> None:
     python(LAZY)
 
 
-def test_rooms_that_not_every_user_enters_are_imported_when_they_are_named() -> None:
+def test_optional_rooms_are_imported_when_they_are_first_used() -> None:
     python(WHEN_NAMED)
     with pytest.raises(AttributeError, match="'crawler2d' has no attribute 'nothing'"):
         c2d.nothing  # type: ignore[attr-defined] # noqa: B018 - read for its error
@@ -95,7 +95,7 @@ def test_the_core_is_a_release_build() -> None:
     assert info["version"] == c2d.__version__
 
 
-def test_a_function_wins_over_the_module_of_its_name() -> None:
+def test_a_function_takes_precedence_over_the_module_of_its_name() -> None:
     python(SHADOWED)
 
 

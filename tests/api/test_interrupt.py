@@ -188,7 +188,7 @@ def test_environments_answer_ctrl_c_and_can_begin_anew(say: Say) -> None:
 
 
 @pytest.mark.parametrize("begun", [c2d.Simulation, lambda one: c2d.Simulations([one])])
-def test_the_handler_of_a_signal_may_look_at_what_it_interrupts(begun: Callable[..., Any]) -> None:
+def test_a_signal_handler_may_read_the_interrupted_simulation(begun: Callable[..., Any]) -> None:
     robot = c2d.robots.engineer(flippers=None)
     scenario = c2d.Scenario(robot, c2d.terrains.flat(), solver=c2d.Solver(time_step=1e-3))
     running = begun(scenario)

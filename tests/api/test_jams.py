@@ -36,7 +36,7 @@ def test_the_stop_of_a_run_is_a_jam_with_the_loads_of_its_diagnosis() -> None:
     assert "21 mm of ground between wheels 1 and 2" in str(jam)
 
 
-def test_what_is_stable_does_not_depend_on_where_the_ground_lies() -> None:
+def test_stability_does_not_depend_on_the_place_of_the_ground() -> None:
     robot = WHEELS.with_track(c2d.LineOfWheels(3, wheel_radius=0.05)).without_rotors()
     robot = replace(robot, center_of_mass=(0.0, 0.02))
     draw = np.random.default_rng(0)

@@ -113,7 +113,7 @@ def test_simulate_knows_its_own_keywords_and_nested_fields(field: str, meant: st
         c2d.simulate(BASE, **fields)
 
 
-def test_a_sweep_over_a_field_without_its_path_is_told_the_path() -> None:
+def test_the_error_for_a_field_without_its_path_gives_the_path() -> None:
     with pytest.raises(c2d.ScenarioError, match=r"\(did you mean terrain\.height\?\)"):
         c2d.sweep(BASE, {"height": [0.1]}, progress=False)
 
@@ -129,7 +129,7 @@ def test_a_sweep_over_a_field_without_its_path_is_told_the_path() -> None:
     ids=["terrain", "simulate", "command", "replace"],
 )
 @pytest.mark.parametrize("name", ["yaw", "roll_angle", "soil", "suspension", "stl", "pid"])
-def test_what_a_side_view_does_not_have_is_told_with_its_limits(
+def test_an_error_about_the_third_dimension_states_the_limits_of_a_side_view(
     ask: Callable[..., Any], name: str
 ) -> None:
     with pytest.raises(c2d.ScenarioError, match=r"side view.*README, Limits"):
@@ -137,7 +137,9 @@ def test_what_a_side_view_does_not_have_is_told_with_its_limits(
 
 
 @pytest.mark.parametrize("name", ["PID", "Suspension", "mesh_terrain"])
-def test_a_name_that_a_side_view_does_not_have_is_told_with_its_limits(name: str) -> None:
+def test_an_error_about_a_name_of_the_third_dimension_states_the_limits_of_a_side_view(
+    name: str,
+) -> None:
     for module in (c2d, c2d.terrains):
         with pytest.raises(AttributeError, match=f"'{name}'.*README, Limits"):
             getattr(module, name)

@@ -30,7 +30,7 @@ def test_words_of_a_diagnosis_are_those_of_the_core_and_have_a_meaning() -> None
 
 
 @pytest.mark.parametrize("words", [c2d.Mechanism, c2d.Outcome])
-def test_help_tells_what_every_word_means(words: Any) -> None:
+def test_help_explains_every_word(words: Any) -> None:
     assert words.__doc__ is not None
     for word in words:
         assert f"- {word}: {word.meaning}" in words.__doc__

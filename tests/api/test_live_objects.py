@@ -100,7 +100,7 @@ def test_an_inherited_simulation_goes_on_in_a_fork_as_in_its_parent() -> None:
     assert forked(go_on) == repr(go_on())
 
 
-def test_a_fork_does_not_wait_for_a_thread_that_it_does_not_have() -> None:
+def test_a_fork_does_not_wait_for_a_thread_of_its_parent() -> None:
     sim, many = c2d.Simulation(ENDLESS), c2d.Simulations([ENDLESS] * 2)
     with busy(lambda: sim.advance(0.01)), busy(lambda: many.advance(0.001)):
         for _ in range(3):

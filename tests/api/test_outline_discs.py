@@ -136,7 +136,7 @@ def test_flippers_add_their_mass_on_the_end_axles() -> None:
 # Replacing and sweeping.
 
 
-def test_three_numbers_replace_what_they_say_of_two_discs() -> None:
+def test_three_numbers_replace_those_of_two_discs() -> None:
     outline = on(TWO).outline
     assert dataclasses.replace(outline, front_radius=0.06).discs == (TWO[0], (0.1825, 0.0, 0.06))
     scenario = Scenario(on(TWO), STEP)
@@ -202,7 +202,7 @@ def test_a_missing_number_is_named() -> None:
 
 
 @pytest.mark.parametrize("value", [0.0, -0.365, float("nan"), "0.365", None, True, [0.3, 0.4]])
-def test_a_distance_that_is_none_is_refused_at_once(value: Any) -> None:
+def test_an_invalid_distance_is_refused_at_once(value: Any) -> None:
     error = refused(
         lambda: c2d.TrackOutline(
             axle_distance=value, front_radius=0.05, rear_radius=0.05, **GROUSERS
@@ -246,7 +246,7 @@ def test_discs_that_no_track_runs_round_are_refused(discs: Any, path: str, rule:
 
 
 @pytest.mark.parametrize("discs", [5, "discs", [[0, 0]], [[0, 0, "a"]], [[0, 0, None]], {1: 2}])
-def test_what_are_no_discs_is_refused_at_once(discs: Any) -> None:
+def test_anything_but_discs_is_refused_at_once(discs: Any) -> None:
     assert refused(lambda: on(discs)).path.startswith("robot.outline.discs")
 
 
@@ -273,7 +273,7 @@ def test_grousers_are_lower_than_the_smallest_disc() -> None:
         (c2d.SegmentalTrack(mechanism="sprocket"), "mechanism", "sprocket"),
     ],
 )
-def test_what_has_two_ends_is_refused_round_more_discs(track: Any, path: str, value: str) -> None:
+def test_tracks_with_two_ends_are_refused_on_more_discs(track: Any, path: str, value: str) -> None:
     error = refusal(TRAPEZOID.with_track(track))
     assert (error.path, error.value) == (f"robot.track.{path}", value)
     assert "round 4 discs (robot.outline.discs)" in error.rule

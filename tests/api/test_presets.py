@@ -44,7 +44,7 @@ def test_the_gazebo_vehicle_is_put_together_from_its_file() -> None:
     assert c2d.robots.gz_tracked_vehicle(flippers=None, track="public").track == c2d.BeltTrack()
 
 
-def test_public_wheel_models_let_in_what_a_belt_passes() -> None:
+def test_an_edge_that_a_belt_clears_enters_public_wheel_models() -> None:
     """What people run into who replace tracks by wheels in a simulator: it has no rotors."""
     blade = c2d.terrains.knife_edge(0.05, thickness=0.02)
     wheels = c2d.robots.engineer(flippers=None, track="public").without_rotors()
@@ -138,7 +138,7 @@ def test_a_robot_without_rotors_is_the_same_otherwise() -> None:
 
 
 @pytest.mark.parametrize("preset", [c2d.robots.absolem, c2d.robots.marv])
-def test_what_is_not_known_covers_both_sources(preset: Any) -> None:
+def test_the_ranges_of_unknowns_cover_both_sources(preset: Any) -> None:
     robots = preset(), preset(source="rough")
     for path in ("robot.mass", "robot.drivetrain.max_torque", "robot.flippers.torque_limit"):
         own = [read_path(Scenario(robot, c2d.terrains.flat()), path) for robot in robots]
@@ -151,14 +151,14 @@ def test_what_is_not_known_covers_both_sources(preset: Any) -> None:
 
 @pytest.mark.parametrize("preset", [c2d.robots.absolem, c2d.robots.marv])
 @pytest.mark.parametrize("source", ["SubT", "", None, 40.0])
-def test_a_word_that_is_no_source_is_refused(preset: Any, source: Any) -> None:
+def test_an_unknown_source_is_refused(preset: Any, source: Any) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         preset(source=source)
     assert caught.value.path == "source"
 
 
 @pytest.mark.parametrize("name", c2d.robots.__all__)
-def test_a_word_that_is_no_track_is_refused(name: str) -> None:
+def test_an_unknown_track_is_refused(name: str) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         getattr(c2d.robots, name)(track="private")
     assert caught.value.path == "track"

@@ -77,7 +77,7 @@ EXTREMES = {
 
 
 @pytest.mark.parametrize("name", EXTREMES)
-def test_the_extreme_but_legal_runs_and_stays_finite(name: str) -> None:
+def test_extreme_valid_scenarios_run_and_stay_finite(name: str) -> None:
     run = c2d.simulate(EXTREMES[name].replace({"duration": 3.0}))
     for column in (run.position, run.velocity, run.chassis_angle, run.drive_force):
         assert np.isfinite(column).all()

@@ -37,7 +37,7 @@ def test_a_robot_that_tips_over_says_which_way_and_about_what(tipped: c2d.Run) -
     assert found.pivot[0] == pytest.approx(tipped.contacts["x"][now].min(), abs=2e-3)
 
 
-def test_what_holds_a_robot_that_tips_over_is_tried(tipped: c2d.Run) -> None:
+def test_changes_that_prevent_tipping_over_are_tried(tipped: c2d.Run) -> None:
     found = tipped.tip_over()
     changes = [change for change, _ in found.tried]
     assert changes[:2] == ["half the speed", "a tenth of the speed"]
@@ -104,7 +104,7 @@ def test_a_goal_that_no_robot_clears_on_the_ground_gets_a_warning() -> None:
         ends.validate()
 
 
-def test_the_reason_of_a_stop_tells_of_trials_that_were_made_after_it_was_first_read() -> None:
+def test_the_reason_of_a_stop_includes_trials_made_after_its_first_reading() -> None:
     stopped = c2d.simulate(ROBOT, c2d.terrains.step(0.3, friction=0.3), trials=None)
     before = stopped.reason
     stopped.what_if("torque x 2")

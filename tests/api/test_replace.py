@@ -28,7 +28,7 @@ def test_paths_are_replaced_in_order() -> None:
     assert scenario.robot.track == c2d.LineOfWheels(5)
 
 
-def test_a_path_to_the_accuracy_or_the_time_step_takes_the_other_off() -> None:
+def test_setting_the_accuracy_or_the_time_step_clears_the_other() -> None:
     scenario = VARIANTS["belt-step"]
     steps = scenario.replace({"solver.time_step": 1e-3})
     assert steps.solver == c2d.Solver(time_step=1e-3)
@@ -194,7 +194,7 @@ def test_an_element_of_another_kind_is_refused_by_its_path(
 
 
 @pytest.mark.parametrize("fields", [5, None, "duration", [("duration", 2.0)]])
-def test_what_is_no_mapping_is_refused(fields: Any) -> None:
+def test_anything_but_a_mapping_is_refused(fields: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match="must be a mapping from paths to values"):
         VARIANTS["belt-step"].replace(fields)
 
@@ -205,7 +205,7 @@ def test_another_track_is_the_same_robot() -> None:
     assert other.with_track(ROBOT.track) == ROBOT
 
 
-def test_what_is_of_another_type_is_refused_by_the_path_that_was_given() -> None:
+def test_a_wrong_type_is_refused_by_the_given_path() -> None:
     robot = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(3))
     lanes = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.flat())
     scenario = Scenario(robot, lanes)

@@ -14,7 +14,7 @@ def scenario(restitution: float = 0.0) -> c2d.Scenario:
     )
 
 
-def test_a_jam_can_hang_on_what_blows_give_back() -> None:
+def test_a_jam_may_depend_on_restitution() -> None:
     jams, gets_over = (c2d.simulate(scenario(restitution=share)) for share in (0.0, 0.5))
     assert jams.outcome is c2d.Outcome.SEIZED
     assert gets_over.outcome is c2d.Outcome.CLEARED
@@ -32,7 +32,7 @@ def test_a_share_out_of_range_is_refused_by_its_path(share: float) -> None:
         scenario(restitution=share).validate()
 
 
-def test_chains_and_rapier_give_nothing_back() -> None:
+def test_chains_and_rapier_have_no_restitution() -> None:
     chained = scenario(restitution=0.5).replace({"robot.track": c2d.SegmentalTrack()})
     with pytest.raises(c2d.ScenarioError, match=r"solver\.restitution .*segmental"):
         chained.validate()

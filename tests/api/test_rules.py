@@ -45,7 +45,7 @@ def test_the_history_of_a_run_is_read_only(run: c2d.Run) -> None:
         run.velocity = 0
 
 
-def test_simulations_are_set_out_anew_by_one_scenario_each() -> None:
+def test_simulations_are_reset_with_one_scenario_each() -> None:
     many = c2d.Simulations([BRIEF] * 3)
     error = refused(lambda: many.reset([0, 2], [BRIEF]))
     assert (error.path, error.rule) == ("scenarios", "must be 2 of them")

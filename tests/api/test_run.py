@@ -159,7 +159,7 @@ def arrays_given_out() -> dict[str, np.ndarray[Any, Any]]:
     return of_run | of_state | columns
 
 
-def test_an_array_that_comes_back_cannot_be_unlocked() -> None:
+def test_a_returned_array_cannot_be_made_writable() -> None:
     for name, array in arrays_given_out().items():
         assert not array.flags.writeable, name
         with pytest.raises(ValueError, match="WRITEABLE"):
@@ -194,7 +194,7 @@ def test_the_figures_of_a_run_cannot_be_changed(run: c2d.Run, change: Any) -> No
     assert run.metrics == before
 
 
-def test_the_figures_of_a_run_are_a_dict_to_everybody_else(run: c2d.Run) -> None:
+def test_the_figures_of_a_run_behave_like_a_dict(run: c2d.Run) -> None:
     plain = dict(run.metrics)
     for twin in (pickle.loads(pickle.dumps(run.metrics)), copy.deepcopy(run.metrics)):
         assert twin == plain

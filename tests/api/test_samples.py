@@ -59,7 +59,7 @@ def test_each_format_has_the_same_robot(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_sample_is_a_robot_that_could_be(name: str) -> None:
+def test_a_sample_is_a_plausible_robot(name: str) -> None:
     read(name)
     found = lint_only(c2d.samples.path(name))
     assert {each.severity for each in found.lint} <= {"note"}
@@ -71,7 +71,7 @@ def test_a_sample_is_a_robot_that_could_be(name: str) -> None:
     assert len(c2d.samples.path(name).read_text("utf-8").splitlines()) <= 150
 
 
-def test_a_sample_that_is_not_there_is_refused_with_the_nearest() -> None:
+def test_an_unknown_sample_is_refused_with_the_nearest() -> None:
     error = refused(lambda: c2d.samples.path("rover.srdf"))
     assert (error.path, error.value) == ("name", "rover.srdf")
     assert "rover.urdf" in error.rule

@@ -131,11 +131,11 @@ def test_a_run_without_result_is_not_saved(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_a_run_says_what_simulated_it(stopped: c2d.Run, tmp_path: Path) -> None:
+def test_a_run_names_the_build_that_simulated_it(stopped: c2d.Run, tmp_path: Path) -> None:
     assert stopped.build == reloaded(stopped, tmp_path).build == c2d.build_info()
 
 
-def test_runs_of_this_build_share_what_says_so(stopped: c2d.Run, tmp_path: Path) -> None:
+def test_runs_of_this_build_share_one_build_record(stopped: c2d.Run, tmp_path: Path) -> None:
     other = c2d.simulate(WHEELS, c2d.terrains.flat(), duration=0.0)
     copies = (other, pickle.loads(pickle.dumps(stopped)), reloaded(stopped, tmp_path))
     assert all(run.build is stopped.build for run in copies)
@@ -153,7 +153,7 @@ def test_a_run_of_another_build_is_not_repeated_by_this_one(saved: Path) -> None
     assert again.to_html()
 
 
-def test_page_and_data_set_of_a_run_say_what_simulated_it(saved: Path) -> None:
+def test_page_and_data_set_of_a_run_name_its_build(saved: Path) -> None:
     change(saved, lambda about: about["build"].update(version="0.0.9", build_id="an earlier one"))
     again = c2d.load(saved)
     assert f"crawler2d 0.0.9, scenario {again.scenario.identity[:16]}" in again.to_html()
@@ -190,7 +190,7 @@ def refusal(path: Path) -> str:
     return text
 
 
-def test_what_is_no_saved_run_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_no_saved_run_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "it.npz"
     assert "cannot be read: No such file" in refusal(path)
     assert "cannot be read: Is a directory" in refusal(tmp_path)
@@ -204,7 +204,7 @@ def test_what_is_no_saved_run_is_refused(tmp_path: Path) -> None:
     assert "is not a saved run" in refusal(path)
 
 
-def test_a_newer_format_is_named_with_what_helps(saved: Path) -> None:
+def test_the_error_for_a_newer_format_says_what_helps(saved: Path) -> None:
     change(saved, lambda about: about.update(version=2))
     assert "is of format 2, of crawler2d 0." in refusal(saved)
     assert "update crawler2d" in refusal(saved)
@@ -280,7 +280,7 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("broken")
-def test_a_failure_leaves_the_file_that_was_there(stopped: c2d.Run, tmp_path: Path) -> None:
+def test_a_failed_write_keeps_the_old_file(stopped: c2d.Run, tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
     path.write_text("before")
     with pytest.raises(OSError, match="No space left") as caught:
@@ -302,7 +302,9 @@ def test_a_run_is_written_under_the_name_given_and_replaces_what_is_there(
     assert sorted(tmp_path.iterdir()) == [link, path]
 
 
-def test_what_cannot_be_written_is_named_by_its_own_path(stopped: c2d.Run, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_written_is_named_by_its_path(
+    stopped: c2d.Run, tmp_path: Path
+) -> None:
     with pytest.raises(FileNotFoundError) as caught:
         stopped.save(tmp_path / "missing" / "run.npz")
     assert caught.value.filename == str(tmp_path / "missing" / "run.npz")
@@ -320,7 +322,7 @@ def test_threads_that_write_to_one_path_leave_one_of_their_files_whole(tmp_path:
     assert [each.name for each in tmp_path.iterdir()] == ["page.html"]
 
 
-def test_a_number_is_no_place_of_a_run(tmp_path: Path) -> None:
+def test_a_number_is_refused_as_the_path_of_a_run(tmp_path: Path) -> None:
     with (tmp_path / "other").open("wb") as file:
         with pytest.raises(TypeError):
             c2d.load(file.fileno())  # type: ignore[arg-type]

@@ -190,7 +190,7 @@ def test_a_whole_number_beyond_float64_is_the_nearest(scenario: Scenario) -> Non
         ("solver.iterations", True),
     ],
 )
-def test_what_is_no_scenario_is_refused_by_its_path(
+def test_an_invalid_scenario_is_refused_by_its_path(
     scenario: Scenario, path: str, value: object
 ) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
@@ -207,7 +207,7 @@ def test_a_text_that_is_no_scenario_is_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", [None, b"{}", 5, {}, Path("scenario.json")])
-def test_what_is_no_text_is_refused(text: Any) -> None:
+def test_anything_but_text_is_refused(text: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match="scenario must be a string"):
         Scenario.from_json(text)
 

@@ -100,7 +100,7 @@ ON_IT = "wheel 2 slides on it under a load of 150 N, wheel 1 under 40 N"
 SEIZED = f"seized between wheels 3 and 4: {INSIDE}; {ON_IT}"
 
 
-def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
+def test_a_sentence_names_intrusion_contacts_and_trials() -> None:
     assert str(made()) == SEIZED
     controls = (tried("unchanged"), tried("rebuilt"))
     assert str(made(trials=controls)) == SEIZED
@@ -176,7 +176,7 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
         ),
     ],
 )
-def test_what_came_of_a_trial_is_said_in_a_few_words(trial: TrialResult, said: str) -> None:
+def test_the_result_of_a_trial_is_said_in_a_few_words(trial: TrialResult, said: str) -> None:
     assert str(made(trials=(trial,))) == f"{SEIZED}. Tried: {said}"
 
 
@@ -218,7 +218,7 @@ def test_a_stop_that_no_belt_gets_past_says_so(belt: float, closed: float, said:
         ("rebuilt", "With its track rebuilt it goes on: free after 0.3 s, then clears"),
     ],
 )
-def test_of_a_transient_stop_no_more_is_said_than_how_it_went_on(control: str, said: str) -> None:
+def test_the_sentence_of_a_transient_stop_says_only_how_it_went_on(control: str, said: str) -> None:
     stop = made(
         transient=True, outcome=OUT.TIMED_OUT, trials=(dataclasses.replace(BELT, name=control),)
     )
@@ -304,11 +304,11 @@ def test_bodies_on_the_edge_are_named_by_what_they_do(
         ),
     ],
 )
-def test_ground_inside_is_told_by_its_place_and_depth(piece: Any, said: str) -> None:
+def test_ground_inside_is_described_by_place_and_depth(piece: Any, said: str) -> None:
     assert said in str(made(intrusion=dataclasses.replace(PIECE, **piece)))
 
 
-def test_where_ground_inside_is_not_what_stops_the_robot_it_is_told_beside() -> None:
+def test_ground_inside_that_does_not_stop_the_robot_follows_the_outcome() -> None:
     for outcome in (OUT.SLIPPING, OUT.STALLED):
         said = str(made(outcome=outcome, symptom=outcome))
         assert said.startswith(f"{outcome}: {INSIDE} between wheels 3 and 4; {ON_IT}")
@@ -345,7 +345,7 @@ def test_where_ground_inside_is_not_what_stops_the_robot_it_is_told_beside() -> 
         ),
     ],
 )
-def test_a_stop_without_ground_inside_is_told_by_motors_and_surfaces(
+def test_a_stop_without_ground_inside_is_described_by_motors_and_surfaces(
     fields: dict[str, Any], said: str
 ) -> None:
     outcome = OUT(fields["outcome"])
@@ -384,7 +384,7 @@ def test_a_stop_without_ground_inside_is_told_by_motors_and_surfaces(
         ),
     ],
 )
-def test_a_robot_that_stands_on_its_tail_is_told_from_one_that_lies_on_its_belly(
+def test_standing_on_the_tail_differs_from_lying_on_the_belly(
     angle: float, normal: tuple[float, float], side: str, said: str
 ) -> None:
     contacts = {

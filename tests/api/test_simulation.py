@@ -20,7 +20,7 @@ def seizing() -> Scenario:
     return Scenario(c2d.robots.engineer(flippers=None, track=track), c2d.terrains.step(0.1))
 
 
-def test_an_advance_gives_the_run_and_ends_where_it_is_told(scenario: Scenario) -> None:
+def test_an_advance_gives_the_run_and_ends_at_the_requested_time(scenario: Scenario) -> None:
     run = c2d.simulate(scenario, duration=1.2345)
     sim = c2d.Simulation(scenario)
     sim.advance(1.2345)
@@ -106,7 +106,7 @@ def test_the_outcome_of_a_run_that_has_ended_is_judged_once(seizing: Scenario) -
 
 
 @pytest.mark.parametrize("asked_before", [True, False])
-def test_what_is_commanded_after_the_end_does_not_change_the_outcome(
+def test_commands_after_the_end_do_not_change_the_outcome(
     seizing: Scenario, asked_before: bool
 ) -> None:
     sim = c2d.Simulation(seizing)
@@ -122,7 +122,7 @@ def test_what_is_commanded_after_the_end_does_not_change_the_outcome(
     assert state.outcome is c2d.Outcome.SEIZED
 
 
-def test_contacts_of_a_state_are_those_of_its_instant_whenever_they_are_asked_for(
+def test_contacts_of_a_state_are_those_of_its_instant_whenever_they_are_read(
     scenario: Scenario,
 ) -> None:
     sim, twin = c2d.Simulation(scenario), c2d.Simulation(scenario)
@@ -291,7 +291,7 @@ def test_an_impossible_start_is_refused_and_changes_nothing(
     assert sim.scenario == scenario
 
 
-def test_warnings_are_told_once_and_not_at_every_reset(scenario: Scenario) -> None:
+def test_warnings_are_given_once_and_not_at_every_reset(scenario: Scenario) -> None:
     heavy = scenario.replace({"gravity": 40.0})
     with pytest.warns(c2d.ScenarioWarning, match="gravity"):
         sim = c2d.Simulation(heavy)

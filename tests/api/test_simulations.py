@@ -23,7 +23,7 @@ def driven(many: c2d.Simulations, seconds: int = 20) -> c2d.Simulations:
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-def test_each_is_bit_by_bit_what_it_is_alone(threads: int) -> None:
+def test_each_simulation_has_the_bits_that_it_has_alone(threads: int) -> None:
     state = driven(c2d.Simulations(SCENARIOS, threads=threads)).state()
     for place, scenario in enumerate(SCENARIOS):
         alone = c2d.Simulation(scenario)
@@ -98,7 +98,7 @@ def test_commands_that_break_a_rule_change_nothing(given: dict[str, object], mes
         many.command(**given)  # type: ignore[arg-type]
 
 
-def test_of_commands_of_which_one_is_invalid_none_is_given() -> None:
+def test_if_one_command_is_invalid_none_is_applied() -> None:
     many, other = c2d.Simulations(SCENARIOS), c2d.Simulations(SCENARIOS)
     with pytest.raises(c2d.ScenarioError, match=r"drive\.speed"):
         many.command(speed=[0.1, 0.1, 0.1, 100.0])
@@ -121,7 +121,7 @@ def test_what_cannot_be_simulated_is_refused() -> None:
 
 
 @pytest.mark.parametrize("given", [SCENARIOS[0], 5, None])
-def test_what_is_no_list_of_scenarios_is_refused(given: Any) -> None:
+def test_anything_but_a_list_of_scenarios_is_refused(given: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match=r"scenarios must be several"):
         c2d.Simulations(given)
     if given is not None:  # which keeps theirs
@@ -130,7 +130,7 @@ def test_what_is_no_list_of_scenarios_is_refused(given: Any) -> None:
 
 
 @pytest.mark.parametrize("which", [[[0, 1]], [[0], [1, 2]], [0.5], "first", {}, [0, 1, 0]])
-def test_what_are_no_places_is_refused(which: Any) -> None:
+def test_invalid_places_are_refused(which: Any) -> None:
     many = c2d.Simulations(SCENARIOS)
     with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
         many.advance(0.1, which)
@@ -177,7 +177,7 @@ def test_a_rate_is_no_faster_than_its_motor_and_not_beside_an_angle(
         assert failure.value.path == path
 
 
-def test_those_of_a_mask_advance_and_the_others_stand() -> None:
+def test_simulations_in_a_mask_advance_and_the_others_do_not() -> None:
     many = c2d.Simulations(SCENARIOS)
     many.advance(0.2, [True, False, True, False])
     many.advance(0.1, [1])
@@ -197,7 +197,7 @@ def test_those_of_a_mask_advance_and_the_others_stand() -> None:
         (np.ma.array([0.3, 0.1], mask=[True, False]), "must not be masked"),
     ],
 )
-def test_what_numpy_would_take_as_a_number_is_no_command(given: Any, rule: str) -> None:
+def test_values_that_numpy_would_convert_are_no_commands(given: Any, rule: str) -> None:
     robot = c2d.robots.engineer(flippers=None)
     two = c2d.Simulations([c2d.Scenario(robot, c2d.terrains.flat())] * 2)
     for use in (lambda: two.command(speed=given), lambda: two.heights(given)):

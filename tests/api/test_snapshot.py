@@ -119,7 +119,7 @@ def test_any_kind_of_bytes_will_do(scenario: Scenario, kind: Any, tmp_path: Path
 
 
 @pytest.mark.parametrize("wrong", [None, "bytes", 7, [1, 2], np.zeros(4, np.uint8), object()])
-def test_what_is_no_bytes_is_refused(wrong: Any) -> None:
+def test_anything_but_bytes_is_refused(wrong: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match="must be bytes") as caught:
         c2d.Simulation.from_snapshot(wrong)
     assert caught.value.path == "snapshot"

@@ -31,7 +31,7 @@ def read(file: Path, text: str) -> tuple[tuple[float, float], ...]:
 @pytest.mark.parametrize("header", [None, "x{}y", "x [m]{}y [m]", "station{}height"])
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 @pytest.mark.parametrize("mark", ["", "\ufeff"], ids=["", "byte order mark"])
-def test_every_usual_form_of_a_file_gives_the_same_points(
+def test_every_usual_file_format_gives_the_same_points(
     file: Path, separator: str, header: str | None, end: str, mark: str
 ) -> None:
     lines = [row.replace(" ", separator) for row in ROWS]
@@ -94,7 +94,7 @@ def test_bytes_that_are_no_text_are_refused(file: Path) -> None:
     assert (error.path, error.rule) == (str(file), "must be a text in UTF-8")
 
 
-def test_a_file_that_is_not_there_is_an_error_of_the_system(file: Path) -> None:
+def test_a_missing_file_is_an_os_error(file: Path) -> None:
     with pytest.raises(FileNotFoundError):
         c2d.terrains.from_csv(file, goal=0.0)
 
@@ -123,7 +123,7 @@ LINES = st.lists(
 
 
 @given(steps=LINES, tolerance=st.sampled_from([0.0, 1e-3, 0.02, 0.3]))
-def test_what_is_left_out_lies_within_the_distance_of_what_is_kept(
+def test_removed_points_lie_within_the_distance_of_the_simplified_profile(
     steps: list[tuple[float, float]], tolerance: float
 ) -> None:
     x, y = np.array(steps).T
@@ -154,13 +154,13 @@ def test_simplifying_keeps_edges_where_they_are_and_drops_lower_ones(file: Path)
 
 
 @pytest.mark.parametrize("simplify", [-1e-3, float("nan"), "1 mm", True])
-def test_a_distance_that_is_none_is_refused(file: Path, simplify: float) -> None:
+def test_an_invalid_distance_is_refused(file: Path, simplify: float) -> None:
     file.write_text("\n".join(ROWS))
     error = refused(lambda: c2d.terrains.from_csv(file, goal=0.0, simplify=simplify))
     assert error.path == "simplify"
 
 
-def test_an_origin_that_is_none_is_refused(file: Path) -> None:
+def test_an_invalid_origin_is_refused(file: Path) -> None:
     file.write_text("\n".join(ROWS))
     assert refused(lambda: c2d.terrains.from_csv(file, goal=0.0, origin="0")).path == "origin"  # type: ignore[arg-type]
 

@@ -125,7 +125,7 @@ def test_an_impossible_radius_is_refused(model: Any, path: str, radius: Any) -> 
         ({"base_thickness": 0.004}, "base_thickness", "must be at least the thickness at the tip"),
     ],
 )
-def test_a_gear_that_cannot_be_is_refused_with_the_reason(
+def test_an_impossible_gear_is_refused_with_the_reason(
     wheel: dict[str, Any], field: str, reason: str
 ) -> None:
     error = refusal(ROBOT.with_track(c2d.LineOfWheels(3, wheel=c2d.GearWheel(**wheel))))
@@ -277,7 +277,7 @@ def test_whole_numbers_are_placements(dtype: Any) -> None:
         (object(), "robot.track.placements"),
     ],
 )
-def test_what_are_no_placements_is_refused_at_once(placements: Any, path: str) -> None:
+def test_anything_but_placements_is_refused_at_once(placements: Any, path: str) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.HybridWheels(placements)
     assert caught.value.path == path

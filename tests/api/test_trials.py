@@ -26,7 +26,7 @@ def same(one: TrialResult, other: TrialResult) -> bool:
     return all(getattr(one, each.name) == getattr(other, each.name) for each in fields(TrialResult))
 
 
-def test_trials_are_those_of_the_diagnosis_and_what_if_makes_one_of_them(seized: c2d.Run) -> None:
+def test_trials_are_those_of_the_diagnosis_and_what_if_repeats_one(seized: c2d.Run) -> None:
     assert seized.diagnosis is not None
     trials = {trial.name: trial for trial in seized.trials()}
     for tried in seized.diagnosis.trials:
@@ -119,7 +119,7 @@ def test_grousers_flippers_and_motors_have_trials_of_their_own() -> None:
     ]
 
 
-def test_a_change_of_ones_own_is_tried_in_the_same_way(seized: c2d.Run) -> None:
+def test_a_custom_change_is_tried_like_the_named_trials(seized: c2d.Run) -> None:
     twice = 2.0 * SEIZING.robot.drivetrain.max_torque
     by_name, by_hand = seized.what_if("torque x 2"), seized.what_if(max_torque=twice)
     assert by_hand.name == "changed"
@@ -133,7 +133,7 @@ def test_a_change_of_ones_own_is_tried_in_the_same_way(seized: c2d.Run) -> None:
     assert pushed.run.position[:, 0].max() > 0.05
 
 
-def test_what_a_schedule_has_after_the_stop_changes_no_trial_and_not_its_run() -> None:
+def test_entries_of_a_schedule_after_the_stop_change_neither_trials_nor_their_runs() -> None:
     drive = SEIZING.drive
     later = [(drive, 8.0), (replace(drive, schedule=((7.0, -drive.speed),)), 7.0 - 1e-9)]
     stops = [c2d.simulate(replace(SEIZING, drive=each, duration=end)) for each, end in later]
@@ -146,7 +146,7 @@ def test_what_a_schedule_has_after_the_stop_changes_no_trial_and_not_its_run() -
     assert other.distance == pytest.approx(ahead, abs=0.01)  # of a step
 
 
-def test_what_a_gait_has_after_the_stop_changes_no_trial() -> None:
+def test_entries_of_a_gait_after_the_stop_change_no_trial() -> None:
     robot = c2d.robots.engineer().with_track(c2d.LineOfWheels(4))
     assert robot.flippers is not None
     robot = replace(robot, flippers=replace(robot.flippers, ends="both", angle=0.3))
@@ -205,7 +205,7 @@ def test_the_time_of_a_trial_follows_the_criteria_and_the_command() -> None:
     assert (hasty.what_if("closed track").freed, hasty.outcome) == (False, "slipping")
 
 
-def test_what_makes_no_sense_for_the_robot_is_refused(seized: c2d.Run) -> None:
+def test_trials_that_do_not_apply_to_the_robot_are_refused(seized: c2d.Run) -> None:
     for name in ("flippers level", "one motor", "closed smooth track"):
         error = refused(lambda name=name: seized.what_if(name))
         assert (error.path, error.value) == ("name", name)
@@ -241,7 +241,7 @@ def test_a_robot_at_a_wall_without_friction_is_moved_by_no_push() -> None:
     assert (found.high, found.tips) == (math.inf, False)
 
 
-def test_a_robot_that_is_told_to_stop_is_not_tried_for_ever(seized: c2d.Run) -> None:
+def test_trials_end_for_a_robot_that_is_commanded_to_stop(seized: c2d.Run) -> None:
     still = seized.what_if(drive=c2d.Drive(speed=0.0))
     assert not still.freed
     assert still.duration == pytest.approx(ESCAPE)

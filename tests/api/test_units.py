@@ -25,7 +25,7 @@ def test_every_metric_has_a_unit(run: c2d.Run) -> None:
     assert set(run.metrics) == set(METRICS)
 
 
-def test_a_metric_answers_to_its_former_name_with_a_warning(run: c2d.Run) -> None:
+def test_a_metric_can_be_read_by_its_former_name_with_a_warning(run: c2d.Run) -> None:
     for before, now in RENAMED_METRICS.items():
         for look in (run.metrics.__getitem__, run.metrics.get):
             with pytest.warns(DeprecationWarning, match=f"{before!r} is called {now!r} now"):

@@ -137,14 +137,14 @@ def warnings_of(call: Callable[[], object]) -> list[c2d.ScenarioWarning]:
 
 
 @pytest.mark.parametrize("name", DOUBTFUL)
-def test_what_nobody_means_gets_a_warning_with_its_path(name: str) -> None:
+def test_an_unlikely_value_gets_a_warning_with_its_path(name: str) -> None:
     scenario, path, value = DOUBTFUL[name]
     found = {warning.path: warning for warning in warnings_of(scenario.validate)}
     assert found[path].value == value
     assert str(found[path]) == f"{path} {found[path].reason}, got {value}"
 
 
-def test_a_tip_radius_that_wheels_of_their_own_radius_overrule_gets_a_warning() -> None:
+def test_a_tip_radius_that_a_wheel_radius_overrides_gets_a_warning() -> None:
     # On the arms' own model, and where they take the robot's.
     arms = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(5, wheel_radius=0.06))
     assert arms.flippers is not None
@@ -161,7 +161,7 @@ def test_a_tip_radius_that_wheels_of_their_own_radius_overrule_gets_a_warning() 
 
 
 @pytest.mark.parametrize("name", VARIANTS)
-def test_what_is_usual_gets_no_warning(name: str) -> None:
+def test_usual_values_get_no_warning(name: str) -> None:
     assert not warnings_of(VARIANTS[name].validate)
 
 
@@ -182,7 +182,7 @@ def test_what_is_usual_gets_no_warning(name: str) -> None:
         Scenario(ROBOT, STEP, solver=c2d.Solver(contact_frequency=30.0)),
     ],
 )
-def test_what_may_well_be_meant_gets_no_warning(scenario: Scenario) -> None:
+def test_plausible_values_get_no_warning(scenario: Scenario) -> None:
     assert not warnings_of(scenario.validate)
 
 
@@ -222,7 +222,7 @@ CALLS: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_a_call_tells_a_warning_once_at_the_line_of_the_caller(name: str) -> None:
+def test_a_call_warns_once_at_the_line_of_the_caller(name: str) -> None:
     (warning,) = warnings_of(CALLS[name])
     assert warning.path == "terrain.height"
 
@@ -252,7 +252,7 @@ def test_a_run_that_sank_deeper_than_its_softness_explains_gets_a_warning() -> N
         assert warning.path == "max_penetration"
 
 
-def test_ground_inside_a_track_that_is_closed_in_a_run_is_no_sinking() -> None:
+def test_ground_inside_a_closed_track_does_not_count_as_sinkage() -> None:
     wheels = ROBOT.with_track(c2d.LineOfWheels(2))
     run = c2d.simulate(wheels, c2d.terrains.knife_edge(0.1), duration=8.0)
     assert run.outcome is c2d.Outcome.HUNG_UP
@@ -262,11 +262,11 @@ def test_ground_inside_a_track_that_is_closed_in_a_run_is_no_sinking() -> None:
 
 
 @pytest.mark.parametrize("name", VARIANTS)
-def test_a_run_of_what_is_usual_gets_no_warning(name: str) -> None:
+def test_a_run_of_usual_values_gets_no_warning(name: str) -> None:
     assert not warnings_of(lambda: c2d.simulate(VARIANTS[name], record="summary"))
 
 
-def test_what_only_reads_and_writes_tells_no_warning() -> None:
+def test_reading_and_writing_warn_of_nothing() -> None:
     def read_and_write() -> None:
         scenario = Scenario.from_json(HIGH.to_json()).replace({"duration": 0.01})
         assert scenario.identity

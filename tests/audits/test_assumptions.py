@@ -19,7 +19,7 @@ def test_a_rotor_that_is_stated_is_assumed_no_other() -> None:
     assert list(assumptions_of(replace(stated, drivetrain=drivetrain), {})) == ["restitution"]
 
 
-def test_chains_give_back_nothing_of_a_blow() -> None:
+def test_chains_have_no_restitution_to_draw() -> None:
     robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack())
     assert dict(c2d.unknowns.of_restitution(robot)) == {}
 

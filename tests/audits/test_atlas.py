@@ -68,9 +68,7 @@ def test_the_page_has_every_model_with_its_licence_and_why_it_was_not_read(
     assert text.count("<svg") == 1
 
 
-def test_a_folder_that_is_none_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_invalid_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["atlas", str(tmp_path / "absent")]) == 2
     assert "must be a folder" in capsys.readouterr().err
 

@@ -40,7 +40,7 @@ def test_touching_wheels_seize_on_a_step_that_the_belt_clears(found: c2d.Audit) 
     assert found.belt.reason == "BeltTrack, along the outline"
 
 
-def test_what_freed_it_was_tried(found: c2d.Audit) -> None:
+def test_a_closed_track_and_friction_free_it_and_torque_does_not(found: c2d.Audit) -> None:
     freed = {each.trial: each.freed for each in found.verdicts[0].freed}
     assert freed["closed track"] == freed["friction x 2"] == 9
     assert freed["torque x 2"] == 0
@@ -69,7 +69,7 @@ def test_repairs_are_confirmed_by_runs_that_the_search_has_not_had(found: c2d.Au
     assert fresh & set(found.table["scenario"].values.ravel().tolist()) == {""}  # none was made
 
 
-def test_the_runs_are_there(found: c2d.Audit) -> None:
+def test_the_table_has_the_runs_behind_the_verdicts(found: c2d.Audit) -> None:
     assert dict(found.table.sizes) == {"model": 2, "terrain": 1, "sample": 20, "repeat": 1}
     assert "start.approach" in found.table.attrs["vary"]
     ends = found.table["outcome"].sel(model="model")
@@ -107,7 +107,7 @@ def test_the_belt_does_not_drive_where_the_robot_clears() -> None:
     assert "it clears 1 of 1 obstacles in at least 95 %" in found.summary
 
 
-def test_what_is_known_before_the_runs_is_told_before_them() -> None:
+def test_facts_known_before_the_runs_are_shown_before_them() -> None:
     printed: list[str] = []
 
     class Recorder(LivePrinter):
@@ -144,7 +144,7 @@ def test_a_quick_audit_has_fewer_samples_and_tries_round_wheels_alone() -> None:
     ("name", "value"),
     [("samples", 0), ("repeats", 0), ("threads", 0), ("repair", 1), ("quick", "no")],
 )
-def test_bad_numbers_are_refused_before_anything_is_told(
+def test_bad_numbers_are_refused_before_anything_is_shown(
     name: str, value: Any, capsys: Any
 ) -> None:
     bad: Any = {name: value}
@@ -211,7 +211,7 @@ def test_without_an_error_of_lint_nothing_stands_above_the_verdict(found: c2d.Au
     assert "Lint has errors" not in found.summary
 
 
-def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
+def test_the_short_form_has_every_result(found: c2d.Audit) -> None:
     text = repr(found)
     for part in (
         "step of 75 mm  9     0 % (0-53)      100 % (47-100)  100 %        seized        seizes",
@@ -263,7 +263,7 @@ def test_equal_calls_give_equal_audits() -> None:
     assert pair[0].table["final_x"].identical(pair[1].table["final_x"])
 
 
-def test_what_a_user_says_is_unknown_counts() -> None:
+def test_unknowns_given_by_the_user_are_drawn() -> None:
     unknown = {"robot.mass": c2d.scaled(0.9, 1.1)}
     found = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repeats=1, repair=False, **QUIET)
     assert "unknown_mass" in found.table
@@ -280,7 +280,7 @@ def test_what_a_user_says_is_unknown_counts() -> None:
         ({"terrain.friction": c2d.uniform(0.5, 1.0)}, "2 samples of the floor, 1 run each"),
     ],
 )
-def test_only_what_differs_is_said_to_be_drawn(unknown: Any, many: str) -> None:
+def test_only_values_that_differ_are_reported_as_drawn(unknown: Any, many: str) -> None:
     few = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repair=False, **QUIET)
     assert f"Verdicts: at most {many}" in str(few)
 
@@ -388,7 +388,7 @@ def test_a_closed_track_clears_them() -> None:
 # What is not known
 
 
-def test_of_a_file_what_is_stated_has_a_narrow_range(tmp_path: Path) -> None:
+def test_stated_figures_of_a_file_have_narrow_ranges(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(WHEELS))
     found = unknown_of_file(reading, {0.5: 0.5, 1.0: 1.0})
     assert found["robot.drivetrain.max_torque"] == c2d.scaled(0.9, 1.1)
@@ -396,7 +396,7 @@ def test_of_a_file_what_is_stated_has_a_narrow_range(tmp_path: Path) -> None:
     assert "cart.urdf" in found.sources["robot.drivetrain.max_torque"]
 
 
-def test_of_a_file_an_estimate_has_a_wide_range(tmp_path: Path) -> None:
+def test_estimated_figures_of_a_file_have_wide_ranges(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(WHEELS.replace('<limit effort="5" velocity="10"/>', "")))
     found = unknown_of_file(reading, None)
     assert found["robot.drivetrain.max_torque"] == c2d.scaled(0.5, 2.0)
@@ -534,7 +534,7 @@ def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
     assert any(each.kind == "belt" for each in found.repairs)
 
 
-def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit) -> None:
+def test_a_repair_without_belt_runs_to_compare_with_says_so(found: c2d.Audit) -> None:
     repair = found.repairs[0]
     none = proportion_of(np.zeros((20, 1), bool), np.zeros((20, 1), bool))
     alone = replace(repair, cleared_given_belt={**repair.cleared_given_belt, "gap 90 mm": none})
@@ -548,7 +548,7 @@ def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit
     assert "none of the new runs on gap 90 mm" in changed.to_html()
 
 
-def test_too_few_runs_to_show_that_it_does_not_seize_are_said_to_be(found: c2d.Audit) -> None:
+def test_an_audit_says_when_runs_are_too_few_to_show_no_seizure(found: c2d.Audit) -> None:
     least = least_samples()
     assert wilson(0, least).high < 0.10 <= wilson(0, least - 1).high
     assert found.table["outcome"].size < 2 * least  # of the model and its belt

@@ -87,7 +87,7 @@ def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
         (("does not seize", 0), ("belt fails, too", 40), False),
     ],
 )
-def test_a_seizure_is_new_by_its_interval_or_after_another_word(
+def test_a_seizure_is_new_by_its_interval_or_after_another_verdict(
     made: Made, tmp_path: Path, before: Any, now: Any, is_new: bool
 ) -> None:
     new, changes = compared(made(("step 30 mm", *before)), made(("step 30 mm", *now)), tmp_path)
@@ -106,7 +106,7 @@ def test_a_seizure_is_new_by_its_interval_or_after_another_word(
         (("does not seize", 1), ("seizes", 9), True),
     ],
 )
-def test_after_a_change_of_build_a_rate_near_a_bound_may_flip_its_word(
+def test_with_another_build_a_rate_near_a_bound_may_change_its_verdict(
     made: Made, before: Any, now: Any, is_new: bool
 ) -> None:
     kept = {**entry_of(made(("step 30 mm", *before))), "build": "another"}
@@ -142,7 +142,7 @@ def test_a_seizure_at_one_speed_alone_is_new(made: Made, tmp_path: Path) -> None
     assert new == []
 
 
-def test_nothing_moved_is_nothing_told(made: Made, tmp_path: Path) -> None:
+def test_without_changes_nothing_is_reported(made: Made, tmp_path: Path) -> None:
     check = made(("step 30 mm", "seizes", 10), lint=(WARNING,))
     assert compared(check, check, tmp_path) == ([], "")
 
@@ -174,7 +174,7 @@ def test_lint_is_new_by_its_words_and_severity_and_not_by_lines_and_figures(
         assert f"new {now.severity} of lint, {now.rule}: {now.message}" in changes
 
 
-def test_lines_in_what_a_warning_says_are_no_change(made: Made, tmp_path: Path) -> None:
+def test_other_line_numbers_in_a_warning_are_no_change(made: Made, tmp_path: Path) -> None:
     before, now = (
         Finding(
             rule="other", severity="warning", message=f"a.sdf:{line}: mesh is left out, got b.stl"
@@ -186,7 +186,7 @@ def test_lines_in_what_a_warning_says_are_no_change(made: Made, tmp_path: Path) 
     assert kept == ["warning", "other", "a.sdf: mesh is left out, got b.stl"]
 
 
-def test_what_is_gone_is_told(made: Made, tmp_path: Path) -> None:
+def test_findings_that_are_gone_are_reported(made: Made, tmp_path: Path) -> None:
     before = made(("step 30 mm", "seizes", 10), ("gap 9 mm", "seizes", 10), lint=(WARNING,))
     new, changes = compared(before, made(("step 30 mm", "does not seize", 0)), tmp_path)
     assert new == []
@@ -219,7 +219,7 @@ def test_a_seizure_on_an_obstacle_that_the_baseline_lacks_is_new(
     assert "gap 9 mm: seizes; the baseline has no such obstacle" in changes
 
 
-def test_another_version_is_told_where_a_verdict_moved(made: Made, tmp_path: Path) -> None:
+def test_another_version_is_reported_where_a_verdict_changed(made: Made, tmp_path: Path) -> None:
     before, now = made(("step 30 mm", "not certain", 7)), made(("step 30 mm", "seizes", 9))
     assert "CHANGELOG" not in compared(before, now, tmp_path)[1]
     path = tmp_path / "audit.json"
@@ -234,7 +234,7 @@ def test_another_version_is_told_where_a_verdict_moved(made: Made, tmp_path: Pat
     assert compare(before, read_baseline(path), path)[1] == []
 
 
-def test_everything_is_new_in_a_file_that_the_baseline_lacks(made: Made, tmp_path: Path) -> None:
+def test_everything_is_new_in_a_file_without_a_baseline(made: Made, tmp_path: Path) -> None:
     check = made(("step 30 mm", "seizes", 10))
     path = tmp_path / "audit.json"
     write_baseline(path, [check], None)

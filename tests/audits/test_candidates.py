@@ -35,7 +35,7 @@ def test_a_motor_a_wheel_becomes_one_a_belt() -> None:
 # Candidates
 
 
-def test_candidates_keep_what_does_not_seize() -> None:
+def test_candidates_keep_the_carriers_that_do_not_seize() -> None:
     robot = c2d.robots.absolem(track="public")
     for each in candidates_of(robot, ["flippers"]):
         assert each.robot.track == robot.track

@@ -193,7 +193,7 @@ def test_a_result_says_whether_the_baseline_has_it(check: Check) -> None:
     assert states == ["unchanged", "new", "new", "new"]
 
 
-def test_what_a_xacro_file_expands_to_has_no_lines_of_the_file(tmp_path: Path) -> None:
+def test_findings_in_expanded_xacro_have_no_lines_of_the_file(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     path = tmp_path / "cart.xacro"
     text = (FILES / "cart.xacro").read_text(encoding="utf-8")

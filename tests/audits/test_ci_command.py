@@ -149,7 +149,7 @@ def test_a_baseline_is_written_compared_and_updated(quick: Path, capsys: Any) ->
     assert quick.is_dir()
 
 
-def test_with_json_the_baseline_is_told_beside_it(quick: Path, capsys: Any) -> None:
+def test_with_json_the_baseline_is_reported_on_the_other_stream(quick: Path, capsys: Any) -> None:
     baseline = ("--baseline", "audit.json", "--update-baseline")
     _, out, err = run(capsys, "models/one.urdf", "--no-html", "--json", *baseline)
     assert json.loads(out)["seizes"] is True

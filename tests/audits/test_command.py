@@ -131,7 +131,7 @@ def test_with_json_nothing_else_is_on_the_standard_output(made: Path, capsys: An
 @pytest.mark.usefixtures("made")
 @pytest.mark.parametrize("option", ["--html", "--patch", "--junit", "--sarif"])
 @pytest.mark.parametrize("place", [".", "no folder/file"])
-def test_what_cannot_be_written_is_refused_before_the_audit(
+def test_an_unwritable_file_is_refused_before_the_audit(
     capsys: Any, option: str, place: str
 ) -> None:
     status, out, err = run(capsys, "any.sdf", option, place)
@@ -319,7 +319,7 @@ def test_a_misspelled_option_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("what", ["missing", "folder", "empty"])
-def test_a_file_that_is_none_is_refused_in_one_line(capsys: Any, what: str) -> None:
+def test_an_invalid_file_is_refused_in_one_line(capsys: Any, what: str) -> None:
     with tempfile.TemporaryDirectory() as folder:  # a long path is cut at its end
         path = Path(folder) / f"{what}.sdf"
         if what == "folder":

@@ -20,7 +20,7 @@ def test_the_friction_of_the_run_counts() -> None:
     assert free_of_jams(WHEELS[:1], [low.replace({"terrain.friction": 1.3})]) == [0]
 
 
-def test_grounds_and_wheels_without_computed_jams_tell_nothing() -> None:
+def test_grounds_and_wheels_without_computed_jams_exclude_no_candidate() -> None:
     lanes = c2d.Scenario(ROBOT, c2d.terrains.diagonal_barrier(0.2))
     assert free_of_jams(WHEELS, [lanes]) == []
     assert free_of_jams(WHEELS, [lanes, STEP]) == [1]

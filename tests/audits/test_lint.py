@@ -30,11 +30,11 @@ def of_robot(robot: c2d.Robot, rule: str) -> list[Finding]:
     return of_rule(lint(robot), rule)
 
 
-def test_a_good_robot_has_none() -> None:
+def test_a_good_robot_has_no_findings() -> None:
     assert lint(ROBOT) == ()
 
 
-def test_a_good_file_has_none(tmp_path: Path) -> None:
+def test_a_good_file_has_no_findings(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(WHEELS, MOTORS))
     assert lint(reading.robot, reading) == ()
 
@@ -48,7 +48,7 @@ def test_errors_stand_before_warnings_and_notes(tmp_path: Path) -> None:
     assert len(set(order)) == 3
 
 
-def test_ten_times_too_large() -> None:
+def test_a_robot_ten_times_too_large_is_an_error_with_its_scale() -> None:
     outline = replace(ROBOT.outline, axle_distance=3.65, front_radius=0.64, rear_radius=0.64)
     (found,) = of_robot(replace(ROBOT, outline=outline), "size")
     assert found.severity == "error"
@@ -56,38 +56,38 @@ def test_ten_times_too_large() -> None:
     assert of_robot(ROBOT, "size") == []
 
 
-def test_too_small_is_told_without_a_guess() -> None:
+def test_a_robot_too_small_is_an_error_without_a_scale() -> None:
     outline = replace(ROBOT.outline, axle_distance=0.03, front_radius=0.01, rear_radius=0.01)
     (found,) = of_robot(replace(ROBOT, outline=outline), "size")
     assert "ten times" not in found.message
 
 
 @pytest.mark.parametrize("mass", [0.02, 9000.0])
-def test_a_mass_that_does_not_go_with_the_size(mass: float) -> None:
+def test_a_mass_that_does_not_fit_the_size_is_found(mass: float) -> None:
     assert len(of_robot(replace(ROBOT, mass=mass), "mass")) == 1
     assert of_robot(ROBOT, "mass") == []
 
 
-def test_a_robot_whose_mass_is_farther_out_than_any_part() -> None:
+def test_a_mass_farther_out_than_any_part_is_found() -> None:
     (found,) = of_robot(replace(ROBOT, moment_of_inertia=12.0), "inertia")
     assert found.severity == "error"
 
 
-def test_torque_that_no_floor_takes() -> None:
+def test_torque_beyond_the_grip_of_any_floor_is_found() -> None:
     drivetrain = replace(ROBOT.drivetrain, max_torque=300.0)
     (found,) = of_robot(replace(ROBOT, drivetrain=drivetrain), "effort")
     assert "as good as no limit" in found.message
     assert of_robot(ROBOT, "effort") == []
 
 
-def test_wheels_that_stand_for_no_track() -> None:
+def test_wheels_that_replace_no_track_are_found() -> None:
     bare = ROBOT.with_track(c2d.LineOfWheels(2, as_track=False))
     (found,) = of_robot(bare, "no track")
     assert "237 mm are bare" in found.message
     assert of_robot(ROBOT, "no track") == []
 
 
-def test_a_flipper_with_one_wheel() -> None:
+def test_a_flipper_with_one_wheel_is_found() -> None:
     arms = c2d.robots.engineer().flippers
     assert arms is not None
     for placements, count in ((((0.17, 0.0, 0.037),), 1), (((-0.17, 0, 0.06), (0.17, 0, 0.03)), 0)):
@@ -96,13 +96,13 @@ def test_a_flipper_with_one_wheel() -> None:
         assert len(of_robot(robot, "no track")) == count
 
 
-def test_wheels_that_nothing_drives() -> None:
+def test_undriven_wheels_are_found() -> None:
     free = ROBOT.with_track(c2d.ForceTrack(support="wheels"))
     assert of_robot(free, "not driven")[0].severity == "error"
     assert of_robot(ROBOT.with_track(c2d.ForceTrack()), "not driven") == []
 
 
-def test_a_file_that_names_no_motor(tmp_path: Path) -> None:
+def test_a_file_without_motors_is_found(tmp_path: Path) -> None:
     (found,) = of_text(tmp_path, urdf(WHEELS), "not driven")
     assert (found.severity, found.message.split(" (")[0]) == (
         "note",
@@ -131,7 +131,7 @@ def test_friction_is_that_of_wheels_also_in_a_file_of_one_line(tmp_path: Path, p
     assert bool(found) is (parts != "hull")
 
 
-def test_effort_without_limit(tmp_path: Path) -> None:
+def test_a_missing_effort_limit_is_found(tmp_path: Path) -> None:
     free = pair("front", 0.2, limit="") + pair("rear", -0.2, limit="")
     (found,) = of_text(tmp_path, urdf(free, MOTORS), "effort")
     assert found.message.startswith("4 of 4 wheels have no effort limit")
@@ -144,14 +144,14 @@ def test_a_wheel_that_rolls_freely_needs_no_limit_of_effort(tmp_path: Path) -> N
     assert of_text(tmp_path, text, "effort") == []
 
 
-def test_sides_that_differ_within_the_tolerance(tmp_path: Path) -> None:
+def test_sides_that_differ_within_the_tolerance_are_found(tmp_path: Path) -> None:
     skew = WHEELS.replace('xyz="0.2 0.15 0.0"', 'xyz="0.2005 0.15 0.0"')
     (found,) = of_text(tmp_path, urdf(skew), "sides")
     assert "by up to 0.5 mm" in found.message
     assert of_text(tmp_path, urdf(WHEELS), "sides") == []
 
 
-def test_wheels_out_of_balance(tmp_path: Path) -> None:
+def test_wheels_out_of_balance_are_found(tmp_path: Path) -> None:
     text = urdf(WHEELS)
     for off, count in (("0 0.02 0", 0), ("0.007 0 0", 0), ("0 0 0.01", 4)):  # y is the axle
         swung = text.replace('<mass value="1"/>', f'<origin xyz="{off}"/><mass value="1"/>')
@@ -161,7 +161,7 @@ def test_wheels_out_of_balance(tmp_path: Path) -> None:
     assert "off their axles by up to 10 mm" in found[0].message
 
 
-def test_an_inertia_that_breaks_the_triangle(tmp_path: Path) -> None:
+def test_an_inertia_that_breaks_the_triangle_inequality_is_found(tmp_path: Path) -> None:
     tensor = '<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.005" iyz="0" izz="0.001"/>'
     text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
     (found,) = of_text(tmp_path, text, "inertia")
@@ -169,7 +169,7 @@ def test_an_inertia_that_breaks_the_triangle(tmp_path: Path) -> None:
     assert of_text(tmp_path, urdf(WHEELS), "inertia") == []
 
 
-def test_an_inertia_larger_than_its_body(tmp_path: Path) -> None:
+def test_an_inertia_larger_than_its_body_is_found(tmp_path: Path) -> None:
     tensor = '<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.02"/>'
     text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
     (found,) = of_text(tmp_path, text, "inertia")
@@ -177,14 +177,14 @@ def test_an_inertia_larger_than_its_body(tmp_path: Path) -> None:
     assert "larger than the body" in found.message
 
 
-def test_of_links_that_weigh_nothing_it_is_a_note(tmp_path: Path) -> None:
+def test_an_impossible_inertia_of_a_light_link_is_a_note(tmp_path: Path) -> None:
     light = '<mass value="0.0001"/>'
     text = urdf(WHEELS, pair("middle", 0.0)).replace('<mass value="1"/>', light)
     found = of_text(tmp_path, text, "inertia")
     assert [each.severity for each in found] == ["note"]
 
 
-def test_wheels_without_mass(tmp_path: Path) -> None:
+def test_wheels_without_mass_are_found(tmp_path: Path) -> None:
     text = urdf(re.sub(r"<inertial>.*?</inertial>", "", WHEELS, flags=re.DOTALL))
     (found,) = of_text(tmp_path, text, "massless")
     assert found.severity == "error"
@@ -192,7 +192,7 @@ def test_wheels_without_mass(tmp_path: Path) -> None:
     assert of_text(tmp_path, urdf(WHEELS), "massless") == []
 
 
-def test_placeholder_inertias(tmp_path: Path) -> None:
+def test_placeholder_inertias_are_found(tmp_path: Path) -> None:
     tensor = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/>'
     text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
     (found,) = of_text(tmp_path, text, "placeholder")
@@ -200,7 +200,7 @@ def test_placeholder_inertias(tmp_path: Path) -> None:
     assert of_text(tmp_path, urdf(WHEELS), "placeholder") == []
 
 
-def test_a_ball_has_three_equal_moments(tmp_path: Path) -> None:
+def test_three_equal_moments_of_a_ball_are_no_placeholder(tmp_path: Path) -> None:
     tensor = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/>'
     ball = '<sphere radius="0.08"/>'
     wheels = pair("front", 0.2, geometry=ball) + pair("rear", -0.2, geometry=ball)
@@ -211,7 +211,7 @@ def test_a_ball_has_three_equal_moments(tmp_path: Path) -> None:
 OVERLAPPING = (WHEELS, pair("middle", 0.1))
 
 
-def test_wheels_that_overlap(tmp_path: Path) -> None:
+def test_overlapping_wheels_are_found(tmp_path: Path) -> None:
     (found,) = of_text(tmp_path, urdf(*OVERLAPPING, pair("other", 0.0)), "overlap")
     assert found.severity == "note"
     assert "switch self-collision off" in found.message
@@ -244,14 +244,14 @@ def test_wheels_that_overlap_in_mjcf_collide_unless_filtered(
     assert [each.severity for each in found] == [severity]
 
 
-def test_what_the_reader_warnings_is_told(tmp_path: Path) -> None:
+def test_warnings_of_the_reader_are_findings(tmp_path: Path) -> None:
     wide = pair("front", 2.0) + pair("rear", -2.0)
     reading = read(tmp_path, urdf(wide, mass="4000"))
     found = of_rule(lint(reading.robot, reading), "other")
     assert "is the file in metres?" in found[0].message
 
 
-def test_what_the_simulator_warnings_is_told() -> None:
+def test_warnings_of_the_simulator_are_findings() -> None:
     (found,) = lint(ROBOT, warnings=["robot.x is usually less"])
     assert (found.rule, found.severity) == ("other", "warning")
 
@@ -262,7 +262,7 @@ def test_a_rule_about_the_robot_names_the_lines_of_the_file(tmp_path: Path) -> N
     assert found.where == reading.sources["robot.outline.axle_distance"]
 
 
-def test_the_public_files_are_told_what_they_lack() -> None:
+def test_lint_finds_the_mistakes_of_the_public_files() -> None:
     robots = FILES.parent.parent / "robots"
     marv = quietly(robots / "marv.sdf")
     rules = {(each.rule, each.severity) for each in lint(marv.robot, marv)}

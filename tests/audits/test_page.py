@@ -189,7 +189,7 @@ def test_the_answer_says_in_which_runs_it_seizes_against_the_rule(of_file: c2d.A
     )
 
 
-def test_an_error_of_lint_is_told_above_the_answer(of_file: c2d.Audit) -> None:
+def test_an_error_of_lint_stands_above_the_answer(of_file: c2d.Audit) -> None:
     error = dataclasses.replace(of_file.lint[0], severity="error")
     flawed = dataclasses.replace(of_file, lint=(error,))
     texts = [text for _, text in Page(flawed.to_html()).all("p")]
@@ -219,7 +219,7 @@ def test_every_figure_of_a_file_has_its_value_and_its_source(
     assert len(marked) == len(sources.estimates) > 0
 
 
-def test_what_is_not_known_is_there_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
+def test_the_page_has_every_unknown_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
     rows = file_page.rows("uncertain, varied over the samples")
     assert [row[1] for row in rows] == [
         words.range_of(path, each) for path, each in of_file.unknown.items()
@@ -363,7 +363,7 @@ def test_every_obstacle_that_seized_has_a_replay_of_one_of_its_runs(
     assert f"drive: speed {cell.sel(model='model')['drawn_speed'].item():.4g} m/s" in shown
 
 
-def test_beside_the_robot_is_the_repaired_one_with_the_same_draws(
+def test_the_repaired_robot_is_replayed_next_to_the_original_with_the_same_draws(
     found: c2d.Audit, page: Page
 ) -> None:
     ((*_, (own, repaired), beside),) = simulate_replays(found)
@@ -392,7 +392,7 @@ def test_a_repair_by_wheels_is_shown_before_belts_and_a_confirmed_one_before_oth
     assert shown(flawed) == f"{wheels.description} (not confirmed)"
 
 
-def test_a_repair_that_seizes_in_the_very_run_is_said_to(found: c2d.Audit) -> None:
+def test_a_repair_that_seizes_in_the_replayed_run_says_so(found: c2d.Audit) -> None:
     assert found.repaired is not None
     same = dataclasses.replace(found.repairs[0], robot=found.robot, confirmed=False)
     repaired = found.repaired._replace(repairs=(same,))

@@ -31,7 +31,7 @@ def audited(request: Any, tmp_path_factory: Any) -> c2d.Audit:
     return c2d.audit(path, STEP, unknown={}, repeats=20, quick=True, engine="gz", **QUIET)
 
 
-def test_the_changed_file_gets_over_where_the_file_seized(
+def test_the_changed_file_clears_the_obstacle_on_which_the_file_seized(
     audited: c2d.Audit, tmp_path: Path
 ) -> None:
     assert audited.seizes
@@ -52,7 +52,7 @@ def test_a_robot_that_was_no_file_is_refused() -> None:
 
 
 @pytest.mark.parametrize("repair", ["chassis: 5 wheels in place of 4", 0])
-def test_what_is_no_repair_is_refused(audited: c2d.Audit, repair: Any) -> None:
+def test_anything_but_a_repair_is_refused(audited: c2d.Audit, repair: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match=r"^repair must be one of the repairs"):
         audited.patch(repair=repair)
 
@@ -132,7 +132,7 @@ def test_of_confirmed_wheels_the_first_are_written_even_if_others_seize_less(
     assert change.label.startswith(f"confirmed: {first.description};")
 
 
-def test_what_can_be_written_neither_on_wheels_nor_on_belts_is_refused_with_both_reasons(
+def test_a_robot_that_can_be_written_neither_on_wheels_nor_on_belts_is_refused_with_both_reasons(
     helped: c2d.Audit,
 ) -> None:
     assert helped.repaired is not None

@@ -88,7 +88,9 @@ def test_a_belt_that_clears_in_95_percent_need_not_be_paired(clears: int, word: 
 
 
 @pytest.mark.parametrize(("of_belt", "word"), [(5, "seizes"), (4, "belt fails, too")])
-def test_elsewhere_seized_runs_count_that_the_belt_clears(of_belt: int, word: str) -> None:
+def test_if_the_belt_often_fails_only_seized_runs_that_it_clears_count(
+    of_belt: int, word: str
+) -> None:
     """It seizes on twenty floors; the belt gets over on some of these, and stands on all others."""
     assert (wilson(of_belt, SAMPLES).low > 0.05) is (word == "seizes")
     found = verdict(ends(seized=20, slipping=20), ends(cleared=of_belt, slipping=SAMPLES - of_belt))
@@ -96,7 +98,7 @@ def test_elsewhere_seized_runs_count_that_the_belt_clears(of_belt: int, word: st
     assert found.seized_alone.rate == of_belt / SAMPLES
 
 
-def test_a_repair_is_held_against_the_belt() -> None:
+def test_a_repair_is_compared_with_the_belt() -> None:
     """It clears ten floors, of thirty that the belt clears."""
     pair = table(ends(cleared=10, slipping=30), ends(cleared=30, slipping=10))
     own, belt = (ObstacleRuns(pair, model, "step") for model in (OWN, BELT))
@@ -132,7 +134,7 @@ def test_a_verdict_pairs_seized_runs_with_those_of_the_belt() -> None:
     assert verdict(ends(cleared=20, seized=20), belt).seized_alone_count == 10 * REPEATS
 
 
-def test_a_verdict_tells_where_and_what_frees() -> None:
+def test_a_verdict_has_the_commonest_jam_and_the_trials() -> None:
     found = verdict(ends(seized=20, cleared=20), CLEARED)
     assert (found.where, found.carrier, found.jam_counts) == ("1-2", "chassis", (40, 40))
     freed = {each.trial: (each.freed, each.made) for each in found.freed}
@@ -143,7 +145,7 @@ def test_a_verdict_tells_where_and_what_frees() -> None:
     }
 
 
-def test_a_verdict_tells_on_which_floors() -> None:
+def test_a_verdict_has_the_frictions_of_seized_runs() -> None:
     dims = ("model", "terrain", "sample", "repeat")
     friction = np.broadcast_to(np.linspace(0.5, 1.0, SAMPLES)[:, None], (2, 1, SAMPLES, REPEATS))
     rows = table(ends(seized=10, cleared=30), CLEARED, unknown_friction=(dims, friction))
@@ -152,7 +154,7 @@ def test_a_verdict_tells_on_which_floors() -> None:
     assert high == pytest.approx(0.5 + 0.5 * 9 / 39)
 
 
-def test_a_verdict_tells_at_which_speeds() -> None:
+def test_a_verdict_has_the_rate_at_each_speed() -> None:
     found = verdict(ends(seized=20, cleared=20), CLEARED)
     slow, fast = found.seized_at.values()
     assert list(found.seized_at) == [0.04, 0.4]
@@ -199,7 +201,7 @@ def test_a_repair_that_seizes_in_more_than_5_percent_of_the_runs_is_not_confirme
     assert ", on gap at 0.04 m/s" in repair_sentence(repair)
 
 
-def test_without_a_seizure_there_is_no_place() -> None:
+def test_without_a_seizure_a_verdict_has_no_place() -> None:
     found = verdict(CLEARED, CLEARED)
     assert (found.where, found.carrier, found.jam_counts, found.freed) == ("", "", (0, 0), ())
     assert np.isnan(found.friction).all()
@@ -215,7 +217,7 @@ def test_repeats_of_a_sample_count_once() -> None:
     assert (share.band_low, share.band_median, share.band_high) == (0.0, 0.5, 1.0)
 
 
-def test_the_interval_holds_the_rate_when_samples_differ_in_part() -> None:
+def test_the_interval_covers_the_rate_when_samples_differ_in_part() -> None:
     """Robots seize with chances of their own: the interval holds the mean in 95 % or more."""
     rng = np.random.default_rng(0)
     inside = 0
@@ -234,7 +236,7 @@ def test_runs_without_a_result_are_not_counted() -> None:
     assert share.rate == pytest.approx(1 / 3)
 
 
-def test_the_rule_asks_in_the_order_of_its_words() -> None:
+def test_the_rules_of_a_verdict_are_applied_in_order() -> None:
     def of(rate: float, low: float, high: float) -> Proportion:
         band = {"band_low": 0.0, "band_median": rate, "band_high": 1.0}
         return Proportion(rate=rate, low=low, high=high, runs=80, samples=40, **band)

@@ -191,7 +191,7 @@ def test_a_difference_at_the_bound_is_rarely_called_small() -> None:
     assert wrong <= 30
 
 
-def test_new_draws_look_chaotic_and_those_of_another_rate_do_not() -> None:
+def test_new_draws_count_as_chaotic_and_another_rate_does_not() -> None:
     assert Pairs(100, 100, 100, 100).is_chaotic
     assert not Pairs(200, 5, 5, 190).is_chaotic
     assert not Pairs(400, 0, 0, 0).is_chaotic

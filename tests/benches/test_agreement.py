@@ -48,7 +48,7 @@ def test_a_pair_has_both_ends_and_both_balances(tmp_path: Path) -> None:
     assert "| line | 1 | 1 (21 to 100 %) |" in table
 
 
-def test_pairs_that_end_unlike_are_told_one_by_one() -> None:
+def test_pairs_that_differ_are_listed_one_by_one() -> None:
     end = {"outcome": "cleared", "gets_over": True, "stops": False, "penetration": 1e-4}
     stop = {"outcome": "seized", "gets_over": False, "stops": True, "penetration": 3e-4}
     pair = {

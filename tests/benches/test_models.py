@@ -81,7 +81,7 @@ def test_a_run_stops_when_it_has_got_no_farther_for_three_seconds() -> None:
     assert ended([0.5 + 0.0001 * n for n in range(60)]) == "stopped at 3.0"
 
 
-def test_other_ends_are_told_apart() -> None:
+def test_other_outcomes_are_distinguished() -> None:
     assert ended([0.5] * 5, pitch=1.6) == "tipped over at 0.0"
     assert ended([0.5] * 5, yaw=0.9) == "turned at 0.0"
     assert ended([0.006 * n for n in range(200)], step=0.6) == "timed out at 10.2"

@@ -106,7 +106,7 @@ def test_the_page_has_a_place_for_each_part_of_the_report() -> None:
     assert all(parts[name] in splice(page, parts) for name in ("measured", "speeds"))
 
 
-def test_the_report_says_what_is_met_and_what_is_not() -> None:
+def test_the_report_says_which_aims_are_met() -> None:
     cell: dict[str, Any] = {"shoes": 22, "terrain": "flat", "gap": 5e-6}
     judged = {
         "survived": 3,
@@ -142,7 +142,7 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
 
 @pytest.mark.parametrize("kept", [None, {"machine": {}}, {"wall": 1.0}])
 @pytest.mark.parametrize("given", [["--sections", "chains"], ["--render"]])
-def test_what_needs_a_whole_run_ends_before_anything_is_measured(
+def test_an_incomplete_run_is_refused_before_anything_is_measured(
     given: list[str],
     kept: dict[str, Any] | None,
     monkeypatch: pytest.MonkeyPatch,

@@ -206,7 +206,7 @@ def test_a_robot_that_flies_off_has_not_cleared() -> None:
 
 
 @pytest.mark.parametrize("name", ["lwa5-gear-step", "cwa24-round-field"])
-def test_it_agrees_with_what_crawler2d_sees(name: str) -> None:
+def test_overlaps_agree_with_those_of_crawler2d(name: str) -> None:
     scene, engine = load_scene(name), Crawler2D()
     motion = engine.record(scene, engine.defaults, 6.0, 1e-3)
     # A gap is followed along its normal of the middle of the step: a corner that closely turns

@@ -89,7 +89,7 @@ def result() -> dict[str, Any]:
     }
 
 
-def test_the_report_has_what_it_is_given_and_the_page_what_it_shows(tmp_path: Path) -> None:
+def test_the_report_has_all_figures_and_the_page_those_that_it_shows(tmp_path: Path) -> None:
     page, whole = tmp_path / "page.md", tmp_path / "report.md"
     page.write_text("# Title\n\n<!-- wheels -->\nold\n<!-- end of wheels -->\n", encoding="utf-8")
     write_parts(report.render(result()), page, whole)
@@ -135,7 +135,7 @@ def test_threads_are_timed_by_what_other_processes_can_import() -> None:
     assert [row["threads"] for row in measure.threads(2, 1, 1)][:1] == [1]
 
 
-def test_figures_are_light(tmp_path: Path) -> None:
+def test_figures_are_small_files(tmp_path: Path) -> None:
     plot.plot(result(), tmp_path)
     sizes = {path.stem: path.stat().st_size for path in tmp_path.iterdir()}
     assert set(sizes) == {"wheels", "grousers", "points", "threads", "accuracy"}

@@ -104,7 +104,7 @@ def test_a_run_that_is_over_stays_as_it_ended(open_page: Open, repaired: str) ->
     assert checksum(page, repaired_one) == ended
 
 
-def test_nothing_moves_for_those_who_want_no_motion(open_page: Open, repaired: str) -> None:
+def test_with_reduced_motion_nothing_moves(open_page: Open, repaired: str) -> None:
     page = open_page(repaired, reduced_motion="reduce")
     assert not playing(page)
     now, end = page.inner_text("#clock").removesuffix(" s").split(" / ")

@@ -40,7 +40,7 @@ def test_both_runs_play_to_their_ends_on_one_clock(open_page: Open, demo: str, s
     assert len({sums[0] for sums in pictures}) == len({sums[1] for sums in pictures}) == 3
 
 
-def test_those_who_want_no_motion_see_how_it_ended(open_page: Open, demo: str) -> None:
+def test_with_reduced_motion_the_page_shows_the_end(open_page: Open, demo: str) -> None:
     page = open_page(demo, reduced_motion="reduce")
     assert page.get_attribute("#play", "aria-label") == "play"
     assert clock(page) > 5.0

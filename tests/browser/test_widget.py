@@ -69,14 +69,14 @@ def test_it_shows_the_page_and_tells_its_time(open_page: Open, pages: tuple[str,
     host.wait_for_function("window.saved.at(-1) === 0", timeout=SLOWEST)
 
 
-def test_it_goes_where_its_time_is_set(open_page: Open, pages: tuple[str, str]) -> None:
+def test_setting_the_time_moves_the_replay(open_page: Open, pages: tuple[str, str]) -> None:
     host = hosted(open_page, pages[0])
     host.evaluate("window.model.set('time', 0.25)")
     host.wait_for_function("Math.abs(window.saved.at(-1) - 0.25) < 1e-3", timeout=SLOWEST)
     assert clock(framed(host)) == 0.25
 
 
-def test_playing_is_told_and_not_stopped_by_that(open_page: Open, pages: tuple[str, str]) -> None:
+def test_playing_reports_its_time_without_stopping(open_page: Open, pages: tuple[str, str]) -> None:
     host = hosted(open_page, pages[1])
     framed(host).press("#scene", "Home")
     framed(host).click("#play")

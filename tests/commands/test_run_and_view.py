@@ -57,7 +57,7 @@ def test_a_run_prints_how_it_ended_with_figures_and_units(ran: Ran) -> None:
 
 
 @pytest.mark.usefixtures("folder")
-def test_a_stop_is_told_with_its_diagnosis_and_ends_with_1(ran: Ran) -> None:
+def test_a_stop_is_printed_with_its_diagnosis_and_ends_with_1(ran: Ran) -> None:
     status, out, err = ran("run", "seizes now.json")
     assert (status, err) == (1, "")
     told = " ".join(out.split())
@@ -70,7 +70,7 @@ def test_a_stop_is_told_with_its_diagnosis_and_ends_with_1(ran: Ran) -> None:
     ("fields", "outcome"),
     [({"terrain.height": 0.12}, "tipped_over"), ({"duration": 0.5}, "timed_out")],
 )
-def test_whatever_does_not_clear_ends_with_1(
+def test_a_run_that_does_not_clear_ends_with_1(
     folder: Path, ran: Ran, fields: dict[str, float], outcome: str
 ) -> None:
     (folder / "it.json").write_text(CLEARS.replace(fields).to_json())
@@ -190,7 +190,7 @@ def write_bad_files(folder: Path) -> None:
         ("veiw clears.json", "unknown command veiw (did you mean view?)"),
     ],
 )
-def test_what_cannot_be_done_is_refused_in_one_line(
+def test_an_impossible_request_is_refused_in_one_line(
     folder: Path, ran: Ran, arguments: str, said: str
 ) -> None:
     write_bad_files(folder)

@@ -133,7 +133,9 @@ def test_sweeps_of_several_threads_have_the_tables_of_one(tmp_path: Path) -> Non
         assert c2d.check_store(tmp_path / f"{number}.sqlite") == ()
 
 
-def test_one_of_many_threads_with_one_store_writes_and_the_others_are_told(tmp_path: Path) -> None:
+def test_of_many_threads_with_one_store_one_writes_and_the_others_get_an_error(
+    tmp_path: Path,
+) -> None:
     def swept(_: int) -> str:
         try:
             quiet(BASE, {}, repeats=20, vary=START, store=tmp_path / "one.sqlite")
@@ -151,7 +153,7 @@ class Enough(Exception):
     """Raised by a callback."""
 
 
-def test_what_callbacks_raise_in_threads_comes_back_in_each() -> None:
+def test_exceptions_of_callbacks_propagate_in_each_thread() -> None:
     def work(number: int) -> str:
         def progress(done: int, _: int) -> None:
             # What is finished together is told together, so that a count may be skipped.
@@ -190,7 +192,7 @@ def test_callbacks_in_threads_may_use_all_of_the_simulator(tmp_path: Path) -> No
     assert shared.time == pytest.approx(0.001 * calls)
 
 
-def test_a_gait_may_look_at_its_own_simulation_and_at_others() -> None:
+def test_a_gait_may_read_its_own_simulation_and_others() -> None:
     seen = []
 
     def gait(state: Any) -> tuple[float, float]:

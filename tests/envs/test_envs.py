@@ -121,7 +121,7 @@ def test_many_are_bit_by_bit_and_key_by_key_what_gymnasium_makes_of_single_ones(
     assert ended >= 5  # each has seen an end and what follows
 
 
-def test_a_mask_begins_some_anew() -> None:
+def test_a_mask_resets_some_episodes() -> None:
     ours = FlipperVectorEnv(4, WHEELED, dt=0.25, autoreset_mode="Disabled")
     theirs = copies(4, scenario=WHEELED, dt=0.25, autoreset_mode=AutoresetMode.DISABLED)
     assert_same(ours.reset(seed=1), theirs.reset(seed=1))
@@ -227,7 +227,7 @@ def test_a_stop_ends_an_episode_if_asked_and_says_why_by_its_run() -> None:
         assert env.run.diagnosis is not None
 
 
-def test_what_is_drawn_is_in_the_scenarios_of_the_episodes() -> None:
+def test_draws_are_in_the_scenarios_of_the_episodes() -> None:
     many = FlipperVectorEnv(200, randomize={"terrain.height": c2d.uniform(0.1, 0.2)})
     many.reset(seed=0)
     heights = [read_path(many.run(k).scenario, "terrain.height") for k in range(0, 200, 20)]

@@ -134,7 +134,7 @@ def test_a_run_without_an_outcome_is_left_out_of_the_gain_with_its_pair() -> Non
     assert np.isnan(_gain(ours[2:], theirs[2:])).all()
 
 
-def test_what_is_lost_has_the_interval_of_two_independent_differences() -> None:
+def test_a_lost_gain_has_the_interval_of_two_independent_differences() -> None:
     first, other = (0.8, 0.6, 0.9), (0.3, 0.1, 0.6)
     found = _lost(first, other)
     assert found.rate == pytest.approx(0.5)

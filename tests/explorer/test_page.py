@@ -88,7 +88,7 @@ def value(text: str, path: str) -> float:
     return float(found)
 
 
-def test_of_many_changes_the_newest_wins(page: Page) -> None:
+def test_the_newest_of_many_changes_is_shown(page: Page) -> None:
     page.evaluate(
         """([place, last]) => {
             const input = document.querySelector(place);
@@ -188,7 +188,7 @@ def test_a_link_restores_the_state(page: Page, open_page: Open, html: str) -> No
     assert expected.terrain == c2d.terrains.barrier(0.06, 0.08, friction=0.5)
 
 
-def test_a_link_of_nonsense_is_the_beginning(page: Page) -> None:
+def test_an_invalid_link_opens_the_initial_state(page: Page) -> None:
     page.evaluate("location.hash = 'terrain.height=x&no.such=1&terrain.kind=moon&__proto__=1'")
     settled(page)
     assert state(page) == begin()

@@ -28,7 +28,7 @@ def test_every_kept_case_is_read_or_refused(name: str, tmp_path: Path) -> None:
         assert time.monotonic() - begin < LONGEST, case.name
 
 
-def test_what_is_kept_reaches_most() -> None:
+def test_the_kept_corpus_reaches_most_edges() -> None:
     """A case that is small and reaches little is not kept before one that reaches much."""
     cases = {"a": "1", "b": "2", "c": "1 2 3", "d": "4 5 6 7", "e": "7 8"}
     lines = [f"STARTED {n} {n}\nFT {n} {edges}\nCOV {n}" for n, edges in enumerate(cases.values())]

@@ -222,7 +222,7 @@ def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path, trusted: 
         check(go_through(tmp_path, count, XACRO, standing, parts=NAMED_BY_XACRO, **how))
 
 
-def test_a_child_that_stands_ready_is_ended_as_any_other(tmp_path: Path) -> None:
+def test_a_waiting_child_process_is_ended_like_any_other(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     path = tmp_path / "loop.xacro"
     path.write_text(LOOP)

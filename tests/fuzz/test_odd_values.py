@@ -118,7 +118,7 @@ def test_an_error_keeps_what_is_short_as_it_is() -> None:
         (lambda: BASE.replace({"solver": "rapier"}), "solver", "must be a Solver"),
     ],
 )
-def test_what_is_of_another_type_is_refused_where_it_is_given(
+def test_a_value_of_another_type_is_refused_where_it_is_given(
     make: Any, path: str, rule: str
 ) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:

@@ -323,7 +323,7 @@ def test_the_oracle_agrees_with_the_core_about_two_thousand_scenarios() -> None:
     check(judged(2_000), 2_000)
 
 
-def test_what_plain_data_cannot_say_is_refused() -> None:
+def test_values_that_plain_data_cannot_represent_are_refused() -> None:
     assert len(_texts()) == len(TEXTS)
 
 

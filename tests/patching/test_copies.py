@@ -19,7 +19,7 @@ def test_an_attribute_that_names_no_part_may_hold_its_name(key: str) -> None:
 
 
 @pytest.mark.parametrize("holder", ["actuator", "sensor", "contact", "tendon", "equality"])
-def test_what_mjcf_names_one_by_one_has_a_name_of_its_own_as_a_copy(holder: str) -> None:
+def test_copied_parts_of_mjcf_have_names_of_their_own(holder: str) -> None:
     text = f'<m><{holder}><part name="p" joint="w"/></{holder}><other name="w"/></m>'
     assert copies(text, {"w": "w2"}) == ['<part name="p2" joint="w2"/>', '<other name="w2"/>']
     assert copies('<m><other name="p" joint="w"/></m>', {"w": "w2"}) == [

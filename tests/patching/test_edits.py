@@ -194,7 +194,9 @@ def test_a_size_in_a_plugin_stays_where_its_wheels_become_unlike(
 
 
 @pytest.mark.parametrize("setting", ["num_wheel_pairs", "wheel_torque", "max_wheel_torque"])
-def test_each_setting_that_counts_wheels_is_left_by_name(setting: str, tmp_path: Path) -> None:
+def test_each_setting_that_counts_wheels_is_listed_for_manual_change(
+    setting: str, tmp_path: Path
+) -> None:
     blank = 200 * "\n"  # a line is found by what all before it take
     plugin = f"""{blank}<gazebo><plugin name="d" filename="d.so">
 <{setting}>4</{setting}></plugin></gazebo>"""
@@ -209,7 +211,7 @@ def test_each_setting_that_counts_wheels_is_left_by_name(setting: str, tmp_path:
 
 @pytest.mark.parametrize("count", [2, 4])
 @pytest.mark.parametrize("names", ["{0}, left_rear_joint", "[{0}]", "'left_rear_joint' '{0}'"])
-def test_a_list_in_a_plugin_of_wheels_that_come_or_go_is_left_by_name(
+def test_a_plugin_list_of_added_or_removed_wheels_is_listed_for_manual_change(
     names: str, count: int, tmp_path: Path
 ) -> None:
     """As that of libgazebo_ros_joint_state_publisher."""
@@ -251,7 +253,7 @@ def test_an_error_of_the_new_file_is_not_one_of_the_old(tmp_path: Path) -> None:
     assert caught.value.path == "the changed file, read again: cart.xml"
 
 
-def test_a_keyframe_is_left_by_name_where_wheels_are_added(tmp_path: Path) -> None:
+def test_a_keyframe_is_listed_for_manual_change_where_wheels_are_added(tmp_path: Path) -> None:
     """MuJoCo takes it as it is: all joints behind the new one get the numbers of others."""
     pytest.importorskip("mujoco")
     reading = with_key(tmp_path)

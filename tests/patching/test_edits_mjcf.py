@@ -68,7 +68,7 @@ def test_a_servo_gets_the_changed_limits_that_it_has_of_its_class(
     ],
     ids=["rotor", "servo"],
 )
-def test_what_is_of_a_class_stays_there_while_a_wheel_only_moves(
+def test_class_attributes_stay_in_the_class_while_a_wheel_only_moves(
     changes: list[tuple[str, str]], tmp_path: Path
 ) -> None:
     reading = mjcf(

@@ -315,7 +315,7 @@ def test_a_diff_applies_to_its_file(tmp_path: Path) -> None:
             assert path.read_text(encoding="utf-8") == found.text
 
 
-def test_what_drives_a_wheel_drives_its_copy(tmp_path: Path) -> None:
+def test_the_motor_of_a_wheel_is_copied_with_it(tmp_path: Path) -> None:
     """A transmission, a plugin with a list of joints, and ros2_control."""
     names = ("left_front", "right_front", "left_rear", "right_rear")
     drives = "".join(
@@ -341,7 +341,7 @@ def test_what_drives_a_wheel_drives_its_copy(tmp_path: Path) -> None:
     assert {each.get("reference") for each in root.findall("gazebo")} - {None} == links
 
 
-def test_a_plugin_learns_of_larger_wheels(tmp_path: Path) -> None:
+def test_a_plugin_gets_the_radius_of_larger_wheels(tmp_path: Path) -> None:
     plugin = """<gazebo><plugin name="diff_drive" filename="d.so">
 <left_joint>left_front_joint</left_joint><wheel_radius>0.08</wheel_radius>
 <wheel_separation>0.3</wheel_separation></plugin></gazebo>"""
@@ -373,7 +373,7 @@ def test_public_models_change_their_wheels() -> None:
         assert patch.text.count("<link name=") == reading.text.count("<link name=") + 4
 
 
-def test_what_cannot_be_changed_is_refused_by_name(tmp_path: Path) -> None:
+def test_wheels_that_cannot_be_changed_are_refused_by_name(tmp_path: Path) -> None:
     reading = quietly(FILES / "cart.urdf")
     with refusing(SAID, "must have other wheels than the file"):
         patch_file(reading, reading.robot)
@@ -455,7 +455,7 @@ def test_a_file_that_begins_with_a_mark_of_its_byte_order_gets_a_label(
 
 
 @pytest.mark.parametrize("name", ["cart.xacro", "cart.urdf.xacro"])
-def test_what_a_xacro_expands_to_is_read_again_as_a_urdf(name: str, tmp_path: Path) -> None:
+def test_an_expanded_xacro_is_read_again_as_a_urdf(name: str, tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     shutil.copy(FILES / "cart.xacro", tmp_path / name)
     reading = quietly(tmp_path / name)

@@ -64,7 +64,7 @@ def longest_stop(run: c2d.Run) -> float:
         pytest.param(list(MODELS), 10, id="often", marks=pytest.mark.soak),
     ],
 )
-def test_success_does_not_hang_on_how_long_a_stop_is_held(
+def test_rates_do_not_depend_on_the_hold_time_of_a_stop(
     models: list[str], repeats: int, say: Callable[[str], None]
 ) -> None:
     lines = ["held for [s]         " + "".join(f"{hold:6.0f}" for hold in HOLDS) + "   cleared"]

@@ -67,7 +67,7 @@ def test_level_ground_is_outside_the_track() -> None:
     ]
 
 
-def test_without_a_least_depth_the_ground_joins_what_is_under_the_wheels() -> None:
+def test_without_a_least_depth_the_ground_under_all_wheels_is_one_piece() -> None:
     criteria = c2d.SeizureCriteria(intrusion_depth=0.0)
     sim = c2d.Simulation(standing(post(REAR), wedge(FRONT), criteria=criteria))
     sim.advance(0.5)  # until the wheels have sunk in
@@ -171,7 +171,7 @@ def test_a_flat_top_is_one_event() -> None:
 
 
 @pytest.mark.parametrize(("depth", "events"), [(0.009, 1), (0.011, 0)])
-def test_what_is_shallower_than_the_criterion_is_no_event(depth: float, events: int) -> None:
+def test_ground_shallower_than_the_criterion_is_no_event(depth: float, events: int) -> None:
     criteria = c2d.SeizureCriteria(intrusion_depth=depth)
     run = c2d.simulate(standing(wedge(FRONT), duration=0.1, criteria=criteria))
     assert len(run.events) == events

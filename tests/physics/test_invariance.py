@@ -86,7 +86,7 @@ def said(run: c2d.Run) -> str:
 @pytest.mark.parametrize(
     "count", [pytest.param(15, id="few"), pytest.param(300, id="many", marks=pytest.mark.soak)]
 )
-def test_what_a_stop_is_called_does_not_depend_on_how_it_is_computed(
+def test_the_outcome_of_a_stop_does_not_depend_on_accuracy_or_cutting_of_the_ground(
     count: int, say: Callable[[str], None]
 ) -> None:
     base = round_stops(count)

@@ -136,7 +136,7 @@ def test_robots_of_any_mass_move_alike_to_the_last_bit(
 
 @any_mass
 @pytest.mark.parametrize("factor", [2.0**35, 2.0**-37])
-def test_a_stop_of_any_mass_is_told_and_tried_alike(factor: float) -> None:
+def test_stops_at_any_mass_have_the_same_diagnosis_and_trials(factor: float) -> None:
     base = STEPS["wheels", 0.1]
     run, other = c2d.simulate(base), c2d.simulate(scaled(base, 1.0, factor, 1.0))
     assert [t.freed for t in other.trials()] == [t.freed for t in run.trials()]
@@ -162,7 +162,7 @@ def test_tracks_as_light_as_may_be_move_as_others_do(name: str) -> None:
     assert final[0] == pytest.approx(final[1], abs=1e-3)
 
 
-def test_parts_too_light_beside_the_robot_are_refused() -> None:
+def test_parts_too_light_for_the_robot_are_refused() -> None:
     for path, robot in (("track_mass", BARE), ("flippers.mass", CLIMB.robot)):
         scenario = Scenario(robot, c2d.terrains.flat())
         with pytest.raises(c2d.ScenarioError, match=r"hundred-thousandth of robot\.mass") as caught:

@@ -302,7 +302,7 @@ def test_a_missing_package_names_its_extra(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_palette_keeps_what_is_seen_most() -> None:
+def test_the_palette_of_a_gif_keeps_the_commonest_colours() -> None:
     pixels = np.full((50, 50, 3), 255, np.uint8)
     pixels[:10] = (217, 210, 197)
     pixels[10, :5] = (252, 252, 252)  # as close to white as Pillow's own search can tell
@@ -323,7 +323,7 @@ def test_a_film_counts_its_frames(short: c2d.Run, tmp_path: Path, suffix: str) -
     assert calls == [(done, 4) for done in range(5)]
 
 
-def test_a_film_shows_how_far_it_is_unless_told_not_to(
+def test_a_film_shows_its_progress_unless_it_is_switched_off(
     short: c2d.Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     short.animate(tmp_path / "run.gif", fps=10.0, width=200)

@@ -90,7 +90,7 @@ def test_the_drawing_of_a_card_has_the_outline_of_the_belt(robot: c2d.Robot) -> 
     assert np.ptp(corners, axis=0) == pytest.approx([scale * length, scale * height], abs=0.2)
 
 
-def test_what_breaks_a_rule_is_shown_as_text() -> None:
+def test_an_invalid_object_is_shown_as_text() -> None:
     broken = dataclasses.replace(ROBOT, mass=-1.0)
     assert broken._repr_html_() is None
     assert c2d.Scenario(broken, c2d.terrains.flat())._repr_html_() is None
@@ -138,7 +138,7 @@ def test_the_text_of_an_object_makes_an_equal_one(scenario: Any) -> None:
     assert eval(repr(scenario), dict(NAMES)) == scenario
 
 
-def test_a_text_leaves_out_what_nobody_set_but_names_the_models() -> None:
+def test_a_repr_leaves_out_defaults_but_names_the_models() -> None:
     scenario = c2d.Scenario(ROBOT, c2d.terrains.step(0.1), drive=c2d.Drive(speed=0.3))
     text = repr(scenario)
     assert text.endswith("terrain=Step(height=0.1), drive=Drive(speed=0.3))")

@@ -24,7 +24,7 @@ def test_a_replay_can_show_another_run(run: c2d.Run) -> None:
     assert replay.page == other.to_html()
 
 
-def test_what_a_notebook_is_sent_is_the_page_the_time_and_the_script(run: c2d.Run) -> None:
+def test_a_notebook_is_sent_the_page_the_time_and_the_script(run: c2d.Run) -> None:
     state = run.widget().get_state()
     assert {"page", "time", "height", "_esm"} <= set(state)
     assert "export default" in state["_esm"]
@@ -74,7 +74,7 @@ def test_a_slider_begins_at_the_nearer_end_if_the_value_is_outside() -> None:
         ((0.0, 3.0), 0.05, 0.04, 0.02),
     ],
 )
-def test_what_a_slider_shows_is_what_is_simulated(
+def test_a_slider_shows_the_simulated_value(
     bounds: tuple[float, float], given: float, begins: float, step: float
 ) -> None:
     found = c2d.explore(BASE.replace({"terrain.height": given}), height=bounds)
@@ -106,7 +106,7 @@ def test_values_that_break_a_rule_keep_the_run_and_say_which() -> None:
     assert found.run.scenario == base.replace({"terrain.height": 0.06})
 
 
-def test_warnings_are_not_told_at_every_move() -> None:
+def test_warnings_are_not_repeated_at_every_move() -> None:
     found = c2d.explore(BASE, gravity=(1.0, 40.0))
     found.sliders["gravity"].value = 39.0  # warnings are errors
     assert found.scenario.gravity == 39.0
@@ -130,7 +130,9 @@ ARMS = BASE.replace({"robot": c2d.robots.engineer()})
         (BASE, {"height": (0.02, float("nan"))}, "terrain.height"),
     ],
 )
-def test_what_cannot_be_varied_is_refused(base: c2d.Scenario, ranges: Any, path: str) -> None:
+def test_fields_that_cannot_be_varied_are_refused(
+    base: c2d.Scenario, ranges: Any, path: str
+) -> None:
     assert refused(lambda: c2d.explore(base, **ranges)).path == path
 
 

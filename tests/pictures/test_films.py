@@ -203,7 +203,7 @@ def test_without_labels_pictures_are_called_by_their_tracks(
         (lambda pair: {"runs": pair, "speed": 0.0}, "speed"),
     ],
 )
-def test_what_makes_no_film_is_refused_and_leaves_nothing(
+def test_an_impossible_film_is_refused_and_leaves_no_file(
     pair: list[c2d.Run], tmp_path: Path, make: Any, path: str
 ) -> None:
     chosen = make(pair)

@@ -99,7 +99,7 @@ def test_without_colours_lines_differ_in_marker_and_neighbours_in_dashes() -> No
     assert len({(look["color"], look["linestyle"]) for look in looks}) == len(looks)
 
 
-def test_every_outcome_has_a_look_of_its_own() -> None:
+def test_every_outcome_has_its_own_colour_and_hatching() -> None:
     assert set(LOOKS) == {*OUTCOMES, *NO_RESULT}
     assert len(set(LOOKS.values())) == len(LOOKS)
 

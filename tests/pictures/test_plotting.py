@@ -69,12 +69,12 @@ def test_a_plot_is_drawn_into_the_axes_it_is_given(run: c2d.Run) -> None:
 
 
 @pytest.mark.parametrize("ax", [1.0, [0.0, 1.0], "side"])
-def test_what_is_no_axes_is_refused(run: c2d.Run, ax: Any) -> None:
+def test_anything_but_axes_is_refused(run: c2d.Run, ax: Any) -> None:
     error = refused(lambda: run.plot(ax))
     assert (error.path, error.rule) == ("ax", "must be an Axes of matplotlib")
 
 
-def test_what_says_neither_to_draw_trials_nor_not_to_is_refused(run: c2d.Run) -> None:
+def test_trials_of_a_plot_must_be_true_or_false(run: c2d.Run) -> None:
     given: Any = "no"
     assert refused(lambda: run.plot(trials=given)).path == "trials"
 
@@ -87,7 +87,7 @@ def test_another_number_of_axes_is_refused_for_the_history(run: c2d.Run) -> None
     assert refused(lambda: run.plot_history(wrong)).path == "axes[1]"
 
 
-def test_without_a_history_no_figure_is_left_behind() -> None:
+def test_a_plot_without_a_history_leaves_no_open_figure() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.2, record="summary")
     for draw in (run.plot, run.plot_history):
         with pytest.raises(AttributeError, match="no history"):

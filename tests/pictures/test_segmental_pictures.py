@@ -106,7 +106,7 @@ def test_fifteen_seconds_of_a_chain_take_less_than_500_kb() -> None:
 
 
 @pytest.mark.parametrize("shape", ["rectangle", "trapezoid"])
-def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
+def test_the_diagnosis_of_a_stalled_chain_names_its_shoes(shape: Any) -> None:
     run = stalled(shape)
     assert run.outcome == c2d.Outcome.STALLED
     told = str(run.diagnosis)

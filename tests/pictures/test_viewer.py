@@ -228,7 +228,7 @@ def test_the_page_is_written_to_a_file(stopped: c2d.Run, tmp_path: Path) -> None
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_what_the_file_system_refuses_is_an_oserror(stopped: c2d.Run, tmp_path: Path) -> None:
+def test_a_failed_write_of_a_page_is_an_oserror(stopped: c2d.Run, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         stopped.to_html(tmp_path / "missing" / "run.html")
     with pytest.raises(OSError, match="irectory"):

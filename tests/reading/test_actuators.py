@@ -98,7 +98,7 @@ def test_formats_without_armature_say_that_there_is_none(tmp_path: Path) -> None
         ("isaac", {"damping", "friction"}),
     ],
 )
-def test_what_an_engine_ignores_of_a_urdf_gets_a_warning(
+def test_figures_of_a_urdf_that_an_engine_ignores_get_a_warning(
     engine: str, ignored: set[str], tmp_path: Path
 ) -> None:
     text = stated(dynamics='<dynamics damping="0.001" friction="0.002"/>')
@@ -115,7 +115,7 @@ def test_speeds_of_commands_are_limits_in_mujoco(tmp_path: Path) -> None:
     assert not [warning for warning in reading.warnings if "has no effect" in warning]
 
 
-def test_losses_of_joints_are_told(tmp_path: Path) -> None:
+def test_losses_of_joints_get_a_warning(tmp_path: Path) -> None:
     """Two wheels a side at 10 rad/s: 0.4 and 0.02 N m each, of 5."""
     large = read(tmp_path, stated(dynamics='<dynamics damping="0.03" friction="0.4"/>'))
     assert any("1.4 of 10 N m" in warning and "gz-sim" in warning for warning in large.warnings)
@@ -124,7 +124,7 @@ def test_losses_of_joints_are_told(tmp_path: Path) -> None:
     assert not [warning for warning in small.warnings if " N m" in warning]
 
 
-def test_the_first_dynamics_of_a_urdf_count(tmp_path: Path) -> None:
+def test_the_first_dynamics_element_of_a_urdf_counts(tmp_path: Path) -> None:
     twice = '<dynamics friction="0.1"/><dynamics friction="2"/>'
     assert any("0.2 of 10 N m" in note for note in read(tmp_path, stated(dynamics=twice)).notes)
 
@@ -167,7 +167,7 @@ def test_wheels_on_flippers_add_their_torque(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "cart.xml"])
-def test_a_note_says_where_alike_torques_are_unlike_forces(name: str, tmp_path: Path) -> None:
+def test_a_note_says_where_equal_torques_give_unequal_forces(name: str, tmp_path: Path) -> None:
     if name == "cart.xml":
         pytest.importorskip("mujoco")
     reading = read(tmp_path, (FILES / name).read_text(), name)

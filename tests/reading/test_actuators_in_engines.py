@@ -113,7 +113,7 @@ def test_the_torque_limit_speeds_a_wheel_up(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", RUN)
-def test_what_plays_no_part_changes_nothing(name: str, tmp_path: Path) -> None:
+def test_ignored_figures_change_nothing(name: str, tmp_path: Path) -> None:
     run, figures = RUN[name]
     usual = run(tmp_path, USUAL)
     for figure in figures:
@@ -131,7 +131,7 @@ def test_enough_torque_brings_the_speed_within_steps(name: str, tmp_path: Path) 
     assert found == pytest.approx(RATE, rel=1e-6)
 
 
-def test_bullet_has_all_torque_unless_it_is_told(tmp_path: Path) -> None:
+def test_bullet_has_unlimited_torque_unless_it_is_limited(tmp_path: Path) -> None:
     assert in_bullet(tmp_path, {**USUAL, "effort": 0.0}) == pytest.approx(RATE, rel=1e-6)
 
 

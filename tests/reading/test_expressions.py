@@ -173,7 +173,7 @@ def test_an_expression_is_checked_wherever_xacro_evaluates_it(
     assert standing.asked
 
 
-def test_what_is_not_allowed_is_named_with_its_expression_file_and_line(
+def test_a_forbidden_expression_is_named_with_its_file_and_line(
     tmp_path: Path, standing: StandingChild
 ) -> None:
     macro = '<xacro:macro name="m" params="p">\n\n<link name="${p.__class__}"/></xacro:macro>'
@@ -323,7 +323,7 @@ PIECES = st.one_of(
 
 @settings(deadline=1000)
 @given(st.lists(PIECES, max_size=40).map("".join))
-def test_whatever_is_written_gives_plain_data_or_an_error_soon(text: str) -> None:
+def test_any_expression_gives_plain_data_or_an_error_quickly(text: str) -> None:
     try:
         found = evaluate(text, names())
     except (

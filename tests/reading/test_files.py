@@ -91,7 +91,7 @@ def test_a_file_that_xacro_names_and_is_none_is_refused(
 
 
 @odd
-def test_an_include_is_left_out_if_there_is_none_and_not_if_it_is_odd(
+def test_a_missing_include_is_left_out_and_an_invalid_one_refused(
     tmp_path: Path, what: str
 ) -> None:
     """What leads out of the folder of the model is none of its files, whatever it is."""
@@ -274,7 +274,7 @@ def test_a_text_mesh_takes_time_by_its_size_alone(
 
 
 @pytest.mark.parametrize("word", ["x", "nan", "inf", "1e9", "-1e300", "1e999", "\u0661", "1.2.3"])
-def test_a_mesh_with_a_corner_that_is_nowhere_is_left_out(tmp_path: Path, word: str) -> None:
+def test_a_mesh_with_a_non_finite_corner_is_left_out(tmp_path: Path, word: str) -> None:
     (tmp_path / "m.obj").write_text(f"{OBJ}\nv 0 0 {word}")
     reason = "must (be a mesh that trimesh reads|have corners that are finite and at most 1e)"
     left_out(tmp_path, with_mesh("m.obj"), reason)
@@ -288,7 +288,7 @@ def test_a_binary_mesh_with_odd_bits_is_left_out(tmp_path: Path) -> None:
         left_out(tmp_path, with_mesh("m.stl"), "must have corners")
 
 
-def test_a_mesh_of_a_package_is_held_to_the_same_rules(tmp_path: Path) -> None:
+def test_a_mesh_of_a_package_has_the_same_limits(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "m.stl")
     text = with_mesh("package://p/m.stl")
     packages = {"p": tmp_path}
@@ -305,7 +305,7 @@ def test_an_include_is_not_larger_than_a_model(tmp_path: Path) -> None:
     refused(tmp_path, text, "must have at most 4000000 bytes", "cart.xacro", trusted=True)
 
 
-def test_a_child_that_waits_is_ended_by_the_clock() -> None:
+def test_a_child_process_that_hangs_is_ended_by_its_time_limit() -> None:
     wait = "import os; from crawler2d.reading import parsing; parsing.CLOCK = 0.1; parsing._limit()"
     done = subprocess.run([sys.executable, "-c", f"{wait}; os.read(os.pipe()[0], 1)"], check=False)
     assert done.returncode == -signal.SIGALRM

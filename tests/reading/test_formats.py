@@ -150,7 +150,7 @@ def test_tracks_are_a_collection_of_names(tracks: object) -> None:
 
 
 @pytest.mark.parametrize("ground", ["x", None, [1.0], True, -1.0, math.nan, 1e9])
-def test_what_is_no_coefficient_of_a_ground_is_refused(ground: Any) -> None:
+def test_an_invalid_friction_of_the_ground_is_refused(ground: Any) -> None:
     with refusing(SAID, r"^ground(_friction)? must be "):
         SDF.friction_on(ground)
 
@@ -186,7 +186,7 @@ def sdf(version: str, axis: str) -> str:
         ("1.11", "<axis><xyz>0 0 1</xyz></axis>"),
     ],
 )
-def test_an_axis_is_in_the_frame_that_its_version_of_sdf_says(
+def test_the_frame_of_an_axis_depends_on_the_sdf_version(
     tmp_path: Path, version: str, axis: str
 ) -> None:
     assert read(tmp_path, sdf(version, axis), "m.sdf").robot.track == c2d.LineOfWheels(2)
@@ -284,7 +284,7 @@ def test_forward_is_the_side_of_the_links_called_front(tmp_path: Path) -> None:
     assert any("on the other side than its name says" in warning for warning in reading.warnings)
 
 
-def test_forward_is_x_where_no_name_tells(tmp_path: Path) -> None:
+def test_forward_is_x_where_names_do_not_decide(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(pair("a", 0.2) + pair("b", -0.2)))
     assert reading.notes[0] == "no link is called front or rear: +x is forward"
 
@@ -296,7 +296,7 @@ def across_x(name: str) -> str:
     return "".join(wheel(f"{name}{x}", f"{x} {y} 0", **turned) for x in (-0.15, 0.15))
 
 
-def test_forward_must_be_given_where_nothing_tells(tmp_path: Path) -> None:
+def test_forward_must_be_given_where_nothing_decides(tmp_path: Path) -> None:
     text = urdf(across_x("a"), across_x("b"))
     with refusing(SAID, r'forward is ambiguous, .* pass forward="\+y" or "-y"'):
         read(tmp_path, text)
@@ -344,7 +344,7 @@ def test_a_reading_survives_a_pickle() -> None:
     assert dict(again.sources) == dict(SDF.sources)
 
 
-def test_a_reading_says_what_it_is() -> None:
+def test_a_reading_has_a_description() -> None:
     assert SDF.description.startswith("cart: 3 round wheels in a line; flippers: 2 round wheels")
     assert "left front flipper: x 0.5000 m" in repr(SDF)
     assert "robot.mass" in SDF._repr_html_()

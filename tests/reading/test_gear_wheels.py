@@ -106,7 +106,7 @@ def test_wheels_that_all_start_turned_by_more_are_noted(tmp_path: Path) -> None:
     assert not any("phase_fraction" in warning for warning in reading.warnings)
 
 
-def test_a_turn_too_small_to_tell_is_not_taken_for_a_share(tmp_path: Path) -> None:
+def test_a_turn_within_rounding_is_no_phase(tmp_path: Path) -> None:
     """A share of 0.0004 would come as near as files round."""
     turn = -0.5 * ANGLE + 0.0009
     three = (gear(name, x, turn=turn) for name, x in (("a", 0.2), ("b", -0.2), ("c", 0.0)))
@@ -190,7 +190,7 @@ def test_the_lines_of_a_gear_wheel_are_those_of_its_grousers_too(tmp_path: Path)
     assert "28 lines" in reading.sources["robot.track"]
 
 
-def test_grousers_that_grip_otherwise_than_their_wheel_are_refused(tmp_path: Path) -> None:
+def test_grousers_with_another_friction_than_their_wheel_are_refused(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     robot = c2d.robots.engineer(track=c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=6)))
     text = robot.without_flippers().to_mjcf(friction=0.6)
@@ -203,7 +203,7 @@ def test_grousers_that_grip_otherwise_than_their_wheel_are_refused(tmp_path: Pat
     refused(tmp_path, slick, "must be that of all wheels, 0.6", "gears.xml")
 
 
-def test_round_wheels_beside_gear_wheels_are_refused(tmp_path: Path) -> None:
+def test_mixed_round_and_gear_wheels_are_refused(tmp_path: Path) -> None:
     text = urdf(gear("front", 0.2), pair("rear", -0.2))
     refused(tmp_path, text, "must have grousers, as other wheels of its track")
 
@@ -230,7 +230,7 @@ def test_gear_wheels_with_other_numbers_of_grousers_are_refused(tmp_path: Path) 
         (None, {"inner": 0.073}),  # beside it
     ],
 )
-def test_what_is_no_gear_wheel_is_no_wheel(
+def test_an_irregular_gear_wheel_is_no_wheel(
     turns: list[float] | None, how: dict[str, Any], tmp_path: Path
 ) -> None:
     text = urdf(gear("front", 0.2, turns=turns, **how), gear("rear", -0.2, turns=turns, **how))

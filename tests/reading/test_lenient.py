@@ -91,7 +91,7 @@ def test_a_model_whose_only_shapes_were_left_out_is_refused(tmp_path: Path) -> N
     refused(tmp_path, urdf(tracks), rule, tracks=["left_track", "right_track"])
 
 
-def test_wheels_that_are_not_round_are_what_is_wrong_not_a_camera(tmp_path: Path) -> None:
+def test_the_error_names_wheels_that_are_not_round_not_a_camera(tmp_path: Path) -> None:
     square = '<box size="0.1 0.1 0.1"/>'
     wheels = pair("front", 0.2, geometry=square) + pair("rear", -0.2, geometry=square)
     camera = sensor('type="fixed">', collision('<mesh filename="camera.stl"/>'), "camera")
@@ -264,9 +264,7 @@ def in_model(part: str) -> str:
         ),
     ],
 )
-def test_what_an_sdf_model_does_not_hold_itself_is_left_out(
-    tmp_path: Path, part: str, reason: str
-) -> None:
+def test_parts_outside_of_an_sdf_model_are_left_out(tmp_path: Path, part: str, reason: str) -> None:
     left_out(tmp_path, in_model(part), f"({reason}|it is in another file)", "tank.sdf")
     reading = read(tmp_path, in_model(part), "tank.sdf")
     assert any(reason in warning for warning in reading.warnings)
@@ -409,7 +407,7 @@ def by_slices(radius: float, length: float, density: float) -> tuple[float, floa
         ),
     ],
 )
-def test_mass_and_inertia_are_worked_out_where_the_file_asks_for_it(
+def test_auto_mass_and_inertia_are_computed(
     tmp_path: Path, shape: str, wanted: tuple[float, float, float]
 ) -> None:
     part = f"""<link name="b"><pose>0 0 0.5 0 0 0</pose><inertial auto="true"><density>500</density>
@@ -453,7 +451,7 @@ def test_a_stated_mass_is_that_of_all_collisions(tmp_path: Path) -> None:
     refused(tmp_path, text.replace(">6<", ">-6<"), "must have a mass >= 0 kg", "tank.sdf")
 
 
-def test_what_collides_with_nothing_has_a_mass(tmp_path: Path) -> None:
+def test_links_without_collisions_have_a_mass(tmp_path: Path) -> None:
     masked = "<surface><contact><collide_bitmask>0x00</collide_bitmask></contact></surface>"
     text = auto("", CUBE.format(name="c", x=0.2, more=masked))
     assert read(tmp_path, text, "tank.sdf").tree.by_name["b"].mass == pytest.approx(1.0)
@@ -483,7 +481,7 @@ def test_of_several_bodies_the_one_that_can_drive_is_read(tmp_path: Path) -> Non
     )
 
 
-def test_an_older_sdf_is_refused_with_what_converts_it(tmp_path: Path) -> None:
+def test_an_older_sdf_is_refused_with_a_way_to_convert_it(tmp_path: Path) -> None:
     for version in ('version="1.3"', ""):
         text = tracked(DRUMS).replace('version="1.7"', version)
         refused(tmp_path, text, '"gz sdf -p FILE" rewrites a file', "tank.sdf")
@@ -547,7 +545,7 @@ def test_a_mesh_that_alone_gives_a_body_its_mass_is_named_if_it_is_missing(tmp_p
 
 
 @pytest.mark.parametrize("name", ["tractor", "marv_model", "sekirei2020", "marv"])
-def test_nothing_in_a_public_tree_that_cannot_carry_it_stops_the_reader(name: str) -> None:
+def test_parts_that_cannot_carry_the_robot_do_not_stop_the_reader(name: str) -> None:
     pytest.importorskip("xacrodoc")
     key = keys()[name]
     how = ReadOptions(packages=key.packages, arguments=key.arguments)

@@ -56,7 +56,7 @@ def test_a_hostile_mesh_is_left_out_soon(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has pipes of Unix")
-def test_what_a_mesh_names_is_not_opened(tmp_path: Path) -> None:
+def test_files_named_in_a_mesh_are_not_opened(tmp_path: Path) -> None:
     for name in ("paint.mtl", "paint.png"):
         os.mkfifo(tmp_path / name)
     material = "mtllib paint.mtl\nusemtl paint"
@@ -71,7 +71,7 @@ def test_what_a_mesh_names_is_not_opened(tmp_path: Path) -> None:
     assert belly(tmp_path, "m.dae", dae(nodes=image)) is not None
 
 
-def test_a_mesh_that_is_only_seen_is_not_looked_for(tmp_path: Path) -> None:
+def test_a_visual_mesh_is_not_searched_for(tmp_path: Path) -> None:
     visual = '<visual><geometry><mesh filename="package://no/where.dae"/></geometry></visual>'
     assert not read(tmp_path, urdf(WHEELS, shapes=visual)).warnings
 
@@ -97,9 +97,7 @@ def test_part_of_a_mesh_is_left_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("children_of_its_own")
-def test_a_mesh_that_is_there_needs_the_extra(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_existing_mesh_needs_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A robot must not depend on what is installed: so the mesh is not left out."""
     (tmp_path / "site").mkdir()
     raising = "raise ModuleNotFoundError('no', name='trimesh')"

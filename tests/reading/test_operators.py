@@ -111,7 +111,7 @@ BITS = "must have integers of at most 400 bits"
         ),
     ],
 )
-def test_what_is_not_allowed_is_named_with_its_rule(text: str, found: str, rule: str) -> None:
+def test_a_forbidden_expression_is_named_with_its_rule(text: str, found: str, rule: str) -> None:
     with pytest.raises(NotAllowed) as caught:
         evaluate(text, {**NAMES, **known()})
     assert (caught.value.found, caught.value.rule) == (found, rule)
@@ -125,7 +125,7 @@ def test_what_is_not_allowed_is_named_with_its_rule(text: str, found: str, rule:
         *("-" * 98 + "1", "1" + " " * 1999),
     ],
 )
-def test_what_is_a_little_smaller_is_evaluated(text: str) -> None:
+def test_expressions_just_below_a_limit_are_evaluated(text: str) -> None:
     evaluate(text, {**NAMES, **known()})
 
 

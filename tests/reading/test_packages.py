@@ -132,7 +132,7 @@ def test_a_package_that_is_not_found_says_where_it_was_looked_for(
 
 
 @pytest.mark.parametrize("name", ["..", ".", "", "a/../..", "~", "$HOME", "-x", "parts\\..\\.."])
-def test_a_name_that_is_none_of_a_package_leads_nowhere(
+def test_an_invalid_package_name_is_not_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     (tmp_path / "cart").mkdir()
@@ -149,7 +149,7 @@ def test_a_found_package_does_not_lead_out_of_itself(clone: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has pipes of Unix")
-def test_an_odd_manifest_keeps_nobody_waiting(clone: Path) -> None:
+def test_an_odd_manifest_causes_no_delay(clone: Path) -> None:
     for number, text in enumerate((b"", b"\xff<name>", b"<!--" * 15_000, b"<name>" * 10_000)):
         package(clone / f"a{number}", "")
         (clone / f"a{number}" / "package.xml").write_bytes(text)

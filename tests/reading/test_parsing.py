@@ -44,7 +44,7 @@ def test_a_limit_may_be_infinite_and_is_beyond_a_million() -> None:
     assert "must be a finite number" in said_by(real, B, "infinite", unlimited=True)
 
 
-def test_so_many_numbers_are_read_of_a_text_or_an_attribute() -> None:
+def test_a_text_or_an_attribute_has_the_required_count_of_numbers() -> None:
     assert B.reals(1) == [3.0]
     assert B.reals(2, "c") == [1.0, 2.0]
     assert said_by(B.reals, 1, "c") == "m.sdf:2: a/b[n]@c must be a number, got 1 2"
@@ -74,7 +74,7 @@ def test_long_names_are_cut_in_a_path() -> None:
     assert long.path == f"{'t' * 40}[{'n' * 40}]"
 
 
-def test_a_line_ends_where_editors_say() -> None:
+def test_lines_are_counted_as_in_editors() -> None:
     root = element("<a>\r\n<b/>\r<c/>\n\n<d/></a>")
     assert [each.where.line for each in root.within()] == [1, 2, 2, 4]
 

@@ -79,9 +79,7 @@ def test_a_file_with_shapes_on_the_ground_is_read_as_its_key_says(key: Key) -> N
         ("tank", "link.wheel1_link. must have a collision shape that can be read.*wheel.stl"),
     ],
 )
-def test_a_file_without_shapes_on_the_ground_is_refused_in_a_sentence_with_its_cure(
-    name: str, said: str
-) -> None:
+def test_a_file_without_shapes_on_the_ground_is_refused_with_a_remedy(name: str, said: str) -> None:
     key = keys()[name]
     assert "cure" in key.data
     with refusing(SAID, said):

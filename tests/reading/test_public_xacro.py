@@ -139,7 +139,7 @@ def test_every_public_main_file_of_xacro_is_tried() -> None:
         ("sekirei2020_gazebo", "sekirei2020"),  # without its belts, whose macros are not there
     ],
 )
-def test_what_is_expanded_has_the_mass_of_its_key(name: str, key: str) -> None:
+def test_an_expanded_model_has_the_mass_of_its_key(name: str, key: str) -> None:
     text, _ = expand(keys()[name].file)
     masses = [each for each in parse_xml(text.encode(), name).within() if each.tag == "mass"]
     total = sum(float(mass.attribute("value")) for mass in masses)
@@ -184,7 +184,7 @@ OLD_NAME = '<robot name="cart">'
 @pytest.mark.parametrize(
     "name", ["lost.xacro", "$(find parts)/l.xacro", "/nowhere/at/all.xacro", "../../../l.xacro"]
 )
-def test_what_is_not_there_is_refused_on_request(tmp_path: Path, name: str) -> None:
+def test_missing_parts_are_refused_on_request(tmp_path: Path, name: str) -> None:
     text = urdf(f'\n<xacro:include filename="{name}"/>', WHEELS).replace(OLD_NAME, XACRO)
     assert len(read(tmp_path, text, "cart.xacro").warnings) == 1
     refused(tmp_path, text, "must ", "cart.xacro", missing="refuse")
@@ -206,7 +206,7 @@ def test_an_include_with_entities_is_refused(tmp_path: Path) -> None:
     assert caught.value.path == "part.xacro:1"
 
 
-def test_what_needs_an_include_that_was_left_out_says_so(tmp_path: Path) -> None:
+def test_an_error_caused_by_a_missing_include_says_so(tmp_path: Path) -> None:
     lost = '<xacro:include filename="$(find parts)/sizes.xacro"/>'
     text = urdf(WHEELS, mass="${hull_mass}").replace(OLD_NAME, XACRO + lost)
     with refusing(SAID) as caught:
@@ -247,14 +247,14 @@ def test_a_call_of_an_unknown_macro_is_left_out_with_its_block(tmp_path: Path) -
     ]
 
 
-def test_a_call_in_a_macro_is_told_by_the_line_of_the_call(tmp_path: Path) -> None:
+def test_a_call_in_a_macro_is_reported_at_the_line_of_the_call(tmp_path: Path) -> None:
     macro = '\n<xacro:macro name="m">\n<xacro:inner/></xacro:macro>\n<xacro:m/><xacro:m/>'
     text = urdf(macro, WHEELS).replace(OLD_NAME, XACRO)
     (warning,) = read(tmp_path, text, "cart.xacro").warnings
     assert warning.startswith("cart.xacro:3 is left out with what is in it")
 
 
-def test_a_thousand_warnings_are_told_as_a_hundred(tmp_path: Path) -> None:
+def test_a_thousand_warnings_are_cut_to_a_hundred(tmp_path: Path) -> None:
     text = urdf("\n<xacro:none/>" * 1000, WHEELS).replace(OLD_NAME, XACRO)
     (tmp_path / "cart.xacro").write_text(text, encoding="utf-8")
     doubts = quietly(tmp_path / "cart.xacro").warnings
@@ -284,7 +284,7 @@ INCLUDE = urdf('<xacro:include filename="$(find parts)/urdf/wheels.xacro"/>').re
 )
 
 
-def test_a_file_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path) -> None:
+def test_a_file_of_a_package_without_a_manifest_is_found_by_its_path(clone: Path) -> None:
     path = part(clone / "anywhere" / "urdf")
     (warning,) = read(clone / "models", INCLUDE, "cart.xacro").warnings
     assert warning == (
@@ -293,14 +293,14 @@ def test_a_file_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path)
     )
 
 
-def test_the_name_of_the_package_as_a_folder_tells_it_of_others(clone: Path) -> None:
+def test_a_folder_with_the_name_of_the_package_is_preferred(clone: Path) -> None:
     part(clone / "others" / "urdf", text="<robot/>")
     path = part(clone / "parts" / "urdf")
     (warning,) = read(clone / "models", INCLUDE, "cart.xacro").warnings
     assert f"is taken to be {path}" in warning
 
 
-def test_two_files_that_may_be_meant_are_not_taken(clone: Path) -> None:
+def test_an_ambiguous_file_is_not_used(clone: Path) -> None:
     part(clone / "one" / "urdf")
     part(clone / "two" / "urdf")
     with refusing(SAID, "must have wheels") as caught:
@@ -308,14 +308,14 @@ def test_two_files_that_may_be_meant_are_not_taken(clone: Path) -> None:
     assert "is left out" in caught.value.__notes__[0]
 
 
-def test_a_name_alone_tells_no_file(clone: Path) -> None:
+def test_a_name_without_a_path_identifies_no_file(clone: Path) -> None:
     part(clone / "anywhere")
     text = INCLUDE.replace("/urdf/", "/")
     with refusing(SAID, "must have wheels"):
         read(clone / "models", text, "cart.xacro")
 
 
-def test_a_file_that_is_told_by_its_path_includes_what_is_beside_it(clone: Path) -> None:
+def test_a_file_found_by_its_path_includes_its_neighbours(clone: Path) -> None:
     part(clone / "any" / "urdf", text=f'{XACRO}<xacro:include filename="sub/w.xacro"/></robot>')
     part(clone / "any" / "urdf" / "sub", "w.xacro")
     (clone / "any" / "package.xml").write_text("<package><name>called otherwise</name></package>")
@@ -324,7 +324,9 @@ def test_a_file_that_is_told_by_its_path_includes_what_is_beside_it(clone: Path)
 
 
 @pytest.mark.parametrize("name", ["package://parts/", "model://parts/", "file://$(find parts)/"])
-def test_a_mesh_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path, name: str) -> None:
+def test_a_mesh_of_a_package_without_a_manifest_is_found_by_its_path(
+    clone: Path, name: str
+) -> None:
     corners = [f"v {x} {y} {z}" for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.0, 0.05)]
     path = part(clone / "any" / "meshes", "m.obj", "\n".join(corners))
     shapes = collision(f'<mesh filename="{name}meshes/m.obj"/>')
@@ -335,7 +337,7 @@ def test_a_mesh_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path,
         assert any(f"is taken to be {path}" in warning for warning in reading.warnings)
 
 
-def test_yaml_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path) -> None:
+def test_yaml_of_a_package_without_a_manifest_is_found_by_its_path(clone: Path) -> None:
     part(clone / "any" / "config", "m.yaml", "hull: 8")
     mass = "${xacro.load_yaml('$(find parts)/config/m.yaml')['hull']}"
     text = urdf(WHEELS, mass=mass).replace(OLD_NAME, XACRO)
@@ -344,7 +346,7 @@ def test_yaml_of_a_package_without_a_manifest_is_told_by_its_path(clone: Path) -
     assert "config/m.yaml" in reading.warnings[0]
 
 
-def test_a_visual_of_a_package_that_is_nowhere_stops_nothing(tmp_path: Path) -> None:
+def test_a_visual_of_a_missing_package_is_ignored(tmp_path: Path) -> None:
     visual = '<visual><geometry><mesh filename="file://$(find no)/a.stl"/></geometry></visual>'
     text = urdf(WHEELS, shapes=visual).replace(OLD_NAME, XACRO)
     assert not read(tmp_path, text, "cart.xacro").warnings
@@ -418,7 +420,7 @@ def test_all_arguments_without_a_value_are_named_at_once(tmp_path: Path) -> None
         with_arguments(tmp_path, "a", "b", "known", "c", own=own)
 
 
-def test_settings_that_differ_are_not_taken(tmp_path: Path) -> None:
+def test_contradictory_settings_are_not_used(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("hull: 3")
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "a.yaml").write_text("\nhull: 4")
@@ -431,7 +433,7 @@ def test_settings_that_differ_are_not_taken(tmp_path: Path) -> None:
         with_arguments(tmp_path, "hull", "load")
 
 
-def test_settings_are_not_asked_on_request_and_for_a_default(tmp_path: Path) -> None:
+def test_settings_are_not_used_on_request_or_where_there_is_a_default(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("hull: 3\nload: 5")
     rule = "must have a value for each argument"
     with refusing(SAID, rule):
@@ -446,7 +448,7 @@ def test_settings_are_not_asked_on_request_and_for_a_default(tmp_path: Path) -> 
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has pipes of Unix")
-def test_settings_that_are_odd_files_keep_nobody_waiting(tmp_path: Path) -> None:
+def test_settings_that_are_odd_files_cause_no_delay(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.yaml")
     (tmp_path / "folder.yaml").mkdir()
     (tmp_path / "out.yaml").symlink_to("/etc/passwd")

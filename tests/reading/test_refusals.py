@@ -183,7 +183,9 @@ def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: 
     refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within the envelope")
 
 
-def test_a_plate_within_the_envelope_of_a_flipper_is_left_out_aloud(tmp_path: Path) -> None:
+def test_a_plate_within_the_envelope_of_a_flipper_is_left_out_with_a_warning(
+    tmp_path: Path,
+) -> None:
     plate = collision('<box size="0.04 0.02 0.08"/>', '<origin xyz="0.1 0 0"/>')
     arms = flippers(shape=plate)
     for side, _ in SIDES:
@@ -216,7 +218,7 @@ def test_a_lidar_that_turns_touches_nothing(tmp_path: Path, shape: str) -> None:
     ("argument", "value"),
     [("engine", "ode"), ("mesh", "keep"), ("missing", None), ("forward", "x"), ("tolerance", -1.0)],
 )
-def test_an_argument_that_is_none_of_its_values_is_refused(
+def test_an_argument_with_an_unknown_value_is_refused(
     tmp_path: Path, argument: str, value: object
 ) -> None:
     with refusing(SAID) as caught:
@@ -292,7 +294,7 @@ def test_wheels_beside_moved_drums_are_refused(tmp_path: Path) -> None:
     refused(tmp_path, text, "must be wheels, or drums of a", tracks=["left_belt", "right_belt"])
 
 
-def test_an_inertia_to_be_worked_out_of_no_shape_is_refused(tmp_path: Path) -> None:
+def test_an_auto_inertia_without_a_shape_is_refused(tmp_path: Path) -> None:
     part = """<link name="b"><inertial auto="true"/></link>
       <joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>"""
     text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1))).replace("</model>", f"{part}</model>")

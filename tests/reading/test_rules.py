@@ -71,7 +71,7 @@ BROKEN_SDF = {
 
 
 @pytest.mark.parametrize("what", BROKEN_SDF)
-def test_what_sdf_does_not_allow_is_refused(what: str, tmp_path: Path) -> None:
+def test_invalid_sdf_is_refused(what: str, tmp_path: Path) -> None:
     old, new, rule = BROKEN_SDF[what]
     refused(tmp_path, changed(SDF, old, new), rule, "cart.sdf")
 
@@ -84,7 +84,7 @@ def test_a_quaternion_turns_a_link_as_angles_do(tmp_path: Path) -> None:
     )
 
 
-def test_a_chain_of_numbers_that_is_too_short_or_an_attribute_that_lacks_is_refused(
+def test_too_few_numbers_or_a_missing_attribute_are_refused(
     tmp_path: Path,
 ) -> None:
     refused(tmp_path, changed(SDF, POSE, "<pose>0 0 0</pose>"), "must be 6 numbers", "cart.sdf")
@@ -133,7 +133,7 @@ def latin(text: str) -> bytes:
     return b"<?xml version='1.0' encoding='latin-1'?><!-- \xe9 -->" + text.encode()
 
 
-def test_what_is_scaled_or_expanded_must_be_utf_8(tmp_path: Path) -> None:
+def test_scaled_or_expanded_files_must_be_utf_8(tmp_path: Path) -> None:
     path = tmp_path / "cart.urdf"
     path.write_bytes(latin(urdf(WHEELS)))
     with refusing(SAID, "must be UTF-8, to be scaled"):
@@ -166,7 +166,7 @@ def test_four_hundred_wheels_are_no_robot(tmp_path: Path) -> None:
     refused(tmp_path, urdf(many), "must have at most 400 wheels per carrier")
 
 
-def test_a_drum_that_lies_along_is_refused(tmp_path: Path) -> None:
+def test_a_drum_with_a_longitudinal_axis_is_refused(tmp_path: Path) -> None:
     drum = "".join(
         collision(
             '<cylinder radius="0.1" length="0.1"/>', f'<origin xyz="{x} 0 0" rpy="{angles}"/>'

@@ -106,12 +106,12 @@ def test_limits_of_slides_and_tensors_are_scaled_and_no_angles() -> None:
 
 
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), 1e9, "0.1", True])
-def test_a_scale_that_is_none_is_refused(scale: object) -> None:
+def test_an_invalid_scale_is_refused(scale: object) -> None:
     with refusing(SAID, "scale"):
         quietly(ROBOTS / "absolem.sdf", scale=scale)
 
 
-def test_mjcf_is_not_scale_lengths() -> None:
+def test_mjcf_cannot_be_scaled() -> None:
     with refusing(SAID, "must be 1 for MJCF"):
         quietly(FILES / "cart.xml", scale=0.1)
 

@@ -47,7 +47,7 @@ def test_backwards_is_mirrored(tmp_path: Path) -> None:
     assert back.mean(axis=0) == pytest.approx((-0.1, 0.1))
 
 
-def test_a_mesh_that_was_not_read_has_none(tmp_path: Path) -> None:
+def test_an_unread_mesh_has_no_silhouette(tmp_path: Path) -> None:
     mesh = collision('<mesh filename="nowhere.stl"/>')
     reading = read(tmp_path, urdf(WHEELS, shapes=mesh), mesh="leave_out")
     assert outlines(reading, "hull") == []

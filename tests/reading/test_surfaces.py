@@ -84,7 +84,7 @@ def test_a_box_between_the_drums_is_no_belly(tmp_path: Path) -> None:
     assert read(tmp_path, urdf(*parts, shapes=above)).robot.belly is not None
 
 
-def test_fixed_cylinders_beside_more_wheels_are_belly_as_ever(tmp_path: Path) -> None:
+def test_fixed_cylinders_with_more_wheels_are_part_of_the_belly(tmp_path: Path) -> None:
     found = read(tmp_path, urdf(WHEELS, drums("skid", 0.4)))
     assert found.robot.track == c2d.LineOfWheels(2)
     assert found.robot.belly is not None
@@ -118,7 +118,7 @@ def test_a_drum_at_the_tip_alone_is_no_flipper(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("end", ["front", "rear"])
-def test_a_sprocket_at_either_end_of_a_flipper_is_read_alike(tmp_path: Path, end: str) -> None:
+def test_a_sprocket_may_be_at_either_end_of_a_flipper(tmp_path: Path, end: str) -> None:
     """As where all sprockets are ahead: that of a rear flipper is then on its pivot."""
     kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
     sprocket, idler = ("0 0 0", 0.2) if end == "rear" else ("0.2 0 0", 0.0)
@@ -143,7 +143,7 @@ def test_wheels_without_a_motor_beside_driven_ones_get_a_warning(tmp_path: Path)
 
 
 @pytest.mark.parametrize("limit", ["", '<limit effort="5" velocity="10"/>'])
-def test_what_rolls_freely_adds_no_torque(tmp_path: Path, limit: str) -> None:
+def test_freely_rolling_wheels_add_no_torque(tmp_path: Path, limit: str) -> None:
     """Whether its joint states a limit or none, that of the driven wheel is that of its side."""
     text = urdf(pair("front", 0.2, limit=limit), pair("rear", -0.2), motors("rear"))
     found = read(tmp_path, text)
@@ -152,7 +152,7 @@ def test_what_rolls_freely_adds_no_torque(tmp_path: Path, limit: str) -> None:
     assert len(found.sources["robot.drivetrain.max_torque"].split(", ")) == 2
 
 
-def test_what_rolls_freely_takes_no_servo_from_the_others(tmp_path: Path) -> None:
+def test_freely_rolling_wheels_leave_the_servos_of_the_others(tmp_path: Path) -> None:
     """Of five wheels a side four have a gain of 10 N m s/rad, and 5 N m; one is half as large."""
     pytest.importorskip("mujoco")
     text = (FILES / "cart.xml").read_text(encoding="utf-8")

@@ -86,7 +86,7 @@ def named(node: ast.expr) -> Any:
 
 
 @of_each
-def test_what_a_notebook_asks_of_the_package_is_there(path: Path) -> None:
+def test_names_that_a_notebook_uses_exist(path: Path) -> None:
     """Names and keywords, also where no short run comes."""
     asked = 0
     for node in ast.walk(ast.parse("\n".join(code_of(path)))):
@@ -101,7 +101,7 @@ def test_what_a_notebook_asks_of_the_package_is_there(path: Path) -> None:
 
 
 @of_each
-def test_what_a_notebook_starts_from_can_be_made(path: Path) -> None:
+def test_the_scenarios_of_a_notebook_are_valid(path: Path) -> None:
     """Its first cell: robots, models, grounds."""
     exec(code_of(path)[0], {})
 

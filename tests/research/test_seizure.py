@@ -138,7 +138,7 @@ def test_cells_count_successes_failures_and_runs_without_a_result(table: xr.Data
     assert "7 stalled, 1 seized" in tables.rates_text(cells)
 
 
-def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Dataset) -> None:
+def test_a_climb_has_the_greatest_height_and_the_gaps_below_it(table: xr.Dataset) -> None:
     first, second = tables.climbs(table, "step")
     assert (first.highest, first.gaps) == (0.06, (0.04,))
     assert math.isnan(second.highest)
@@ -151,7 +151,7 @@ def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Datas
     assert lines[-1].split() == ["second", "Fig.", "3", "none", "100", "0.30"]
 
 
-def test_stops_tell_outcomes_mechanisms_and_what_frees_the_robot(table: xr.Dataset) -> None:
+def test_stops_have_outcomes_mechanisms_and_trials(table: xr.Dataset) -> None:
     first, second = stops.stops(table, "step", belt="first")
     assert (first.count, first.cleared, first.seized, first.stopped) == (40, 24, 6, 6)
     assert (first.mechanism, first.of_mechanism) == ("undercut", 5)
@@ -180,7 +180,7 @@ def test_a_model_that_never_stops_has_no_shares_of_stops(table: xr.Dataset) -> N
     assert line.split() == ["first", "step", "10", "10", *["-"] * 14]
 
 
-def test_gear_wheels_are_set_against_round_ones_with_intervals(table: xr.Dataset) -> None:
+def test_gear_wheels_are_compared_with_round_ones_with_intervals(table: xr.Dataset) -> None:
     rows = stops.compare_wheels(table, "step", {"second": "first"}, belt="first")
     assert len(rows) == 4 * len(FIGURES)
     assert [row.wheel for row in rows[:: len(FIGURES)]] == ["round", "gear"] * 2

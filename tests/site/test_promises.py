@@ -44,7 +44,7 @@ def test_every_promise_has_a_test_in_every_line(promise: str) -> None:
     assert [row for row in rows if not re.search(r"\.(?:py|rs)::\w+`", row)] == []
 
 
-def test_what_is_tried_usually_is_not_left_to_the_long_tests() -> None:
+def test_the_usual_tests_are_not_marked_as_long() -> None:
     rows = [line.split(" | ") for line in PAGE.splitlines() if "::" in line]
     usual = [
         re.findall(r"`([\w/.]+)::(\w+)`", test) for _, test, often, *_ in rows if often.strip()

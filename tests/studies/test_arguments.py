@@ -125,7 +125,7 @@ MEASURES = ("acceleration", "braking_distance", "max_speed", "odometry", "ride")
 
 @pytest.mark.parametrize("argument", ["vary", "unknown"])
 @pytest.mark.parametrize("name", MEASURES)
-def test_draws_do_not_take_the_place_of_what_models_set(name: str, argument: str) -> None:
+def test_draws_do_not_override_fields_of_models(name: str, argument: str) -> None:
     models = {"wet": {"terrain.friction": 0.3}, "dry": {"terrain.friction": 0.9}}
     drawn: Any = {argument: {"terrain.friction": c2d.uniform(0.5, 0.6)}}
     base = c2d.Scenario(ROBOT, c2d.terrains.flat(), duration=1.0)

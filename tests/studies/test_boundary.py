@@ -55,7 +55,7 @@ def test_where_a_model_was_not_tried_nothing_was_drawn() -> None:
     assert (found["unknown_mass"].notnull() == is_tried).all()
 
 
-def test_where_nothing_passes_one_half_there_is_no_bracket() -> None:
+def test_without_a_crossing_of_one_half_there_is_no_bracket() -> None:
     found = c2d.studies.critical_value(SLOPE, "terrain.friction", (0.1, 0.3), points=2, **STEADY)
     assert math.isnan(found["bracket_low"].item())
     assert found["monotone"].item()
@@ -74,7 +74,7 @@ def test_monotone_is_a_rate_that_passes_one_half_once() -> None:
     assert found["monotone"].item() == (np.count_nonzero(np.diff(ways)) <= 1)
 
 
-def test_what_is_wrong_is_refused_by_name() -> None:
+def test_invalid_arguments_are_refused_by_name() -> None:
     cases: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
         (("robot.name", (0.1, 0.2)), {}, "path"),
         (("terrain.friction", (0.2, 0.1)), {}, "between"),

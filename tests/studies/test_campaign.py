@@ -36,7 +36,7 @@ def stored(store: Path) -> Any:
     return found_of(store=store)
 
 
-def test_a_cell_is_simulated_until_it_is_known_and_no_longer(stored: Any) -> None:
+def test_a_cell_is_simulated_until_its_rate_is_known_and_no_longer(stored: Any) -> None:
     found = stored
     counts = found["count"].to_numpy()
     assert counts[0, 0] == 10  # ten of ten are certain enough
@@ -61,14 +61,14 @@ def test_the_runs_are_those_of_a_sweep_with_the_same_seed() -> None:
     assert first["drawn_approach"].values.tolist() == table["drawn_approach"].values.tolist()
 
 
-def test_the_rule_is_the_one_that_is_given() -> None:
+def test_the_given_stopping_rule_is_used() -> None:
     fixed = found_of(until=c2d.Until(width=0.01, min_runs=7, max_runs=7))
     assert (fixed["count"] == 7).all()
     assert fixed.sizes["repeat"] == 7
     assert "min_runs=7" in fixed.attrs["until"]
 
 
-def test_what_is_not_known_has_a_rate_for_every_sample() -> None:
+def test_unknowns_give_a_rate_for_every_sample() -> None:
     unknown = {"terrain.friction": c2d.uniform(0.3, 1.0)}
     found = found_of(unknown=unknown, samples=4, until=c2d.Until(threshold=0.5, max_runs=20))
     assert found["rate"].dims == ("model", "height", "sample")
@@ -87,7 +87,7 @@ def test_a_store_keeps_the_runs_of_a_study(store: Path, stored: Any) -> None:
     assert calls[-1] == (first.attrs["runs"],) * 2
 
 
-def test_what_is_wrong_is_refused_by_name() -> None:
+def test_invalid_arguments_are_refused_by_name() -> None:
     cases: list[tuple[dict[str, Any], str]] = [
         ({"repeats": 5}, "repeats"),
         ({"until": 5}, "until"),
@@ -106,7 +106,7 @@ def test_what_is_wrong_is_refused_by_name() -> None:
         c2d.studies.max_obstacle(BASE.replace({"terrain": c2d.terrains.flat()}))
 
 
-def test_ctrl_c_is_told_and_the_store_goes_on(tmp_path: Path) -> None:
+def test_ctrl_c_is_reported_and_the_store_can_be_continued(tmp_path: Path) -> None:
     store = tmp_path / "a.sqlite"
 
     def stop(done: int, _total: int) -> None:
@@ -174,7 +174,7 @@ def test_points_are_drawn_where_they_were_tried_and_intervals_beside_each_other(
     plt.close("all")
 
 
-def test_rates_over_many_pairs_of_numbers_are_a_map_with_what_is_open_hatched() -> None:
+def test_rates_over_many_pairs_of_numbers_are_a_map_with_uncertain_cells_hatched() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
     heights, frictions = np.linspace(0.04, 0.16, 7), [0.3, 0.9]

@@ -45,7 +45,7 @@ def test_it_says_of_which_machine_and_build_it_is() -> None:
     assert found.attrs["duration"] == 0.5
 
 
-def test_what_is_wrong_is_refused_by_name() -> None:
+def test_invalid_arguments_are_refused_by_name() -> None:
     cases: list[tuple[dict[str, Any], str]] = [
         ({"store": "a.sqlite"}, "store"),
         ({"executor": None}, "executor"),

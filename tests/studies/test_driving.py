@@ -28,7 +28,7 @@ INERTIA = 21.2 + 2.4  # [kg] the track moves with the robot, and round its outli
 EXACT = 1e-4  # solver and softness of the contacts: 3e-6 at most was seen
 
 
-def test_a_belt_with_force_to_spare_is_as_fast_as_it_is_told() -> None:
+def test_a_belt_with_ample_force_reaches_the_commanded_speed() -> None:
     found = STUDIES.max_speed(FLAT, **HOW)
     assert found["speed"].item() == pytest.approx(V, rel=EXACT)
     assert found["limit"].item() == "command"
@@ -72,7 +72,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_what_gives_way_first_limits_acceleration_and_braking(case: str) -> None:
+def test_the_first_limit_reached_limits_acceleration_and_braking(case: str) -> None:
     base, fields, gain, loss = CASES[case]
     faster = STUDIES.acceleration(base.replace(fields), **HOW)
     assert faster["acceleration"].item() == pytest.approx(gain, rel=EXACT)
@@ -93,7 +93,7 @@ def test_what_gives_way_first_limits_acceleration_and_braking(case: str) -> None
         ((1.0, math.nan), (1.0, 1.0), (math.nan, math.nan), "torque"),
     ],
 )
-def test_a_limit_is_what_improves_the_median_by_more_than_chance(
+def test_a_limit_improves_the_median_by_more_than_chance(
     before: Any, torque: Any, friction: Any, expected: str
 ) -> None:
     values = np.array([before, torque, friction])[None, :, None, :]
@@ -109,7 +109,7 @@ def test_where_two_limits_meet_neither_alone_is_one() -> None:
     assert STUDIES.acceleration(both, **HOW)["limit"].item() == "none of these"
 
 
-def test_a_robot_that_slides_down_has_no_figure_and_says_what_gives_it_one() -> None:
+def test_a_robot_that_slides_down_has_no_figure_and_names_its_limit() -> None:
     ice = UPHILL.replace({"terrain.friction": 0.15})  # less than the tangent, twice is more
     for study, name in (
         (STUDIES.max_speed, "speed"),
@@ -131,7 +131,7 @@ def test_a_robot_that_falls_over_has_no_figure() -> None:
     assert found["ended"].sel(change="unchanged").item() == "tipped_over"
 
 
-def test_what_is_not_known_is_doubled_as_it_was_drawn() -> None:
+def test_unknowns_are_doubled_as_drawn() -> None:
     unknown = {
         "terrain.friction": c2d.uniform(0.3, 0.5),
         f"{DRIVETRAIN}max_torque": c2d.scaled(0.9, 1.1),
@@ -200,7 +200,7 @@ def test_a_store_keeps_the_runs(tmp_path: Path) -> None:
     assert extra == 3 * 2  # those at twice the speed
 
 
-def test_what_is_wrong_is_refused_by_name() -> None:
+def test_invalid_arguments_are_refused_by_name() -> None:
     cases: list[tuple[dict[str, Any], str]] = [
         ({"speed": 0.0}, "speed"),
         ({"speed": 2.0}, "drive.speed"),

@@ -61,7 +61,7 @@ def test_a_boundary_is_followed_and_the_rest_is_left_out() -> None:
     assert grid.tried[0, :, :-1][changes].all()
 
 
-def test_what_is_not_certain_is_made_finer_all_round() -> None:
+def test_uncertain_cells_are_refined_with_their_neighbours() -> None:
     grid = grid_of(lambda y, x: BETWEEN if (y, x) == (0.5, 0.5) else BELOW, 1)
     expected = np.zeros((5, 5), bool)
     expected[::2, ::2] = True
@@ -141,7 +141,7 @@ def test_where_all_slip_the_map_has_another_colour_than_where_all_clear() -> Non
     plt.close("all")
 
 
-def test_what_is_not_certain_is_hatched_and_the_legend_says_so() -> None:
+def test_uncertain_cells_are_hatched_and_in_the_legend() -> None:
     from matplotlib import pyplot as plt  # noqa: PLC0415
 
     few = c2d.Until(threshold=0.5, min_runs=3, max_runs=3)  # three that agree prove nothing
@@ -212,6 +212,6 @@ def test_the_figure_of_a_part_of_a_map_with_one_value_of_a_field_is_refused() ->
         ({"repeats": 3}, "repeats"),
     ],
 )
-def test_what_is_wrong_is_refused_by_name(given: Any, path: str) -> None:
+def test_invalid_arguments_are_refused_by_name(given: Any, path: str) -> None:
     how = {"x": FRICTION, "y": ANGLE, **given}
     assert refused(lambda: c2d.studies.seizure_map(SLOPE, **how)).path == path

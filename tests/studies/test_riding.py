@@ -38,7 +38,7 @@ def test_gear_wheels_shake_where_belts_and_round_wheels_do_not() -> None:
     assert found["swing"].sel(model="gears") > 10 * found["swing"].sel(model="belt")
 
 
-def test_how_runs_ended_is_told_by_model_and_sample() -> None:
+def test_outcomes_are_listed_by_model_and_sample() -> None:
     models = {"belt": BELT, "4 round": c2d.LineOfWheels(4, wheel_radius=0.0608)}
     found = c2d.studies.ride(STEP, models=models, **HOW)
     assert found["ended"].values.tolist() == ["cleared", "seized"]
@@ -148,7 +148,7 @@ def test_the_figure_is_of_the_measure_that_is_asked_for() -> None:
     plt.close("all")
 
 
-def test_what_is_wrong_is_refused_by_name() -> None:
+def test_invalid_arguments_are_refused_by_name() -> None:
     for how, path in (({"until": 3}, "until"), ({"repeats": 1.5}, "repeats"), ({"k": 1}, "k")):
         for study in (c2d.studies.ride, c2d.studies.odometry):
             with pytest.raises(c2d.ScenarioError) as caught:

@@ -74,7 +74,7 @@ def test_the_cheapest_of_those_that_succeed_is_found() -> None:
     assert counts["d"] == counts["c"] == 80
 
 
-def test_a_dear_one_returns_when_all_the_cheap_ones_turn_out_worse() -> None:
+def test_an_expensive_candidate_returns_when_the_cheap_ones_fail() -> None:
     # Of 20 runs at 0.9, two or fewer fail in two of three cases: cheap ones crowd out the dear one.
     chances = {str(k): 0.9 for k in range(15)} | {"dear": 1.0}
     costs = [float(k) for k in range(15)] + [99.0]
@@ -96,7 +96,7 @@ def test_ties_go_by_the_order_of_the_labels() -> None:
     assert [each.label for each in halved({"b": 0.0, "a": 0.0}, [2, 1])] == ["b", "a"]
 
 
-def test_every_run_has_its_own_draw_of_what_varies_and_of_what_is_not_known() -> None:
+def test_every_run_has_its_own_draw_of_variable_and_unknown_parameters() -> None:
     unknowns = Variation.read(BASE, UNKNOWN, ["terrain"], "unknown")
     variation = Variation.read(BASE, {"drive.speed": c2d.scaled(0.9, 1.1)}, ["terrain"])
     world = Planner(variation, Variation({}), 3).worlds(BASE, ("a",))[0]
@@ -135,7 +135,7 @@ def test_the_fewest_wheels_that_clear_every_terrain_win() -> None:
     assert "confirmed" in found.attrs["verdict"]
 
 
-def test_what_breaks_a_rule_is_left_out_and_counted() -> None:
+def test_invalid_candidates_are_left_out_and_counted() -> None:
     found = search()
     assert "8 all round" not in found["candidate"]
     assert found.attrs["refused"] == 1
@@ -145,7 +145,7 @@ def test_what_breaks_a_rule_is_left_out_and_counted() -> None:
     assert error.path == "cell[candidate=a, terrain=step].robot.track.count"
 
 
-def test_what_is_confirmed_is_confirmed_on_runs_that_the_search_has_not_had(tmp_path: Path) -> None:
+def test_a_candidate_is_confirmed_on_fresh_runs(tmp_path: Path) -> None:
     store = tmp_path / "a.sqlite"
     found = search(terrains=EASY, unknown=UNKNOWN, samples=3, store=store)
     assert len(list(stored_rows(store))) == found.attrs["runs"]  # no run was made twice
@@ -168,7 +168,7 @@ def test_what_is_confirmed_is_confirmed_on_runs_that_the_search_has_not_had(tmp_
     assert len(list(stored_rows(store))) == found.attrs["runs"]
 
 
-def test_if_none_reaches_the_goal_that_is_said() -> None:
+def test_the_verdict_says_if_no_candidate_reaches_the_goal() -> None:
     wall = {"wall": c2d.terrains.step(0.3)}
     found = search(terrains=wall)
     assert not found["confirmed"].any()
@@ -240,5 +240,5 @@ def test_a_search_draws_cost_against_the_lowest_rate() -> None:
         ({"until": c2d.Until()}, "until"),
     ],
 )
-def test_what_is_wrong_is_refused_by_name(given: Any, path: str) -> None:
+def test_invalid_arguments_are_refused_by_name(given: Any, path: str) -> None:
     assert refused(lambda: search(**given)).path == path

@@ -96,12 +96,12 @@ def held(case: tuple[Output, Indices], count: int, designs: int = 200) -> Any:
 
 
 @pytest.mark.parametrize("rough", [pytest.param(1, marks=pytest.mark.soak), 7919])
-def test_intervals_hold_the_indices_as_often_as_they_promise(rough: int) -> None:
+def test_intervals_cover_the_indices_as_often_as_claimed(rough: int) -> None:
     # Of 200 designs that hold with a probability of 0.95, less than 0.90 do in one case of 500.
     assert (held(either(rough), 256) >= 0.90).all()
 
 
-def test_intervals_hold_indices_that_few_swaps_tell_of() -> None:
+def test_intervals_cover_indices_that_depend_on_few_swaps() -> None:
     case = either(rough=7919, one=0.5, other=0.01)
     assert case[1].total[1] == pytest.approx(0.02, abs=0.001)
     assert (held(case, 64) >= 0.90).all()
@@ -155,7 +155,7 @@ def test_the_indices_are_those_of_the_outcomes_in_the_table(slope: Any) -> None:
     assert slope.attrs["runs"] > 5 * 32 + 5 * made
 
 
-def test_where_all_runs_clear_nothing_is_told_and_no_more_is_simulated(tmp_path: Path) -> None:
+def test_where_all_runs_clear_there_are_no_indices_and_no_more_runs(tmp_path: Path) -> None:
     store = tmp_path / "a.sqlite"
     easy = SLOPE.replace({"terrain.angle": 0.2, "robot.drivetrain.max_torque": 30.0})
     found = found_of(easy, store=store).isel(model=0)
@@ -185,7 +185,7 @@ def test_the_same_seed_gives_the_same_runs_and_a_store_keeps_them(
     assert not found_of(seed=1)["outcome"].equals(slope["outcome"])
 
 
-def test_ctrl_c_is_told_and_the_store_goes_on(tmp_path: Path, slope: Any) -> None:
+def test_ctrl_c_is_reported_and_the_store_can_be_continued(tmp_path: Path, slope: Any) -> None:
     store = tmp_path / "a.sqlite"
 
     def stop(done: int, _total: int) -> None:
@@ -264,7 +264,7 @@ def test_the_range_of_an_unbounded_distribution_is_1_to_99_percent() -> None:
     assert not count.is_line
 
 
-def test_what_is_wrong_is_refused_by_name() -> None:
+def test_invalid_arguments_are_refused_by_name() -> None:
     cases: list[tuple[dict[str, Any], str]] = [
         ({"unknown": None}, "unknown"),
         ({"unknown": {}}, "unknown"),

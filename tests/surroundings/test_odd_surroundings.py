@@ -219,7 +219,7 @@ def test_odd_surroundings_change_no_result_of_an_audit(
     check(name, tmp_path, usual_audit, "audit")
 
 
-def test_a_name_of_300_characters_is_told(tmp_path: Path) -> None:
+def test_a_name_of_300_characters_is_an_error_of_one_line(tmp_path: Path) -> None:
     """No file system takes it."""
     import crawler2d as c2d  # noqa: PLC0415
 

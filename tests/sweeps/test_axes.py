@@ -203,7 +203,7 @@ def test_no_axis_takes_the_name_of_a_column_of_the_table_or_of_its_rates() -> No
         ),
     ],
 )
-def test_what_is_no_axis_is_refused_by_name(over: Any, path: str, hint: str) -> None:
+def test_an_invalid_axis_is_refused_by_name(over: Any, path: str, hint: str) -> None:
     with refusing(SAID) as caught:
         quiet(BASE, over)
     assert caught.value.path == path

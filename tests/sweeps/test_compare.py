@@ -168,7 +168,7 @@ def test_fields_are_compared_as_models_are() -> None:
         assert Scenario.from_json(text) == first.replace(fields)
 
 
-def test_what_models_replace_is_told_of_their_axis() -> None:
+def test_attributes_of_the_model_axis_name_the_replaced_fields() -> None:
     models = [{"robot.mass": 20.0}, {"robot.mass": 22.0, "gravity": 9.0}]
     pair = quiet(models, repeats=1, vary={})
     assert pair["model"].attrs["path"] == "robot.mass, gravity"
@@ -201,7 +201,7 @@ def test_what_models_replace_is_told_of_their_axis() -> None:
         ({**MODELS, "one": c2d.LineOfWheels(1)}, {}, "cell[model=one].robot.track.count"),
     ],
 )
-def test_what_cannot_be_compared_is_refused_by_name(
+def test_models_that_cannot_be_compared_are_refused_by_name(
     models: Any, options: dict[str, Any], path: str
 ) -> None:
     with refusing(SAID) as caught:

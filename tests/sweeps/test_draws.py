@@ -53,7 +53,7 @@ def draw(cell: Scenario, vary: Any, number: float = 0.5) -> dict[str, float]:
     return {path: float(values[0]) for path, values in found.values.items()}
 
 
-def test_a_uniform_value_lies_between_its_bounds_and_does_not_know_the_scenario() -> None:
+def test_a_uniform_value_lies_between_its_bounds_whatever_the_scenario() -> None:
     assert value(uniform(0.05, 0.15), 0.0, own=7.0) == 0.05
     assert value(uniform(0.05, 0.15), 0.25) == pytest.approx(0.075)
     assert value(uniform(0.1, 0.1), 0.7) == 0.1
@@ -173,7 +173,7 @@ def test_bounds_may_be_whole_or_of_numpy() -> None:
     assert uniform(1.0, 1.0).high == uniform_int(1, 1).low
 
 
-def test_another_path_draws_numbers_that_know_nothing_of_those_of_the_first() -> None:
+def test_draws_of_two_paths_are_independent() -> None:
     paths = [
         *("start.approach", "start.track_phase", "drive.speed", "terrain.friction", "terrain.seed"),
         *("robot.belly[0][1]", "robot.belly[1][0]", "robot.belly[01]"),  # the same letters
@@ -188,7 +188,7 @@ def test_another_path_draws_numbers_that_know_nothing_of_those_of_the_first() ->
     assert np.abs(ahead - np.diag(np.diag(ahead))).max() < 4.5 / math.sqrt(count)
 
 
-def test_levels_are_taken_in_turn_and_what_is_slow_takes_long() -> None:
+def test_levels_are_taken_in_turn_and_slow_runs_last_longer() -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05), duration=3.0)
     vary = {
         "drive.speed": Levels((0.1, 0.5, 1.0), spread=0.02),
@@ -208,7 +208,7 @@ def test_levels_are_taken_in_turn_and_what_is_slow_takes_long() -> None:
         assert planner.runs(world, 2, 5).drawn["duration"].tolist() == whole[2:].tolist()
 
 
-def test_what_a_study_doubles_is_doubled_at_every_level() -> None:
+def test_a_field_that_a_study_doubles_is_doubled_at_every_level() -> None:
     fast = Scenario(ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(speed=0.8))
     variation = Variation.read(fast, {"drive.speed": Levels((0.1, 1.0))}, [])
     planner = scaled_draws(Planner(variation, Variation({}), 0), {"drive.speed": 2.0})
@@ -223,7 +223,7 @@ def test_more_repeats_go_on_with_the_same_numbers(path: str) -> None:
         assert uniform_numbers(path, 7, count).tolist() == whole[:count].tolist()
 
 
-def test_seeds_draw_numbers_that_know_nothing_of_each_other() -> None:
+def test_draws_of_two_seeds_are_independent() -> None:
     seeds = [0, 1, 2, 3, 2**32 - 1, 2**32, 2**63, 2**64 - 1]
     drawn = np.array([uniform_numbers("drive.speed", seed, 4000) for seed in seeds])
     correlations = np.corrcoef(drawn)[np.triu_indices(len(seeds), 1)]
@@ -352,14 +352,14 @@ def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
         ),
     ],
 )
-def test_what_is_no_variation_is_refused_by_name(vary: Any, message: str) -> None:
+def test_an_invalid_variation_is_refused_by_name(vary: Any, message: str) -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
     with refusing(SAID) as caught:
         Variation.read(base, vary, ["terrain.height"])
     assert str(caught.value).startswith(message)
 
 
-def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> None:
+def test_given_distributions_are_drawn_as_they_are_and_may_scale_swept_values() -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
     vary = {"terrain.friction": uniform(0.0, 400.0), "terrain.height": scaled(0.5, 1.5)}
     variation = Variation.read(base, vary, ["terrain.height"])
@@ -375,7 +375,7 @@ def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> No
 
 @pytest.mark.parametrize("is_first", [False, True])
 @pytest.mark.parametrize("others", [{}, {"robot.drivetrain.no_load_speed": uniform(1.0, 1.0)}])
-def test_a_default_draw_is_dropped_by_what_else_is_drawn(
+def test_a_default_draw_that_breaks_a_rule_with_other_draws_is_dropped(
     is_first: bool, others: dict[str, Any]
 ) -> None:
     base = Scenario(ROBOT, c2d.terrains.flat(), drive=c2d.Drive(speed=0.4))

@@ -137,7 +137,7 @@ def kill_itself(*_: Any) -> Any:
     os._exit(9)
 
 
-def test_a_killed_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_killed_process_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(collect, "simulate_chunk", kill_itself)
     spawn = multiprocessing.get_context("spawn")
     with (
@@ -170,6 +170,6 @@ def test_an_error_of_the_progress_is_no_fault_of_the_executor() -> None:
         swept(Unreliable(losses=0), progress=report)
 
 
-def test_what_is_no_executor_is_refused() -> None:
+def test_anything_but_an_executor_is_refused() -> None:
     with refusing(SAID, r"must be a concurrent\.futures\.Executor"):
         quiet(BASE, {}, executor=4)

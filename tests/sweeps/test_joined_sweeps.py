@@ -72,7 +72,7 @@ def test_cells_of_unequal_repeats_are_counted_by_the_runs_that_were_made(
         assert rate(joined, dim=["height", "repeat"])["count"].item() == 7
 
 
-def test_another_seed_is_told_apart_in_the_joined_table() -> None:
+def test_seeds_are_distinct_in_the_joined_table() -> None:
     seeds = [over(LOW, HIGH), over(LOW, HIGH, seed=2**63)]
     joined = xr.concat(seeds, "repeat")
     assert joined["seed"].isel(height=0).values.tolist() == [0, 0, 2**63, 2**63]

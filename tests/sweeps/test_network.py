@@ -122,7 +122,9 @@ def test_rows_of_another_task_were_stored_under_the_wrong_identity(
     assert bits(tmp_path / "a.sqlite").items() <= bits(tmp_path / "serial.sqlite").items()
 
 
-def test_no_garbage_is_taken_for_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_garbage_is_never_accepted_as_a_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     count = len(garbage("", [("", {"metrics": {"time": 0.0}})]))
     for kind in range(count):
         store = tmp_path / f"{kind}.sqlite"

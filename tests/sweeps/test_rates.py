@@ -139,7 +139,7 @@ def test_distinct_poses_are_those_of_the_runs_that_are_counted() -> None:
     ("name", "step"),
     [("final_x", 1e-3), ("final_y", 1e-3), ("final_angle", np.radians(0.1))],
 )
-def test_poses_are_told_apart_in_steps_of_1_mm_and_a_tenth_of_a_degree(
+def test_poses_are_distinct_in_steps_of_1_mm_and_a_tenth_of_a_degree(
     name: str, step: float
 ) -> None:
     poses = {"final_x": 0.0, "final_y": 0.0, "final_angle": 0.0}
@@ -168,7 +168,7 @@ def test_a_list_of_outcomes_has_a_rate() -> None:
     assert rate(iter(outcomes))["count"].item() == 3
 
 
-def test_runs_are_refused_with_what_makes_a_table_of_them() -> None:
+def test_the_error_for_a_list_of_runs_names_table() -> None:
     robot = c2d.robots.engineer(flippers=None)
     runs: Any = c2d.simulate_many([c2d.Scenario(robot, c2d.terrains.flat(), duration=0.1)])
     with pytest.raises(c2d.ScenarioError, match=r"write rate\(table\(runs\), dim=\"run\"\)"):
@@ -211,7 +211,7 @@ def test_an_unknown_name_is_refused_with_the_nearest(
     )
 
 
-def test_a_data_set_that_has_lost_what_it_is_of_has_no_figure() -> None:
+def test_a_data_set_without_its_figure_attribute_has_no_figure() -> None:
     pytest.importorskip("matplotlib")
     bare = rate(TABLE).mean("height", keep_attrs=False)
     with refusing(SAID) as caught:

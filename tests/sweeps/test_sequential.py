@@ -42,7 +42,7 @@ def runs_of(successes: int, count: int) -> tuple[bool, ...]:
 
 
 @pytest.mark.parametrize("rate", [Fraction(1, 50), Fraction(1, 3), Fraction(9, 10)])
-def test_bets_make_nothing_on_average_if_the_rate_is_true(rate: Fraction) -> None:
+def test_wealth_is_1_on_average_if_the_rate_is_true(rate: Fraction) -> None:
     for n in range(9):
         mean = Fraction(0)
         for runs in itertools.product((False, True), repeat=n):
@@ -50,7 +50,7 @@ def test_bets_make_nothing_on_average_if_the_rate_is_true(rate: Fraction) -> Non
         assert mean == 1
 
 
-def test_bets_depend_on_numbers_alone_not_on_the_order_of_runs() -> None:
+def test_the_wealth_depends_on_counts_and_not_on_the_order_of_runs() -> None:
     for n in range(7):
         for runs in itertools.product((False, True), repeat=n):
             sorted_runs = runs_of(sum(runs), n)
@@ -58,7 +58,7 @@ def test_bets_depend_on_numbers_alone_not_on_the_order_of_runs() -> None:
 
 
 @pytest.mark.parametrize("confidence", CONFIDENCES)
-def test_bounds_are_where_bets_have_made_enough(confidence: float) -> None:
+def test_bounds_are_where_the_wealth_reaches_its_threshold(confidence: float) -> None:
     enough = 1 / (1 - Fraction(confidence))
     for n in (1, 2, 3, 10, 41, 120):
         for k in {0, 1, n // 3, n // 2, n - 1, n}:
@@ -72,7 +72,7 @@ def test_bounds_are_where_bets_have_made_enough(confidence: float) -> None:
                     assert inside < enough < beyond
 
 
-def test_what_bets_have_made_is_convex_in_the_rate_and_least_near_the_observed_one() -> None:
+def test_the_wealth_is_convex_in_the_rate_and_least_near_the_observed_one() -> None:
     for k, n in ((0, 5), (1, 12), (7, 20), (30, 30)):
         rates = [Fraction(i, 200) for i in range(1, 200)]
         logs = np.array([math.log(martingale(rate, runs_of(k, n))) for rate in rates])
@@ -156,7 +156,7 @@ def test_the_exact_computation_agrees_with_all_ways_one_by_one() -> None:
 # What intervals look like.
 
 
-def test_intervals_hold_the_observed_rate_and_stay_within_0_and_1() -> None:
+def test_intervals_contain_the_observed_rate_and_stay_within_0_and_1() -> None:
     for confidence in CONFIDENCES:
         for n in range(1, 40):
             for k in range(n + 1):
@@ -206,7 +206,7 @@ def test_intervals_are_wider_than_wilsons_and_not_twice_as_wide() -> None:
 
 
 @pytest.mark.parametrize("count", [10**4, 10**6, 10**8])
-def test_many_runs_are_no_trouble(count: int) -> None:
+def test_an_interval_of_many_runs_is_computed(count: int) -> None:
     # Logarithms of the beta function are of the order of 1e9 for the most runs, with 16 digits.
     for k in (0, 1, 2, count // 1000, count // 2, count - 1, count):
         rate, low, high = sequential(k, count)
@@ -234,7 +234,7 @@ def test_an_interval_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     assert calls[0] / len(numbers) < 14.5
 
 
-def test_no_runs_know_nothing() -> None:
+def test_the_interval_of_no_runs_is_from_0_to_1() -> None:
     rate, low, high = sequential(0, 0)
     assert math.isnan(rate)
     assert (low, high) == (0.0, 1.0)
@@ -290,7 +290,7 @@ def test_a_cell_ends_where_its_interval_says() -> None:
             assert {-1, 0, 1} == set(sides[seen].tolist())
 
 
-def test_least_and_most_come_before_what_is_known() -> None:
+def test_min_runs_and_max_runs_take_precedence() -> None:
     until = Until(threshold=0.5, min_runs=12, max_runs=15)
     assert until.side(11, 11) == 1
     assert not until.is_done(11, 11)
@@ -311,7 +311,7 @@ def test_an_interval_that_ends_at_the_threshold_is_not_beyond_it() -> None:
     assert not Until(width=math.nextafter(high - low, 0.0)).is_done(14, 20)
 
 
-def test_ten_equal_outcomes_tell_the_side_of_a_half() -> None:
+def test_ten_equal_outcomes_decide_the_side_of_one_half() -> None:
     until = Until(threshold=0.5)
     assert [until.side(n, n) for n in (9, 10)] == [0, 1]
     assert [until.side(0, n) for n in (9, 10)] == [0, -1]
@@ -345,7 +345,7 @@ def test_every_rate_reaches_the_default_width_within_the_default_most() -> None:
         ),
     ],
 )
-def test_what_breaks_a_rule_is_refused_at_once(field: str, value: Any, rule: str) -> None:
+def test_an_invalid_stopping_rule_is_refused_at_once(field: str, value: Any, rule: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         Until(**{field: value})
     assert (caught.value.path, caught.value.rule) == (f"until.{field}", rule)

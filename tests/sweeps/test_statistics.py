@@ -91,7 +91,7 @@ def test_wilson_ends_exactly_at_0_and_1() -> None:
     assert wilson(20, 20).high == 1.0
 
 
-def test_wilson_of_no_runs_knows_nothing() -> None:
+def test_wilson_of_no_runs_is_from_0_to_1() -> None:
     rate, low, high = wilson(0, 0)
     assert math.isnan(rate)
     assert (low, high) == (0.0, 1.0)
@@ -186,7 +186,7 @@ def drawn_clusters(count: int, size: int, rate: float, alike: float) -> np.ndarr
 @pytest.mark.parametrize(("count", "size"), [(80, 2), (40, 2), (20, 5)])
 @pytest.mark.parametrize("rate", [0.1, 0.5, 0.9])
 @pytest.mark.parametrize("alike", [0.0, 0.3, 0.8])
-def test_the_interval_of_an_audit_holds_the_rate_and_is_nearly_as_narrow_as_the_ideal(
+def test_the_interval_of_an_audit_covers_the_rate_and_is_nearly_as_narrow_as_the_ideal(
     count: int, size: int, rate: float, alike: float
 ) -> None:
     audits = drawn_clusters(count, size, rate, alike)
@@ -202,7 +202,7 @@ def test_the_interval_of_an_audit_holds_the_rate_and_is_nearly_as_narrow_as_the_
     assert np.mean([high - low for _, low, high in found]) <= 1.3 * ideal.mean()
 
 
-def test_clusters_of_unequal_sizes_hold_the_rate() -> None:
+def test_intervals_of_unequal_clusters_cover_the_rate() -> None:
     """As where the belt clears only some of the repeats."""
     rng = np.random.default_rng(0)
     covered = 0
@@ -302,7 +302,7 @@ def test_mcnemar_refuses_a_negative_number() -> None:
 
 
 @pytest.mark.parametrize("odd", ["4", 1.5, None, True, [1], 10**400])
-def test_what_are_no_numbers_of_runs_are_refused_by_name(odd: Any) -> None:
+def test_invalid_numbers_of_runs_are_refused_by_name(odd: Any) -> None:
     calls: list[tuple[Any, tuple[Any, ...], str]] = [
         (wilson, (odd, 5), "successes"),
         (wilson, (1, odd), "count"),

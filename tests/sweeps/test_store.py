@@ -74,7 +74,7 @@ def test_the_table_of_a_store_has_every_run(tmp_path: Path) -> None:
     assert all(by_identity[identity] == tried for identity, tried in flat)
 
 
-def test_a_second_writer_is_told_and_a_reader_is_not_kept_out(tmp_path: Path) -> None:
+def test_a_second_writer_gets_an_error_and_a_reader_does_not(tmp_path: Path) -> None:
     path = tmp_path / "a.sqlite"
     quiet(BASE, {}, repeats=1, store=path)
     with Store(path):
@@ -84,7 +84,7 @@ def test_a_second_writer_is_told_and_a_reader_is_not_kept_out(tmp_path: Path) ->
     quiet(BASE, {}, repeats=1, store=path)
 
 
-def test_a_full_disk_is_told_and_the_store_stays_readable(tmp_path: Path) -> None:
+def test_a_full_disk_is_an_error_and_the_store_stays_readable(tmp_path: Path) -> None:
     path = tmp_path / "a.sqlite"
     with Store(path) as store:
         pages = store._connection.execute("PRAGMA page_count").fetchone()[0]
@@ -119,7 +119,7 @@ def _rows_of(path: Path) -> Any:
         ("PRAGMA application_id = 7", "no store"),
     ],
 )
-def test_what_is_no_store_is_refused_and_left_alone(
+def test_a_file_that_is_no_store_is_refused_and_unchanged(
     tmp_path: Path, content: bytes | str, message: str
 ) -> None:
     path = tmp_path / "a.sqlite"
@@ -173,7 +173,7 @@ def test_a_run_with_a_diagnosis_of_another_build_is_no_damage(tmp_path: Path) ->
             c2d.table(store)
 
 
-def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:
+def test_stores_join_and_a_conflicting_run_is_an_error(tmp_path: Path) -> None:
     one, other, third = (tmp_path / f"{name}.sqlite" for name in "abc")
     quiet(BASE, OVER, repeats=2, store=one)
     quiet(BASE, OVER, repeats=3, store=other)

@@ -156,7 +156,7 @@ def joined(path: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize("column", COLUMNS)
 @pytest.mark.parametrize("value", ["'x'", "''", "x'ff'", "CAST(x'80' AS TEXT)", "1e300"])
-def test_a_changed_column_is_told_by_its_row(path: Path, column: str, value: str) -> None:
+def test_a_changed_column_is_reported_with_its_row(path: Path, column: str, value: str) -> None:
     with opened(path) as connection:
         connection.execute(f"UPDATE run SET {column} = {value} WHERE rowid = 3")
     with pytest.raises(c2d.StoreError, match=r"row 3 \(run .*\) is damaged: its") as caught:
@@ -258,7 +258,7 @@ def test_a_store_of_another_format_is_refused(path: Path, version: int, message:
     assert path.read_bytes() == before
 
 
-def test_what_the_former_format_left_when_it_was_killed_is_a_store_again(tmp_path: Path) -> None:
+def test_a_store_of_the_former_format_that_was_killed_can_be_opened(tmp_path: Path) -> None:
     path = tmp_path / "a.sqlite"
     with opened(path) as connection:
         connection.execute("PRAGMA journal_mode = WAL")
@@ -288,7 +288,7 @@ def test_a_store_cut_to_one_byte_is_no_new_one(path: Path) -> None:
     assert path.stat().st_size == 1
 
 
-def test_damage_that_sqlite_cannot_even_tell_is_told(path: Path) -> None:
+def test_damage_that_breaks_sqlites_own_check_is_reported(path: Path) -> None:
     content = path.read_bytes()
     assert content.count(b"CREATE TABLE run") == 1
     # The name and the statement of a table.
@@ -299,7 +299,7 @@ def test_damage_that_sqlite_cannot_even_tell_is_told(path: Path) -> None:
             use(path)
 
 
-def test_tables_and_indices_of_ones_own_are_left_alone(path: Path) -> None:
+def test_custom_tables_and_indices_are_kept(path: Path) -> None:
     whole = read(path)
     with opened(path) as connection:
         connection.execute("CREATE INDEX by_outcome ON run (outcome)")

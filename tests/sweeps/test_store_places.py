@@ -56,7 +56,7 @@ def test_a_store_is_read_by_who_may_not_write_while_it_is_written(folder: Path) 
         assert c2d.table(path).sizes == {"run": 3}
 
 
-def test_a_log_that_cannot_be_read_is_told(folder: Path) -> None:
+def test_an_unreadable_log_is_an_error(folder: Path) -> None:
     path, copy = folder / "a.sqlite", folder / "b.sqlite"
     quiet(BASE, {}, repeats=3, store=path)
     with Store(path):
@@ -73,7 +73,7 @@ def test_a_log_that_cannot_be_read_is_told(folder: Path) -> None:
         assert c2d.table(copy).sizes == {"run": 3}
 
 
-def test_a_file_that_may_not_be_read_is_told(folder: Path) -> None:
+def test_an_unreadable_file_is_an_error(folder: Path) -> None:
     path = folder / "a.sqlite"
     quiet(BASE, {}, repeats=1, store=path)
     path.chmod(0)
@@ -137,7 +137,7 @@ def _next_descriptor() -> int:
     return descriptor
 
 
-def test_what_closes_the_file_lets_no_second_writer_in_for_long(tmp_path: Path) -> None:
+def test_closing_the_file_elsewhere_lets_no_second_writer_in_for_long(tmp_path: Path) -> None:
     path = tmp_path / "a.sqlite"
     command = [sys.executable, "-c", f"{OPEN}print('opened', flush=True); input()", str(path)]
     with Store(path) as store:
@@ -157,7 +157,7 @@ def test_what_closes_the_file_lets_no_second_writer_in_for_long(tmp_path: Path) 
         store.add([])
 
 
-def test_a_store_that_another_program_keeps_to_itself_is_told(
+def test_a_store_locked_by_another_program_is_an_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.sqlite"
@@ -204,7 +204,7 @@ def test_a_writer_keeps_the_store_against_all_who_try(tmp_path: Path, tries: int
     assert len(read(path)) > tries
 
 
-def test_a_folder_that_is_deleted_during_a_sweep_is_told_and_the_runs_are_there(
+def test_a_folder_deleted_during_a_sweep_is_an_error_that_has_the_runs(
     tmp_path: Path,
 ) -> None:
     path = tmp_path / "folder" / "a.sqlite"
@@ -226,7 +226,7 @@ def test_a_folder_that_is_deleted_during_a_sweep_is_told_and_the_runs_are_there(
     assert (found == plain["final_x"].values)[finished].all()
 
 
-def test_a_file_that_is_replaced_during_a_sweep_is_told(tmp_path: Path) -> None:
+def test_a_file_replaced_during_a_sweep_is_an_error(tmp_path: Path) -> None:
     path = tmp_path / "a.sqlite"
     with Store(path) as store:
         path.rename(tmp_path / "b.sqlite")
@@ -238,7 +238,7 @@ def test_a_file_that_is_replaced_during_a_sweep_is_told(tmp_path: Path) -> None:
     assert read(tmp_path / "b.sqlite") == {}
 
 
-def test_a_full_disk_gives_back_what_was_simulated(
+def test_the_error_of_a_full_disk_has_the_simulated_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(path: Path) -> Any:
@@ -256,7 +256,7 @@ def test_a_full_disk_gives_back_what_was_simulated(
 
 
 @pytest.mark.parametrize("name", ["", ":memory:", "a\0b", b"a.sqlite", 7, "\ud800"])
-def test_what_cannot_be_the_path_of_a_store_is_refused_by_name(name: Any) -> None:
+def test_an_invalid_path_of_a_store_is_refused_by_name(name: Any) -> None:
     assert refusal(BASE, {}, store=name).path == "store"
     for use in (c2d.check_store, c2d.join_stores, lambda name: c2d.join_stores("a", name)):
         with refusing(SAID, "store must be the path of a file"):

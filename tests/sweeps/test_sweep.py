@@ -245,7 +245,7 @@ def test_progress_is_shown_unless_refused(capsys: pytest.CaptureFixture[str]) ->
     assert capsys.readouterr().err == ""
 
 
-def test_twenty_runs_a_cell_and_twenty_samples_of_what_is_unknown_unless_told() -> None:
+def test_defaults_are_twenty_runs_a_cell_and_twenty_samples_of_unknowns() -> None:
     totals: list[int] = []
 
     def stop(_done: int, total: int) -> None:

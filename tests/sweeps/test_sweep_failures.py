@@ -91,7 +91,7 @@ def test_a_draw_that_breaks_a_rule_leaves_the_other_draws_alone() -> None:
         assert found[name].equals(plain[name])
 
 
-def test_what_is_no_valid_scenario_is_refused() -> None:
+def test_an_invalid_scenario_is_refused() -> None:
     assert refusal(ROBOT, {"terrain.height": [0.1]}).path == "scenario"
     broken = BASE.replace({"robot.mass": -1.0})
     assert refusal(broken, {"terrain.height": [0.1]}).path == "robot.mass"
@@ -99,7 +99,7 @@ def test_what_is_no_valid_scenario_is_refused() -> None:
         quiet(BASE, {"terrain.height": [0.1]}, threads=0)
 
 
-def test_a_refused_cell_can_be_recorded_and_the_others_do_not_notice() -> None:
+def test_a_refused_cell_can_be_recorded_without_affecting_the_others() -> None:
     over = {"terrain.height": [0.03, -0.1]}
     found = quiet(BASE, over, on_error="record")
     alone = quiet(BASE, {"terrain.height": [0.03]})

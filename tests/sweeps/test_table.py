@@ -50,7 +50,7 @@ def test_an_interrupted_batch_is_a_table_of_what_was_finished() -> None:
     assert (found["outcome"] == "failed").sum().item() == 2000 - finished
 
 
-def test_nothing_is_an_empty_table_and_what_is_no_run_is_refused() -> None:
+def test_no_runs_give_an_empty_table_and_anything_but_a_run_is_refused() -> None:
     assert c2d.table([]).sizes == {"run": 0}
     with refusing(SAID, r"runs\[0\] must be a Run"):
         c2d.table([BASE])  # type: ignore[list-item]

@@ -100,7 +100,7 @@ def test_a_world_that_breaks_a_rule_is_refused_before_anything_runs() -> None:
     assert (table["outcome"] == "refused").all()
 
 
-def test_what_is_unknown_is_not_replaced_by_what_varies() -> None:
+def test_variability_does_not_replace_unknowns() -> None:
     vary = {"terrain.friction": c2d.uniform(0.5, 1.0)}
     assert refusal(BRIEF, {}, unknown=FRICTION, vary=vary).path == "vary['terrain.friction']"
     over = {"terrain.friction": [0.5]}
@@ -111,7 +111,7 @@ def test_what_is_unknown_is_not_replaced_by_what_varies() -> None:
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_every_preset_says_what_is_not_known_of_it_and_why(name: str) -> None:
+def test_every_preset_lists_its_unknowns_with_reasons(name: str) -> None:
     robot = PRESETS[name]()
     assert robot.name == name
     ranges = c2d.unknowns.of_robot(robot)

@@ -17,7 +17,7 @@ SEED = 2026
 @pytest.mark.parametrize(
     "count", [4, pytest.param(600, marks=pytest.mark.soak)], ids=["a few", "all"]
 )
-def test_what_a_sentence_claims_is_so(count: int, say: Callable[[str], None]) -> None:
+def test_the_claims_of_a_sentence_hold(count: int, say: Callable[[str], None]) -> None:
     claims, wrong = 0, []
     outcomes: collections.Counter[str] = collections.Counter()
     for number, (group, run) in enumerate(stops(SEED, count, "all")):

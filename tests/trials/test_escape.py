@@ -32,7 +32,9 @@ def gets_on(run: c2d.Run, force: float) -> bool:
 @pytest.mark.parametrize(
     "count", [12, pytest.param(200, marks=pytest.mark.soak)], ids=["a few", "all"]
 )
-def test_both_ends_of_an_escape_force_are_so(count: int, say: Callable[[str], None]) -> None:
+def test_an_escape_force_holds_at_its_lower_end_and_frees_at_its_upper_end(
+    count: int, say: Callable[[str], None]
+) -> None:
     held: dict[str, collections.Counter[bool]] = collections.defaultdict(collections.Counter)
     moved: dict[str, collections.Counter[bool]] = collections.defaultdict(collections.Counter)
     wedged = 0

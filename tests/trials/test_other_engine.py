@@ -107,7 +107,7 @@ def test_a_robot_that_nothing_holds_drives_on_in_the_other_engine() -> None:
     assert chassis.position.x - begin == pytest.approx(0.5 * run.track_speed[-1], rel=0.1)
 
 
-def test_what_is_jammed_here_is_jammed_in_another_engine(say: Callable[[str], None]) -> None:
+def test_a_robot_jammed_here_is_jammed_in_another_engine(say: Callable[[str], None]) -> None:
     stays, apart = 0, []
     for run in jams():
         criteria, speed = run.scenario.criteria, abs(run.scenario.drive.speed)

@@ -23,7 +23,9 @@ ROOT = Path(__file__).parents[2]
 COMMAND = "cargo test --release -p crawler2d-core --lib -- --ignored trials_from_other_starts"
 
 
-def test_trials_come_out_alike_from_nearby(tmp_path: Path, say: Callable[[str], None]) -> None:
+def test_trials_have_the_same_result_from_nearby_poses(
+    tmp_path: Path, say: Callable[[str], None]
+) -> None:
     found = list(stops(SEED, COUNT, "all"))
     lines, freed = [], []
     for _, run in found:

@@ -41,7 +41,7 @@ def test_a_message_is_an_imperative_with_a_reason() -> None:
     assert len(faults(f"Added {'x' * LONGEST}\n\nWhy.")) == 2
 
 
-def test_commits_keep_to_it() -> None:
+def test_commit_messages_follow_the_rules() -> None:
     if shutil.which("git") is None:
         pytest.skip("there is no git")
     asked = ["git", "-C", str(ROOT), "log", "--no-merges", "--format=%h %B%x00", f"{SINCE}..HEAD"]

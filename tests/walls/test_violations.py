@@ -92,7 +92,7 @@ def test_a_circle_inside_a_room_of_the_package_is_a_fault(tmp_path: Path) -> Non
     ]
 
 
-def test_every_knot_of_files_is_named_once() -> None:
+def test_every_import_cycle_is_named_once() -> None:
     edges = {"a": {"b"}, "b": {"a", "c"}, "c": {"d"}, "d": {"c"}, "e": {"a", "e"}}
     assert list(circles(edges)) == [["a", "b"], ["c", "d"], ["e"]]
 
@@ -140,7 +140,7 @@ def test_a_use_upwards_is_a_fault(tmp_path: Path, text: str, line: int) -> None:
     ],
     ids=["comment", "text", "tests", "test use", "test function", "elsewhere"],
 )
-def test_what_is_no_import_of_the_core_is_none(tmp_path: Path, text: str) -> None:
+def test_other_paths_of_the_core_are_no_imports(tmp_path: Path, text: str) -> None:
     house = crate(tmp_path, {"ground/low.rs": text, "upper/high.rs": HIGH})
     assert [each for each in imports_of(house) if each.file == "ground/low.rs"] == []
 
@@ -202,7 +202,7 @@ def test_a_name_from_above_cannot_be_handed_on(tmp_path: Path) -> None:
     assert faults(house) == upwards(1, "rs")
 
 
-def test_what_lib_defines_is_above_every_room(tmp_path: Path) -> None:
+def test_definitions_in_lib_are_above_every_room(tmp_path: Path) -> None:
     (fault,) = faults(crate(tmp_path, {"upper/high.rs": "use crate::BUILD_ID;\n"}))
     assert fault.startswith("upper/high.rs:1: imports lib.rs, but upper/ must not know lib.rs")
 

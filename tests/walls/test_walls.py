@@ -7,7 +7,7 @@ from tests.walls.rooms import House, violations
 
 
 @pytest.mark.parametrize("name", HOUSES)
-def test_imports_lead_to_the_own_room_or_down(name: str) -> None:
+def test_imports_are_from_the_same_room_or_below(name: str) -> None:
     house = House.read(name)
     found = list(violations(house, files_of(house), imports_of(house)))
     assert not found, "\n" + "\n".join(found)

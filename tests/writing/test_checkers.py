@@ -40,7 +40,7 @@ def said(*command: str) -> str:
 
 @pytest.mark.skipif(shutil.which("check_urdf") is None, reason="needs check_urdf")
 @pytest.mark.parametrize("robot", WHEELED.values(), ids=WHEELED)
-def test_check_urdf_accepts_it(robot: c2d.Robot, tmp_path: Path) -> None:
+def test_check_urdf_accepts_written_files(robot: c2d.Robot, tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     robot.to_urdf(path)
     answer = said("check_urdf", str(path))
@@ -50,7 +50,7 @@ def test_check_urdf_accepts_it(robot: c2d.Robot, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(shutil.which("ign") is None, reason="needs ign with libsdformat")
 @pytest.mark.parametrize("robot", [*WHEELED.values(), *BELTED.values()], ids=[*WHEELED, *BELTED])
-def test_sdformat_accepts_it(robot: c2d.Robot, tmp_path: Path) -> None:
+def test_libsdformat_accepts_written_files(robot: c2d.Robot, tmp_path: Path) -> None:
     path = tmp_path / "robot.sdf"
     robot.to_sdf(path)
     answer = said("ign", "sdf", "--check", str(path))

@@ -154,7 +154,9 @@ def test_flippers_of_more_wheel_than_rod_are_refused(name: str) -> None:
         ({"chassis_width": float("inf")}, "chassis_width"),
     ],
 )
-def test_arguments_have_rules(name: str, given: dict[str, Any], path: str) -> None:
+def test_invalid_arguments_of_writers_are_refused(
+    name: str, given: dict[str, Any], path: str
+) -> None:
     assert refused(lambda: write(WHEELS, name, **given)).path == path
 
 

@@ -93,7 +93,7 @@ def with_rotors(robot: c2d.Robot) -> c2d.Robot:
     return dataclasses.replace(robot, drivetrain=drivetrain, flippers=flippers)
 
 
-def test_what_a_file_cannot_hold_of_rotors_is_in_its_comment() -> None:
+def test_rotors_that_a_file_cannot_hold_are_in_its_comment() -> None:
     wheeled = with_rotors(c2d.robots.engineer(track=c2d.LineOfWheels(3)))
     for text in (wheeled.to_sdf(), wheeled.to_urdf()):
         assert left_out(text) == ["drivetrain.rotor_inertia", "flippers.rotor_inertia"]

@@ -232,7 +232,7 @@ def test_the_comment_plays_no_part_in_reading(tmp_path: Path) -> None:
     assert found[0] == found[1]
 
 
-def test_a_robot_without_torque_has_none_in_its_file() -> None:
+def test_a_robot_without_torque_has_no_torque_in_its_file() -> None:
     robot = drawn(2).with_track(c2d.LineOfWheels(3)).without_flippers()
     motors = dataclasses.replace(robot.drivetrain, max_torque=0.0)
     robot = dataclasses.replace(robot, drivetrain=motors)

@@ -99,7 +99,7 @@ def test_boxes_stay_within_the_belly(number: int) -> None:
 
 
 @pytest.mark.parametrize("number", range(20))
-def test_every_link_is_a_body_that_can_be(number: int) -> None:
+def test_every_link_has_a_possible_inertia(number: int) -> None:
     for link in tree_of(drawn(number)).links:
         small, middle, large = np.linalg.eigvalsh(link.inertia)
         assert link.mass > 0.0
@@ -130,7 +130,7 @@ def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> 
         assert inside.max() < 1e-3
 
 
-def test_grousers_that_rounding_swallows_are_none() -> None:
+def test_grousers_below_rounding_are_left_out() -> None:
     wheel = c2d.GearWheel(grouser_count=12, grouser_height=1e-13, tip_thickness=0.004)
     robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3, wheel=wheel))
     (shape,) = tree_of(robot).by_name["left_wheel_0"].shapes

@@ -74,7 +74,7 @@ def same_joint(got: Joint, expected: Joint) -> None:
 
 
 @pytest.mark.parametrize(("name", "robot"), CASES)
-def test_what_is_read_is_what_was_written(name: str, robot: c2d.Robot, tmp_path: Path) -> None:
+def test_a_written_model_reads_back_the_same(name: str, robot: c2d.Robot, tmp_path: Path) -> None:
     if name == "mjcf":
         pytest.importorskip("mujoco")
     expected, got = tree_of(robot, FORMS[name]), read_again(robot, name, tmp_path)

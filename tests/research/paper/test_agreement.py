@@ -39,7 +39,7 @@ def test_rates_agree_within_15_points(cleared: int, count: int, share: float, ve
     )
 
 
-def test_a_share_is_that_of_20_runs() -> None:
+def test_rates_of_the_paper_are_of_20_runs() -> None:
     with pytest.raises(ValueError, match="whole number of 20 runs"):
         agreement(1, 10, 0.33)
 

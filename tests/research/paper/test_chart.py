@@ -58,7 +58,7 @@ def test_chart_tables_and_page_come_out(charted: tuple[Path, str]) -> None:
     assert all(line in printed for line in text.splitlines() if line.startswith("| 0.5"))
 
 
-def test_drives_that_are_left_are_tried_more_often(
+def test_drives_that_remain_are_tried_more_often(
     charted: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copy(charted[0] / STORE, tmp_path)  # the runs that both need

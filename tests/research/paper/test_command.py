@@ -110,7 +110,7 @@ def test_ctrl_c_ends_it_with_its_own_exit_code(
     assert "## Chosen beforehand" in (tmp_path / "paper.md").read_text(encoding="utf-8")
 
 
-def test_a_store_that_another_process_writes_is_told_in_one_line(
+def test_a_store_in_use_is_an_error_of_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with Store(tmp_path / "paper.sqlite"):

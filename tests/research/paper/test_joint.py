@@ -125,7 +125,7 @@ def test_each_reading_has_nine_cells_of_the_paper() -> None:
     assert cell_verdict(replace(row, cleared=0), 20) == "differs"
 
 
-def test_a_cell_without_runs_is_told() -> None:
+def test_a_cell_without_runs_is_refused() -> None:
     rows = driven(np.random.default_rng(0), 10.0, 0.1, 5)[1:]
     with pytest.raises(ValueError, match="no runs of"):
         compare_drive(rows, TABLES["large gears"])

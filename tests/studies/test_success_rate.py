@@ -1,4 +1,4 @@
-"""Which models get over which grounds, and how the others fail."""
+"""Which models clear which terrains, and how the others fail."""
 
 import math
 from typing import Any
@@ -71,7 +71,7 @@ def test_the_scenarios_own_ground_is_taken_if_none_is_given() -> None:
     assert "terrain.seed" not in found.attrs["vary"]  # no field was drawn
 
 
-def test_what_is_no_ground_is_refused_by_name() -> None:
+def test_anything_but_a_terrain_is_refused_by_name() -> None:
     for terrains, path in (({}, "terrains"), ([1], "terrains"), ({"a": 1}, "terrains['a']")):
         with pytest.raises(c2d.ScenarioError) as caught:
             found_of(terrains=terrains)
@@ -112,5 +112,7 @@ def test_the_figure_has_a_bar_for_every_cell_and_says_its_rate(found: Any) -> No
         ),
     ],
 )
-def test_the_summary_says_what_is_cleared_and_what_then(limits: list[Any], text: str) -> None:
+def test_the_summary_says_what_is_cleared_and_how_the_next_fails(
+    limits: list[Any], text: str
+) -> None:
     assert _limits_text([_Limits(*each) for each in limits], "height", "m").startswith(text)

@@ -1,4 +1,4 @@
-"""An obstacle is left early only where that changes no word, and intervals stay what they say."""
+"""An obstacle is left early only if that changes no verdict, and intervals keep their coverage."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def seen(seized: int, made: int, samples: int) -> tuple[Verdict, bool]:
 
 
 @pytest.mark.parametrize("samples", [36, pytest.param(80, marks=pytest.mark.soak)])
-def test_intervals_hold_the_rate_as_often_as_those_of_all_runs(samples: int) -> None:
+def test_intervals_cover_the_rate_as_often_as_those_of_all_runs(samples: int) -> None:
     """Exactly, over all that can come: the share of looks that end with an interval about it.
 
     And it is found to seize exactly as often as if all runs were made.
@@ -118,7 +118,7 @@ def test_fewer_runs_than_a_quarter_of_the_samples_are_not_enough() -> None:
     assert not is_certain(table, verdict)
 
 
-def test_what_never_seizes_is_never_left_early() -> None:
+def test_an_obstacle_without_seizures_is_never_left_early() -> None:
     for made in look_counts(36):
         verdict, certain = seen(0, made, 36)
         assert not certain

@@ -29,7 +29,7 @@ def runs() -> tuple[c2d.Run, c2d.Run]:
     return demo.demo_runs()
 
 
-def test_the_demo_is_what_it_says(runs: tuple[c2d.Run, c2d.Run]) -> None:
+def test_the_demo_seizes_on_wheels_and_clears_on_a_belt(runs: tuple[c2d.Run, c2d.Run]) -> None:
     wheels, belt = runs
     assert (wheels.outcome, belt.outcome) == (c2d.Outcome.SEIZED, c2d.Outcome.CLEARED)
     assert wheels.scenario.terrain == belt.scenario.terrain
@@ -79,7 +79,7 @@ def test_the_demo_is_written_and_names_a_model_to_audit(
     assert "--out must be a file in a folder that exists" in capsys.readouterr().err
 
 
-def test_info_has_what_a_report_of_a_fault_needs(capsys: Capture) -> None:
+def test_info_has_all_that_a_bug_report_needs(capsys: Capture) -> None:
     assert main(["info", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["crawler2d"]["version"] == c2d.__version__
@@ -101,9 +101,7 @@ def metadata(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return needed
 
 
-def test_info_tells_extras_that_are_missing_from_those_that_are_there(
-    metadata: list[str], capsys: Capture
-) -> None:
+def test_info_lists_present_and_missing_extras(metadata: list[str], capsys: Capture) -> None:
     metadata += [
         "numpy<3,>=2.0",
         "numpy>=2; extra == 'both'",

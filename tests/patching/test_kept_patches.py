@@ -74,7 +74,7 @@ def test_a_patch_changes_the_lines_that_it_changed_before(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_no_line_of_a_patch_ends_what_goes_and_what_comes(name: str) -> None:
+def test_removed_and_added_parts_of_a_patch_share_no_last_line(name: str) -> None:
     """As where only the part above it is another one."""
     kept = (KEPT / f"{name}.diff").read_text(encoding="utf-8")
     for gone, new in re.findall(r"((?:^-.*\n)+)((?:^\+.*\n)+)", kept, re.MULTILINE):

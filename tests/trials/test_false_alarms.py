@@ -1,4 +1,4 @@
-"""What is a seizure and what is none, on robots of others."""
+"""Known seizures and false alarms, on robots of others."""
 
 from dataclasses import replace
 from typing import Any

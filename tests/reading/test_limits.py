@@ -1,4 +1,4 @@
-"""Where rules of the reader begin to hold: the last figure on either side of each."""
+"""The last value on either side of each limit of the reader."""
 
 import math
 from pathlib import Path
@@ -48,7 +48,7 @@ def test_names_of_more_than_four_wheels_are_counted(tmp_path: Path) -> None:
     assert reading.warnings[0].endswith("left_w-1, right_w-1, left_w0, right_w0 and 2 more")
 
 
-def test_what_is_doubted_is_warned_of(tmp_path: Path) -> None:
+def test_doubtful_figures_get_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "cart.urdf"
     path.write_text(urdf(WHEELS, '<link name="stray"/>'), encoding="utf-8")
     with pytest.warns(c2d.ScenarioWarning, match=r"^cart\.urdf:33: link\[stray\] is left out"):
@@ -60,7 +60,7 @@ FREE = "<limit><effort>5</effort><velocity>10</velocity>"
 
 
 @pytest.mark.parametrize(("limit", "is_wheel"), [("6.2831", True), ("6.27", False)])
-def test_two_turns_are_no_limit_but_for_the_rounding_of_a_file(
+def test_a_range_of_two_turns_is_no_limit_up_to_rounding(
     tmp_path: Path, limit: str, *, is_wheel: bool
 ) -> None:
     """Also where a world has two models, of which the one that drives is read."""

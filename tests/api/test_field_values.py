@@ -1,4 +1,4 @@
-"""Every leaf of every scenario: what is wrong with it is named by its exact path."""
+"""Every field of every scenario: an error names its exact path."""
 
 import copy
 import json
@@ -82,13 +82,13 @@ def changed(name: str, keys: tuple[str | int, ...], value: Any) -> Any:
     return plain
 
 
-def test_there_are_leaves_to_test() -> None:
+def test_scenarios_have_fields_to_test() -> None:
     assert len(PLACES) > 500
     assert len(NUMBERS) > 350
 
 
 @pytest.mark.parametrize("value", ["NaN", "Infinity", "-Infinity", "12", True, [], {}])
-def test_what_is_no_number_is_refused_at_every_number(value: Any) -> None:
+def test_a_non_number_is_refused_in_every_number_field(value: Any) -> None:
     for name, keys in NUMBERS:
         error = refusal(changed(name, keys, value))
         assert error.path == dotted(keys), error
@@ -259,7 +259,7 @@ def test_a_rule_between_fields_names_the_field_to_change(path: str, value: Any) 
     assert error.path == path
 
 
-def test_a_file_of_version_1_is_told_what_has_changed() -> None:
+def test_the_error_for_a_version_1_file_says_what_has_changed() -> None:
     old = changed("belt-step", ("schema",), 1)
     del old["solver"]["accuracy"]
     old["solver"] |= {"time_step": 1e-3, "substeps": 2}

@@ -111,7 +111,7 @@ def test_an_error_is_one_line(
     assert len(err.splitlines()) == 1
 
 
-def test_a_reader_that_has_seen_enough_is_no_error(tmp_path: Path) -> None:
+def test_a_closed_pipe_is_no_error(tmp_path: Path) -> None:
     with started(tmp_path, "schema") as process:
         assert process.stdout is not None
         process.stdout.close()
@@ -163,7 +163,7 @@ def test_an_output_that_is_full_is_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
-def test_what_the_program_says_of_itself_goes_to_the_standard_output(option: str) -> None:
+def test_help_and_version_go_to_the_standard_output(option: str) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "crawler2d", option],
         env={**os.environ, "COLUMNS": "80"},
