@@ -241,13 +241,13 @@ def _sizes(label: str) -> list[float]:
 def _lint(kept: Plain) -> dict[tuple[str, str], str]:
     """Return the worst severity of all that lint found, by what it says."""
     worst: dict[tuple[str, str], str] = {}
-    for severity, rule, what in sorted(kept["lint"], key=lambda each: SEVERITIES.index(each[0])):
-        worst.setdefault(_key(rule, what), severity)
+    for severity, rule, message in sorted(kept["lint"], key=lambda each: SEVERITIES.index(each[0])):
+        worst.setdefault(_key(rule, message), severity)
     return worst
 
 
-def _key(rule: str, what: str) -> tuple[str, str]:
-    return rule, _NUMBER.sub("#", _LINE.sub("", what))
+def _key(rule: str, message: str) -> tuple[str, str]:
+    return rule, _NUMBER.sub("#", _LINE.sub("", message))
 
 
 def _robot_moved(before: Plain, now: Plain) -> Iterator[str]:
@@ -321,12 +321,12 @@ def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
         if not issue.obstacle and check.known is not None and issue not in check.known:
             yield f"new {issue.severity} of lint, {issue.rule}: {issue.text}"
     found = _lint(now)
-    for severity, rule, what in before["lint"]:
-        if _key(rule, what) not in found:
-            yield f"{severity} of lint is gone, {rule}: {what}"
+    for severity, rule, message in before["lint"]:
+        if _key(rule, message) not in found:
+            yield f"{severity} of lint is gone, {rule}: {message}"
 
 
-def _portable(what: str, path: Path) -> str:
+def _portable(message: str, path: Path) -> str:
     """Remove lines from a text of lint, and name places from the root of the repository."""
     root = repository_of(path) or path.resolve().parent
-    return _LINE.sub("", what.replace(f"{root}{os.sep}", "").replace(str(root), "."))
+    return _LINE.sub("", message.replace(f"{root}{os.sep}", "").replace(str(root), "."))

@@ -165,10 +165,10 @@ def lint(
 def _size(robot: Robot) -> Iterator[_Break]:
     length, _ = _length_and_height(robot)
     if not _SHORTEST <= length <= _LONGEST:
-        what = f"{length:.3g} m long without flippers; tracked robots have 0.1 to 3 m"
+        message = f"{length:.3g} m long without flippers; tracked robots have 0.1 to 3 m"
         if length > _LONGEST and _SHORTEST <= 0.1 * length <= _LONGEST:
-            what += "; if it is ten times too large, pass scale=0.1"
-        yield _Break(what)
+            message += "; if it is ten times too large, pass scale=0.1"
+        yield _Break(message)
 
 
 def _mass(robot: Robot) -> Iterator[_Break]:
@@ -239,25 +239,27 @@ def _pushed(robot: Robot) -> Iterator[_Break]:
 
 
 def _impossible_inertia(reading: Reading) -> Iterator[_Break]:
-    what = "the largest principal moment of inertia exceeds the sum of the others: no body has that"
+    message = (
+        "the largest principal moment of inertia exceeds the sum of the others: no body has that"
+    )
     broken = [link for link in _solid_links(reading) if _breaks_triangle(link)]
-    yield from _of_links(reading, broken, what)
-    what = "the radius of gyration is larger than the body: such a link turns too slowly"
-    yield from _of_links(reading, _too_spread(reading), what)
+    yield from _of_links(reading, broken, message)
+    message = "the radius of gyration is larger than the body: such a link turns too slowly"
+    yield from _of_links(reading, _too_spread(reading), message)
 
 
 def _placeholder(reading: Reading) -> Iterator[_Break]:
     others = _too_spread(reading)
     alike = [link for link in _solid_links(reading) if _is_ball(link) and link not in others]
-    what = "three equal moments of inertia, which only a ball or a cube has: placeholders?"
-    yield from _of_links(reading, alike, what)
+    message = "three equal moments of inertia, which only a ball or a cube has: placeholders?"
+    yield from _of_links(reading, alike, message)
 
 
 def _solid_links(reading: Reading) -> list[Link]:
     return [link for link in reading.tree.links if link.mass > 0.0 and link.inertia.any()]
 
 
-def _of_links(reading: Reading, links: list[Link], what: str) -> Iterator[_Break]:
+def _of_links(reading: Reading, links: list[Link], message: str) -> Iterator[_Break]:
     """Report links together, the heaviest first, and apart from them those that move nothing."""
     order = sorted(links, key=lambda link: -link.mass)
     least = _MATTERS * reading.robot.mass
@@ -266,7 +268,7 @@ def _of_links(reading: Reading, links: list[Link], what: str) -> Iterator[_Break
     for each, severity in ((heavy, ""), (light, "note")):
         if each:
             names = list_names([link.name for link in each])
-            yield _Break(f"{names}: {what}", lines([link.at for link in each]), severity)
+            yield _Break(f"{names}: {message}", lines([link.at for link in each]), severity)
 
 
 def _moments(link: Link) -> np.ndarray[tuple[int]]:
@@ -329,12 +331,12 @@ def _friction(reading: Reading) -> Iterator[_Break]:
     ]
     if found:
         largest = max(coefficient for coefficient, _ in found)
-        what = (
+        message = (
             f"friction of {largest:g}; tracks have 0.3 to 1. {reading.engine} combines it to"
             f" {reading.friction:g} on a floor, other engines may use it as it is"
         )
         severity = "error" if reading.friction > _STICKIEST else "warning"
-        yield _Break(what, lines([at for _, at in found]), severity)
+        yield _Break(message, lines([at for _, at in found]), severity)
 
 
 def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
@@ -343,11 +345,11 @@ def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
     without = [joint for joint in wheels if not joint.effort or not math.isfinite(joint.effort)]
     if without:
         torque = reading.robot.drivetrain.max_torque
-        what = (
+        message = (
             f"{len(without)} of {len(wheels)} wheels have no effort limit: their motors hold the"
             f" speed under any load; here they have {torque:.3g} N m per track, an estimate"
         )
-        yield _Break(what, lines([joint.effort_at for joint in without]))
+        yield _Break(message, lines([joint.effort_at for joint in without]))
 
 
 def _no_motor(reading: Reading) -> Iterator[_Break]:
@@ -356,11 +358,11 @@ def _no_motor(reading: Reading) -> Iterator[_Break]:
     idle = [joint for joint in wheels if joint.name not in reading.tree.driven]
     if idle:
         names = list_names([joint.child for joint in idle])
-        what = (
+        message = (
             f"the file names no motor for {len(idle)} of {len(wheels)} wheels ({names}); here all"
             " are driven, as by an external controller; wheels that nothing turns would drag"
         )
-        yield _Break(what, lines([joint.at for joint in idle]), "note")
+        yield _Break(message, lines([joint.at for joint in idle]), "note")
 
 
 def _massless(reading: Reading) -> Iterator[_Break]:
@@ -372,11 +374,11 @@ def _massless(reading: Reading) -> Iterator[_Break]:
     ]
     if found:
         names = list_names([link.name for link in found])
-        what = (
+        message = (
             f"{len(found)} wheels have no mass ({names}): is an <inertial> missing? Here they weigh"
             " nothing"
         )
-        yield _Break(what, lines([link.at for link in found]))
+        yield _Break(message, lines([link.at for link in found]))
 
 
 def _balance(reading: Reading) -> Iterator[_Break]:
@@ -391,11 +393,11 @@ def _balance(reading: Reading) -> Iterator[_Break]:
     if found:
         most = max(away for away, _ in found)
         names = list_names([link.name for _, link in found])
-        what = (
+        message = (
             f"{names}: their centres of mass are off their axles by up to {1e3 * most:.3g} mm: such"
             " wheels shake a robot as they turn; here they are balanced"
         )
-        yield _Break(what, lines([link.mass_at for _, link in found]))
+        yield _Break(message, lines([link.mass_at for _, link in found]))
 
 
 def _sides(reading: Reading) -> Iterator[_Break]:
@@ -416,11 +418,11 @@ def _sides(reading: Reading) -> Iterator[_Break]:
             table["name"][left][index],
             *(table["line"][each][index] for each in (left, right)),
         )
-        what = (
+        message = (
             f"left and right differ by up to {1e3 * worst:.3g} mm and {heavier:.2g} of a wheel's"
             f" mass, most at {name}; here both have the mean"
         )
-        yield _Break(what, f"{reading.tree.file}:{at[0]}, {at[1]}")
+        yield _Break(message, f"{reading.tree.file}:{at[0]}, {at[1]}")
 
 
 def _overlaps(reading: Reading) -> Iterator[_Break]:
@@ -447,8 +449,8 @@ def _overlaps(reading: Reading) -> Iterator[_Break]:
                 names |= {link.name, its_link.name}
     if depths:
         severity, effect = _effect_of_overlap(reading, names)
-        what = f"{len(depths)} pairs of wheels overlap, by up to {1e3 * max(depths):.0f} mm"
-        yield _Break(f"{what}: {effect}", lines(places), severity)
+        message = f"{len(depths)} pairs of wheels overlap, by up to {1e3 * max(depths):.0f} mm"
+        yield _Break(f"{message}: {effect}", lines(places), severity)
 
 
 def _effect_of_overlap(reading: Reading, names: set[str]) -> tuple[str, str]:
