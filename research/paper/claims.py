@@ -90,7 +90,7 @@ class Claim:
     text: str
     experiment: str
     checks: tuple[Check, ...] = ()
-    """None if it cannot be asked here."""
+    """None if it cannot be tested here."""
 
     @property
     def verdict(self) -> str:
@@ -105,11 +105,11 @@ class Claim:
         does not hold
         holds in part
         not shown
-        cannot be asked here
+        cannot be tested here
         """
         held = [check.holds for check in self.checks]
         if not held:
-            return "cannot be asked here"
+            return "cannot be tested here"
         if all(held):
             return "holds"
         if any(held):
