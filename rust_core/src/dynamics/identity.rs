@@ -12,6 +12,7 @@ mod tests;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Contact;
+use crate::geometry::{Vector, plausible};
 use crate::robot::Model;
 use crate::terrain::Profile;
 use crate::units::{Metres, Seconds};
@@ -34,6 +35,8 @@ const MOST_GIVEN: u64 = 1 << 60;
 pub(super) struct Identity {
     /// The last number given; the first is 1.
     given: u64,
+    /// [s] Duration of all steps.
+    time: f64,
     /// Contacts that have opened, the oldest first.
     lost: Vec<Lost>,
     /// What a step has recognised; it counts once the step is kept.
@@ -57,8 +60,8 @@ struct Found {
 struct Lost {
     /// Its last state.
     contact: Contact,
-    /// [s] Time since it opened.
-    age: f64,
+    /// [s] When it opened.
+    opened: f64,
 }
 
 impl Found {
@@ -102,16 +105,19 @@ impl Identity {
     pub(super) fn keep(&mut self, last: &[Contact], h: f64) {
         let found = &self.found;
         self.given = found.given;
-        for lost in &mut self.lost {
-            lost.age += h;
+        self.time += h;
+        let now = self.time;
+        if found.again.contains(&true) {
+            let mut again = found.again.iter();
+            self.lost.retain(|_| again.next() != Some(&true));
         }
-        let mut again = found.again.iter();
-        self.lost
-            .retain(|lost| again.next() != Some(&true) && lost.age < REMEMBERED.value());
+        let forgotten = |lost: &Lost| now - lost.opened >= REMEMBERED.value();
+        let too_old = self.lost.iter().take_while(|lost| forgotten(lost)).count();
+        self.lost.drain(..too_old);
         let gone = found.gone(last);
         self.lost.extend(gone.map(|l| Lost {
             contact: *l,
-            age: 0.0,
+            opened: now,
         }));
         let too_many = self.lost.len().saturating_sub(MOST_LOST);
         self.lost.drain(..too_many);
@@ -141,23 +147,21 @@ impl Identity {
             (known.part, known.point.x - near) <= place
         });
         let free = within.filter(|i| !self.found.taken[*i]);
-        let nearest = nearest(free.map(|i| (i, last[i])), contact, near)?;
+        let places = free.map(|i| (i, last[i].point, last[i].normal));
+        let nearest = nearest(places, contact, near)?;
         self.found.taken[nearest] = true;
         Some(last[nearest])
     }
 
     /// Takes the number of the nearest contact that has opened, if it is near enough.
     fn find_again(&mut self, contact: &Contact) -> Option<u64> {
-        let lost = self.lost.iter().map(|lost| lost.contact).enumerate();
-        let of_part = lost.filter(|(i, lost)| lost.part == contact.part && !self.found.again[*i]);
-        let both_ends = of_part.flat_map(|(i, lost)| {
-            let closed = Contact {
-                point: lost.began,
-                ..lost
-            };
-            [(i, lost), (i, closed)]
+        let of_part = (self.lost.iter().enumerate())
+            .filter(|(i, lost)| lost.contact.part == contact.part && !self.found.again[*i]);
+        let places = of_part.flat_map(|(i, lost)| {
+            let lost = &lost.contact;
+            [lost.point, lost.began].map(|place| (i, place, lost.normal))
         });
-        let nearest = nearest(both_ends, contact, SAME_PLACE.value())?;
+        let nearest = nearest(places, contact, SAME_PLACE.value())?;
         self.found.again[nearest] = true;
         Some(self.lost[nearest].contact.number)
     }
@@ -165,15 +169,18 @@ impl Identity {
     /// Whether these can be the contacts of the last step; no two known contacts may share a number.
     pub(super) fn fits(&self, last: &[Contact], model: &Model, lanes: &[Profile]) -> bool {
         let fits = |lost: &Lost| {
-            lost.contact.fits(model, lanes) && (0.0..REMEMBERED.value()).contains(&lost.age)
+            let age = self.time - lost.opened;
+            lost.contact.fits(model, lanes) && (0.0..REMEMBERED.value()).contains(&age)
         };
         let last = last.iter().map(|l| l.number);
         let lost = self.lost.iter().map(|lost| lost.contact.number);
         let mut numbers: Vec<u64> = last.chain(lost).collect();
         numbers.sort_unstable();
         self.given <= MOST_GIVEN
+            && plausible(&[self.time])
             && self.lost.len() <= MOST_LOST
             && self.lost.iter().all(fits)
+            && self.lost.is_sorted_by(|a, b| a.opened <= b.opened)
             && numbers
                 .iter()
                 .all(|number| (1..=self.given).contains(number))
@@ -181,15 +188,15 @@ impl Identity {
     }
 }
 
-/// The nearest known contact of the same part, if it is nearer than `near` [m].
+/// The known contact of the same part whose place is nearest, if it is nearer than `near` [m]; places come with normals.
 fn nearest(
-    known: impl Iterator<Item = (usize, Contact)>,
+    known: impl Iterator<Item = (usize, Vector, Vector)>,
     contact: &Contact,
     near: f64,
 ) -> Option<usize> {
-    let alike = known.filter(|(_, c)| c.normal.dot(contact.normal) > SAME_NORMAL);
+    let alike = known.filter(|(_, _, normal)| normal.dot(contact.normal) > SAME_NORMAL);
     alike
-        .map(|(i, c)| (i, (c.point - contact.point).length()))
+        .map(|(i, place, _)| (i, (place - contact.point).length()))
         .filter(|(_, apart)| *apart < near)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| i)

@@ -195,7 +195,7 @@ fn numbers_that_no_step_gave_do_not_fit() {
         dynamics.fits(&impulses, &ground.lanes)
     };
     assert!(fits(|_, _| {}));
-    let all: [(&str, Spoil); 10] = [
+    let all: [(&str, Spoil); 11] = [
         ("not numbered", |_, last| last[0].number = 0),
         ("one that was not given", |_, last| {
             last[0].number = 4;
@@ -204,10 +204,17 @@ fn numbers_that_no_step_gave_do_not_fit() {
         ("one that is lost", |_, last| last[0].number = 3),
         ("too few given", |identity, _| identity.given = 2),
         ("too many given", |identity, _| identity.given = u64::MAX),
-        ("of no time", |identity, _| identity.lost[0].age = f64::NAN),
-        ("of the future", |identity, _| identity.lost[0].age = -STEP),
+        ("of no time", |identity, _| {
+            identity.lost[0].opened = f64::NAN;
+        }),
+        ("of the future", |identity, _| {
+            identity.lost[0].opened = identity.time + STEP;
+        }),
         ("of long ago", |identity, _| {
-            identity.lost[0].age = REMEMBERED.value();
+            identity.lost[0].opened = identity.time - REMEMBERED.value();
+        }),
+        ("after steps of no duration", |identity, _| {
+            (identity.time, identity.lost) = (f64::NAN, Vec::new());
         }),
         ("of nobody", |identity, _| {
             identity.lost[0].contact.part = 999;
@@ -217,13 +224,19 @@ fn numbers_that_no_step_gave_do_not_fit() {
         assert!(!fits(spoil), "{what}");
     }
     assert!(!fits(|identity, _| {
+        let mut later = identity.lost[0];
+        (later.contact.number, later.opened) = (4, 0.0);
+        identity.lost.push(later);
+        identity.given = 4;
+    }));
+    assert!(!fits(|identity, _| {
         let lost = identity.lost[0];
         let all = (10..).take(MOST_LOST + 1).map(|number| Lost {
             contact: Contact {
                 number,
                 ..lost.contact
             },
-            age: 0.0,
+            opened: identity.time,
         });
         identity.lost = all.collect();
         identity.given = 1000;
