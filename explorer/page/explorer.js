@@ -71,7 +71,7 @@ class View {
 
   // The outcome above the picture, and the sentence.
   tell() {
-    const { error, judged, outcome, diagnosis, doubts } = this.answer;
+    const { error, judged, outcome, diagnosis, warnings } = this.answer;
     const part = (name) => this.figure.querySelector(`.${name}`);
     const subject = this.subject();
     part("subject").textContent = subject;
@@ -80,9 +80,9 @@ class View {
     part("mechanism").textContent = diagnosis?.mechanism ?? "";
     part("mechanism").title = tables.words.mechanisms[diagnosis?.mechanism] ?? "";
     const sentence = diagnosis ? new Sentence(diagnosis, tables.words).text() : tables.words.outcomes[outcome];
-    const doubtful = (doubts ?? []).map(({ path, reason }) => ` ${path} ${reason}.`).join("");
+    const warned = (warnings ?? []).map(({ path, reason }) => ` ${path} ${reason}.`).join("");
     this.sentence.className = error ? "error" : "";
-    this.sentence.textContent = error ? error.message : `${sentence}.${doubtful}`;
+    this.sentence.textContent = error ? error.message : `${sentence}.${warned}`;
     this.figure.classList.toggle("stale", Boolean(error));
     this.canvas.setAttribute("aria-label", `${subject}, side view: ${this.ending}`);
   }

@@ -1,7 +1,7 @@
 //! From a request to its answer: outcome, diagnosis, metrics and what is drawn, or what is wrong with the request.
 
 use crawler2d_core::{
-    Change, Doubt, Error, Record, ScenarioError, ValidScenario, Wanted, simulate,
+    Change, Error, Record, ScenarioError, ValidScenario, Wanted, Warning, simulate,
 };
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -47,7 +47,7 @@ fn run(request: &[u8], columns: &mut Columns) -> Result<Value, Error> {
         "diagnosis": why.map(diagnosis::of),
         "metrics": run.metrics.entries().into_iter().map(|(name, value)| (name.to_owned(), json!(value)))
             .collect::<Map<String, Value>>(),
-        "doubts": checked.doubts().iter().chain(&run.doubts).map(doubt).collect::<Vec<_>>(),
+        "warnings": checked.warnings().iter().chain(&run.warnings).map(warning).collect::<Vec<_>>(),
     });
     if request.sample_interval.is_some() {
         answer["drawing"] = drawing::of(&checked, &run, columns)?;
@@ -69,8 +69,8 @@ fn wanted(names: Option<&[String]>) -> Result<Wanted, Error> {
     ))
 }
 
-fn doubt(doubt: &Doubt) -> Value {
-    json!({ "path": doubt.path, "value": doubt.value, "reason": doubt.reason })
+fn warning(warning: &Warning) -> Value {
+    json!({ "path": warning.path, "value": warning.value, "reason": warning.reason })
 }
 
 /// What went wrong; of a scenario also where, and which rule it breaks.

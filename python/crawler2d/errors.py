@@ -195,17 +195,19 @@ class LimitError(Crawler2dError, ValueError):
         What is too large, and the limit and how to set it.
     needed : int, optional
         [bytes] Memory that the request needs, approximately.
-    left : int, optional
+    available : int, optional
         [bytes] Memory available to it.
     """
 
     needed: int | None
-    left: int | None
+    available: int | None
 
-    def __init__(self, message: str, needed: int | None = None, left: int | None = None) -> None:
-        super().__init__(message, needed, left)
+    def __init__(
+        self, message: str, needed: int | None = None, available: int | None = None
+    ) -> None:
+        super().__init__(message, needed, available)
         self.needed = needed
-        self.left = left
+        self.available = available
 
 
 class StoreError(Crawler2dError, OSError):

@@ -1,4 +1,4 @@
-//! Calls of the core: in a thread of their own, so that the interpreter can answer Ctrl-C, and with its errors and doubts
+//! Calls of the core: in a thread of their own, so that the interpreter can answer Ctrl-C, and with its errors and warnings
 //! as the exceptions of `crawler2d.errors`; no panic gets past this file.
 
 use std::collections::HashSet;
@@ -6,7 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
 use crawler2d_core::{
-    Cancel, Doubt, Error, FlipperCommand, LimitError, ValidScenario, check_rounding,
+    Cancel, Error, FlipperCommand, LimitError, ValidScenario, Warning, check_rounding,
 };
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
@@ -46,9 +46,12 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             "SimulationDiverged"
         }
         Error::Limit(limit) => {
-            if let LimitError::Memory { needed, left, .. } = limit {
+            if let LimitError::Memory {
+                needed, available, ..
+            } = limit
+            {
                 details.set_item("needed", needed)?;
-                details.set_item("left", left)?;
+                details.set_item("available", available)?;
             }
             "LimitError"
         }
@@ -81,16 +84,16 @@ pub(crate) fn argument(path: &str, value: &str, rule: &str) -> PyErr {
     Python::attach(|py| raise(py, "ScenarioError", (path, value, rule), None))
 }
 
-/// Warns of doubts at the line of the caller's own code, once for each field of a whole batch.
+/// Gives warnings at the line of the caller's own code, once for each field of a whole batch.
 pub(crate) fn warn<'a>(
     py: Python<'_>,
-    doubts: impl IntoIterator<Item = &'a Doubt>,
+    warnings: impl IntoIterator<Item = &'a Warning>,
 ) -> PyResult<()> {
     let mut seen = HashSet::new();
-    for doubt in doubts {
-        if seen.insert(&doubt.path) {
+    for warning in warnings {
+        if seen.insert(&warning.path) {
             let warn = py.import("crawler2d.errors")?.getattr("warn")?;
-            warn.call1((&doubt.path, doubt.value, &doubt.reason))?;
+            warn.call1((&warning.path, warning.value, &warning.reason))?;
         }
     }
     Ok(())

@@ -52,12 +52,12 @@ type Inner = Turns<Option<crawler2d_core::Simulation>>;
 impl Simulation {
     #[new]
     fn new(py: Python<'_>, text: PyBackedStr) -> PyResult<Self> {
-        let (simulation, doubts) = build_interruptible(py, text, |text| {
+        let (simulation, warnings) = build_interruptible(py, text, |text| {
             let checked = ValidScenario::from_json(text)?;
             let simulation = crawler2d_core::Simulation::new(&checked);
-            Ok((simulation, checked.doubts().to_vec()))
+            Ok((simulation, checked.warnings().to_vec()))
         })?;
-        calls::warn(py, &doubts)?;
+        calls::warn(py, &warnings)?;
         Ok(Self::of(simulation, Log::default()))
     }
 

@@ -282,7 +282,7 @@ pub(crate) fn diagnosis<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'
     let trials = trials.collect::<PyResult<Vec<_>>>()?;
     result.set_item("outcome", d.outcome.name())?;
     result.set_item("symptom", d.symptom.name())?;
-    result.set_item("transient", d.is_passing())?;
+    result.set_item("transient", d.is_transient())?;
     result.set_item("trials", PyTuple::new(py, trials)?)?;
     result.set_item("mechanism", d.mechanism.map(Mechanism::name))?;
     result.set_item("position", PyTuple::new(py, d.position)?)?;

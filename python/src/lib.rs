@@ -44,7 +44,7 @@ mod _core {
     #[pyfunction]
     fn validate(py: Python<'_>, text: PyBackedStr) -> PyResult<()> {
         let checked = build_interruptible(py, text, ValidScenario::from_json)?;
-        calls::warn(py, checked.doubts())
+        calls::warn(py, checked.warnings())
     }
 
     /// SHA-256 of the canonical JSON.
@@ -120,7 +120,7 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, record, &trials)?;
         let checked = build_interruptible(py, text, ValidScenario::from_json)?;
-        calls::warn(py, checked.doubts())?;
+        calls::warn(py, checked.warnings())?;
         let mut result = None;
         let interrupted = run_all(py, vec![checked], 1, record, |_, finished| {
             result = finished.into_iter().next().or(result.take());
@@ -131,7 +131,7 @@ mod _core {
         }
         match result {
             Some((_, Ok(run))) => {
-                calls::warn(py, &run.doubts)?;
+                calls::warn(py, &run.warnings)?;
                 convert::run(py, run)
             }
             Some((_, Err(error))) => Err(calls::to_python(error)),
@@ -145,7 +145,10 @@ mod _core {
     /// Warns of what in a batch is legal but unlikely to be meant, once for each field.
     #[pyfunction]
     fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<()> {
-        calls::warn(py, scenarios.iter().flat_map(|each| each.checked.doubts()))
+        calls::warn(
+            py,
+            scenarios.iter().flat_map(|each| each.checked.warnings()),
+        )
     }
 
     /// Simulates many scenarios on several threads; an error spoils only its own run.
@@ -166,13 +169,13 @@ mod _core {
         let record = if with_tables { record } else { "summary" };
         let record = convert::record(sample_interval, record, &trials)?;
         let scenarios = scenarios.iter().map(|each| each.checked.clone()).collect();
-        let mut doubts = Vec::new();
+        let mut warnings = Vec::new();
         let interrupted = run_all(py, scenarios, threads, record, |py, finished| {
             if finished.is_empty() {
                 return Ok(());
             }
             let runs = finished.iter().filter_map(|(_, run)| run.as_ref().ok());
-            doubts.extend(runs.flat_map(|run| run.doubts.iter().cloned()));
+            warnings.extend(runs.flat_map(|run| run.warnings.iter().cloned()));
             let list = PyList::empty(py);
             for (place, result) in finished {
                 let converted = match result {
@@ -185,7 +188,7 @@ mod _core {
             }
             take.call1(py, (list,)).map(|_| ())
         })?;
-        calls::warn(py, &doubts)?;
+        calls::warn(py, &warnings)?;
         match interrupted {
             // After Ctrl-C, finished runs are kept; any other exception of a callback is passed on unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {

@@ -25,7 +25,7 @@ pub enum LimitError {
     /// It needs more than is left of the limit, or than the system has.
     #[error(
         "{what} needs about {} MiB of memory, but only {} MiB are available: the limit is {} GiB (environment variable {MEMORY_VARIABLE}), or less if the system has less",
-        mebibytes(*needed), left >> 20, gibibytes(*limit)
+        mebibytes(*needed), available >> 20, gibibytes(*limit)
     )]
     Memory {
         /// What needs it and, if possible, what would need less.
@@ -33,7 +33,7 @@ pub enum LimitError {
         /// \[bytes\] Memory that it needs.
         needed: u64,
         /// \[bytes\] Memory available.
-        left: u64,
+        available: u64,
         /// \[bytes\] Limit of memory.
         limit: u64,
     },

@@ -65,11 +65,11 @@ pub use run::{
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,
-    ContactMethod, Doubt, Drive, Drivetrain, End, Ends, Engine, FieldPattern, Flippers,
-    ForceSupport, ForceTrack, Friction, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels,
-    LineOfWheels, MAX_POINTS, Pi, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack,
-    SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Surface, Terrain, TorqueSharing, Track,
-    TrackOutline, Wheel,
+    ContactMethod, Drive, Drivetrain, End, Ends, Engine, FieldPattern, Flippers, ForceSupport,
+    ForceTrack, Friction, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
+    MAX_POINTS, Pi, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria,
+    ShoeShape, Solver, Start, Stepfield, Surface, Terrain, TorqueSharing, Track, TrackOutline,
+    Warning, Wheel,
 };
 pub use terrain::{Edge, Ground, GroundFriction, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

@@ -53,10 +53,10 @@ def test_a_batch_is_counted_as_a_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     c2d.simulate_many([STEP] * 10)
     with pytest.raises(errors.LimitError, match="a batch of 200 runs") as caught:
         c2d.simulate_many([STEP] * 200)
-    needed, left = caught.value.needed, caught.value.left
+    needed, available = caught.value.needed, caught.value.available
     assert needed is not None
-    assert left is not None
-    assert left < needed < 5 * left
+    assert available is not None
+    assert available < needed < 5 * available
     assert len(c2d.simulate_many([STEP] * 200, record="summary")) == 200
 
 

@@ -51,7 +51,7 @@ pub struct Diagnosis {
 
 impl Diagnosis {
     /// Whether the stop would not have lasted: a control left it.
-    pub fn is_passing(&self) -> bool {
+    pub fn is_transient(&self) -> bool {
         let left =
             |trial: &Trial| trial.freed && Change::CONTROLS.iter().any(|c| c.name() == trial.name);
         self.trials.iter().any(left)

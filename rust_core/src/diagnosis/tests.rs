@@ -223,7 +223,7 @@ fn a_diagnosis_tells_when_the_stop_was_looked_at_and_where() {
     assert_eq!((found.time, found.since, found.progress), (3.0, 1.0, 0.25));
     let place = [stance.position.x, stance.position.y];
     assert_eq!((found.position, found.chassis_angle), (place, 0.001));
-    assert!(found.trials.is_empty() && !found.is_passing());
+    assert!(found.trials.is_empty() && !found.is_transient());
 }
 
 #[test]

@@ -48,5 +48,5 @@ fn survives(read: &ValidScenario) {
     };
     assert_eq!(again.scenario(), read.scenario());
     assert_eq!(again.scenario().to_json(), text);
-    assert_eq!(again.doubts(), read.doubts());
+    assert_eq!(again.warnings(), read.warnings());
 }

@@ -47,7 +47,7 @@ impl Budget {
         Err(LimitError::Memory {
             what: what.to_owned(),
             needed: bytes,
-            left,
+            available: left,
             limit: self.limit,
         })
     }
@@ -128,7 +128,7 @@ impl<'a> Rows<'a> {
         reserve(room).map_err(|_| LimitError::Memory {
             what: WHAT.to_owned(),
             needed: bytes,
-            left: 0,
+            available: 0,
             limit: self.budget.limit,
         })
     }
@@ -195,7 +195,7 @@ mod tests {
             refused,
             LimitError::Memory {
                 needed: 40,
-                left: 30,
+                available: 30,
                 limit: 100,
                 ..
             }

@@ -1,11 +1,11 @@
-//! Figures of a whole run, and a doubt where it has sunk deeper into the ground than softness explains.
+//! Figures of a whole run, and a warning where it has sunk deeper into the ground than softness explains.
 //!
 //! The equations: docs/physics.md, "Softness".
 
 use super::Simulation;
 use crate::contact::depth;
 use crate::observe::{Event, EventKind};
-use crate::scenario::{Doubt, Engine};
+use crate::scenario::{Engine, Warning};
 use crate::units::{Metres, Seconds};
 
 /// What one metric is.
@@ -169,11 +169,11 @@ impl Sinkage {
         }
     }
 
-    /// A doubt about a run that sank deeper than its softness explains; an engine in place of ours has its own.
-    pub(super) fn doubt(&self, simulation: &Simulation) -> Option<Doubt> {
+    /// A warning about a run that sank deeper than its softness explains; an engine in place of ours has its own.
+    pub(super) fn warning(&self, simulation: &Simulation) -> Option<Warning> {
         let most = explained(simulation, self.fastest);
         let is_own = simulation.scenario().solver.engine == Engine::Own;
-        (is_own && self.is_anew && self.deepest > most).then(|| Doubt {
+        (is_own && self.is_anew && self.deepest > most).then(|| Warning {
             path: "max_penetration".to_owned(),
             value: self.deepest,
             reason: format!(
@@ -252,20 +252,20 @@ mod tests {
 
     /// On the belt 1.0005 mm are explained at rest.
     #[test]
-    fn a_depth_is_doubted_if_it_exceeds_what_is_explained_in_a_run_from_its_start() {
+    fn a_depth_has_a_warning_if_it_exceeds_what_is_explained_in_a_run_from_its_start() {
         let simulation = simulation(false);
-        let doubt = |is_anew, deepest| {
+        let warning = |is_anew, deepest| {
             let seen = Sinkage {
                 is_anew,
                 deepest,
                 ..Sinkage::from(&simulation)
             };
-            seen.doubt(&simulation)
+            seen.warning(&simulation)
         };
         assert!(Sinkage::from(&simulation).is_anew, "it is at its start");
-        assert_eq!(doubt(true, 1.0004e-3), None);
-        assert_eq!(doubt(false, 2e-3), None);
-        let found = doubt(true, 1.0006e-3).expect("it is deeper");
+        assert_eq!(warning(true, 1.0004e-3), None);
+        assert_eq!(warning(false, 2e-3), None);
+        let found = warning(true, 1.0006e-3).expect("it is deeper");
         let reason = "is usually at most 0.0010 m, what softness and blows explain:";
         assert!(found.reason.starts_with(reason), "{}", found.reason);
         assert!((found.value - 1.0006e-3).abs() < 1e-15);

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
-use crate::scenario::Doubt;
+use crate::scenario::Warning;
 use crate::terrain::Edge;
 
 /// The results of a run.
@@ -25,7 +25,7 @@ pub struct Run {
     /// [m] How deep the robot was in the ground, by its outline alone, at some instants.
     pub depth: f64,
     /// Results that are unlikely to be right.
-    pub doubts: Vec<Doubt>,
+    pub warnings: Vec<Warning>,
     /// History, if recorded.
     pub trace: Trace,
     /// Contacts, if recorded.
@@ -90,17 +90,17 @@ impl<'a> Recording<'a> {
         let ended = simulation.monitor().ended_as().unwrap_or(Outcome::TimedOut);
         let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
         let mut metrics = Metrics::of(simulation, &events);
-        let doubts = Vec::from_iter(self.sinkage.doubt(simulation));
+        let warnings = Vec::from_iter(self.sinkage.warning(simulation));
         // Where contacts were not found they do not tell how deep it was.
-        for doubt in &doubts {
-            metrics.max_penetration = metrics.max_penetration.max(doubt.value);
+        for warning in &warnings {
+            metrics.max_penetration = metrics.max_penetration.max(warning.value);
         }
         Ok(Run {
             outcome,
             diagnosis,
             metrics,
             depth: self.sinkage.deepest,
-            doubts,
+            warnings,
             trace,
             contacts,
             edges: simulation.ground().edges(),

@@ -38,9 +38,9 @@ pub fn diagnose(
         return Ok(Some(found));
     }
     let mut series = TrialSeries::new(stop, &found, cancel);
-    let passing = series.frees(Change::Nothing)?;
-    let leaves = !passing && found.jammed && series.frees(Change::Rebuilt)?;
-    if passing || leaves && !stop.is_in_an_engine() {
+    let is_transient = series.frees(Change::Nothing)?;
+    let leaves = !is_transient && found.jammed && series.frees(Change::Rebuilt)?;
+    if is_transient || leaves && !stop.is_in_an_engine() {
         found.outcome = Outcome::TimedOut;
     } else {
         // Where our own dynamics do not hold the stop of another engine, they cannot say what would end it.

@@ -11,7 +11,7 @@ use crate::geometry::{Vector, end_discs, turned_by};
 use crate::limits::Cancel;
 use crate::limits::memory::{self, Budget};
 use crate::robot::{Model, Part, start_position};
-use crate::scenario::{Doubt, Scenario, ScenarioError, Terrain, Track, parse};
+use crate::scenario::{Scenario, ScenarioError, Terrain, Track, Warning, parse};
 use crate::terrain::Ground;
 
 /// Longest text that is read, in bytes; three lanes with the largest number of points take half of it.
@@ -27,7 +27,7 @@ pub struct ValidScenario {
     ground: Arc<Ground>,
     model: Arc<Model>,
     position: Vector,
-    doubts: Vec<Doubt>,
+    warnings: Vec<Warning>,
 }
 
 /// Checks that a text is not too long to be read.
@@ -140,8 +140,8 @@ impl ValidScenario {
     }
 
     /// Values that are legal but unlikely to be meant.
-    pub fn doubts(&self) -> &[Doubt] {
-        &self.doubts
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 
     fn of_value(value: &Value, other: Option<&Self>) -> Result<Self, Error> {
@@ -175,13 +175,13 @@ impl ValidScenario {
         let [rear, _] = end_discs(&robot.outline);
         let axle = position.x + turned_by(scenario.start.angle)(rear.center).x;
         let to_goal = ground.goal_of(&scenario) + rear.radius - axle;
-        let doubts = scenario.doubts(to_goal, ground.extent().1);
+        let warnings = scenario.warnings(to_goal, ground.extent().1);
         Ok(Self {
             scenario,
             ground,
             model,
             position,
-            doubts,
+            warnings,
         })
     }
 

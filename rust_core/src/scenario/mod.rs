@@ -2,7 +2,6 @@
 //!
 //! JSON is parsed strictly, so that nothing gets lost silently: every key once, every number exactly as written.
 
-mod doubts;
 mod drive;
 mod drivetrain;
 mod fields;
@@ -12,6 +11,7 @@ mod robot;
 mod settings;
 mod terrain;
 mod track;
+mod warnings;
 
 use fields::{Checked, Fields, GRAVITY, Range, joined};
 use objects::{FromJson, object};
@@ -21,7 +21,6 @@ use serde_json::value::RawValue;
 use serde_json::{Error, Map, Value, from_str};
 use sha2::{Digest, Sha256};
 
-pub use doubts::Doubt;
 pub use drive::{Climb, Drive, Gait, Hold};
 pub use drivetrain::{Drivetrain, Pi, TorqueSharing};
 pub use fields::ScenarioError;
@@ -36,6 +35,7 @@ pub use track::{
     Track, Wheel,
 };
 pub(crate) use track::{MAX_GROUSERS, MAX_SHOES, MAX_WHEELS};
+pub use warnings::Warning;
 
 /// Version of the format.
 pub const SCHEMA: u32 = 2;

@@ -60,7 +60,7 @@ fn run_finite_and_stay_out(seed: u64, cases: u32, drawn: fn(&mut Draw) -> Scenar
                 "case {case}"
             );
         }
-        assert!(run.doubts.is_empty(), "case {case}: {:?}", run.doubts);
+        assert!(run.warnings.is_empty(), "case {case}: {:?}", run.warnings);
         let depth = run.metrics.max_penetration / scenario.robot.outline.rear_radius();
         deepest = deepest.max(depth);
     }

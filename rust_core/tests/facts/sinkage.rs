@@ -209,9 +209,9 @@ fn models() -> Vec<(&'static str, Scenario)> {
         .collect()
 }
 
-/// [m] How deep a run was, which nothing doubts.
+/// [m] How deep a run was, which nothing warnings.
 fn depth(run: &Run, told: &str) -> f64 {
-    assert!(run.doubts.is_empty(), "{told}: {:?}", run.doubts);
+    assert!(run.warnings.is_empty(), "{told}: {:?}", run.warnings);
     run.metrics.max_penetration.max(run.depth)
 }
 

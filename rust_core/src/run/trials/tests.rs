@@ -143,7 +143,7 @@ fn a_jammed_robot_that_one_motor_for_all_wheels_frees_is_stalled() {
 }
 
 #[test]
-fn a_stop_that_the_robot_leaves_by_itself_is_passing() {
+fn a_stop_that_the_robot_leaves_by_itself_is_transient() {
     // A belt that climbs a step slowly counts as stopped with these criteria, and drives on.
     let mut scenario = engineer();
     scenario.terrain = Terrain::Step {
@@ -158,13 +158,13 @@ fn a_stop_that_the_robot_leaves_by_itself_is_passing() {
     ) = (0.2, 0.1, 0.9);
     scenario.duration = 1.2;
     let found = why(&scenario, Wanted::of(Change::ALL));
-    assert!(found.is_passing());
+    assert!(found.is_transient());
     assert_eq!(found.outcome, Outcome::TimedOut);
     assert_eq!(freed(&found), ["unchanged"]);
     assert_eq!(
         found.trials.len(),
         1,
-        "of a passing stop nothing else is tried"
+        "of a transient stop nothing else is tried"
     );
 }
 

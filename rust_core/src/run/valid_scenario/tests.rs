@@ -4,8 +4,8 @@ use super::*;
 use crate::run::Simulation;
 use crate::scenario::{Surface, Terrain};
 
-mod doubts;
 mod rules;
+mod warnings;
 
 fn engineer() -> Scenario {
     let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");

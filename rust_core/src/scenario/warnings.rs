@@ -10,7 +10,7 @@ use super::{
     SegmentalTrack, Terrain, Track,
 };
 
-/// Obstacles larger than this many robot lengths are doubtful; so is a goal this many times farther than a run gets.
+/// Obstacles larger than this many robot lengths are probably mistakes; so is a goal this many times farther than a run gets.
 const FAR: f64 = 3.0;
 /// Share of the robot's length by which it sinks visibly into the ground.
 const SUNK: f64 = 1e-3;
@@ -20,32 +20,32 @@ const GOLD: f64 = 19_300.0;
 /// Friction that no ground has: rubber on dry concrete has about 1.
 const MOST_FRICTION: f64 = 3.0;
 
-/// A doubt about a field; the scenario is accepted all the same.
+/// A warning about a field; the scenario is accepted all the same.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Doubt {
+pub struct Warning {
     /// Dotted path of the field, for example `terrain.height`.
     pub path: String,
     /// The value found there.
     pub value: f64,
-    /// Why it is doubtful: "is usually ...".
+    /// Why it is probably a mistake: "is usually ...".
     pub reason: String,
 }
 
-/// Collects doubts.
+/// Collects warnings.
 #[derive(Default)]
-struct Doubts(Vec<Doubt>);
+struct Warnings(Vec<Warning>);
 
-impl Doubts {
+impl Warnings {
     fn add(&mut self, path: impl Into<String>, value: f64, reason: impl Into<String>) {
         let (path, reason) = (path.into(), reason.into());
-        self.0.push(Doubt {
+        self.0.push(Warning {
             path,
             value,
             reason,
         });
     }
 
-    /// Doubts a magnitude beyond `most`; `what` says in words what that is.
+    /// Warns of a magnitude beyond `most`; `what` says in words what that is.
     fn at_most(
         &mut self,
         path: impl Into<String>,
@@ -68,35 +68,35 @@ impl Doubts {
 }
 
 impl Scenario {
-    /// All doubts about a scenario whose goal is `to_goal` [m] away, on ground that ends at `end` [m]; costs only a few
+    /// All warnings about a scenario whose goal is `to_goal` [m] away, on ground that ends at `end` [m]; costs only a few
     /// comparisons.
-    pub(crate) fn doubts(&self, to_goal: f64, end: f64) -> Vec<Doubt> {
-        let mut doubts = Doubts::default();
-        self.robot.add_doubts(&mut doubts);
+    pub(crate) fn warnings(&self, to_goal: f64, end: f64) -> Vec<Warning> {
+        let mut warnings = Warnings::default();
+        self.robot.add_warnings(&mut warnings);
         self.terrain
-            .add_doubts("terrain", self.robot.length(), &mut doubts);
-        self.add_doubts_of_drive(to_goal, &mut doubts);
-        self.add_doubts_of_goal(to_goal, end, &mut doubts);
+            .add_warnings("terrain", self.robot.length(), &mut warnings);
+        self.warn_of_drive(to_goal, &mut warnings);
+        self.warn_of_goal(to_goal, end, &mut warnings);
         let most = (30.0, "m/s^2");
-        doubts.at_most("gravity", self.gravity, most, "more than on any planet");
-        self.add_doubts_of_softness(&mut doubts);
-        doubts.0
+        warnings.at_most("gravity", self.gravity, most, "more than on any planet");
+        self.warn_of_softness(&mut warnings);
+        warnings.0
     }
 
-    /// An error about where the robot starts, with the first doubt about the robot itself, which is the likely reason.
+    /// An error about where the robot starts, with the first warning about the robot itself, which is the likely reason.
     pub(crate) fn explained(&self, mut error: ScenarioError) -> ScenarioError {
-        let mut doubts = Doubts::default();
-        self.robot.add_doubts(&mut doubts);
-        if let Some(doubt) = doubts.0.first() {
-            let why = format!(" ({} = {} {})", doubt.path, doubt.value, doubt.reason);
+        let mut warnings = Warnings::default();
+        self.robot.add_warnings(&mut warnings);
+        if let Some(warning) = warnings.0.first() {
+            let why = format!(" ({} = {} {})", warning.path, warning.value, warning.reason);
             error.rule.push_str(&why);
         }
         error
     }
 
-    /// Doubts a goal that no robot clears, as it must be all past it while both end axles are over the ground, and one that
+    /// Warns of a goal that no robot clears, as it must be all past it while both end axles are over the ground, and one that
     /// it is past from the start.
-    fn add_doubts_of_goal(&self, to_goal: f64, end: f64, doubts: &mut Doubts) {
+    fn warn_of_goal(&self, to_goal: f64, end: f64, warnings: &mut Warnings) {
         let outline = &self.robot.outline;
         let last = end - outline.axle_distance() - outline.rear_radius();
         let given = match (self.goal, &self.terrain) {
@@ -108,47 +108,47 @@ impl Scenario {
             let reason = format!(
                 "cannot be cleared: beyond {last:.3} m the robot leaves the ground, which ends at {end:.3} m"
             );
-            doubts.add(path, goal, reason);
+            warnings.add(path, goal, reason);
         }
         if let Some((path, goal)) = given.filter(|_| to_goal <= 0.0) {
             let reason = "is behind the robot at its start, which clears where it stands";
-            doubts.add(path, goal, reason);
+            warnings.add(path, goal, reason);
         }
     }
 
-    /// Doubts contacts in which the robot sinks visibly under its own weight.
+    /// Warns of contacts in which the robot sinks visibly under its own weight.
     ///
     /// A contact is a spring of the stiffness m (2 pi f)^2, with m the robot's mass: its weight on one presses it in by
     /// g / (2 pi f)^2, whatever it weighs, and how long that takes is for its damper. The contacts of shoes are softer.
-    fn add_doubts_of_softness(&self, doubts: &mut Doubts) {
+    fn warn_of_softness(&self, warnings: &mut Warnings) {
         let frequency = self.solver.contact_frequency;
         let sinkage = self.gravity / (TAU * frequency).powi(2);
         if sinkage > SUNK * self.robot.length() {
             let reason = format!(
                 "is so low that the robot sinks up to {sinkage:.2e} m into rigid ground under its own weight, gravity / (2 pi f)^2"
             );
-            doubts.add("solver.contact_frequency", frequency, reason);
+            warnings.add("solver.contact_frequency", frequency, reason);
         }
     }
 
-    fn add_doubts_of_drive(&self, to_goal: f64, doubts: &mut Doubts) {
+    fn warn_of_drive(&self, to_goal: f64, warnings: &mut Warnings) {
         let drive = &self.drive;
         match &drive.gait {
             Some(Gait::Hold(hold)) => {
-                doubts.angle("drive.gait.angle", hold.angle);
+                warnings.angle("drive.gait.angle", hold.angle);
                 for (end, angle) in [("front", hold.front), ("rear", hold.rear)] {
                     if let Some(angle) = angle {
-                        doubts.angle(format!("drive.gait.{end}"), angle);
+                        warnings.angle(format!("drive.gait.{end}"), angle);
                     }
                 }
                 for (i, [_, angle]) in hold.schedule.iter().flatten().enumerate() {
-                    doubts.angle(format!("drive.gait.schedule[{i}][1]"), *angle);
+                    warnings.angle(format!("drive.gait.schedule[{i}][1]"), *angle);
                 }
             }
             Some(Gait::Climb(climb)) => {
-                doubts.angle("drive.gait.reach_angle", climb.reach_angle);
-                doubts.angle("drive.gait.sweep_angle", climb.sweep_angle);
-                doubts.angle("drive.gait.push_angle", climb.push_angle);
+                warnings.angle("drive.gait.reach_angle", climb.reach_angle);
+                warnings.angle("drive.gait.sweep_angle", climb.sweep_angle);
+                warnings.angle("drive.gait.push_angle", climb.push_angle);
             }
             None => {}
         }
@@ -165,11 +165,11 @@ impl Scenario {
             let way = format!("it is {to_goal:.3} m away, and {gets}");
             match self.goal {
                 Some(goal) if to_goal > reach => {
-                    doubts.add("goal", goal, format!("cannot be reached: {way}"));
+                    warnings.add("goal", goal, format!("cannot be reached: {way}"));
                 }
                 None if to_goal > FAR * reach => {
                     let reason = format!("is too short for the goal: {way}");
-                    doubts.add("duration", time, reason);
+                    warnings.add("duration", time, reason);
                 }
                 _ => {}
             }
@@ -177,7 +177,7 @@ impl Scenario {
         let approach = self.start.approach;
         if approach > reach.max(self.robot.length()) {
             let reason = format!("is longer than the run: {gets}");
-            doubts.add("start.approach", approach, reason);
+            warnings.add("start.approach", approach, reason);
         }
     }
 }
@@ -189,63 +189,63 @@ impl Robot {
         o.axle_distance() + o.front_radius() + o.rear_radius()
     }
 
-    fn add_doubts(&self, doubts: &mut Doubts) {
+    fn add_warnings(&self, warnings: &mut Warnings) {
         let o = &self.outline;
         let length = self.length();
         for (i, value) in self.center_of_mass.into_iter().enumerate() {
             let path = format!("robot.center_of_mass[{i}]");
-            doubts.at_most(path, value, (length, "m"), "the robot's length");
+            warnings.at_most(path, value, (length, "m"), "the robot's length");
         }
         // Limits of mass are those of the arithmetic; a robot in grams or tonnes is recognised by its density.
         let box_round = length * 2.0 * o.largest_radius() * length.max(self.gauge);
         let [least, most] = [AIR, GOLD].map(|density| density * box_round);
         let what = "the mass of gold of its length and height";
-        doubts.at_most("robot.mass", self.mass, (most, "kg"), what);
+        warnings.at_most("robot.mass", self.mass, (most, "kg"), what);
         if self.mass < least {
             let reason = format!(
                 "is usually at least {least:.3} kg, the mass of air of its length and height"
             );
-            doubts.add("robot.mass", self.mass, reason);
+            warnings.add("robot.mass", self.mass, reason);
         }
         let most = (self.mass * length * length, "kg m^2");
         let what = "mass x the square of the robot's length";
         let inertia = self.moment_of_inertia;
-        doubts.at_most("robot.moment_of_inertia", inertia, most, what);
+        warnings.at_most("robot.moment_of_inertia", inertia, most, what);
         let size = (o.largest_radius(), o.axle_distance());
-        add_doubts_of_wheels(&self.track, "robot.track", size, doubts);
+        warn_of_wheels(&self.track, "robot.track", size, warnings);
         if let Track::Segmental(chain) = &self.track {
-            self.add_doubts_of_pins(chain, doubts);
+            self.warn_of_pins(chain, warnings);
         }
         if let Some(flippers) = &self.flippers {
-            flippers.add_doubts(self, doubts);
+            flippers.add_warnings(self, warnings);
         }
     }
 
     /// Round an end of radius r shoes of pitch p are bent by p/r: a spring k presses them off it with k/r. At a speed v they are
     /// bent with v/r, and a damper d takes about d v/r^2 of the traction.
-    fn add_doubts_of_pins(&self, chain: &SegmentalTrack, doubts: &mut Doubts) {
+    fn warn_of_pins(&self, chain: &SegmentalTrack, warnings: &mut Warnings) {
         let (half, radius) = (0.5 * self.earth_weight(), self.outline.smallest_radius());
         let most = (half * radius, "N m/rad");
         let what = "with which a track presses itself off its smaller end with half the weight";
         let path = "robot.track.pin_stiffness";
-        doubts.at_most(path, chain.pin_stiffness, most, what);
+        warnings.at_most(path, chain.pin_stiffness, most, what);
         let most = half * radius * radius / self.drivetrain.max_speed;
         let what = "with which pins take half the weight of traction at robot.drivetrain.max_speed";
         let path = "robot.track.pin_damping";
-        doubts.at_most(path, chain.pin_damping, (most, "N m s/rad"), what);
+        warnings.at_most(path, chain.pin_damping, (most, "N m s/rad"), what);
     }
 }
 
 impl Flippers {
-    fn add_doubts(&self, robot: &Robot, doubts: &mut Doubts) {
-        doubts.angle("robot.flippers.angle", self.angle);
+    fn add_warnings(&self, robot: &Robot, warnings: &mut Warnings) {
+        warnings.angle("robot.flippers.angle", self.angle);
         let size = (self.root_radius.max(self.tip_radius), self.length);
         let (path, track) = match &self.track {
             Some(track) => ("robot.flippers.track", track),
             None => ("robot.track", robot.track.open()),
         };
         if self.track.is_some() {
-            add_doubts_of_wheels(track, path, size, doubts);
+            warn_of_wheels(track, path, size, warnings);
         }
         let Track::Line(line) = track else { return };
         let Some(radius) = line.wheel_radius else {
@@ -256,53 +256,48 @@ impl Flippers {
             let reason = format!(
                 "has no effect, because {path}.wheel_radius = {radius} m sets the radius of all wheels of the arms"
             );
-            doubts.add("robot.flippers.tip_radius", self.tip_radius, reason);
+            warnings.add("robot.flippers.tip_radius", self.tip_radius, reason);
         }
     }
 }
 
-/// Doubts wheels that do not fit a track of this size [m]: its largest radius, and the length between its axles.
-fn add_doubts_of_wheels(
-    track: &Track,
-    path: &str,
-    (built, length): (f64, f64),
-    doubts: &mut Doubts,
-) {
+/// Warns of wheels that do not fit a track of this size [m]: its largest radius, and the length between its axles.
+fn warn_of_wheels(track: &Track, path: &str, (built, length): (f64, f64), warnings: &mut Warnings) {
     let most = ((2.0 * built).max(0.5 * length), "m");
     let what = "twice the outline's radius or half its axle distance";
     match track {
         Track::Line(LineOfWheels { wheel_radius, .. })
         | Track::Circumferential(CircumferentialWheels { wheel_radius, .. }) => {
             if let Some(radius) = wheel_radius {
-                doubts.at_most(joined(path, "wheel_radius"), *radius, most, what);
+                warnings.at_most(joined(path, "wheel_radius"), *radius, most, what);
             }
         }
         Track::Hybrid(wheels) => {
             let farthest = (length + 2.0 * built, "m");
             for (i, [x, y, radius]) in wheels.placements.iter().enumerate() {
                 let path = |column| format!("{path}.placements[{i}][{column}]");
-                doubts.at_most(path(0), *x, farthest, "the length of the outline");
-                doubts.at_most(path(1), *y, farthest, "the length of the outline");
-                doubts.at_most(path(2), *radius, most, what);
+                warnings.at_most(path(0), *x, farthest, "the length of the outline");
+                warnings.at_most(path(1), *y, farthest, "the length of the outline");
+                warnings.at_most(path(2), *radius, most, what);
             }
         }
         Track::Closed(closed) => {
             let path = joined(path, "of");
-            add_doubts_of_wheels(&closed.of, &path, (built, length), doubts);
+            warn_of_wheels(&closed.of, &path, (built, length), warnings);
         }
         Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_) => {}
     }
 }
 
 impl Terrain {
-    /// Doubts friction that no ground has, and obstacles that no robot of that length [m] could drive over.
-    fn add_doubts(&self, path: &str, length: f64, doubts: &mut Doubts) {
+    /// Warns of friction that no ground has, and obstacles that no robot of that length [m] could drive over.
+    fn add_warnings(&self, path: &str, length: f64, warnings: &mut Warnings) {
         let mut friction = |name: &str, coefficient: f64| {
             if coefficient > MOST_FRICTION {
                 let reason = format!(
                     "is usually at most {MOST_FRICTION}, three times that of rubber on dry concrete"
                 );
-                doubts.add(joined(path, name), coefficient, reason);
+                warnings.add(joined(path, name), coefficient, reason);
             }
         };
         if let Some(coefficient) = self.friction() {
@@ -320,7 +315,7 @@ impl Terrain {
         }
         let mut size = |name: &str, value: f64| {
             let what = "three times the robot's length";
-            doubts.at_most(joined(path, name), value, (FAR * length, "m"), what);
+            warnings.at_most(joined(path, name), value, (FAR * length, "m"), what);
         };
         match self {
             Self::Step { height, .. }
@@ -341,10 +336,10 @@ impl Terrain {
                 right,
                 middle,
             } => {
-                left.add_doubts(&joined(path, "left"), length, doubts);
-                right.add_doubts(&joined(path, "right"), length, doubts);
+                left.add_warnings(&joined(path, "left"), length, warnings);
+                right.add_warnings(&joined(path, "right"), length, warnings);
                 if let Some(middle) = middle {
-                    middle.add_doubts(&joined(path, "middle"), length, doubts);
+                    middle.add_warnings(&joined(path, "middle"), length, warnings);
                 }
             }
         }

@@ -1,15 +1,15 @@
-//! Every doubt begins at its limit, and says where the value is and what it should be.
+//! Every warning begins at its limit, and says where the value is and what it should be.
 
 use serde_json::{Value, json};
 
 use super::super::ValidScenario;
 use super::rules::{put, scene, value};
 
-/// A scene; what of it is changed first; a field; a value that nobody doubts; one that is doubted; the doubt.
+/// A scene; what of it is changed first; a field; a value without a warning; one with a warning; the warning.
 ///
 /// The Engineer is 0.365 m + 2 x 0.064 m = 0.493 m long, 0.128 m high and 0.2 m wide, and starts with its rear axle at
 /// x = -0.529 m. It drives at 0.4 m/s.
-const DOUBTS: &str = r#"
+const WARNINGS: &str = r#"
 belt | | /robot/center_of_mass | [0.492,0.02] | [0.494,0.02] | robot.center_of_mass[0] = 0.494 is usually at most 0.493 m, the robot's length
 belt | | /robot/center_of_mass | [0,-0.492] | [0,-0.494] | robot.center_of_mass[1] = -0.494 is usually at most 0.493 m, the robot's length
 belt | | /robot/mass | 600.4 | 600.5 | robot.mass = 600.5 is usually at most 600.428 kg, the mass of gold of its length and height
@@ -49,19 +49,20 @@ points | | /terrain/segment_friction | [3] | [3.01] | terrain.segment_friction[0
 lanes | | /terrain/right | {"kind":"flat","length":1,"friction":3} | {"kind":"flat","length":1,"friction":3.01} | terrain.right.friction = 3.01 is usually at most 3, three times
 "#;
 
-/// Doubts about a scene, as the table writes them.
-fn doubts(scene: &Value) -> Vec<String> {
+/// Warnings about a scene, as the table writes them.
+fn warnings(scene: &Value) -> Vec<String> {
     let checked = ValidScenario::from_json(&scene.to_string()).expect("it is valid");
-    let doubts = checked.doubts().iter();
-    let written = doubts.map(|doubt| format!("{} = {} {}", doubt.path, doubt.value, doubt.reason));
+    let warnings = checked.warnings().iter();
+    let written =
+        warnings.map(|warning| format!("{} = {} {}", warning.path, warning.value, warning.reason));
     written.collect()
 }
 
 #[test]
-fn every_doubt_begins_at_its_limit() {
-    for row in DOUBTS.trim().lines() {
+fn every_warning_begins_at_its_limit() {
+    for row in WARNINGS.trim().lines() {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        let [name, changes, field, likely, doubtful, doubt] = cells[..] else {
+        let [name, changes, field, likely, unlikely, warning] = cells[..] else {
             panic!("{row}");
         };
         let mut scene = scene(name);
@@ -70,19 +71,19 @@ fn every_doubt_begins_at_its_limit() {
             put(&mut scene, field, value(text));
         }
         put(&mut scene, field, value(likely));
-        let (path, _) = doubt.split_once('=').expect("a field and a value");
-        let found = doubts(&scene);
+        let (path, _) = warning.split_once('=').expect("a field and a value");
+        let found = warnings(&scene);
         let is_there = found.iter().any(|found| found.starts_with(path));
         assert!(!is_there, "{row}\n{found:?}");
-        put(&mut scene, field, value(doubtful));
-        let found = doubts(&scene);
-        let is_there = found.iter().any(|found| found.starts_with(doubt));
+        put(&mut scene, field, value(unlikely));
+        let found = warnings(&scene);
+        let is_there = found.iter().any(|found| found.starts_with(warning));
         assert!(is_there, "{row}\n{found:?}");
     }
 }
 
 #[test]
-fn nobody_doubts_the_shared_scenes() {
+fn the_shared_scenes_have_no_warning() {
     for name in [
         "belt",
         "chain",
@@ -93,13 +94,13 @@ fn nobody_doubts_the_shared_scenes() {
         "hybrid",
         "sprocket",
     ] {
-        assert!(doubts(&scene(name)).is_empty(), "{name}");
+        assert!(warnings(&scene(name)).is_empty(), "{name}");
     }
 }
 
-/// The first doubt about the robot is the likely reason for which it does not fit where it is to start.
+/// The first warning about the robot is the likely reason for which it does not fit where it is to start.
 #[test]
-fn a_robot_that_does_not_fit_its_ground_is_doubted() {
+fn an_error_at_the_start_has_the_first_warning_about_the_robot() {
     let mut scene = scene("points");
     put(&mut scene, "/robot/moment_of_inertia", json!(6.0));
     put(&mut scene, "/start/approach", json!(9.0));
