@@ -8,7 +8,7 @@ pub(crate) fn of(d: &Diagnosis) -> Value {
     json!({
         "outcome": d.outcome.name(),
         "symptom": d.symptom.name(),
-        "transient": d.is_passing(),
+        "transient": d.is_transient(),
         "trials": d.trials.iter().map(trial).collect::<Vec<_>>(),
         "jammed": d.jammed,
         "mechanism": d.mechanism.map(Mechanism::name),
