@@ -64,9 +64,12 @@ class View {
   }
 
   get ending() {
-    const { error, judged, outcome, metrics } = this.answer;
+    const { error, judged, outcome, metrics, diagnosis } = this.answer;
     if (error) return "not simulated";
-    return `${judged ? spaced(outcome) : "stopped"} after ${metrics.time.toFixed(1)} s`;
+    const end = judged ? spaced(outcome) : "stopped";
+    // A run goes on for a while once a stop has begun.
+    if (diagnosis && !diagnosis.transient) return `${end} at ${diagnosis.since.toFixed(1)} s`;
+    return `${end} after ${metrics.time.toFixed(1)} s`;
   }
 
   // The outcome above the picture, and the sentence.

@@ -93,6 +93,17 @@ def test_a_title_says_when_the_goal_was_reached_as_the_metric_does() -> None:
     assert run.title.endswith(f"cleared after {run.metrics['time_to_clear']:.2f} s")
 
 
+def test_a_title_says_when_a_stop_began_not_when_the_run_ended() -> None:
+    wheels = ROBOT.without_rotors().with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
+    run = c2d.simulate(wheels, c2d.terrains.step(0.075), record="summary")
+    assert run.outcome is c2d.Outcome.SEIZED
+    assert run.diagnosis is not None
+    began = run.metrics["time"] - run.metrics["stopped_time"]
+    assert began < run.metrics["time"] - 3.0
+    assert run.diagnosis.since == pytest.approx(began, abs=1e-9)
+    assert run.title == f"engineer, line, step: seized at {began:.2f} s"
+
+
 def test_a_goal_that_no_robot_clears_on_the_ground_gets_a_warning() -> None:
     ground = c2d.terrains.step(0.05)
     scenario = c2d.Scenario(ROBOT, ground, duration=300.0)

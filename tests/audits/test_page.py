@@ -371,7 +371,7 @@ def test_the_repaired_robot_is_replayed_next_to_the_original_with_the_same_draws
     assert repaired.scenario.robot.track == found.repairs[0].robot.track
     assert repaired.scenario == own.scenario.replace({"robot.track": found.repairs[0].robot.track})
     captions = [text for _, text in page.all("figcaption")][:2]
-    assert captions[0].startswith("the model seized after")
+    assert captions[0].startswith("the model seized at")
     assert captions[1].startswith(f"{beside} cleared after")
 
 

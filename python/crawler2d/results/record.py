@@ -281,10 +281,15 @@ class Record:
 
     @property
     def ending(self) -> str:
-        """How it ended, in a few words."""
+        """How it ended, in a few words, and when.
+
+        A run goes on for some time once a goal is reached or a stop has begun: the time is that of
+        the goal, or when the stop began.
+        """
         if self.error is not None:
             return type(self.error).__name__
-        # A run ends when the goal has been held for a while; it was cleared before.
+        if self.diagnosis is not None and self.diagnosis.outcome.is_stop:
+            return f"{self.outcome} at {self.diagnosis.since:.2f} s"
         is_cleared = self.outcome is Outcome.CLEARED
         time = self.metrics["time_to_clear" if is_cleared else "time"]
         return f"{self.outcome} after {time:.2f} s"
