@@ -188,6 +188,17 @@ def test_wheels_on_flippers_without_limit_leave_that_of_the_others(tmp_path: Pat
     assert reading.robot.drivetrain.torque_sharing == "track"
 
 
+@pytest.mark.parametrize(("of_tips", "wanted"), [(20.0, 1.25), (16.0, 1.0), (40.0, 1.25)])
+def test_the_slowest_wheel_sets_the_speed_also_where_it_is_on_a_flipper(
+    tmp_path: Path, of_tips: float, wanted: float
+) -> None:
+    """Wheels of 125 mm turn at 10 rad/s, those at the tips are half as large."""
+    reading = each_with('effort="5" velocity="10"', f'effort="5" velocity="{of_tips:g}"', tmp_path)
+    assert reading.robot.drivetrain.max_speed == pytest.approx(wanted, rel=1e-12)
+    notes = [note for note in reading.notes if "limit the speed of all tracks to 1 m/s" in note]
+    assert len(notes) == (wanted < 1.25)
+
+
 def test_a_differential_drive_of_gazebo_classic_limits_the_torque(tmp_path: Path) -> None:
     joints = "".join(
         f"<{side}_joint>{side}_{end}_joint</{side}_joint>"
@@ -324,7 +335,7 @@ def test_a_servo_of_mujoco_holds_its_control_by_both_gains(
     pytest.importorskip("mujoco")
     text = driven(rf'<general \1 biastype="affine" {settings} forcerange="-5 5"/>')
     reading = read(tmp_path, text, "cart.xml")
-    assert reading.robot.drivetrain.max_speed == pytest.approx(wanted * 0.125)
+    assert reading.robot.drivetrain.max_speed == pytest.approx(wanted * 0.0625)  # of the tips
 
 
 @pytest.mark.parametrize("is_first", [True, False])

@@ -352,7 +352,7 @@ def drivetrain_of(
     pairs : list of Pair
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     on_flippers : list of Pair
-        Wheels that share the torque with those of the chassis.
+        Wheels that share torque and speed with those of the chassis.
     tracks : sequence of Track
         The models of the tracks, that of the chassis first.
     radius : float
@@ -362,7 +362,13 @@ def drivetrain_of(
     """
     tree, engine = log.tree, log.engine
     log.notes.append(ENGINES[engine].description(is_belt=isinstance(tracks[0], BeltTrack)))
-    speed, speed_source = _speed(tree, pairs)
+    speed, speed_source = _speed(tree, [*pairs, *on_flippers])
+    alone, _ = _speed(tree, pairs)
+    if speed < alone:
+        log.notes.append(
+            f"wheels on flippers limit the speed of all tracks to {speed:.3g} m/s: here these run"
+            f" at one speed, and those of the chassis alone could at {alone:.3g} m/s"
+        )
     sides = [_wheels(tree, pairs, side, engine) for side in _SIDES]
     of_chassis = [wheel for side in sides for wheel in side]
     if of_chassis:  # not a belt alone, whose force no wheel on a flipper states
@@ -447,7 +453,7 @@ def _states(joint: Joint, *names: str) -> bool:
 
 
 def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
-    """[m/s] Return the largest speed of the track: the slowest of its wheels sets it."""
+    """[m/s] Return the largest speed of the tracks: the slowest of all their wheels sets it."""
     limits = _of_plugins(tree, _SPEEDS)
     for runner in (each for pair in pairs for each in pair.both):
         if runner.joint is None:
