@@ -406,6 +406,29 @@ def _default_lines(part: Shape | Link | Joint, *names: str) -> None:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Coupling:
+    """What moves joints together, and is not read.
+
+    Parameters
+    ----------
+    joints : tuple of str
+        Those that it moves.
+    name : str
+        What it is, such as "mimic".
+    value, reason : str
+        What it says, and what becomes of it, for a warning.
+    at : Where
+        Its line.
+    """
+
+    joints: tuple[str, ...]
+    name: str
+    value: str
+    reason: str
+    at: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Plugin:
     """A plugin of the file with its settings: path, text and line of each."""
 
@@ -441,6 +464,8 @@ class Tree:
         The joints that the file gives a motor, with the line that does.
     tracks : tuple of str
         Links whose surface something outside the file moves.
+    couplings : tuple of Coupling
+        What moves joints together.
     at : Where
         Line of the model.
     """
@@ -453,6 +478,7 @@ class Tree:
     plugins: tuple[Plugin, ...] = ()
     driven: Mapping[str, Where] = field(default_factory=dict)
     tracks: tuple[str, ...] = ()
+    couplings: tuple[Coupling, ...] = ()
     at: Where = NOWHERE
 
     @property

@@ -366,4 +366,4 @@ def test_actuators_of_tendons_are_those_of_no_joint(tmp_path: Path) -> None:
     motor = '</fixed></tendon><actuator><motor tendon="left_rear_joint" ctrlrange="-2 2"/>'
     reading = read(tmp_path, mjcf("").replace("<actuator>", tendon + motor), "cart.xml")
     assert reading.robot.drivetrain.max_torque == pytest.approx(30.0)
-    assert not [warning for warning in reading.warnings if "several" in warning]
+    assert not [warning for warning in reading.warnings if "has several" in warning]

@@ -86,6 +86,7 @@ class Assembly:
         self.view = view = replace(view, middle=middle_of(runners))
         castors = gear.remove_castors(view.middle, tolerance)
         self.warn_of_undriven(gear, castors)
+        self.warn_of_coupled(gear)
         pairs = pair_runners(gear.runners, view)
         arms = arm_pairs(log, gear.arms, view)
         is_belt = is_belted(gear.runners, str(tree.at))
@@ -195,6 +196,15 @@ class Assembly:
             if wheels:
                 names = list_names([wheel.name for wheel in wheels], _SHOWN)
                 self.log.add_warning(wheels[0].link.at, names, reason)
+
+    def warn_of_coupled(self, gear: RunningGear) -> None:
+        """Warn of what moves wheels or flippers together with other joints."""
+        runners = [*gear.runners, *(runner for arm in gear.arms for runner in arm.runners)]
+        joints = {runner.joint.name for runner in runners if runner.joint is not None}
+        joints |= {arm.joint.name for arm in gear.arms}
+        for each in self.log.tree.couplings:
+            if joints.intersection(each.joints):
+                self.log.add_warning(f"{each.at}: {each.name}", each.value, each.reason)
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
         """[kg] Return the mass that moves at track speed: moment of inertia by radius squared.

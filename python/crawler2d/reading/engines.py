@@ -405,7 +405,7 @@ def drivetrain_of(
     inertias = [sum(side) for side in rotors]
     if sharing == "wheel":
         inertias = [len(side) * rotor for side in rotors for rotor in side]
-    controller = _controller(log, motors, radius)
+    controller = _controller(log, motors, of_chassis, radius)
     gain_torque = torque if controller is None else controller.gain * speed / radius
     if gain_torque < torque and has_limits:
         path = f"{motors[0][0].gain_at}: gain[{motors[0][0].name}]"
@@ -532,12 +532,26 @@ def _sharing(
     return "wheel"
 
 
-def _controller(log: ReadLog, wheels: Sequence[tuple[Joint, float]], radius: float) -> PI | None:
-    """Return the controller of one side: the servos of its wheels, if the engine has such."""
-    gains = [(joint.gain or 0.0) * (radius / own) ** 2 for joint, own in wheels]
-    if not ENGINES[log.engine].has_gain or not gains or not min(gains) > 0.0:
+def _controller(
+    log: ReadLog,
+    wheels: Sequence[tuple[Joint, float]],
+    of_chassis: Sequence[tuple[Joint, float]],
+    radius: float,
+) -> PI | None:
+    """Return the controller of one side: the servos of its wheels, if the engine has such.
+
+    All wheels of the chassis need one. Motors on flippers without a servo add nothing to the gain.
+    """
+    servos = [wheel for wheel in wheels if (wheel[0].gain or 0.0) > 0.0]
+    others = [wheel for wheel in wheels if wheel not in servos]
+    if not ENGINES[log.engine].has_gain or not servos or any(each in of_chassis for each in others):
         log.cite("robot.drivetrain", controller=f"{log.at}: none")
         return None
-    places = lines([joint.gain_at for joint, _ in wheels], "sum of one side")
+    gains = [(joint.gain or 0.0) * (radius / own) ** 2 for joint, own in servos]
+    places = lines([joint.gain_at for joint, _ in servos], "sum of one side")
     log.sources["robot.drivetrain.controller"] = places
+    if others:
+        names = list_names([joint.name for joint, _ in others])
+        reason = "have no servo of their speed: the gain of a side is that of its other wheels"
+        log.add_warning(others[0][0].gain_at, names, reason)
     return PI(gain=0.5 * sum(gains))

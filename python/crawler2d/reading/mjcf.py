@@ -18,6 +18,7 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import (
+    Coupling,
     Friction,
     Joint,
     Link,
@@ -30,9 +31,16 @@ from crawler2d.model_tree import (
     unit,
 )
 from crawler2d.reading.files import LARGEST_TOGETHER, Files, reason_of
+from crawler2d.reading.log import list_names
 from crawler2d.reading.meshes import MOST_CORNERS, Meshes
 from crawler2d.reading.parsing import Element, ask_child, no_more_files, serve
-from crawler2d.reading.parts import collisions, ellipsoid, order_links
+from crawler2d.reading.parts import (
+    ON_ITS_OWN,
+    collisions,
+    ellipsoid,
+    order_links,
+    warn_of_tilt,
+)
 
 __all__ = ["read_mjcf"]
 
@@ -47,7 +55,11 @@ _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
 
 _SHAPES = {0: "plane", 1: "hfield", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder"}
 _SHAPES |= {6: "box", 7: "mesh"}
+_SHARED = "is left out: these joints are read as without the motor that pulls at it"
 _ON_JOINTS = (0, 1)  # the numbers of transmissions to a joint, not a tendon, site or body
+_ON_TENDON = 3  # and to a tendon
+_OF_JOINT = 1  # the number of what a fixed tendon runs over
+_BY_JOINTS = 2  # the number of equations between joints
 _INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is a position
 
 
@@ -134,6 +146,10 @@ class _Model:
 
     def tree(self, name: str | None) -> Tree:
         root = self.root(name)
+        body = self.bodies[root]
+        path = f"{self.where(body)}: body[{body['name']}]"
+        placed = from_quaternion(body["turn"], body["place"])
+        warn_of_tilt(path, placed, "body", self.meshes.warnings)
         poses = {root: Pose()}
         joints: dict[str, Joint] = {}
         for number in self.subtree(root)[1:]:
@@ -152,6 +168,16 @@ class _Model:
             links=tuple(sorted(links, key=lambda link: order.index(link.name))),
             joints=joints,
             driven={name: self.where(motor) for name, motor in self.motors.items()},
+            couplings=tuple(
+                Coupling(
+                    joints=tuple(each["joints"]),
+                    name=f"{each['kind']}[{each['name']}]",
+                    value=list_names(each["joints"]),
+                    reason=_SHARED if each["kind"] == "tendon" else ON_ITS_OWN,
+                    at=self.where(each),
+                )
+                for each in self.answer["couplings"]
+            ),
             at=self.at,
         )
 
@@ -356,6 +382,7 @@ def _compile(mujoco: Any, *, text: str, file: str, files: Item) -> Item:
         "name": spec.modelname,
         "lacking": [{"body": body.id, **geom} for body, geom, _ in lacking],
         **{name: [part(model, each) for each in items] for name, (part, items) in parts.items()},
+        "couplings": [*_tendons(model, spec), *_equations(spec)],
     }
 
 
@@ -500,6 +527,30 @@ def _motor(model: Any, actuator: Any) -> Item:
         "velocity": abs(gain / held) * most / gear if has_speed and most is not None else None,
         "line": _line(actuator),
     }
+
+
+def _tendons(model: Any, spec: Any) -> Iterator[Item]:
+    """Yield the fixed tendons that have an actuator, with the joints that each runs over."""
+    names = {joint.id: joint.name or f"joint {joint.id}" for joint in spec.joints}
+    for actuator in spec.actuators:
+        kind, number = int(model.actuator_trntype[actuator.id]), actuator.id
+        if kind == _ON_TENDON:
+            tendon = int(model.actuator_trnid[number, 0])
+            first, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
+            over = range(first, first + count)
+            joints = [
+                names[int(model.wrap_objid[i])] for i in over if model.wrap_type[i] == _OF_JOINT
+            ]
+            what = {"kind": "tendon", "name": actuator.target, "line": _line(actuator)}
+            yield {**what, "joints": joints}
+
+
+def _equations(spec: Any) -> Iterator[Item]:
+    """Yield the equations between two joints, of which the first follows the second."""
+    for each in spec.equalities:
+        if int(each.type) == _BY_JOINTS and each.active and each.name2:
+            what = {"kind": "equality", "name": each.name or each.name1, "line": _line(each)}
+            yield {**what, "joints": [each.name1, each.name2]}
 
 
 if __name__ == "__main__":

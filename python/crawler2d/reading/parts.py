@@ -13,6 +13,7 @@ import numpy as np
 from crawler2d.errors import ScenarioError
 from crawler2d.model_tree import (
     Array,
+    Coupling,
     Joint,
     Link,
     Plugin,
@@ -28,6 +29,7 @@ from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.parsing import Element, real
 
 __all__ = [
+    "ON_ITS_OWN",
     "Limit",
     "coefficient",
     "collision_ancestors",
@@ -37,6 +39,7 @@ __all__ = [
     "inertia",
     "joint_of",
     "joint_or_fixed",
+    "mimicry",
     "moved_links",
     "moving_joint",
     "named_tracks",
@@ -44,6 +47,7 @@ __all__ = [
     "plugin_of",
     "shape_of",
     "solid",
+    "warn_of_tilt",
     "wheel_torques",
 ]
 
@@ -78,12 +82,16 @@ _DRIVEN = (
 
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
+ON_ITS_OWN = "is left out: the joint is read as one that moves by itself, within its own limits"
+"""What becomes of a joint that follows another one."""
+
 Limit = tuple[float, Where]
 """A figure of a joint and its line. A negative or infinite effort or speed is no limit."""
 
 _MOST_LINKS = 1000
 _USUAL_FRICTION = 1.0  # of SDF, where a file says nothing
 _LONGEST_NAME = 200
+_UPRIGHT = 0.01  # [rad] A root that leans by less is meant to stand upright.
 
 
 def shape_of(
@@ -331,6 +339,23 @@ def moving_joint(
         velocity_at=at.get("velocity", joint.at),
         dynamics_at=next((at[name] for name in dynamics if name in at), joint.at),
     )
+
+
+def mimicry(name: str, mimic: Element, multiplier: str, offset: str) -> Coupling:
+    """Return what lets a joint of this name follow another one, with the texts of both numbers."""
+    leader = mimic.attributes.get("joint", "none")
+    value = f"{leader}, times {multiplier or '1'} plus {offset or '0'} rad"
+    return Coupling(
+        joints=(name,), name=f"mimic[{name}]", value=value, reason=ON_ITS_OWN, at=mimic.where
+    )
+
+
+def warn_of_tilt(path: str, pose: Pose, what: str, warnings: list[ReadingWarning]) -> None:
+    """Warn of the pose of a root that is not upright: a model is read in the frame of its root."""
+    tilt = math.acos(min(1.0, max(-1.0, float(pose.turn[2, 2]))))
+    if tilt > _UPRIGHT:
+        reason = f"is left out: the z axis of the {what} is taken as upwards"
+        warnings.append((path, f"{math.degrees(tilt):.3g} degrees off upright", reason))
 
 
 def coefficient(element: Element | None, owner: Element) -> Limit:

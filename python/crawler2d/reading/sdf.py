@@ -36,12 +36,14 @@ from crawler2d.reading.parts import (
     inertia,
     joint_of,
     joint_or_fixed,
+    mimicry,
     moving_joint,
     named_tracks,
     order_links,
     plugin_of,
     shape_of,
     solid,
+    warn_of_tilt,
 )
 
 __all__ = ["MODEL", "SCOPE", "read_sdf"]
@@ -208,6 +210,11 @@ def _flag(element: Element, tag: str) -> bool | None:
     return None if child is None else child.text.lower() in ("1", "true")
 
 
+def _text(element: Element, tag: str) -> str:
+    child = element.only(tag)
+    return "" if child is None else child.text
+
+
 def _drives(model: Element) -> bool:
     """Whether a model has joints that turn without limit, or a plugin that moves tracks."""
     plugins = tuple(plugin_of(each) for each in model.within() if each.tag == "plugin")
@@ -262,6 +269,8 @@ class _Model:
         ]
 
     def tree(self) -> Tree:
+        placed, _ = _pose_of(self.model, [])
+        warn_of_tilt(f"{self.model.at}: pose", placed, "model", self.warnings)
         joints = {}
         ends = []
         for part in self.parts("joint"):
@@ -303,6 +312,12 @@ class _Model:
             },
             plugins=plugins,
             driven=driven_by(plugins),
+            couplings=tuple(
+                mimicry(part.name, mimic, *(_text(mimic, tag) for tag in ("multiplier", "offset")))
+                for part in self.parts("joint")
+                for axis in part.element.all("axis")
+                for mimic in axis.all("mimic")
+            ),
             at=self.model.where,
         )
 

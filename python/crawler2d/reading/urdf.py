@@ -33,6 +33,7 @@ from crawler2d.reading.parts import (
     inertia,
     joint_of,
     joint_or_fixed,
+    mimicry,
     moving_joint,
     named_tracks,
     order_links,
@@ -140,6 +141,15 @@ def read_urdf(
         joints=joints,
         plugins=plugins,
         driven=driven_by(plugins) | _driven(root),
+        couplings=tuple(
+            mimicry(
+                element.attribute("name"),
+                mimic,
+                *(mimic.attributes.get(name, "") for name in ("multiplier", "offset")),
+            )
+            for element, _ in by_child.values()
+            for mimic in element.all("mimic")
+        ),
         at=root.where,
     )
 
