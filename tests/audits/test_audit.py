@@ -586,6 +586,18 @@ def test_a_slow_robot_is_not_driven_faster_than_it_can(most: float) -> None:
     assert speed > 0.0
 
 
+def test_the_speeds_of_a_robot_that_creeps_are_told_apart() -> None:
+    """A tenth of 4 mm/s was rounded to none, and all of 0.4 mm/s, too."""
+    slow = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_speed=4e-4))
+    found = c2d.audit(
+        slow, STEP, duration=0.01, samples=9, repeats=1, repair=False, seed=2, **QUIET
+    )
+    speeds = np.unique(found.table["speed"].values).tolist()
+    assert speeds == pytest.approx([4e-5, 4e-4 / 3.0, 4e-4], rel=0.05)
+    assert len(found.verdicts[0].seized_at) == 3
+    assert "at 4e-05, 0.000133 and 0.0004 m/s in turn" in words.population(found)
+
+
 def test_an_audit_without_any_result_has_a_page() -> None:
     refused: Any = {"terrain.friction": c2d.uniform(-2.0, -1.0)}
     found = c2d.audit(SEIZING, STEP, vary=refused, unknown={}, repeats=1, repair=False, **QUIET)

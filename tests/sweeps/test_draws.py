@@ -24,7 +24,7 @@ from crawler2d.variation.distributions import (
 from crawler2d.variation.draws import Variation, uniform_numbers
 from tests.kept import refusing
 from tests.shared import ROBOT, VARIANTS
-from tests.sweeps.small import SAID
+from tests.sweeps.small import SAID, quiet
 
 DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.friction"]
 
@@ -422,3 +422,15 @@ def test_a_path_that_is_no_field_lists_the_fields() -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
     with refusing(SAID, r"did you mean height\?"):
         draw(base, {"terrain.hight": uniform(0.0, 0.1)})
+
+
+def test_draws_that_differ_in_the_place_of_a_star_have_a_column_each() -> None:
+    """The heights of all corners, and both coordinates of one of them."""
+    paths = {"robot.belly[*][1]": shifted(-0.01, 0.0), "robot.belly[1][*]": shifted(0.0, 1e-3)}
+    base = Scenario(ROBOT, c2d.terrains.step(0.02), duration=0.0)
+    table = quiet(base, {}, vary=paths, repeats=3)
+    columns = [table[f"drawn_robot_belly_{name}"] for name in ("all_1", "1_all")]
+    assert [column.attrs["path"] for column in columns] == list(paths)
+    heights, corners = (column.values for column in columns)
+    assert (heights < 0.0).all()
+    assert (corners > 0.1).all()

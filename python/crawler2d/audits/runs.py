@@ -226,6 +226,20 @@ def scenario_of(
     return Scenario(ready, ground, drive=drive, start=start, duration=duration)
 
 
+def round_speeds(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m/s] Round speeds to a millimetre per second, or to two digits of the slowest one.
+
+    Examples
+    --------
+    >>> round_speeds(np.array([0.0392, 0.1307, 0.392])).tolist()
+    [0.039, 0.131, 0.392]
+    >>> round_speeds(np.array([0.0001, 0.000333, 0.001])).tolist()
+    [0.0001, 0.00033, 0.001]
+    """
+    slowest = np.abs(speeds[speeds != 0.0]).min(initial=1.0)
+    return np.round(speeds, max(3, 1 - math.floor(math.log10(slowest))))
+
+
 def raise_flippers(robot: Robot, drive: Drive) -> Robot:
     """Raise the flippers of a robot that climbs, as its driver does before the obstacle."""
     if robot.flippers is None or not isinstance(drive.gait, Climb):
@@ -290,7 +304,7 @@ class Runs:
         )
         levels = self.vary.get("drive.speed")
         factors = np.array(levels.factors if isinstance(levels, Levels) else (1.0,))
-        speeds = np.round(self.scenario.drive.speed * factors, 3)
+        speeds = round_speeds(self.scenario.drive.speed * factors)
         return Course(planned, list(robots), samples if self.unknown else repeats, speeds)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.audits.record import bodies_per_side, names_of
+from crawler2d.audits.runs import round_speeds
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.parameters.robot import Robot
@@ -116,7 +117,7 @@ def _what_differs(audit: AuditSetup) -> str:
 
 def _speeds_and_sizes(levels: NDArray[np.float64], audit: AuditSetup) -> str:
     """Say at which speeds [m/s] runs drove, and over which sizes of the obstacles."""
-    *slow, fast = (f"{speed:g}" for speed in np.unique(np.round(levels, 3)).tolist())
+    *slow, fast = (f"{speed:g}" for speed in np.unique(round_speeds(levels)).tolist())
     speeds = f"{', '.join(slow)} and {fast} m/s in turn" if slow else f"{fast} m/s"
     drawn = audit.vary.get("drive.speed")
     if audit.drive.schedule:

@@ -295,9 +295,25 @@ def field_attributes(paths: Sequence[str]) -> dict[str, str]:
 
 
 def short_names(paths: Sequence[str]) -> dict[str, str]:
-    """Name each path by its last part, or by the whole path if that name is taken."""
+    """Name each path by its last part, or by the whole path if that name is taken.
+
+    Where whole paths differ in nothing but the place of a ``[*]``, that is written as "all".
+
+    Examples
+    --------
+    >>> list(short_names(["robot.mass", "robot.belly[*][1]"]).values())
+    ['mass', 'belly_1']
+    >>> list(short_names(["robot.belly[*][1]", "robot.belly[1][*]"]).values())
+    ['robot_belly_all_1', 'robot_belly_1_all']
+    """
     uses = Counter([*map(_last, paths), *METRICS, *COLUMNS])
-    return {p: _last(p) if uses[_last(p)] == 1 else _name(p) for p in paths}
+    whole = Counter(map(_name, paths))
+    return {
+        path: _last(path)
+        if uses[_last(path)] == 1
+        else _name(path if whole[_name(path)] == 1 else path.replace("[*]", "_all"))
+        for path in paths
+    }
 
 
 def _dimensions(axes: Sequence[tuple[str, ...]]) -> list[str]:
