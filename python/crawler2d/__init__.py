@@ -27,8 +27,8 @@ if ctrl_c.is_command(sys.argv, sys.orig_argv):
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from crawler2d._core import build_info
 from crawler2d.common.bodies import BodyKind, Lane
+from crawler2d.common.build import build_info
 from crawler2d.common.keywords import limits_hint
 from crawler2d.errors import (
     Crawler2dError,

@@ -23,6 +23,13 @@ def test_the_core_is_a_release_build() -> None:
     assert c2d.build_info()["profile"] == "release"
 
 
+def test_the_docstring_names_every_key() -> None:
+    assert c2d.build_info.__doc__ is not None
+    rows = c2d.build_info.__doc__.splitlines()
+    named = [row.split("`")[1] for row in rows if row.lstrip().startswith("`")]
+    assert named == list(c2d.build_info())
+
+
 def test_flags_of_a_benchmark_reach_benchmarks_alone() -> None:
     # Cargo hands them to libtest as well, which knows none of them, of whatever else may be one.
     for crate in ("rust_core", "benches"):
