@@ -101,6 +101,28 @@ def test_a_file_that_cannot_be_read_is_an_error_in_the_reports_of_all(
     assert first["locations"][0]["physicalLocation"]["region"] == {"startLine": 3}
 
 
+@pytest.mark.parametrize("kind", [c2d.SimulationDiverged, c2d.errors.InternalError])
+def test_a_file_whose_audit_fails_does_not_end_those_of_the_others(
+    quick: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit, kind: Any
+) -> None:
+    assert quick.is_dir()
+    of_one = instant_audit(of_file)
+
+    def audit(file: Path, **how: Any) -> c2d.Audit:
+        if file.stem == "two":
+            raise kind("chassis is not finite")
+        found: c2d.Audit = of_one(file, **how)
+        return found
+
+    monkeypatch.setattr(command, "audit", audit)
+    status, out, err = run(capsys, "models/two.urdf", "models/one.urdf", "--junit", "junit.xml")
+    assert (status, out.count("Verdicts: ")) == (2, 1)
+    assert err == f"crawler2d audit: {Path('models/two.urdf')}: chassis is not finite\n"
+    two, one = ElementTree.parse("junit.xml").getroot()
+    assert two.get("failures") == "1"
+    assert len(one) > 1
+
+
 def test_several_files_are_audited_one_after_the_other(quick: Path, capsys: Any) -> None:
     reports = ("--junit", "junit.xml", "--sarif", "audit.sarif")
     status, out, _ = run(capsys, "models/one.urdf", "models/two.urdf", *reports)

@@ -16,7 +16,7 @@ from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.lint import RULES
 from crawler2d.audits.record import names_of
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import Crawler2dError, ScenarioError
 
 if TYPE_CHECKING:
     from crawler2d.audits.lint import Finding
@@ -124,9 +124,9 @@ def check_of(path: Path, found: AuditRecord | LintResult) -> Check:
     return Check(path=path, found=found, issues=issues)
 
 
-def unreadable(path: Path, error: ScenarioError) -> Check:
-    """Return the check of a file that cannot be read: only the error, at its line."""
-    lines = _lines_in(path.name, error.path)
+def unreadable(path: Path, error: Crawler2dError) -> Check:
+    """Return the check of a file that has no audit: only the error, at its line if it has one."""
+    lines = _lines_in(path.name, error.path) if isinstance(error, ScenarioError) else ()
     issue = Issue(rule=_UNREAD, severity="error", text=str(error), lines=lines)
     return Check(path=path, found=None, issues=(issue,))
 

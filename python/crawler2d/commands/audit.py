@@ -26,15 +26,25 @@ from crawler2d.audits.text import LintResult, lint_only, plain_of
 from crawler2d.audits.verdicts import least_samples
 from crawler2d.commands.files import OUT, check_out, check_places
 from crawler2d.common.files import write_text
-from crawler2d.errors import LimitError, ScenarioError, StoreError
+from crawler2d.errors import (
+    Crawler2dError,
+    InternalError,
+    LimitError,
+    ScenarioError,
+    SimulationDiverged,
+    StoreError,
+)
 from crawler2d.reading.engines import ENGINES
 from crawler2d.reading.loading import TOLERANCE
 from crawler2d.reading.meshes import MeshRule
 
 __all__ = ["add_arguments", "run"]
 
-_Results = Sequence[tuple[Path, Audit | LintResult | ScenarioError]]
-"""Each file with what was found in it, or why it could not be read."""
+_Results = Sequence[tuple[Path, Audit | LintResult | Crawler2dError]]
+
+_OF_ONE_FILE = (ScenarioError, SimulationDiverged, InternalError)
+"""What ends the audit of a file, while the others have theirs."""
+"""Each file with what was found in it, or why it has no audit."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -171,17 +181,17 @@ def run(options: argparse.Namespace) -> int:
     try:
         _check_options(options)
         baseline = _read_baseline(options)
-        found: list[tuple[Path, Audit | LintResult | ScenarioError]] = []
+        found: list[tuple[Path, Audit | LintResult | Crawler2dError]] = []
         for file in options.file:
             if found:
                 live.print("")
             try:
                 found.append((file, _audit_file(file, options, live)))
-            except ScenarioError as error:
+            except _OF_ONE_FILE as error:
                 if len(options.file) == 1 and options.junit is None and options.sarif is None:
                     raise
                 found.append((file, error))  # the reports have it, and the other files theirs
-                _print_error(error)
+                _print_error(error, file)
         count = _report(found, options, baseline, out)
     except KeyboardInterrupt as interrupt:
         kept = "no run is kept; --store FILE keeps every finished run"
@@ -196,15 +206,18 @@ def run(options: argparse.Namespace) -> int:
             raise  # of the output, whose reader has seen enough or whose disk is full
         _print_error(error)
         return 2
-    if any(isinstance(each, ScenarioError) for _, each in found):
+    if any(isinstance(each, Crawler2dError) for _, each in found):
         return 2
     if options.lint or options.baseline is not None:
         return 1 if count else 0
     return 1 if any(isinstance(each, Audit) and each.seizes for _, each in found) else 0
 
 
-def _print_error(error: Exception) -> None:
-    texts = map(as_options, (str(error), *getattr(error, "__notes__", ())))
+def _print_error(error: Exception, file: Path | None = None) -> None:
+    """Print an error and its notes; if it names no file itself, that of the audit."""
+    is_named = file is None or isinstance(error, ScenarioError)
+    said = str(error) if is_named else f"{file}: {error}"
+    texts = map(as_options, (said, *getattr(error, "__notes__", ())))
     print("crawler2d audit:", "\n  before that: ".join(texts), file=sys.stderr)
 
 
@@ -313,7 +326,7 @@ def _report(
 ) -> int:
     """Write the reports that are asked for, print what is new, and count the issues that fail."""
     checks = [
-        unreadable(path, each) if isinstance(each, ScenarioError) else check_of(path, each)
+        unreadable(path, each) if isinstance(each, Crawler2dError) else check_of(path, each)
         for path, each in found
     ]
     if baseline is not None:
