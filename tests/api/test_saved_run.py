@@ -313,6 +313,17 @@ def test_a_file_that_cannot_be_written_is_named_by_its_path(
     assert not list(tmp_path.iterdir())
 
 
+def test_a_run_is_not_written_under_the_suffix_of_another_format(
+    stopped: c2d.Run, tmp_path: Path
+) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"path must end in \.npz") as caught:
+        stopped.save(tmp_path / "run.txt")
+    assert caught.value.value == "run.txt"
+    assert not list(tmp_path.iterdir())
+    for name in ("run.NPZ", "run"):
+        assert c2d.load(stopped.save(tmp_path / name)).metrics == stopped.metrics
+
+
 def test_threads_that_write_to_one_path_leave_one_of_their_files_whole(tmp_path: Path) -> None:
     texts = [letter * 100_000 for letter in "abcdefgh"]
     with ThreadPoolExecutor(8) as pool:

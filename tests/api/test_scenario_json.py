@@ -269,6 +269,24 @@ def test_deep_nesting_is_refused(begin: str, end: str, depth: int) -> None:
         Scenario.from_json(begin * depth + "1" + end * depth)
 
 
+@pytest.mark.parametrize(
+    ("text", "got"),
+    [
+        ("{}", "{}"),
+        ('{"robots": 1, "a": 2}', "JSON of something else, with the keys robots, a"),
+        ('{"$schema": "x", "type": "object"}', "JSON of something else, with the keys $schema, t"),
+        (json.dumps(dict.fromkeys("abcdefgh", 0)), "JSON of something else, with the keys a, b, c"),
+    ],
+)
+def test_json_of_something_else_is_refused_as_such(text: str, got: str) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"must be what Scenario\.to_json writes") as caught:
+        Scenario.from_json(text)
+    assert caught.value.path == "scenario"
+    assert str(caught.value.value).startswith(got)
+    with pytest.raises(c2d.ScenarioError, match="schema must be given"):  # another version has it
+        Scenario.from_json('{"robot": {}}')
+
+
 def test_a_field_that_is_missing_is_looked_for_among_those_given(scenario: Scenario) -> None:
     text = scenario.to_json()
     for key, rule in [

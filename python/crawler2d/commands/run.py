@@ -19,6 +19,7 @@ from crawler2d.commands.files import check_places, keeping, read_scenario
 from crawler2d.common.units import METRICS
 from crawler2d.pictures.page import main_figures
 from crawler2d.results.outcome import Outcome
+from crawler2d.results.run_file import check_suffix
 from crawler2d.runs.batch import simulate
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--save",
         type=Path,
         metavar="FILE",
-        help="save the run, for crawler2d view and crawler2d.load",
+        help="save the run as .npz, for crawler2d view and crawler2d.load",
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of text")
 
@@ -47,6 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Simulate a scenario file; returns the exit status."""
     check_places({"--html": options.html, "--save": options.save}, read=[options.file])
+    if options.save is not None:
+        check_suffix(options.save, "--save")
     scenario = read_scenario(options.file)
     written: list[Path] = []
     with keeping(written):

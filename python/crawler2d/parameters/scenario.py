@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from crawler2d import _core
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, warn
-from crawler2d.parameters.fields import from_dict, replace_path
+from crawler2d.parameters.fields import fields_of, from_dict, replace_path
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import ScenarioBase
 from crawler2d.parameters.terrain import Terrain
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 __all__ = ["Scenario", "check_scenario"]
 
 _LONGEST = 120
-"""Characters of a terrain in a notebook: one of points may have thousands."""
+"""Characters of a terrain in a notebook, and of other names: there may be thousands."""
+
+_KEYS = 5
+"""Of another object that are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +138,13 @@ class Scenario(ScenarioBase):
             text.encode()
         except UnicodeEncodeError:
             raise ScenarioError("scenario", ascii(text[:80]), "must be valid Unicode") from None
-        return from_dict(cls, json.loads(_core.canonical(text)))
+        try:
+            whole = _core.canonical(text)
+        except ScenarioError as error:
+            if error.path == "schema":
+                _refuse_another_object(text)
+            raise
+        return from_dict(cls, json.loads(whole))
 
     def validate(self) -> None:
         """Check every rule, and warn of values that are probably mistakes.
@@ -207,6 +216,22 @@ class Scenario(ScenarioBase):
             return scenario_card(self.to_json(), self._description(), terrain)
         except Exception:  # the display of a scenario must never fail
             return None
+
+
+def _refuse_another_object(text: str) -> None:
+    """Refuse JSON that lacks all fields of a scenario: it is not an old one, but something else.
+
+    Raises
+    ------
+    ScenarioError
+        If it does.
+    """
+    keys = list(json.loads(text))
+    if not {"schema", *(field.name for field in fields_of(Scenario))}.intersection(keys):
+        shown = ", ".join(keys[:_KEYS]) + (", ..." if len(keys) > _KEYS else "")
+        rule = "must be what Scenario.to_json writes, with the keys schema, robot, terrain and more"
+        value = f"JSON of something else, with the keys {shown[:_LONGEST]}" if keys else "{}"
+        raise ScenarioError("scenario", value, rule)
 
 
 def check_scenario(scenario: object) -> Scenario:

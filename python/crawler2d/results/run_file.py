@@ -21,13 +21,14 @@ if TYPE_CHECKING:
 
     from crawler2d.results.record import Record
 
-__all__ = ["SIGNATURE", "read_open_run", "read_run", "write_run"]
+__all__ = ["SIGNATURE", "check_suffix", "read_open_run", "read_run", "write_run"]
 
 R = TypeVar("R")
 
 SIGNATURE = b"PK\x03\x04"
 """How a .npz begins, which is a zip file."""
 
+_SUFFIX = ".npz"
 _FORMAT = "crawler2d run"
 _VERSION = 1
 
@@ -37,6 +38,19 @@ _OF_STOP = "diagnosis/contacts"
 _AGAIN = "copy it again from where it was saved, or simulate its scenario again"
 _CUT = f"is cut short or damaged: {_AGAIN}"
 _OTHER = "is not a saved run: Run.save writes them, and Scenario.from_json reads scenarios"
+
+
+def check_suffix(path: Path, name: str) -> None:
+    """Refuse a place whose suffix is that of another format, under the name of an argument.
+
+    Raises
+    ------
+    ScenarioError
+        If it has one.
+    """
+    if path.suffix.lower() not in ("", _SUFFIX):
+        rule = f"must end in {_SUFFIX}, the format of saved runs, or have no suffix"
+        raise ScenarioError(name, path.name, rule)
 
 
 def write_run(run: Record, path: Path) -> None:

@@ -236,7 +236,7 @@ class ShownRun(Record):
         Parameters
         ----------
         path : str or path-like
-            Where to write it; ``.npz`` is the usual suffix.
+            Where to write it; its suffix is ``.npz``, or it has none.
 
         Returns
         -------
@@ -246,7 +246,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If the run has no result, see `error`.
+            If the run has no result, see `error`, or the path has another suffix.
         OSError
             If the file cannot be written.
 
@@ -265,8 +265,9 @@ class ShownRun(Record):
         # Imported only when used.
         from pathlib import Path  # noqa: PLC0415
 
-        from crawler2d.results.run_file import write_run  # noqa: PLC0415
+        from crawler2d.results.run_file import check_suffix, write_run  # noqa: PLC0415
 
+        check_suffix(Path(path), "path")
         write_run(self, Path(path))
         return Path(path)
 
