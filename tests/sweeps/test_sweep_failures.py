@@ -176,3 +176,30 @@ def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(ImportError, match=r"pip install 'crawler2d\[analysis\]'"):
         quiet(BRIEF, {"terrain.height": [0.1]})
+
+
+@pytest.mark.parametrize(
+    ("drive", "how"),
+    [
+        (c2d.Drive(schedule=[(0.0, 0.1)]), {"over": {"drive.speed": [0.1, 0.3]}}),
+        (c2d.Drive(schedule=[(0.0, 0.1)]), {"vary": {"drive.speed": c2d.uniform(0.1, 0.3)}}),
+        (c2d.Drive(schedule=[(0.0, 0.1)]), {"unknown": {"drive.speed": c2d.scaled(0.5, 1.0)}}),
+        (
+            c2d.Drive(gait=c2d.Hold(0.0, [(0.0, 0.2)])),
+            {"over": {"drive.gait.angle": [0.1, 0.3], "terrain.height": [0.01, 0.02]}},
+        ),
+    ],
+)
+def test_a_command_that_a_schedule_replaces_is_not_swept(drive: c2d.Drive, how: Any) -> None:
+    """All rows would be alike: a schedule that begins at 0 s leaves no time for another speed."""
+    base = BASE.replace({"robot": c2d.robots.engineer(), "drive": drive, "duration": 0.05})
+    with pytest.raises(c2d.ScenarioError, match="must not be swept or drawn where drive") as caught:
+        quiet(base, **{"over": {}, **how})
+    assert caught.value.path in {"drive.speed", "drive.gait.angle"}
+    assert "schedule begins at 0 s and sets it, got ((0.0, 0." in str(caught.value)
+    later = {"drive.schedule": ((0.01, 0.1),)} if drive.schedule else {"drive.gait": c2d.Hold()}
+    quiet(base.replace(later), **{"over": {}, **how})
+    quiet(
+        base, {"drive.schedule": {"none": None, "some": ((0.0, 0.1),)}, "drive.speed": [0.1, 0.2]}
+    )
+    quiet(base, {})  # the usual draws may vary the speed

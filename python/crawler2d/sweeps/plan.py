@@ -30,6 +30,9 @@ Checked = _core.PreparedScenario | ScenarioError
 _UNKNOWN = "unknown "
 """Kind of the draws of the unknowns, which differ from those of the repeats."""
 
+_SCHEDULED = {"drive.speed": "drive", "drive.gait.angle": "drive.gait"}
+"""Commands that a schedule replaces, and what has it."""
+
 
 @dataclass(frozen=True, slots=True)
 class World:
@@ -216,19 +219,45 @@ def plan_runs(
     Raises
     ------
     ScenarioError
-        If a cell lacks a path; a scenario that breaks a rule stands in its plan as its error.
+        If a cell lacks a path, or one has no effect in any cell; a scenario that breaks a rule
+        stands in its plan as its error.
     """
     plans: list[Plan] = []
+    cells: list[Scenario] = []
     for points in itertools.product(*(axis.points() for axis in axes)):
         names = [point for point, _ in points]
         with _prefixed(_cell_path(names)):
             cell = base.replace({path: v for _, values in points for path, v in values.items()})
         worlds = planner.worlds(cell, names, like)
+        if any(isinstance(each.checked, _core.PreparedScenario) for each in worlds):
+            cells.append(cell)
         like = next(
             (w.checked for w in worlds if isinstance(w.checked, _core.PreparedScenario)), like
         )
         plans += [planner.runs(world, 0, repeats) for world in worlds]
+    drawn = [
+        path
+        for each in (planner.variation, planner.unknowns)
+        for path in each.distributions
+        if path not in each.optional
+    ]
+    _check_effect(cells, [*drawn, *(path for axis in axes for path in axis.paths)])
     return plans
+
+
+def _check_effect(cells: Sequence[Scenario], paths: Collection[str]) -> None:
+    """Refuse to sweep or draw a command that a schedule replaces from the start in every cell.
+
+    Raises
+    ------
+    ScenarioError
+        If there is one: all of its rows would be alike.
+    """
+    for path, of in _SCHEDULED.items():
+        schedules = [getattr(read_path(cell, of), "schedule", None) for cell in cells]
+        if cells and path in paths and all(each and each[0][0] <= 0.0 for each in schedules):
+            rule = f"must not be swept or drawn where {of}.schedule begins at 0 s and sets it"
+            raise ScenarioError(path, schedules[0], rule)
 
 
 def _apply_draws(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> list[Checked]:
