@@ -152,6 +152,8 @@ def plot_outcomes(data: xarray.Dataset, ax: Axes | None) -> Axes:
         left += fraction
     for place, count, (rate, low, high) in zip(at, runs, rates, strict=True):
         text = f"{rate:.2f} ({low:.2f} to {high:.2f}), {count} runs"
+        if np.isnan(rate):
+            text = f"no result in {count} runs"
         ax.text(1.01, place, text, fontsize="x-small", va="center")
     for index, ground in enumerate(grounds):
         where = 0.0, at[index * len(models)] - 0.6
@@ -249,6 +251,8 @@ def _certainty(data: xarray.Dataset, *, banded: bool) -> str:
     """Say how many runs stand behind a cell, and how well its rate is known."""
     counts = data["count"].to_numpy()
     counts = counts[counts > 0]
+    if not counts.size:
+        return "no run has a result"
     least, most = int(counts.min()), int(counts.max())
     each = "of each sample " if banded else ""
     runs = f"{least} runs" if least == most else f"{least} to {most} runs"

@@ -86,6 +86,8 @@ def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
         k = names.index(name)
         x = at[k] + 1.0
         text = f"{role}: {name}, fresh runs {again[k]:.3f} ({lower[k]:.3f} to {upper[k]:.3f})"
+        if np.isnan(again[k]):
+            text = f"{role}: {name}, no fresh run has a result"
         ax.vlines(x, lower[k], upper[k], color=color, linewidth=2.5)
         ax.plot(x, again[k], marker, color=color, markersize=7.0, label=text, zorder=3)
     # Those of one cost stand side by side in a strip that has the cost's name.

@@ -278,10 +278,13 @@ def _verdict(
     parts = [f"In the search {first.label} is {why}."]
     for each, place in zip(confirmed, ("winner", "runner-up"), strict=False):
         intervals = each.intervals
-        rates = [interval.rate for interval in intervals]
+        rates = [math.inf if math.isnan(rate) else rate for rate, _, _ in intervals]
         at = rates.index(min(rates))
         rate, low, high = intervals[at]
         where = f" on {grounds[at]}" if len(grounds) > 1 else ""
+        if math.isnan(rate):
+            parts.append(f"No fresh run of the {place} {each.candidate.label} has a result.")
+            continue
         parts.append(
             f"In {len(each.pooled[at].valid)} fresh runs{where}, the {place} {each.candidate.label}"
             f" clears {rate:.3f} ({low:.3f} to {high:.3f}):"
