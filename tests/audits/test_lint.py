@@ -73,6 +73,17 @@ def test_a_mass_farther_out_than_any_part_is_found() -> None:
     assert found.severity == "error"
 
 
+def test_large_wheels_at_the_tips_of_arms_are_far_out_too() -> None:
+    arms = c2d.Flippers(
+        length=0.2, root_radius=0.064, tip_radius=0.037, mass=0.775, ends="both", torque_limit=30.0
+    )
+    robot = c2d.robots.engineer(flippers=arms, track=c2d.LineOfWheels(4, wheel_radius=0.12))
+    heavy = replace(robot, moment_of_inertia=robot.mass * 0.5**2)
+    assert of_robot(heavy, "inertia") == []
+    (found,) = of_robot(heavy.with_track(c2d.BeltTrack()), "inertia")  # whose tips are smaller
+    assert "no part is farther than 0.488 m" in found.message
+
+
 def test_torque_beyond_the_grip_of_any_floor_is_found() -> None:
     drivetrain = replace(ROBOT.drivetrain, max_torque=300.0)
     (found,) = of_robot(replace(ROBOT, drivetrain=drivetrain), "effort")

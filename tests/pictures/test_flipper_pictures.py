@@ -167,3 +167,17 @@ def test_an_intrusion_is_in_the_belt_of_what_the_page_says(
         away = corner - belt
         clear = (sides[:, 0] * away[:, 1] - sides[:, 1] * away[:, 0]) / np.hypot(*sides.T)
         assert clear.min() > -1e-3
+
+
+@pytest.mark.filterwarnings("ignore:robot.flippers.tip_radius has no effect")
+def test_large_wheels_at_the_tips_of_arms_fit_into_the_view() -> None:
+    """Of 0.34 m long arms with wheels of 0.12 m; their tips are smaller without wheels."""
+    arms = c2d.Flippers(
+        length=0.34, root_radius=0.064, tip_radius=0.037, mass=0.775, torque_limit=30.0
+    )
+    lengths = []
+    for track in (c2d.BeltTrack(), c2d.LineOfWheels(4, wheel_radius=0.12)):
+        robot = c2d.robots.engineer(flippers=arms, track=track)
+        run = c2d.simulate(robot, c2d.terrains.flat(), duration=0.05)
+        lengths.append(page_of(run)["robot"]["length"])
+    assert np.diff(lengths) == pytest.approx(0.12 - 0.037)

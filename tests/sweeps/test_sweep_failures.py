@@ -181,11 +181,11 @@ def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize(
     ("drive", "how"),
     [
-        (c2d.Drive(schedule=[(0.0, 0.1)]), {"over": {"drive.speed": [0.1, 0.3]}}),
-        (c2d.Drive(schedule=[(0.0, 0.1)]), {"vary": {"drive.speed": c2d.uniform(0.1, 0.3)}}),
-        (c2d.Drive(schedule=[(0.0, 0.1)]), {"unknown": {"drive.speed": c2d.scaled(0.5, 1.0)}}),
+        (c2d.Drive(schedule=((0.0, 0.1),)), {"over": {"drive.speed": [0.1, 0.3]}}),
+        (c2d.Drive(schedule=((0.0, 0.1),)), {"vary": {"drive.speed": c2d.uniform(0.1, 0.3)}}),
+        (c2d.Drive(schedule=((0.0, 0.1),)), {"unknown": {"drive.speed": c2d.scaled(0.5, 1.0)}}),
         (
-            c2d.Drive(gait=c2d.Hold(0.0, [(0.0, 0.2)])),
+            c2d.Drive(gait=c2d.Hold(0.0, ((0.0, 0.2),))),
             {"over": {"drive.gait.angle": [0.1, 0.3], "terrain.height": [0.01, 0.02]}},
         ),
     ],

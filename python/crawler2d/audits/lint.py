@@ -12,6 +12,7 @@ import numpy as np
 
 from crawler2d.common.bodies import belly_corners
 from crawler2d.model_tree import Joint, Link, Where
+from crawler2d.parameters.flippers import reach_of
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import ForceTrack, HybridWheels, LineOfWheels
 from crawler2d.reading.loading import size_of
@@ -192,7 +193,7 @@ def _length_and_height(robot: Robot) -> tuple[float, float]:
 def _gyration_of_robot(robot: Robot) -> Iterator[_Break]:
     """Compare the radius of gyration with the farthest that any part can be from the middle."""
     length, height = _length_and_height(robot)
-    arms = 0.0 if robot.flippers is None else robot.flippers.length + robot.flippers.tip_radius
+    arms = reach_of(robot.flippers, robot.track)
     tallest = np.abs(belly_corners(robot.belly)[:, 1]).max(initial=0.5 * height)
     farthest = math.hypot(0.5 * length + arms, tallest)
     gyration = math.sqrt(robot.moment_of_inertia / robot.mass)

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 from crawler2d.parameters.fields import Parameters
 from crawler2d.parameters.track import Track
 
-__all__ = ["Flippers"]
+__all__ = ["Flippers", "reach_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,3 +109,19 @@ class Flippers(Parameters, path="robot.flippers"):
     rotor_inertia: float = 0.0
     self_locking: bool = False
     track: Track | None = None
+
+
+def reach_of(arms: Flippers | None, track: Track) -> float:
+    """[m] Return how far arms reach from their pivots; 0 without arms.
+
+    Parameters
+    ----------
+    arms : Flippers or None
+        Those of a robot.
+    track : track model
+        That of the robot, which arms without one of their own have, too.
+    """
+    if arms is None:
+        return 0.0
+    wheel = getattr(arms.track or track, "wheel_radius", None) or 0.0
+    return arms.length + max(arms.tip_radius, wheel)

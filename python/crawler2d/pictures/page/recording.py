@@ -11,6 +11,7 @@ import numpy as np
 from crawler2d.common.arrays import read_instants
 from crawler2d.common.bodies import BodyKind
 from crawler2d.drawings.scene import relative
+from crawler2d.parameters.flippers import reach_of
 from crawler2d.pictures.scenes import ghosts, scene_of, usual_force, usual_speed
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dic
 def _length(robot: Robot) -> float:
     """[m] Length of robot to fit into the view: the track with one flipper stretched out."""
     outline, flippers = robot.outline, robot.flippers
-    beyond = 0.0 if flippers is None else flippers.length + flippers.tip_radius
+    beyond = reach_of(flippers, robot.track)
     radius = max(outline.front_radius, outline.rear_radius)
     track = outline.axle_distance + outline.front_radius + outline.rear_radius
     return track + max(0.0, beyond - radius)
