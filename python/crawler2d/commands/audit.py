@@ -41,10 +41,10 @@ from crawler2d.reading.meshes import MeshRule
 __all__ = ["add_arguments", "run"]
 
 _Results = Sequence[tuple[Path, Audit | LintResult | Crawler2dError]]
+"""Each file with what was found in it, or why it has no audit."""
 
 _OF_ONE_FILE = (ScenarioError, SimulationDiverged, InternalError)
-"""What ends the audit of a file, while the others have theirs."""
-"""Each file with what was found in it, or why it has no audit."""
+"""Errors that end the audit of one file alone; the other files are still audited."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
