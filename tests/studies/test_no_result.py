@@ -38,7 +38,7 @@ def drawn(found: Any) -> list[str]:
 
 
 def test_bars_of_outcomes_have_no_rate() -> None:
-    found = c2d.studies.success(SHORT, terrains={"step": SHORT.terrain}, models=WHEELS, **FEW)
+    found = c2d.studies.success_rate(SHORT, terrains={"step": SHORT.terrain}, models=WHEELS, **FEW)
     assert drawn(found).count("no result in 2 runs") == 2
 
 
