@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::geometry::{Disc, Envelope, Pose, Rotation, ShoeLoop, Teeth, Vector, end_discs};
-use crate::scenario::{End, Robot};
+use crate::scenario::{End, LineOfWheels, Robot, Track};
 
 /// A closed chain of shoes round a guide, or round sprocket and idler.
 #[derive(Clone, Debug)]
@@ -136,6 +136,13 @@ impl Flipper {
             return Vec::new();
         };
         let [rear, front] = end_discs(&robot.outline);
+        let tip = match flippers.track_model(&robot.track) {
+            Track::Line(LineOfWheels {
+                wheel_radius: Some(radius),
+                ..
+            }) => radius.max(flippers.tip_radius),
+            _ => flippers.tip_radius,
+        };
         let arm = |end: End| {
             let (sign, mass) = (end.sign(), 2.0 * flippers.mass);
             Self {
@@ -146,9 +153,7 @@ impl Flipper {
                 arm: Vector::new(0.5 * sign * flippers.length, 0.0),
                 mass,
                 moment_of_inertia: mass * flippers.length * flippers.length / 12.0,
-                reach: flippers
-                    .root_radius
-                    .max(flippers.length + flippers.tip_radius),
+                reach: flippers.root_radius.max(flippers.length + tip),
                 root_radius: flippers.root_radius,
                 rate_limit: flippers.rate_limit,
                 torque_limit: 2.0 * flippers.torque_limit,

@@ -6,8 +6,8 @@ use super::outline::Body;
 use super::{BodyKind, ChainOfShoes, Model, MotorRule, Mount, Part, Shape, start_position};
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::scenario::{
-    ClosedSurface, ClosedTrack, Ends, HybridWheels, Pi, Robot, Scenario, Surface, Terrain, Track,
-    Wheel,
+    ClosedSurface, ClosedTrack, Ends, HybridWheels, LineOfWheels, Pi, Robot, Scenario, Surface,
+    Terrain, Track, Wheel,
 };
 use crate::terrain::Ground;
 
@@ -240,6 +240,16 @@ fn nothing_reaches_farther_than_the_tip_of_an_arm() {
             to_pivot + flippers.length + flippers.tip_radius
         });
         assert_relative_eq!(model.reach(), reach.fold(0.0, f64::max));
+        let mut large = robot.clone();
+        let arms = large.flippers.as_mut().expect("it has some");
+        arms.track = Some(Track::Line(LineOfWheels {
+            count: 2,
+            wheel_radius: Some(2.0 * arms.tip_radius),
+            wheel: Wheel::Round,
+            as_track: true,
+        }));
+        let more = self::model(&large).reach() - model.reach();
+        assert_relative_eq!(more, flippers.tip_radius, max_relative = 1e-12);
     }
     for robot in on_all_tracks() {
         let model = model(&robot);
