@@ -371,10 +371,8 @@ impl Scene<'_> {
         let closes = |one: usize, next: usize| {
             let [a, b] = [one, next].map(|shoe| self.running.shoes[shoe]);
             let bent = (a.rotation.inverse() * b.rotation).angle().abs();
-            let middle = 0.5 * (a.translation.x + b.translation.x);
-            durations[one].min(durations[next]) > STAYS
-                && bent > BENT
-                && self.direction * middle > 0.0
+            let middle_leads = self.direction * (a.translation.x + b.translation.x) > 0.0;
+            durations[one].min(durations[next]) > STAYS && bent > BENT && middle_leads
         };
         self.model.chains.iter().any(|chain| {
             let next = |shoe: usize| {

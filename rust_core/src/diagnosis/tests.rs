@@ -1,12 +1,17 @@
 //! Diagnoses of synthetic stops of two wheels.
 #![allow(clippy::float_cmp)] // lengths here are exact in binary
 
+mod chains;
+
 use super::*;
 use crate::contact::{Contact, TrackEnvelope};
+use crate::dynamics::Direction;
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::observe::{Bearing, DriveMean};
 use crate::robot::{BodyKind, Model, Mount, Part};
-use crate::scenario::{LineOfWheels, Scenario, Surface, Terrain, Track, TrackOutline, Wheel};
+use crate::scenario::{
+    GearWheel, LineOfWheels, Scenario, Surface, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+};
 use crate::terrain::Ground;
 
 /// [m] Half the distance between the end axles.
@@ -27,14 +32,18 @@ struct Stage {
 
 impl Stage {
     fn new() -> Self {
-        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-        scenario.robot.track = Track::Line(LineOfWheels {
+        Self::on(Track::Line(LineOfWheels {
             count: 2,
             wheel_radius: None,
             wheel: Wheel::Round,
             as_track: true,
-        });
+        }))
+    }
+
+    fn on(track: Track) -> Self {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.robot.track = track;
         scenario.robot.outline.discs = TrackOutline::two_discs(2.0 * HALF, [RADIUS, RADIUS]);
         let post = |x: f64| {
             let (from, to) = (x - 0.005, x + 0.005);
@@ -262,6 +271,38 @@ fn the_moment_on_a_hinge_is_the_arms_weight_times_its_level_arm() {
     let expected = 2.0 * flippers.mass * level / scenario.robot.mass;
     assert_eq!(hinges.len(), 1);
     assert!((hinges[0].weight / expected - 1.0).abs() < 1e-12);
+    let most = stage.model.flippers[0].torque_limit / stage.weight();
+    assert!((hinges[0].torque / most - 1.0).abs() < 1e-12);
+}
+
+/// A belt that runs round the pivot of an arm stands still with its sprocket while the arm turns: where it lies on the
+/// sprocket the ground has no lever on the arm, and elsewhere that of its distance along the arm.
+#[test]
+fn ground_under_the_sprocket_of_an_arm_does_not_turn_it() {
+    let mut stage = Stage::new();
+    let text = include_str!("../../../tests/scenarios/engineer_flippers_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    stage.model = Model::on(&scenario.robot, &stage.ground).expect("it can be built");
+    let pivot = stage.model.flippers[0].pivot;
+    let pose = Pose::new(Vector::new(0.2, 0.1), 0.3);
+    let radius = stage.model.drive_radius;
+    let along = |unit: Vector, spin_lever: f64| Direction {
+        unit: pose.rotation * unit,
+        spin_lever,
+        ..Direction::default()
+    };
+    // A belt is pulled along itself, at the radius of its sprocket, and pressed square to that.
+    let directions = [along(Vector::Y, 0.0), along(Vector::X, radius)];
+    for ahead in [0.0, 0.1] {
+        let point = pose.transform_point(pivot + Vector::new(ahead, -radius));
+        let scene = stage.scene();
+        let (hinge, hung) = scene.hung(Mount::Flipper(0), pose, point, directions);
+        assert_eq!(hinge, Some(0));
+        let levers = hung.map(|direction| direction.joint_lever);
+        assert!((levers[0] - ahead).abs().max(levers[1].abs()) < 1e-15);
+        let (hinge, hung) = scene.hung(Mount::Chassis, pose, point, directions);
+        assert!(hinge.is_none() && hung.iter().all(|d| d.joint_lever == 0.0));
+    }
 }
 
 /// Both tracks are one drive here. A motor is stalled if it stands, up to the creep of what sticks, and gives its limit.
@@ -287,6 +328,85 @@ fn a_motor_that_stands_at_its_limit_is_stalled() {
             stalled,
             "{force} N, {speed} m/s"
         );
+    }
+}
+
+/// A motor whose wheel is in the air does not count.
+#[test]
+fn of_two_motors_with_ground_one_that_stands_is_half() {
+    let mut stage = Stage::new();
+    stage.scenario.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
+    stage.model = Model::on(&stage.scenario.robot, &stage.ground).expect("it can be built");
+    let limit = stage.scenario.criteria.torque_limit * stage.model.motor.force;
+    let on = |speed: f64| DriveMean {
+        force: limit,
+        speed,
+    };
+    let moving = stage.scenario.drive.speed;
+    for (speeds, share) in [([0.0, moving], 0.5), ([0.0, 0.0], 1.0), ([moving; 2], 0.0)] {
+        let mut stance = stage.stance([0.5, 0.5]);
+        for (k, bearing) in stance.bearings.iter_mut().enumerate() {
+            let is_of = |part: &Part| part.drive == Some(k);
+            let part = stage.model.parts.iter().position(is_of);
+            bearing.contact.part = part.expect("each wheel has a motor");
+        }
+        stance.drives = speeds.map(on).to_vec();
+        assert_eq!(stage.examine(&stance).stalled_share, share, "{speeds:?}");
+    }
+}
+
+/// Driving forwards, what is fixed to a wheel goes rearwards under its axle: it digs into ground whose normal leans forwards.
+#[test]
+fn a_tooth_that_would_dig_into_ground_in_the_track_is_a_flank() {
+    let stage = Stage::on(Track::Line(LineOfWheels {
+        count: 2,
+        wheel_radius: None,
+        wheel: Wheel::Gear(GearWheel {
+            grouser_count: Some(8),
+            grouser_height: Some(0.1 * RADIUS),
+            tip_thickness: Some(0.004),
+            base_thickness: None,
+            phase_fraction: 0.0,
+        }),
+        as_track: true,
+    }));
+    let is_rear = |part: &Part| part.discs().any(|(disc, _)| disc.center.x == -HALF);
+    let rear = stage.model.parts.iter().position(is_rear);
+    let radius = stage.model.drive_radius;
+    for (direction, lean, interlocks) in [
+        (1.0, 0.06, true),
+        (1.0, 0.04, false),
+        (1.0, -0.06, false),
+        (-1.0, -0.06, true),
+        (-1.0, -0.04, false),
+    ] {
+        let mut stance = stage.stance([0.5, 0.5]);
+        for bearing in &mut stance.bearings {
+            let axle = stance.position - Vector::new(HALF, 0.0);
+            let spoke = axle - bearing.contact.point;
+            // By so much of the speed of the drive it digs in.
+            let sine = lean * radius / spoke.length();
+            bearing.contact.part = rear.expect("it has a rear wheel");
+            bearing.contact.normal = Rotation::new(-libm::asin(sine)) * spoke.normalize();
+        }
+        let force = stage.model.motor.force;
+        stance.drives = vec![DriveMean { force, speed: 0.0 }];
+        let seen = StopTimes {
+            time: 3.0,
+            since: 1.0,
+            progress: 0.25,
+        };
+        let scene = Scene {
+            direction,
+            ..stage.scene()
+        };
+        let expected = if interlocks {
+            Mechanism::Interlocked
+        } else {
+            Mechanism::Blocked
+        };
+        let found = examine(&scene, &stance, &seen).mechanism;
+        assert_eq!(found, Some(expected), "{direction} {lean}");
     }
 }
 
@@ -320,6 +440,17 @@ fn ground_between_wheels_jams_from_the_least_depth_on() {
         assert_eq!(found.jammed, jams, "{least} m");
         assert!(found.intrusion.is_some());
     }
+}
+
+/// The same posts dent the belt that the shared scenario has.
+#[test]
+fn ground_within_a_single_smooth_surface_is_not_inside_the_track() {
+    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let stage = Stage::on(scenario.robot.track);
+    let found = stage.examine(&stage.stance([0.5, 0.5]));
+    assert!(found.intrusion.is_none() && !found.jammed);
+    assert!(found.contacts.iter().all(|contact| !contact.in_pocket));
 }
 
 /// What counts is how much of the weight a contact lifts, by its normal force and by its friction.
@@ -359,100 +490,5 @@ fn a_lock_holds_what_stands_and_holds_back_what_moves() {
         stance.drives = vec![DriveMean { force: 0.0, speed }];
         let found = balance::balance(&stage.scene(), &stance, 1e-6).expect("there is a weight");
         assert_eq!(found.holds(), holds, "{angle} rad, {speed} m/s");
-    }
-}
-
-/// The same stage with the Engineer on a chain of shoes.
-fn on_a_chain() -> Stage {
-    let mut stage = Stage::new();
-    let text = include_str!("../../../tests/scenarios/engineer_chain_step.json");
-    stage.scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-    stage.model = Model::on(&stage.scenario.robot, &stage.ground).expect("it can be built");
-    stage
-}
-
-/// The part that is the plate of a shoe.
-fn plate(stage: &Stage, shoe: usize) -> usize {
-    let is_plate = |part: &Part| part.kind == BodyKind::Shoe && part.mount == Mount::Shoe(shoe);
-    let plate = stage.model.parts.iter().position(is_plate);
-    plate.expect("each shoe has one")
-}
-
-/// Driving forwards shoes run rearwards below and turn with the front end; a contact that another shoe has by now moves as
-/// that one does.
-#[test]
-fn a_shoe_moves_as_the_chain_runs_where_its_contact_is() {
-    let stage = on_a_chain();
-    let scene = stage.scene();
-    let shoes = &scene.running.shoes;
-    let chain = &stage.model.chains[0];
-    let [_, front] = chain.ends;
-    let (mut below, mut round) = (0, 0);
-    for (shoe, pose) in shoes.iter().enumerate() {
-        let at = pose.translation;
-        let motion = scene.motion(plate(&stage, shoe), at).at(at);
-        let arm = at - front.center;
-        if at.y < 0.0 && at.x.abs() < 0.1 {
-            below += 1;
-            assert!(
-                (motion - Vector::new(-1.0, 0.0)).length() < 1e-9,
-                "{motion}"
-            );
-        } else if arm.x > 0.5 * front.radius {
-            round += 1;
-            // The chord over two pitches is a little shorter than the arc.
-            let along = -crate::geometry::left_of(arm).normalize();
-            assert!((motion - along).length() < 0.25, "{motion} for {along}");
-        }
-        let other = (shoe + 7) % shoes.len();
-        assert_eq!(scene.motion(plate(&stage, other), at).at(at), motion);
-    }
-    assert!(below > 2 && round > 0);
-}
-
-/// Two shoes that bear at once on ground inside the track pinch it where the gap between them closes.
-#[test]
-fn neighbouring_shoes_pinch_at_the_leading_end() {
-    let mut stage = on_a_chain();
-    let shoes = stage.scene().running.shoes.clone();
-    let count = shoes.len();
-    let bend = |shoe: usize| {
-        let next = shoes[(shoe + 1) % count];
-        (shoes[shoe].rotation.inverse() * next.rotation)
-            .angle()
-            .abs()
-    };
-    let middle =
-        |shoe: usize| 0.5 * (shoes[shoe].translation.x + shoes[(shoe + 1) % count].translation.x);
-    let any = |is: &dyn Fn(usize) -> bool| (0..count).find(|shoe| is(*shoe)).expect("there is one");
-    let front = any(&|shoe| bend(shoe) > 0.5 && middle(shoe) > 0.0);
-    let rear = any(&|shoe| bend(shoe) > 0.5 && middle(shoe) < 0.0);
-    let straight = any(&|shoe| bend(shoe) < 1e-3 && middle(shoe) > 0.05);
-    for (shoe, speed, durations, pinched) in [
-        (front, 0.4, [0.6, 0.6], true),
-        (rear, -0.4, [0.6, 0.6], true),
-        (front, -0.4, [0.6, 0.6], false),
-        (rear, 0.4, [0.6, 0.6], false),
-        (straight, 0.4, [0.6, 0.6], false),
-        (front, 0.4, [0.6, 0.4], false),
-    ] {
-        stage.scenario.drive.speed = speed;
-        let mut stance = stage.stance([0.5, 0.5]);
-        let both = [shoe, (shoe + 1) % count];
-        for (i, bearing) in stance.bearings.iter_mut().enumerate() {
-            bearing.contact.part = plate(&stage, both[i]);
-            bearing.duration = durations[i];
-        }
-        let scene = stage.scene();
-        let mut contacts = scene.facts(&stance, None).contacts;
-        assert!(!scene.pinches(&stance, &contacts));
-        for contact in &mut contacts {
-            contact.in_pocket = true;
-        }
-        assert_eq!(
-            scene.pinches(&stance, &contacts),
-            pinched,
-            "{both:?}, {speed} m/s"
-        );
     }
 }

@@ -2,6 +2,8 @@
 #![allow(clippy::float_cmp)] // numbers here are exact in binary
 
 use super::*;
+use crate::scenario::Scenario;
+use crate::terrain::Ground;
 
 /// Signals of steps of 0.25 s: place [m], and force [N] and place of one contact.
 fn signals(steps: &[([f64; 2], f64, [f64; 2])]) -> Signals {
@@ -35,6 +37,29 @@ fn a_contact_is_where_it_was_weighed_by_its_force() {
     let sum = Vector::new(0.0, 1.0) + Vector::new(0.6, 0.8) * 3.0;
     assert_eq!(bearing.contact.normal, sum.normalize());
     assert_eq!(bearing.contact.surface_speed, 5.5);
+}
+
+/// A surface that is as good as on the ground could bear, and so counts even without a force.
+#[test]
+fn what_neither_bears_nor_touches_is_no_contact_of_a_stop() {
+    let (near, far) = (0.5 * TOUCHES.value(), 2.0 * TOUCHES.value());
+    for (force, distance, counts) in [
+        (0.0, near, true),
+        (0.0, TOUCHES.value(), false),
+        (0.0, far, false),
+        (1.0, near, true),
+        (1.0, far, true),
+    ] {
+        let contact = Contact {
+            normal_force: force,
+            ..Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), distance)
+        };
+        let mut signals = Signals::default();
+        let now = Reading::at_rest(0.5, Vector::ZERO);
+        signals.add((&now, 0.5), &[contact], std::iter::empty(), 10.0);
+        let found = signals.stance().bearings.len();
+        assert_eq!(found, usize::from(counts), "{force} N at {distance} m");
+    }
 }
 
 #[test]
@@ -120,4 +145,58 @@ fn loads_of_an_interval_are_means_of_each_contact_that_bears() {
         .collect();
     assert_eq!(means, [(3, 7.0, 1.25), (8, 0.25, 0.125), (5, 1.5, 0.75)]);
     assert_eq!((loads.count(), loads.drain().count()), (0, 0));
+}
+
+/// Only what a run can have gathered is taken from a snapshot.
+#[test]
+fn sums_with_one_thing_spoilt_do_not_fit() {
+    type Spoil = fn(&mut WindowSums);
+
+    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
+    let model = Model::on(&scenario.robot, &ground).expect("it can be built");
+    let steps = [([0.0, 0.0], 1.0, [4.0, 0.0]), ([0.0, 0.0], 3.0, [8.0, 2.0])];
+    assert!(signals(&steps).fits(&model, &ground.lanes));
+    assert!(
+        Signals::default().fits(&model, &ground.lanes),
+        "nothing yet"
+    );
+    let all: [(&str, Spoil); 14] = [
+        ("more drives than there are", |sums| {
+            sums.drives = vec![DriveMean::default(); 99];
+        }),
+        ("start", |sums| sums.start = f64::NAN),
+        ("time below 0", |sums| sums.time = -1.0),
+        ("endless time", |sums| sums.time = f64::INFINITY),
+        ("place", |sums| sums.place[1] = f64::NAN),
+        ("lowest", |sums| sums.low[2] = f64::NEG_INFINITY),
+        ("highest", |sums| sums.high[0] = f64::INFINITY),
+        ("a contact twice", |sums| {
+            sums.contacts.push(sums.contacts[0]);
+        }),
+        ("a facet that there is not", |sums| {
+            sums.contacts[0].last.facet = 99;
+        }),
+        ("weight", |sums| sums.contacts[0].weight = 0.0),
+        ("point", |sums| sums.contacts[0].point.x = f64::NAN),
+        ("normal", |sums| sums.contacts[0].normal.y = f64::NAN),
+        ("friction", |sums| {
+            sums.contacts[0].friction_force = f64::INFINITY;
+        }),
+        ("slip", |sums| sums.contacts[0].slip = f64::NAN),
+    ];
+    for (what, spoil) in all {
+        let mut spoilt = signals(&steps);
+        spoil(&mut spoilt.newer);
+        assert!(!spoilt.fits(&model, &ground.lanes), "{what}");
+        std::mem::swap(&mut spoilt.newer, &mut spoilt.older);
+        assert!(!spoilt.fits(&model, &ground.lanes), "{what} before");
+    }
+    let mut loads = Loads::default();
+    assert!(loads.fits(&model, &ground.lanes));
+    for time in [-1.0, f64::NAN, f64::INFINITY] {
+        loads.time = time;
+        assert!(!loads.fits(&model, &ground.lanes), "{time}");
+    }
 }

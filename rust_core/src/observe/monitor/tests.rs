@@ -176,6 +176,18 @@ fn angles_and_penetrations_are_remembered_at_their_extremes() {
 }
 
 #[test]
+fn the_extreme_angles_of_a_robot_that_never_lies_level_are_both_of_one_sign() {
+    for side in [1.0, -1.0] {
+        let mut robot = Watched::with(|_| {});
+        robot.put(-1.0, RADIUS, side * 0.25);
+        robot.put(-1.0, RADIUS, side * 0.5);
+        let mut extremes = [robot.observed().min_angle, robot.observed().max_angle];
+        extremes.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        assert_eq!(extremes, [side * 0.25, side * 0.5]);
+    }
+}
+
+#[test]
 fn chains_are_remembered_at_their_worst() {
     let mut robot = Watched::with(|_| {});
     let worst = ChainReading {

@@ -361,6 +361,17 @@ fn a_robot_that_still_brakes_from_the_other_direction_has_not_stopped() {
 }
 
 #[test]
+fn a_robot_that_is_told_to_drive_off_has_its_direction_before_its_set_point_moves() {
+    for command in [1.0, -1.0] {
+        let mut way = Way::new(command);
+        way.set_point = 0.0;
+        way.at(3.0);
+        assert_eq!(way.progress.direction, command);
+        assert_eq!(way.progress.best_advance(), command * 3.0);
+    }
+}
+
+#[test]
 fn a_window_of_whole_checks_is_as_many_checks_long() {
     for checks in 1..200 {
         let window = f64::from(checks) * 0.01;

@@ -184,3 +184,16 @@ fn a_chain_that_is_off_ends_a_run_as_long_as_nothing_else_has() {
     robot.monitor.observe_chains(off);
     assert_eq!(robot.monitor.ended_as(), Some(Outcome::TippedOver));
 }
+
+/// Its rear wheel has to be past it as a whole.
+#[test]
+fn the_way_to_the_goal_is_that_of_the_rear_end_of_the_track() {
+    let robot = Watched::with(|_| {});
+    for (x, angle) in [(-1.0, 0.0), (0.5, std::f64::consts::FRAC_PI_3), (2.0, 0.0)] {
+        let mut now = robot.now;
+        (now.position.x, now.chassis_angle) = (x, angle);
+        let rear_end = x - HALF * libm::cos(angle) - RADIUS;
+        let expected = 1.0 - rear_end;
+        assert_relative_eq!(robot.monitor.to_goal(&now), expected, max_relative = 1e-12);
+    }
+}
