@@ -159,3 +159,200 @@ fn foot(corners: &[Twist]) -> Option<Twist> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Draw;
+    use crate::geometry::right_of;
+    use crate::jams::certify::interval::Rectangle;
+    use crate::jams::certify::touch::Normals;
+
+    fn twist(draw: &mut Draw, most: f64) -> Twist {
+        std::array::from_fn(|_| draw.between(-most, most))
+    }
+
+    /// The distance of a hull from the origin by Frank's and Wolfe's method: nothing but steps towards corners.
+    fn distance(points: &[Twist]) -> f64 {
+        let mut at = points[0];
+        for _ in 0..20_000 {
+            let of = |p: &&Twist| dot(p, &at);
+            let corner = points.iter().min_by(|a, b| of(a).total_cmp(&of(b)));
+            let way = minus(corner.expect("there is one"), &at);
+            let share = (-dot(&at, &way) / dot(&way, &way).max(1e-300)).clamp(0.0, 1.0);
+            at = std::array::from_fn(|i| at[i] + share * way[i]);
+        }
+        dot(&at, &at).sqrt()
+    }
+
+    /// The plane across it through the nearest point has all of the hull beyond it.
+    #[test]
+    fn the_nearest_point_of_a_hull_is_as_far_as_the_hull() {
+        let mut draw = Draw(11);
+        let (mut outside, mut inside) = (0, 0);
+        for case in 0..150 {
+            let away = twist(&mut draw, 0.7);
+            let of = |_| {
+                let own = twist(&mut draw, 1.0);
+                std::array::from_fn(|i| own[i] + away[i])
+            };
+            let points: Vec<Twist> = (0..1 + case % 12).map(of).collect();
+            let expected = distance(&points);
+            if let Some(found) = nearest(&points) {
+                outside += 1;
+                let length = dot(&found, &found).sqrt();
+                // Of 20,000 steps their error is left, which falls with their number.
+                assert!(
+                    (length - expected).abs() < 1e-3,
+                    "{case}: {length} {expected}"
+                );
+                let least = points
+                    .iter()
+                    .map(|p| dot(p, &found))
+                    .fold(f64::INFINITY, f64::min);
+                assert!(least >= length * length * (1.0 - 2e-6), "{case}");
+            } else {
+                inside += 1;
+                assert!(expected < 1e-3, "{case}: {expected}");
+            }
+        }
+        assert!(outside > 80 && inside > 10, "{outside} {inside}");
+    }
+
+    #[test]
+    fn a_foot_is_between_the_corners_and_square_to_all_edges() {
+        let on_line = [[1.0, -1.0, 0.5], [1.0, 3.0, 0.5]];
+        assert_eq!(foot(&on_line), Some([1.0, 0.0, 0.5]));
+        assert_eq!(foot(&[[1.0, 1.0, 0.0], [1.0, 3.0, 0.0]]), None);
+        assert_eq!(foot(&[[1.0, -3.0, 0.0], [1.0, -1.0, 0.0]]), None);
+        // A triangle at the height 2, whose sides are at the distances 1, 1 and sqrt(1/2) from the axis.
+        let triangle = |x: f64, y: f64| {
+            [[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]].map(|[p, q]| [p + x, q + y, 2.0])
+        };
+        let found = foot(&triangle(0.0, 0.0)).expect("it is over the origin");
+        assert!(
+            minus(&found, &[0.0, 0.0, 2.0])
+                .iter()
+                .all(|x| x.abs() < 1e-15)
+        );
+        for (x, y, is_over) in [
+            (0.9, 0.0, true),
+            (1.1, 0.0, false),
+            (0.0, 0.9, true),
+            (0.0, 1.1, false),
+            (-0.4, -0.4, true),
+            (-0.6, -0.6, false),
+        ] {
+            assert_eq!(foot(&triangle(x, y)).is_some(), is_over, "{x} {y}");
+        }
+        // Over a corner of it is the origin inside, and not once it is above or below.
+        for (height, is_inside) in [(-1.0, true), (0.5, false), (-3.0, false)] {
+            let mut corners = triangle(0.0, 0.0).map(|[x, y, _]| [x, y, height]).to_vec();
+            corners.push([0.0, 0.0, height + 2.0]);
+            assert_eq!(foot(&corners).is_some(), is_inside, "{height}");
+        }
+    }
+
+    fn touch(draw: &mut Draw) -> Touch {
+        let mut two = |low: f64, high: f64| {
+            let [a, b] = [0.0; 2].map(|_| draw.between(low, high));
+            [a.min(b), a.max(b)]
+        };
+        let (sines, slopes) = (two(-0.8, 0.8), two(-1.0, 1.0));
+        let [middle, half] = [two(-0.3, 0.3), two(0.0, 0.05)].map(Vector::from);
+        let [x, _] = two(-3.0, 3.0);
+        Touch {
+            surface: 0,
+            place: 0,
+            normals: Normals {
+                bisector: Vector::from_angle(x),
+                sines,
+                circle: None,
+                is_on_face: false,
+            },
+            slopes,
+            arm: Rectangle { middle, half },
+            radius: two(-0.1, 0.1)[0],
+            slides: true,
+        }
+    }
+
+    /// The power of the force at its point of the ground, for a normal that is turned from the bisector by the arc of `sine`.
+    fn power(touch: &Touch, (sine, slope): (f64, f64), arm: Vector, [x, y, rate]: Twist) -> f64 {
+        let normal = Vector::from_angle(libm::asin(sine)).rotate(touch.normals.bisector);
+        let force = normal + right_of(normal) * slope;
+        let point = arm - normal * touch.radius;
+        Vector::new(x, y).dot(force) + rate * cross(point, force)
+    }
+
+    /// A force is a normal of the arc with a friction in its range. On the arc 400 steps miss the least by their square.
+    #[test]
+    fn no_force_of_a_touch_has_less_power_than_the_least() {
+        let mut draw = Draw(12);
+        for case in 0..200 {
+            let (mut touch, motion) = (touch(&mut draw), twist(&mut draw, 1.0));
+            let is_point = case % 2 == 0;
+            if is_point {
+                touch.arm.half = Vector::ZERO;
+            }
+            let [x, y, rate] = motion;
+            let found = least(&touch, Vector::new(x, y), rate);
+            let [from, to] = touch.normals.sines;
+            let mut lowest = f64::INFINITY;
+            for k in 0..=400 {
+                let sine = from + (to - from) * f64::from(k) / 400.0;
+                for slope in touch.slopes {
+                    for corner in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                        let arm = touch.arm.middle + touch.arm.half * Vector::from(corner);
+                        lowest = lowest.min(power(&touch, (sine, slope), arm, motion));
+                    }
+                }
+            }
+            assert!(found <= lowest + 1e-15, "{case}: {found} {lowest}");
+            // Where the axle is known. Else the error is at most what the far corner of its place adds, twice.
+            let slack = 2.0 * rate.abs() * touch.arm.half.length() * 1.5;
+            assert!(lowest - found <= slack + 1e-4, "{case}: {found} {lowest}");
+        }
+    }
+
+    /// A level touch of a disc, at this distance [m] ahead of the centre of mass and this height below it.
+    fn below(ahead: f64, slopes: [f64; 2]) -> Touch {
+        Touch {
+            surface: 0,
+            place: 0,
+            normals: Normals {
+                bisector: Vector::Y,
+                sines: [0.0; 2],
+                circle: None,
+                is_on_face: true,
+            },
+            slopes,
+            arm: Rectangle::at(Vector::new(ahead, -0.1)),
+            radius: 0.05,
+            slides: true,
+        }
+    }
+
+    /// Two supports carry a plank whose centre of mass is between them.
+    #[test]
+    fn a_twist_excludes_what_does_not_carry_and_nothing_else() {
+        let length = 0.5;
+        for (places, carries) in [
+            ([-0.2, 0.1], true),
+            ([0.05, 0.2], false),
+            ([-0.3, -0.1], false),
+        ] {
+            let touches = places.map(|ahead| below(ahead, [-0.2, 0.2]));
+            let found = candidate(&touches, length);
+            let excluded = found.is_some_and(|twist| excludes(twist, &touches, length));
+            assert_eq!(excluded, !carries, "{places:?}");
+        }
+        // One that falls without a turn has every support work against it, and one that rises works against the weight.
+        let touches = [below(0.2, [0.0; 2])];
+        let falls = |y: f64, turn: f64| excludes([0.0, y, turn], &touches, length);
+        assert!(!falls(-1.0, 0.0) && !falls(1.0, 0.0));
+        // Falling by 1 and turning, nose up, so that the support 0.2 m ahead rises or falls.
+        assert!(falls(-1.0, 5.1 * length) && !falls(-1.0, 4.9 * length));
+        assert!(!falls(1.0, 5.1 * length));
+    }
+}

@@ -14,6 +14,8 @@ mod inside;
 mod interval;
 mod regions;
 mod search;
+#[cfg(test)]
+mod tests;
 mod tipping;
 mod touch;
 

@@ -125,3 +125,180 @@ impl Wrench {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Draw;
+    use crate::geometry::{Vector, cross, left_of, right_of};
+    use crate::jams::certify::tests::family_on_a_step;
+    use crate::jams::certify::touch::Normals;
+    use crate::jams::places::Facing;
+
+    /// A disc on a face, or on a corner at this distance [m] of its axle, with its arm from the centre of mass.
+    fn touch(normal: Vector, circle: Option<f64>, arm: Vector, radius: f64) -> Touch {
+        Touch {
+            surface: 0,
+            place: 0,
+            normals: Normals {
+                bisector: normal,
+                sines: [0.0; 2],
+                circle,
+                is_on_face: circle.is_none(),
+            },
+            slopes: [0.0; 2],
+            arm: Rectangle::at(arm),
+            radius,
+            slides: true,
+        }
+    }
+
+    fn vector(draw: &mut Draw, most: f64) -> Vector {
+        let [x, y] = [0.0; 2].map(|_| draw.between(-most, most));
+        Vector::new(x, y)
+    }
+
+    /// Force of a unit normal force, and its moment at the point of the ground about the centre of mass.
+    fn wrench([normal, arm]: [Vector; 2], radius: f64, slope: f64) -> [f64; 3] {
+        let force = normal + right_of(normal) * slope;
+        [force.x, force.y, cross(arm - normal * radius, force)]
+    }
+
+    #[test]
+    fn a_wrench_holds_all_forces_of_a_touch() {
+        let mut draw = Draw(21);
+        for case in 0..200 {
+            let normal = Vector::from_angle(draw.between(-3.0, 3.0));
+            let (arm, radius) = (vector(&mut draw, 0.3), draw.between(0.0, 0.1));
+            let mut all = touch(normal, None, arm, radius);
+            all.slopes = [draw.between(-0.9, 0.0), draw.between(0.0, 0.9)];
+            let share = if case % 2 == 0 { 0.0 } else { 1.0 };
+            all.normals.sines = [-0.3 * share, 0.4 * share];
+            all.arm.half = Vector::new(0.02, 0.01) * share;
+            let parts = Wrench::of(&all).parts;
+            for _ in 0..20 {
+                let sine = draw.between(all.normals.sines[0], all.normals.sines[1]);
+                let slope = draw.between(all.slopes[0], all.slopes[1]);
+                let turned = Vector::from_angle(libm::asin(sine)).rotate(normal);
+                let off = vector(&mut draw, 1.0) * all.arm.half;
+                for (part, value) in parts.iter().zip(wrench([turned, arm + off], radius, slope)) {
+                    assert!(
+                        part.low <= value + 1e-15 && value - 1e-15 <= part.high,
+                        "{case}"
+                    );
+                }
+            }
+            if case % 2 == 0 {
+                // With one normal each part is between those of the two ends of the friction.
+                let ends = all.slopes.map(|slope| wrench([normal, arm], radius, slope));
+                for (i, part) in parts.iter().enumerate().take(2) {
+                    let width = (ends[0][i] - ends[1][i]).abs();
+                    assert!((part.high - part.low - width).abs() < 1e-15, "{case}");
+                }
+            }
+        }
+    }
+
+    /// A disc rolls or slides on: its normal turns with the axle about a corner and stays on a face.
+    #[test]
+    fn a_wrench_changes_as_when_the_robot_moves_with_the_contact_closed() {
+        let mut draw = Draw(22);
+        for case in 0..200 {
+            let normal = Vector::from_angle(draw.between(-3.0, 3.0));
+            let (arm, radius) = (vector(&mut draw, 0.3), draw.between(0.01, 0.1));
+            let circle = (case % 2 == 0).then_some(radius + 0.01);
+            let slope = draw.between(-0.9, 0.9);
+            let mut on = touch(normal, circle, arm, radius);
+            on.slopes = [slope; 2];
+            // The velocity of the axle is along the ground.
+            let (rate, speed) = (draw.between(-1.0, 1.0), draw.between(-1.0, 1.0));
+            let velocity = left_of(normal) * speed - left_of(arm) * rate;
+            let moved = |time: f64| {
+                let turned = Vector::from_angle(rate * time).rotate(arm);
+                let axle = velocity * time + turned - arm;
+                let there = circle.map_or(normal, |circle| (normal * circle + axle).normalize());
+                wrench([there, turned], radius, slope)
+            };
+            let step = 1e-5;
+            let (ahead, behind) = (moved(step), moved(-step));
+            let u = [velocity.x, velocity.y, rate].map(Interval::at);
+            let found = Wrench::of(&on).change(&on, u);
+            for (i, part) in found.iter().enumerate() {
+                let slope = (ahead[i] - behind[i]) / (2.0 * step);
+                // Of central differences a rate of up to 1e2 rad/s leaves 1e4 times the square of the step.
+                assert!(
+                    (part.middle() - slope).abs() < 1e-4,
+                    "{case}: {part:?} {slope}"
+                );
+                assert!(part.half() < 1e-12);
+            }
+        }
+    }
+
+    /// Both walls of a notch rise at one angle. The ends of a bar between them stay on lines, and its middle is highest where it
+    /// lies level, by half its length times the tangent: what hangs lower than that is lifted, and comes back.
+    #[test]
+    fn a_bar_in_a_notch_tips_unless_its_mass_hangs_below_the_foot_of_the_notch() {
+        let mut family = family_on_a_step();
+        let half = 0.2;
+        for slope in [0.3, 0.6] {
+            let (sine, cosine) = libm::sincos(slope);
+            let wall = |side: f64| {
+                let mut spot = family.places[0].clone();
+                spot.place.shape = Facing::Face {
+                    ends: [Vector::ZERO; 2],
+                    normal: Vector::new(side * sine, cosine),
+                };
+                spot
+            };
+            family.places = vec![wall(1.0), wall(-1.0)];
+            let on = |side: f64, height: f64| {
+                let arm = Vector::new(-side * half, -height);
+                let place = usize::from(side < 0.0);
+                Touch {
+                    surface: place,
+                    place,
+                    ..touch(Vector::new(side * sine, cosine), None, arm, 0.05)
+                }
+            };
+            let foot = -half * libm::tan(slope);
+            for (height, tips) in [(0.1, true), (0.9 * foot, true), (1.1 * foot, false)] {
+                let both = [on(1.0, height), on(-1.0, height)];
+                assert_eq!(family.tips(&both), tips, "{slope} {height}");
+                // With a third contact, or with one that stands still, more can carry it.
+                let third = Touch {
+                    surface: 2,
+                    ..both[0]
+                };
+                assert!(!family.tips(&[both[0], both[1], third]));
+                assert!(!family.tips(&[
+                    Touch {
+                        slides: false,
+                        ..both[0]
+                    },
+                    both[1]
+                ]));
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_on_one_corner_tips_and_on_one_face_only_if_it_cannot_stand_there() {
+        let family = family_on_a_step();
+        let down = Vector::new(0.0, -0.1);
+        let on_corner = touch(Vector::Y, Some(0.05), down, 0.05);
+        assert!(family.tips(&[on_corner]));
+        let on_face = touch(Vector::Y, None, down, 0.05);
+        assert!(!family.tips(&[on_face]));
+        // The force is not vertical, or the support not under the centre of mass.
+        let pushed = Touch {
+            slopes: [0.5; 2],
+            ..on_face
+        };
+        let aside = Touch {
+            arm: Rectangle::at(Vector::new(0.01, -0.1)),
+            ..on_face
+        };
+        assert!(family.tips(&[pushed]) && family.tips(&[aside]));
+    }
+}

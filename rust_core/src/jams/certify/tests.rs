@@ -1,0 +1,149 @@
+//! What cells show of a robot before a step, beside what single poses in them show.
+
+mod enclosures;
+mod held;
+mod touches;
+
+use super::cell::{Affine, Cell, MOST_PARAMETERS, NUMBERS, Shares, Turns};
+use super::family::Family;
+use super::interval::{Interval, MARGIN, Rectangle};
+use super::touch::Possible;
+use crate::draw::Draw;
+use crate::geometry::Vector;
+use crate::jams::contact::{Contact, Posture};
+use crate::jams::setting::Setting;
+use crate::limits::Cancel;
+use crate::robot::Model;
+use crate::scenario::{LineOfWheels, Scenario, ScenarioError, Surface, Terrain, Track, Wheel};
+use crate::terrain::Ground;
+
+/// [m] Least and greatest height of the step, and both frictions.
+const HEIGHTS: [f64; 2] = [0.07, 0.09];
+const FRICTIONS: [f64; 2] = [0.5, 0.9];
+/// [rad] Greatest angle of the chassis.
+const MOST_ANGLE: f64 = 1.3;
+
+/// The Engineer on four wheels in a row before a step.
+fn scenario(height: f64, friction: f64) -> Scenario {
+    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    scenario.robot.track = Track::Line(LineOfWheels {
+        count: 4,
+        wheel_radius: None,
+        wheel: Wheel::Round,
+        as_track: true,
+    });
+    scenario.terrain = Terrain::Step {
+        height,
+        surface: Surface::rounded(0.004, friction),
+    };
+    scenario
+}
+
+fn built(scenario: &Scenario) -> (Model, Ground) {
+    let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
+    let model = Model::on(&scenario.robot, &ground).expect("it can be built");
+    (model, ground)
+}
+
+/// The family of these scenarios, with height and friction as parameters.
+fn family(scenarios: &[Scenario]) -> Result<Family, ScenarioError> {
+    let all: Vec<(Model, Ground)> = scenarios.iter().map(built).collect();
+    let all: Vec<(&Model, &Ground)> = all.iter().map(|(model, ground)| (model, ground)).collect();
+    let names = ["terrain.height", "terrain.friction"].map(str::to_owned);
+    Family::new(&all, &names, true, MOST_ANGLE)
+}
+
+/// The scenarios at the least values, at the most of each alone, of both, and half way.
+fn members() -> [Scenario; 5] {
+    let ([low, high], [smooth, rough]) = (HEIGHTS, FRICTIONS);
+    [
+        (low, smooth),
+        (high, smooth),
+        (low, rough),
+        (high, rough),
+        (0.5 * (low + high), 0.5 * (smooth + rough)),
+    ]
+    .map(|(height, friction)| scenario(height, friction))
+}
+
+pub(super) fn family_on_a_step() -> Family {
+    family(&members()).expect("height and friction are in proportion")
+}
+
+/// A cell of one pose, at these shares of the parameters' ranges.
+fn cell_at(posture: &Posture, shares: &Shares) -> Cell {
+    let mut cell = Cell::ZERO;
+    let pose = [posture.position.x, posture.position.y, posture.angle];
+    cell.low[..3].copy_from_slice(&pose);
+    cell.low[3..].copy_from_slice(shares);
+    cell.high = cell.low;
+    cell
+}
+
+/// The cell that reaches this far on either side of another's middle, with pose and shares anywhere in it.
+fn cell_round(draw: &mut Draw, inside: &Cell, half: f64) -> Cell {
+    let mut cell = *inside;
+    for number in 0..NUMBERS {
+        let (before, after) = (draw.between(0.0, half), draw.between(0.0, half));
+        cell.low[number] -= before;
+        cell.high[number] += after;
+    }
+    cell
+}
+
+/// Pose and shares somewhere in a cell.
+fn anywhere(draw: &mut Draw, cell: &Cell) -> Cell {
+    let mut point = *cell;
+    for number in 0..NUMBERS {
+        point.low[number] = draw.between(cell.low[number], cell.high[number]);
+    }
+    point.high = point.low;
+    point
+}
+
+fn posture(point: &Cell) -> Posture {
+    Posture {
+        position: Vector::new(point.low[0], point.low[1]),
+        angle: point.low[2],
+    }
+}
+
+/// The poses on three contacts half way between least and greatest values, with what touches there.
+fn stands(family: &Family, shares: &Shares) -> (Setting, Vec<(Posture, Vec<usize>)>) {
+    let cancel = Cancel::default();
+    let setting = family
+        .setting(shares, &cancel)
+        .expect("there are few contacts");
+    let fixed = setting.fixed(&cancel).expect("nobody asks it to end");
+    let with_contacts = fixed.into_iter().filter_map(|posture| {
+        let contacts = setting.touching(&posture)?;
+        Some((posture, contacts))
+    });
+    let found = with_contacts.collect();
+    (setting, found)
+}
+
+#[test]
+fn a_family_is_its_members_where_parameters_are_least_or_most() {
+    let family = family_on_a_step();
+    let shares = [[0.0; 2], [1.0, 0.0], [0.0, 1.0], [1.0; 2], [0.5; 2]];
+    for (scenario, [height, friction]) in members().iter().zip(shares) {
+        let (layout, places) = family.at(&[height, friction, 0.0, 0.0]);
+        let (model, ground) = built(scenario);
+        let own = crate::jams::layout::Layout::new(&model, true).expect("it has round wheels");
+        assert!((layout.center_of_mass - own.center_of_mass).length() < 1e-15);
+        let expected = crate::jams::places::Place::of(&ground);
+        assert_eq!(places.len(), expected.len());
+        for (place, other) in places.iter().zip(&expected) {
+            assert!((place.friction - other.friction).abs() < 1e-15);
+            let text = format!("{:?} {:?}", place.shape, other.shape);
+            let ends = [place, other].map(|place| match place.shape {
+                crate::jams::places::Facing::Face { ends, .. } => ends,
+                crate::jams::places::Facing::Corner { center, .. } => [center; 2],
+            });
+            let off = (0..2).map(|k| (ends[0][k] - ends[1][k]).length());
+            assert!(off.fold(0.0, f64::max) < 1e-15, "{text}");
+        }
+    }
+}

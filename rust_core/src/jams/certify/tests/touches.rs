@@ -1,0 +1,111 @@
+//! What can touch in a cell, beside what touches in poses of it.
+
+use super::*;
+
+fn pairs(setting: &Setting, contacts: &[usize]) -> Vec<(usize, usize)> {
+    let of = |i: &usize| (setting.contacts[*i].surface, setting.contacts[*i].place);
+    contacts.iter().map(of).collect()
+}
+
+/// A cell of one pose has in it just what touches there: normals, arms and frictions, too.
+#[test]
+fn in_a_cell_of_one_pose_just_that_is_possible_which_touches_there() {
+    let family = family_on_a_step();
+    let shares = [0.3, 0.6, 0.0, 0.0];
+    let (setting, all) = stands(&family, &shares);
+    assert!(all.len() > 4, "{}", all.len());
+    for (posture, contacts) in &all {
+        let Possible::Touches(touches) = family.possible(&cell_at(posture, &shares)) else {
+            panic!("it overlaps nowhere");
+        };
+        let found: Vec<(usize, usize)> = touches.iter().map(|t| (t.surface, t.place)).collect();
+        for pair in pairs(&setting, contacts) {
+            assert!(found.contains(&pair), "{pair:?} of {found:?}");
+        }
+        for touch in &touches {
+            let is_it = |contact: &&Contact| {
+                (contact.surface, contact.place) == (touch.surface, touch.place)
+            };
+            let Some(contact) = setting.contacts.iter().find(is_it) else {
+                continue;
+            };
+            let there = contact.touch(posture);
+            // Up to the margin, and ends of what runs and faces can do.
+            assert!(there.gap.abs() < 3.0 * MARGIN, "{contact:?} {there:?}");
+            let normals = touch.normals.all();
+            assert!((normals.middle - there.normal).length() < 1e-6);
+            assert!(normals.half.length() < 1e-6);
+            let arm = there.point + there.normal * touch.radius
+                - posture.position
+                - Vector::from_angle(posture.angle).rotate(setting.layout.center_of_mass);
+            assert!((touch.arm.middle - arm).length() < 1e-7, "{touch:?} {arm}");
+        }
+    }
+}
+
+/// Whatever touches in some pose of a cell is among what is possible in it, with its normal.
+#[test]
+fn a_cell_has_all_that_touches_in_poses_of_it() {
+    let family = family_on_a_step();
+    let mut draw = Draw(31);
+    let mut tried = 0;
+    for shares in [[0.2, 0.9, 0.0, 0.0], [0.8, 0.1, 0.0, 0.0]] {
+        let (setting, all) = stands(&family, &shares);
+        for (posture, contacts) in &all {
+            for half in [1e-4, 1e-2, 0.2] {
+                let cell = cell_round(&mut draw, &cell_at(posture, &shares), half);
+                let Possible::Touches(touches) = family.possible(&cell) else {
+                    panic!("there is a pose in it without overlap");
+                };
+                for i in contacts {
+                    let contact = &setting.contacts[*i];
+                    let is_it = |t: &&crate::jams::certify::touch::Touch| {
+                        (t.surface, t.place) == (contact.surface, contact.place)
+                    };
+                    let touch = touches.iter().find(is_it).expect("it touches");
+                    let there = contact.touch(posture);
+                    let off = (there.normal - touch.normals.all().middle).abs();
+                    let room = touch.normals.all().half + Vector::ONE * 1e-8;
+                    assert!(off.cmple(room).all(), "{touch:?} {there:?}");
+                    let friction = setting.places[contact.place].friction;
+                    let friction =
+                        friction.min(setting.layout.surfaces[contact.surface].friction_limit);
+                    let [low, high] = touch.slopes;
+                    assert!(low <= high && (touch.slides || low + high == 0.0));
+                    assert!(high >= friction - 1e-12 || high == 0.0 && touch.slides);
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(tried > 100, "{tried}");
+}
+
+/// A cell in which a part overlaps with the ground everywhere has no pose in which it does not.
+#[test]
+fn where_all_of_a_cell_overlaps_no_pose_of_it_is_clear() {
+    let family = family_on_a_step();
+    let cancel = Cancel::default();
+    let mut draw = Draw(32);
+    let (mut overlaps, mut clear) = (0, 0);
+    let root = family.root();
+    for case in 0..2_000 {
+        let mut point = anywhere(&mut draw, &root);
+        // Near the step, where it matters.
+        point.low[0] = draw.between(-0.4, 0.4);
+        point.low[1] = draw.between(-0.05, 0.3);
+        point.high = point.low;
+        let half = if case % 2 == 0 { 0.0 } else { 0.02 };
+        let cell = cell_round(&mut draw, &point, half);
+        let shares = point.shares();
+        let setting = family
+            .setting(&shares, &cancel)
+            .expect("there are few contacts");
+        let is_clear = setting.is_clear(&posture(&point));
+        let is_overlap = matches!(family.possible(&cell), Possible::Overlap);
+        assert!(!(is_overlap && is_clear), "{point:?}");
+        overlaps += u32::from(is_overlap);
+        clear += u32::from(is_clear);
+    }
+    assert!(overlaps > 500 && clear > 200);
+}
