@@ -65,7 +65,7 @@ pub(super) fn is_clear(
 ///
 /// Two convex bodies are apart by the most that any direction separates them, and that direction is normal to a straight
 /// run, to the segment, or leads from the centre of an arc to an end.
-fn distance(
+pub(super) fn distance(
     solid: &Solid,
     discs: &[Disc],
     runs: impl Iterator<Item = (Vector, f64)>,

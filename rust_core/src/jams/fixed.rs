@@ -47,7 +47,7 @@ impl Setting {
 }
 
 /// Adds the poses in which three contacts meet, whether or not the pieces are there.
-fn meet(
+pub(super) fn meet(
     three: &[Contact; 3],
     ranges: impl Iterator<Item = [f64; 2]>,
     found: &mut Vec<([Contact; 3], Posture)>,

@@ -1,6 +1,6 @@
 //! Forces of the ground that carry a robot at rest with its drives running.
 
-use super::contact::{Posture, Turn};
+use super::contact::{Kind, Posture, Turn};
 use super::fixed::solve;
 use super::layout::Grip;
 use super::setting::Setting;
@@ -38,11 +38,20 @@ impl Setting {
 
     /// Force and moment about the centre of mass of a push, over the robot's reach.
     pub(super) fn wrench(&self, push: Push, position: Vector, turn: Turn) -> [f64; 3] {
-        let touch = self.contacts[push.contact].touch_turned(position, turn);
-        let center = position + turn.apply(self.layout.center_of_mass);
+        let contact = &self.contacts[push.contact];
+        let touch = contact.touch_turned(position, turn);
+        let center = self.layout.center_of_mass;
         let force = touch.normal + right_of(touch.normal) * push.slope;
-        let moment = cross(touch.point - center, force) / self.layout.reach;
-        [force.x, force.y, moment]
+        let moment = match contact.kind {
+            // About the axle, friction has the radius for its lever: so this is linear in the position, off the circle, too.
+            Kind::OnCorner(disc, ..) => {
+                cross(turn.apply(disc.center - center), force) + disc.radius * push.slope
+            }
+            Kind::OnFace(..) | Kind::Across(..) => {
+                cross(touch.point - position - turn.apply(center), force)
+            }
+        };
+        [force.x, force.y, moment / self.layout.reach]
     }
 
     /// Loads of contacts that balance the weight in a pose; `None` if none do.

@@ -143,7 +143,7 @@ fn grip(model: &Model, part: &Part, forwards: bool) -> Grip {
 }
 
 impl Solid {
-    fn new(lane: usize, discs: Vec<Disc>) -> Self {
+    pub(super) fn new(lane: usize, discs: Vec<Disc>) -> Self {
         let hull = Envelope::new(&discs);
         let runs = hull.runs().map(|[from, to]| {
             // The hull is walked clockwise.

@@ -15,6 +15,8 @@ mod leaning;
 mod places;
 mod ranges;
 mod setting;
+#[cfg(test)]
+mod tests;
 mod zeros;
 
 pub use self::certify::{Certificate, ExcludedCell, Exclusion, Region, RegionStatus, SearchEffort};

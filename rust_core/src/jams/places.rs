@@ -59,7 +59,8 @@ impl Place {
         let at = |place: usize| profile.points[place];
         let faces: Vec<[Vector; 2]> = from.zip(to).map(|(a, b)| [at(a), at(b)]).collect();
         let normal = |face: [Vector; 2]| left_of(face[1] - face[0]).normalize_or(Vector::Y);
-        let friction = |point: Vector| profile.friction.at(point).coefficient;
+        // Ground whose faces differ in friction is refused before.
+        let friction = profile.friction.most().coefficient;
         for face in &faces {
             if face[0] == face[1] {
                 continue;
@@ -71,7 +72,7 @@ impl Place {
                     ends: *face,
                     normal: normal(*face),
                 },
-                friction: friction((face[0] + face[1]) * 0.5),
+                friction,
             });
         }
         for (edge, around) in profile.edges.iter().zip(faces.windows(2)) {
@@ -90,7 +91,7 @@ impl Place {
                     radius,
                     cone: [behind, before],
                 },
-                friction: friction(Vector::new(edge.x, edge.y)),
+                friction,
             });
         }
         places

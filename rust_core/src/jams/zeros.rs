@@ -269,6 +269,19 @@ mod tests {
     }
 
     #[test]
+    fn zeros_are_those_of_the_function_times_any_number() {
+        let roots = [-2.5, -0.4, 0.3, 0.300_1, 1.7, 2.9];
+        let f = product(&roots);
+        for scale in [1e-30, 1e-9, 1e-3, 1e3, 1e30] {
+            let found = sorted(|x| scale * f(x));
+            assert_eq!(found.len(), roots.len(), "{scale:e}: {found:?}");
+            for (found, root) in found.iter().zip(roots) {
+                assert!((found - root).abs() < 1e-9, "{scale:e}: {found} {root}");
+            }
+        }
+    }
+
+    #[test]
     fn pieces_that_grow_away_from_a_sharp_turn_resolve_it() {
         for width in [1e-2, 1e-4, 1e-6] {
             let f = |x: f64| [x / x.hypot(width) - 0.5, 1.0];
