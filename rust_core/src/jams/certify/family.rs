@@ -331,8 +331,10 @@ fn inertias(built: &[(&Model, &Ground)], members: &[Member]) -> Interval {
 /// [m^2] Moment of inertia over mass, with flippers and drives fixed to the chassis.
 fn inertia(model: &Model, center: Vector) -> f64 {
     let about = |point: Vector| (point - center).length_squared();
-    let arms = model.flippers.iter();
-    let of_arms = arms.map(|arm| arm.moment_of_inertia + arm.mass * about(arm.pivot + arm.arm));
+    let running = model.running_at_start(0.0);
+    let arms = model.flippers.iter().zip(&running.flippers);
+    let of_arms =
+        arms.map(|(arm, at)| arm.moment_of_inertia + arm.mass * about(at.pose.translation));
     let of_chassis = model.locked_inertia() + model.mass * about(model.center_of_mass);
     (of_chassis + of_arms.sum::<f64>()) / model.total_mass()
 }

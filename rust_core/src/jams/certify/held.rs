@@ -93,7 +93,7 @@ impl Family {
     }
 
     /// The gap \[m\] over a cell, near 0, and how it changes with the pose.
-    fn gap(&self, cell: &Cell, (surface, place): (usize, usize)) -> (Interval, Row) {
+    pub(super) fn gap(&self, cell: &Cell, (surface, place): (usize, usize)) -> (Interval, Row) {
         let turns = Turns::of(cell);
         let (position, spot) = (cell.position(), &self.places[place]);
         let ground = spot.ends[0].over(cell);

@@ -1,7 +1,9 @@
 //! What cells show of a robot before a step, beside what single poses in them show.
 
 mod enclosures;
+mod family;
 mod held;
+mod inside;
 mod touches;
 
 use super::cell::{Affine, Cell, MOST_PARAMETERS, NUMBERS, Shares, Turns};
@@ -122,28 +124,4 @@ fn stands(family: &Family, shares: &Shares) -> (Setting, Vec<(Posture, Vec<usize
     });
     let found = with_contacts.collect();
     (setting, found)
-}
-
-#[test]
-fn a_family_is_its_members_where_parameters_are_least_or_most() {
-    let family = family_on_a_step();
-    let shares = [[0.0; 2], [1.0, 0.0], [0.0, 1.0], [1.0; 2], [0.5; 2]];
-    for (scenario, [height, friction]) in members().iter().zip(shares) {
-        let (layout, places) = family.at(&[height, friction, 0.0, 0.0]);
-        let (model, ground) = built(scenario);
-        let own = crate::jams::layout::Layout::new(&model, true).expect("it has round wheels");
-        assert!((layout.center_of_mass - own.center_of_mass).length() < 1e-15);
-        let expected = crate::jams::places::Place::of(&ground);
-        assert_eq!(places.len(), expected.len());
-        for (place, other) in places.iter().zip(&expected) {
-            assert!((place.friction - other.friction).abs() < 1e-15);
-            let text = format!("{:?} {:?}", place.shape, other.shape);
-            let ends = [place, other].map(|place| match place.shape {
-                crate::jams::places::Facing::Face { ends, .. } => ends,
-                crate::jams::places::Facing::Corner { center, .. } => [center; 2],
-            });
-            let off = (0..2).map(|k| (ends[0][k] - ends[1][k]).length());
-            assert!(off.fold(0.0, f64::max) < 1e-15, "{text}");
-        }
-    }
 }

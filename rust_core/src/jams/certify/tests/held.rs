@@ -44,3 +44,40 @@ fn what_is_held_over_a_range_stands_at_every_value() {
     }
     assert!(held > 20 && not > 8);
 }
+
+/// In one pose it is the gap, on a corner half the difference of the squares over the circle's radius, which begins alike; over a
+/// cell it holds those of all its poses, and so do the slopes.
+#[test]
+fn a_gap_over_a_cell_holds_those_of_its_poses() {
+    let family = family_on_a_step();
+    let mut draw = Draw(42);
+    for shares in [[0.2, 0.9, 0.0, 0.0], [0.8, 0.1, 0.0, 0.0]] {
+        let (setting, all) = stands(&family, &shares);
+        for (at, _) in &all {
+            for contact in &setting.contacts {
+                let pair = (contact.surface, contact.place);
+                let touch = contact.touch(at);
+                let (gap, row) = family.gap(&cell_at(at, &shares), pair);
+                let expected = Contact::gradient(&touch, at.position);
+                for (found, expected) in row.iter().zip(expected) {
+                    // Of lengths up to 4 m, over circles of 4 cm.
+                    assert!((found.middle() - expected).abs() < 1e-11 && found.half() < 1e-11);
+                }
+                if touch.gap.abs() < 1e-3 {
+                    assert!((gap.middle() - touch.gap).abs() < 1e-4, "{contact:?}");
+                    assert!(gap.half() < 1e-11);
+                }
+                let cell = cell_round(&mut draw, &cell_at(at, &shares), 0.05);
+                let (over, slopes) = family.gap(&cell, pair);
+                for _ in 0..4 {
+                    let (gap, row) = family.gap(&anywhere(&mut draw, &cell), pair);
+                    let holds = |all: &Interval, one: &Interval| {
+                        all.low <= one.high + 1e-11 && one.low - 1e-11 <= all.high
+                    };
+                    assert!(holds(&over, &gap), "{contact:?}");
+                    assert!(slopes.iter().zip(&row).all(|(all, one)| holds(all, one)));
+                }
+            }
+        }
+    }
+}
