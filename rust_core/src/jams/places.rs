@@ -155,4 +155,28 @@ mod tests {
             assert!((center - Vector::new(radius, 0.1 - radius)).length() < 1e-15);
         }
     }
+
+    #[test]
+    fn a_face_is_touched_as_far_as_its_ends_and_a_tolerance_beyond() {
+        let face = Facing::Face {
+            ends: [Vector::new(1.0, 2.0), Vector::new(1.0, 5.0)],
+            normal: Vector::NEG_X,
+        };
+        let tolerance = 0.125;
+        for (y, touched) in [
+            (1.75, false),
+            (1.9, true),
+            (2.0, true),
+            (5.0, true),
+            (5.1, true),
+            (5.25, false),
+        ] {
+            let foot = Vector::new(1.0, y);
+            assert_eq!(
+                face.is_touched(foot, Vector::NEG_X, tolerance),
+                touched,
+                "{y}"
+            );
+        }
+    }
 }

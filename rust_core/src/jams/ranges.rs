@@ -96,3 +96,32 @@ fn determinant(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> Difference {
     ];
     [terms.iter().sum(), terms.iter().map(|t| t.abs()).sum()]
 }
+
+#[cfg(test)]
+#[allow(clippy::float_cmp)] // sides of a box are whole numbers
+mod tests {
+    use super::*;
+    use crate::draw::Draw;
+
+    /// It is the volume that three vectors span, with a sign for their order.
+    #[test]
+    fn a_determinant_is_0_for_vectors_of_one_plane_and_a_product_of_sides_for_a_box() {
+        let mut draw = Draw(1);
+        for _ in 0..100 {
+            let mut vector = || std::array::from_fn(|_| draw.between(-1.0, 1.0));
+            let (a, b, [s, t, _]): ([f64; 3], [f64; 3], [f64; 3]) = (vector(), vector(), vector());
+            let c = std::array::from_fn(|i| s * a[i] + t * b[i]);
+            for [volume, size] in [
+                determinant(a, b, c),
+                determinant(c, a, b),
+                determinant(b, c, a),
+            ] {
+                assert!(volume.abs() <= 1e-15 * size.max(1.0));
+            }
+        }
+        let [x, y, z] = [[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 5.0]];
+        assert_eq!(determinant(x, y, z), [30.0, 30.0]);
+        assert_eq!(determinant(y, x, z), [-30.0, 30.0]);
+        assert_eq!(determinant(z, y, x), [-30.0, 30.0]);
+    }
+}

@@ -196,7 +196,7 @@ mod tests {
                 let own = twist(&mut draw, 1.0);
                 std::array::from_fn(|i| own[i] + away[i])
             };
-            let points: Vec<Twist> = (0..1 + case % 12).map(of).collect();
+            let points: Vec<Twist> = (0..=case % 12).map(of).collect();
             let expected = distance(&points);
             if let Some(found) = nearest(&points) {
                 outside += 1;

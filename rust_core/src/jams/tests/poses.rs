@@ -202,6 +202,19 @@ fn the_pose_in_which_one_force_was_made_to_carry_the_weight_is_found() {
             found.iter().any(|posture| is_near(posture, &at)),
             "case {case}: {at:?}"
         );
+        // Nothing is found at angles that are not asked for.
+        for off in [-0.3, 0.3] {
+            let angles = [at.angle + off - 0.2, at.angle + off + 0.2];
+            let (layout, places) = (setting.layout.clone(), setting.places.clone());
+            let aside =
+                Setting::new(layout, places, angles, &cancel).expect("there are few contacts");
+            let found = aside.leaning(&cancel).expect("nobody asks it to end");
+            assert!(
+                found
+                    .iter()
+                    .all(|found| (angles[0]..=angles[1]).contains(&found.angle))
+            );
+        }
     }
 }
 

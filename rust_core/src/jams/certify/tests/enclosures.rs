@@ -2,6 +2,7 @@
 #![allow(clippy::float_cmp)] // an end of a product is the product of two ends
 
 use super::*;
+use crate::jams::certify::touch::Normals;
 
 fn interval(draw: &mut Draw) -> Interval {
     let [a, b] = [0.0; 2].map(|_| draw.between(-2.0, 2.0));
@@ -180,6 +181,33 @@ fn the_reach_of_a_still_rectangle_is_its_half_diagonal() {
     };
     let (_, off) = turns(1.0, 0.0).seen(all);
     assert!((off - 0.5).abs() < 1e-15);
+}
+
+/// So many points of the arc, from end to end, miss its farthest by a millionth at most.
+#[test]
+fn a_rectangle_of_normals_is_that_round_their_arc() {
+    let mut draw = Draw(6);
+    for case in 0..300 {
+        let sines = range([0.0; 2].map(|_| draw.between(-0.95, 0.95)));
+        let angle = draw.between(-3.0, 3.0);
+        let normals = Normals {
+            bisector: Vector::from_angle(angle),
+            sines,
+            circle: None,
+            is_on_face: false,
+        };
+        let [from, to] = sines.map(libm::asin);
+        let points = (0..=2_000).map(|k| {
+            let turn = from + (to - from) * f64::from(k) / 2_000.0;
+            Vector::from_angle(angle + turn)
+        });
+        for axis in [Vector::X, Vector::Y] {
+            let [low, high] = range(points.clone().map(|v| v.dot(axis)));
+            let found = normals.all().along(axis);
+            let off = (found.low - low).abs().max((found.high - high).abs());
+            assert!(off < 1e-6, "{case}: {found:?} {low} {high}");
+        }
+    }
 }
 
 /// A value in proportion is least and greatest where each parameter is least or greatest.

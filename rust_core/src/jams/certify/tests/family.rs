@@ -1,8 +1,13 @@
 //! What a family of robots and grounds is made of, and which it refuses.
 
+#![allow(clippy::float_cmp)] // shares are halves of halves
+
 use super::*;
+use crate::jams::certify::found::{Region, SearchEffort};
+use crate::jams::certify::regions::Pair;
 use crate::jams::layout::Layout;
 use crate::jams::places::{Facing, Place};
+use crate::scenario::{ClosedSurface, ClosedTrack};
 
 fn ends(place: &Place) -> [Vector; 2] {
     match place.shape {
@@ -158,4 +163,35 @@ fn parameters_that_do_nothing_or_something_else_or_not_in_proportion_are_refused
         friction
     );
     assert_eq!(refused(|all| all[2].robot.belly = None), friction);
+}
+
+/// Wheels in a row jam at some heights and not at others, so the ranges are divided as far as they may be.
+#[test]
+fn no_region_is_smaller_than_asked_for_and_together_they_are_all() {
+    let closed = members().map(|mut scenario| {
+        scenario.robot.track = Track::Closed(ClosedTrack {
+            of: Box::new(scenario.robot.track.clone()),
+            surface: ClosedSurface::Smooth,
+        });
+        scenario
+    });
+    let belt = family(&closed).expect("height and friction are in proportion");
+    for smallest in [1.0, 0.5] {
+        let pair = Pair {
+            wheels: family_on_a_step(),
+            belt: belt.clone(),
+            effort: SearchEffort {
+                depth: 1e-3,
+                smallest,
+                cells: 20,
+                keeps_cells: false,
+            },
+        };
+        let found = pair.certificate(&Cancel::default());
+        let regions = found.expect("there is memory").regions;
+        let widths = |region: &Region| [0, 1].map(|k| region.high[k] - region.low[k]);
+        let all: f64 = regions.iter().map(|r| widths(r)[0] * widths(r)[1]).sum();
+        let least = regions.iter().flat_map(widths).fold(1.0, f64::min);
+        assert_eq!((all, least), (1.0, smallest));
+    }
 }
