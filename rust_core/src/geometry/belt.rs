@@ -287,4 +287,49 @@ mod tests {
             assert!(off < 5e-4, "{off} of {moved} after {run} m");
         }
     }
+
+    #[test]
+    fn a_round_of_the_belt_is_a_turn_clockwise() {
+        let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        });
+        let belt = Envelope::new(&discs);
+        let length = belt.length();
+        for share in [0.1, 0.35, 0.6, 0.85] {
+            let begin = belt.angle_at(share * length);
+            for rounds in [-2.0, -1.0, 1.0, 3.0] {
+                let found = belt.angle_at((share + rounds) * length);
+                assert!(
+                    (found - begin + rounds * TAU).abs() < 1e-9,
+                    "{share} {rounds}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn grousers_are_a_pitch_apart_along_the_belt() {
+        let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        });
+        let outline = TrackOutline {
+            discs: Vec::new(),
+            grouser_height: 0.012,
+            grouser_pitch: 0.05,
+            grouser_thickness: 0.006,
+        };
+        let belt = Arc::new(Envelope::new(&discs));
+        for count in [3, 12] {
+            let all = Grouser::along(&belt, Some(count), 0.012, &outline).expect("they fit");
+            let pitch = belt.length() / f64::from(count);
+            for (i, grouser) in all.enumerate() {
+                let place = grouser.place(0.0).translation;
+                let expected = belt.point_at(i as f64 * pitch);
+                // Its frame is at the foot, on the belt or below it by less than its height.
+                assert!((place - expected).length() < 0.012, "{count}: {i}");
+            }
+        }
+    }
 }

@@ -471,4 +471,27 @@ mod tests {
             }
         }
     }
+
+    /// Two equal discs have arcs of half a turn. Where an arc begins, it and the run before it are equally near.
+    #[test]
+    fn a_point_of_the_hull_is_nearest_to_itself() {
+        let disc = |x: f64| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.1,
+        };
+        let hull = Envelope::new(&[disc(-0.3), disc(0.3)]);
+        let length = hull.length();
+        for joint in [0.0, 0.25, 0.5, 1.0] {
+            for off in [0.0, 1e-12, 1e-10, 1e-9, 1e-6, 0.01] {
+                for at in [joint * length - off, joint * length + off] {
+                    let found = hull.position_of(hull.point_at(at));
+                    let apart = (found - at).rem_euclid(length);
+                    let apart = apart.min(length - apart);
+                    // Of stretches that are equally near to 1e-8 m the first counts: so far from where they meet.
+                    let most = (2.0_f64 * 0.1 * 1e-8).sqrt();
+                    assert!(apart < 1.1 * most, "{at}: {found}");
+                }
+            }
+        }
+    }
 }

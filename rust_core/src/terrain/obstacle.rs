@@ -372,4 +372,46 @@ mod tests {
         assert!((first - 0.45).abs() < 1e-12 && (last - 0.55).abs() < 1e-12);
         assert!((middle.end() - 1.0).abs() < 1e-12);
     }
+
+    #[test]
+    fn each_stair_rises_and_runs_as_much() {
+        let stairs = of(&Terrain::Stairs {
+            count: 3,
+            rise: 0.125,
+            run: 0.25,
+            surface: Surface::sharp(0.9),
+        });
+        let corners = [
+            [0.0, 0.0],
+            [0.0, 0.125],
+            [0.25, 0.125],
+            [0.25, 0.25],
+            [0.5, 0.25],
+            [0.5, 0.375],
+        ];
+        assert_eq!(stairs.points[1..7], corners);
+        assert_eq!((stairs.points[7][1], stairs.goal), (0.375, 0.5));
+    }
+
+    /// With as many levels, one level more or less at random is little.
+    #[test]
+    fn a_hill_rises_to_its_ridge_and_falls_behind_it() {
+        for (pattern, lane, ridge) in [
+            (FieldPattern::Hill, 0, 0.5),
+            (FieldPattern::Hill, 1, 0.5),
+            (FieldPattern::Diagonal, 0, 0.3),
+            (FieldPattern::Diagonal, 1, 0.7),
+        ] {
+            let field = Stepfield {
+                levels: 100,
+                ..field(7, pattern)
+            };
+            for post in 0..field.posts {
+                let place = (f64::from(post) + 0.5) / f64::from(field.posts);
+                let share = (place / ridge).min((1.0 - place) / (1.0 - ridge));
+                let off = f64::from(level(&field, lane, post)) - 100.0 * share;
+                assert!(off.abs() <= 1.5, "{pattern:?} {lane}: {post} is {off} off");
+            }
+        }
+    }
 }

@@ -157,3 +157,28 @@ fn a_spike_is_refused_and_a_wall_in_two_pieces_is_not() {
         error.rule
     );
 }
+
+/// Pieces of unlike length, from 5 cm to 4 m, and two alike.
+#[test]
+fn a_place_along_a_piece_is_on_the_facet_that_holds_it() {
+    let ends = [0.0, 1.0, 1.05, 5.05, 5.1, 6.1, 6.2];
+    let points = ends.map(|s| Vector::new(0.8, 0.6) * s);
+    for first in 0..ends.len() {
+        for last in first + 1..ends.len() {
+            let length = ends[last] - ends[first];
+            for k in 0..200 {
+                let share = (f64::from(k) + 0.5) / 200.0;
+                let at = ends[first] + share * length;
+                let facet = facet_along(&points, first..last, share);
+                let holds = (first..last).contains(&facet) && ends[facet] <= at + 1e-12;
+                assert!(
+                    holds && at <= ends[facet + 1] + 1e-12,
+                    "{first}..{last}: {share}"
+                );
+            }
+            for (beyond, expected) in [(-0.1, first), (1.1, last - 1)] {
+                assert_eq!(facet_along(&points, first..last, beyond), expected);
+            }
+        }
+    }
+}
