@@ -1,5 +1,7 @@
 //! However a robot is taken apart, its mass, centre of mass and moment of inertia are those of the scenario.
 
+mod chains;
+
 use approx::assert_relative_eq;
 
 use super::outline::Body;
@@ -432,6 +434,15 @@ fn a_wheel_is_drawn_as_a_circle() {
         panic!("it is hybrid")
     };
     assert_eq!(wheels, placed.placements.len());
+}
+
+#[test]
+fn a_belly_may_reach_farther_than_any_track() {
+    let mut robot = on_all_tracks().remove(0);
+    robot.belly = Some(vec![[-0.1, 0.1], [0.1, 0.1], [0.1, 0.7], [-0.1, 0.7]]);
+    let model = model(&robot);
+    let far = [-0.1, 0.1].map(|x| (Vector::new(x, 0.7) - model.center_of_mass).length());
+    assert_relative_eq!(model.reach(), far[0].max(far[1]));
 }
 
 #[test]

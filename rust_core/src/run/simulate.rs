@@ -206,4 +206,23 @@ mod tests {
         let found = tip_over(&before_a_step(0.05), &Cancel::default());
         assert_eq!(found.expect("the state stays finite"), None);
     }
+
+    #[test]
+    fn a_robot_at_rest_stands_between_its_rearmost_and_its_foremost_contact() {
+        let mut robot = Simulation::new(&before_a_step(0.05));
+        robot.advance(0.02).expect("the state stays finite");
+        let points = robot.loaded().iter().map(|l| l.point.x);
+        let ends = [
+            points.clone().fold(f64::INFINITY, f64::min),
+            points.fold(f64::NEG_INFINITY, f64::max),
+        ];
+        assert!(ends[0] < ends[1]);
+        for (backwards, end) in [(true, ends[0]), (false, ends[1])] {
+            let found = standing(&robot, backwards).expect("it stands");
+            assert_eq!(
+                (found.backwards, found.pivot[0].to_bits()),
+                (backwards, end.to_bits())
+            );
+        }
+    }
 }

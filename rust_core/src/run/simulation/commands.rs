@@ -436,3 +436,52 @@ mod push_tests {
         assert_eq!([0.5, 1.0].map(|time| push.at(time)), [0.0, 5.0]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drive(speeds: &[[f64; 2]], angles: &[[f64; 2]]) -> Drive {
+        Drive {
+            speed: 0.1,
+            schedule: Some(speeds.to_vec()),
+            gait: Some(Gait::Hold(Hold {
+                angle: 0.5,
+                schedule: Some(angles.to_vec()),
+                front: None,
+                rear: None,
+            })),
+        }
+    }
+
+    /// Entries of the very time are due from then on, and so are not followed.
+    #[test]
+    fn a_driver_who_ignores_schedules_keeps_the_angle_before() {
+        let drive = drive(&[[1.0, 0.2], [9.0, 0.3]], &[[1.0, 0.6], [2.0, 0.7]]);
+        for (now, past) in [(0.5, 0), (1.0, 0), (1.5, 1), (2.0, 1), (2.5, 2)] {
+            let mut driver = Driver::default();
+            driver.ignore_schedules(&drive, now);
+            assert_eq!(driver.angles, Some(past), "{now} s");
+            assert_eq!(driver.speed(&drive, 10.0), None, "{now} s");
+        }
+    }
+
+    #[test]
+    fn a_driver_with_another_gait_goes_on_with_the_speeds_that_are_past() {
+        let before = drive(&[[1.0, 0.2], [9.0, 0.3]], &[]);
+        let mut driver = Driver::default();
+        assert_eq!(driver.speed(&before, 2.0), Some(0.2));
+        let gait = drive(&[[1.0, 0.2], [9.0, 0.3]], &[[1.0, 0.6]]);
+        assert_eq!(driver.commanded(&before, &gait).speed(&gait, 3.0), None);
+        assert_eq!(
+            driver.commanded(&before, &gait).speed(&gait, 9.0),
+            Some(0.3)
+        );
+        // Other speeds begin anew.
+        let speeds = drive(&[[1.0, 0.4]], &[]);
+        assert_eq!(
+            driver.commanded(&before, &speeds).speed(&speeds, 3.0),
+            Some(0.4)
+        );
+    }
+}

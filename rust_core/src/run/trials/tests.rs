@@ -1,4 +1,5 @@
 //! Trials of stops whose reason is known.
+#![allow(clippy::float_cmp)] // twice a number is exact
 
 use super::*;
 use crate::run::{Record, escape_force, simulate};
@@ -340,4 +341,27 @@ fn variants_of_valid_scenarios_are_valid() {
             assert_eq!(read.expect("it is valid"), variant, "{}", change.name());
         }
     }
+}
+
+/// No motor is stronger, and no ground rougher, than a scenario may have them.
+#[test]
+fn twice_the_torque_and_twice_the_friction_are_twice_as_much_up_to_what_there_may_be() {
+    let mut scenario = engineer();
+    let drivetrain = &mut scenario.robot.drivetrain;
+    drivetrain.torque_curve = Some(vec![[0.0, 6.0], [0.5, 4.0]]);
+    drivetrain.max_torque = 6.0;
+    drivetrain.scale_torque(2.0);
+    assert_eq!(drivetrain.max_torque, 12.0);
+    assert_eq!(drivetrain.torque_curve, Some(vec![[0.0, 12.0], [0.5, 8.0]]));
+    drivetrain.scale_torque(1e30);
+    assert_eq!(drivetrain.max_torque, 1e17);
+    let rubs = |terrain: &Terrain| match terrain {
+        Terrain::Step { surface, .. } => surface.friction.coefficient,
+        other => panic!("{other:?}"),
+    };
+    let mut ground = wheels(4, 0.05).terrain;
+    ground.scale_friction(2.0);
+    assert_eq!(rubs(&ground), 1.8);
+    ground.scale_friction(1e9);
+    assert_eq!(rubs(&ground), 100.0);
 }

@@ -141,3 +141,26 @@ fn the_corners_of_lanes_are_those_of_the_tracks_and_of_the_belly() {
     assert_eq!(corners(&lane(3, 0.01)), 3 + 3 * 90);
     assert_eq!(corners(&lane(20_000, 0.01)), 20_000 + 1_000_000);
 }
+
+/// So that memory is asked for before the ground takes it; both ends of it are no corners.
+#[test]
+fn ground_has_no_more_corners_than_are_asked_for() {
+    let surface = |edge_radius: f64| Surface::rounded(edge_radius, 0.9);
+    for edge_radius in [0.0, 0.01] {
+        let stairs = Terrain::Stairs {
+            count: 2_000,
+            rise: 0.1,
+            run: 0.2,
+            surface: surface(edge_radius),
+        };
+        let step = Terrain::Step {
+            height: 0.1,
+            surface: surface(edge_radius),
+        };
+        for terrain in [stairs, step] {
+            let ground = Ground::new(&terrain, 0.2).expect("a ground");
+            let there: usize = ground.lanes.iter().map(|lane| lane.points.len()).sum();
+            assert!(corners(&terrain) + 2 >= there as u64, "{there}");
+        }
+    }
+}
