@@ -67,9 +67,10 @@ class View {
     const { error, judged, outcome, metrics, diagnosis } = this.answer;
     if (error) return "not simulated";
     const end = judged ? spaced(outcome) : "stopped";
-    // A run goes on for a while once a stop has begun.
+    // A run goes on for a while once a stop has begun, or the goal is reached.
     if (diagnosis && !diagnosis.transient) return `${end} at ${diagnosis.since.toFixed(1)} s`;
-    return `${end} after ${metrics.time.toFixed(1)} s`;
+    const time = judged && outcome === "cleared" ? metrics.time_to_clear : metrics.time;
+    return `${end} after ${time.toFixed(1)} s`;
   }
 
   // The outcome above the picture, and the sentence.

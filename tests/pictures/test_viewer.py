@@ -96,6 +96,13 @@ def test_the_page_says_what_the_run_says(stopped: c2d.Run) -> None:
     assert c2d.__version__ in page.shown
 
 
+def test_a_goal_that_is_not_reached_is_reached_never(stopped: c2d.Run) -> None:
+    page = stopped.to_html()
+    after = page.split("time_to_clear", 1)[1]
+    assert Page(after).shown.split()[0].startswith("never")
+    assert ">inf" not in page
+
+
 def test_the_page_holds_the_history_to_a_hundredth_of_a_millimetre(stopped: c2d.Run) -> None:
     recording = Page(stopped.to_html()).recording
     frames = recording["frames"]

@@ -143,8 +143,11 @@ def main_figures(run: Record) -> list[tuple[str, str]]:
 
 
 def _all_figures(run: Record) -> list[tuple[str, str]]:
-    """List every metric by its own name, in its own unit."""
-    return [(name, f"{value:.6g} {METRICS.get(name, '')}") for name, value in run.metrics.items()]
+    """List every metric by its own name, in its own unit; a time that never comes is infinite."""
+    return [
+        (name, "never" if value == math.inf else f"{value:.6g} {METRICS.get(name, '')}")
+        for name, value in run.metrics.items()
+    ]
 
 
 def replay_page(run: Record, time: float | None = None) -> str:
