@@ -132,12 +132,12 @@ mod tests {
         }
     }
 
-    /// Ground of short faces that is nowhere higher than the middle one.
-    fn falling(draw: &mut Draw) -> Profile {
+    /// Ground of short faces that is nowhere higher than the middle one, with so many faces to the left and right of it.
+    fn falling(draw: &mut Draw, counts: [usize; 2]) -> Profile {
         let mut points = vec![[-1e-3, 0.0], [1e-3, 0.0]];
-        for side in [-1.0, 1.0] {
+        for (side, count) in [-1.0, 1.0].into_iter().zip(counts) {
             let (mut x, mut y): (f64, f64) = (1e-3, 0.0);
-            for _ in 0..30 {
+            for _ in 0..count {
                 x += 2e-3 + 4e-3 * draw.between(0.0, 1.0);
                 y = (y - 1e-3 + 1.5e-3 * draw.between(0.0, 1.0)).min(0.0);
                 points.push([side * x, y]);
@@ -150,8 +150,9 @@ mod tests {
     #[test]
     fn no_face_is_nearer_than_the_one_that_is_found() {
         let mut draw = Draw(1);
-        for _ in 0..300 {
-            let lane = falling(&mut draw);
+        for case in 0..300 {
+            let counts = [[30, 30], [1, 30], [30, 1]][case % 3];
+            let lane = falling(&mut draw, counts);
             let middle = lane
                 .points
                 .iter()
@@ -159,7 +160,11 @@ mod tests {
                 .expect("it is there")
                 - 1;
             let contact = Contact::new(0, (middle, -1), (Vector::ZERO, Vector::Y), 0.0);
-            let way = 0.06 * (draw.between(0.0, 1.0) - 0.5);
+            let way = match counts {
+                [30, 30] => 0.06 * (draw.between(0.0, 1.0) - 0.5),
+                [1, _] => 0.03 * draw.between(0.0, 1.0),
+                _ => -0.03 * draw.between(0.0, 1.0),
+            };
             let center = Vector::new(way, RADIUS);
             let faces = if way > 0.0 {
                 middle..lane.points.len() - 1

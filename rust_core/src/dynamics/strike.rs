@@ -164,6 +164,12 @@ mod tests {
         assert_relative_eq!(time, 0.2, max_relative = 1e-12);
         assert_relative_eq!(speed, 0.6, max_relative = 1e-12);
         assert_relative_eq!(dip.lowest().expect("it turns"), 0.5, max_relative = 1e-12);
+        let steeper = of(|t| 5.0 * (t - 0.2) * (t - 0.8));
+        assert_relative_eq!(
+            steeper.lowest().expect("it turns"),
+            0.5,
+            max_relative = 1e-12
+        );
     }
 
     #[test]

@@ -387,3 +387,19 @@ fn a_controller_pushes_by_the_sum_of_its_errors_from_the_beginning_of_a_step() {
     dynamics.take(&mut state, &[], 0.0, 1e-5);
     assert_relative_eq!(state.drives[0].force, 50.0, max_relative = 1e-2);
 }
+
+#[test]
+fn a_point_of_a_body_moves_as_it_does_in_a_short_time() {
+    const TIME: f64 = 1e-7;
+    let (dynamics, mut state) = setup(|_| {});
+    (state.velocity, state.angular_velocity) = (Vector::new(0.4, -0.3), 1.3);
+    let on_chassis = Vector::new(0.2, 0.05);
+    let at = |time| {
+        state
+            .pose_after(time, &dynamics.model)
+            .transform_point(on_chassis)
+    };
+    let moved = (at(TIME) - at(-TIME)) / (2.0 * TIME);
+    // Differences of 1e-7 m lose nine digits of sixteen.
+    assert_relative_eq!(state.velocity_at(at(0.0)), moved, max_relative = 1e-7);
+}

@@ -94,7 +94,7 @@ impl Chain {
 
     /// Gives each shoe the inertia with which it turns to the middle of a motion of `h` [s] as if the torques of its
     /// pins followed it there. Otherwise a light shoe under a strong pull would swing wider with each step.
-    fn stiffen(&mut self, h: f64) {
+    pub(super) fn stiffen(&mut self, h: f64) {
         self.inertias.fill(0.0);
         let count = self.pins.len();
         for (i, pin) in self.pins.iter().enumerate() {

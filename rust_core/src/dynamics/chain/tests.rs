@@ -169,3 +169,109 @@ fn a_pull_lengthwise_turns_both_shoes_back_into_line() {
     pin.force = along * tension;
     assert!(pin.straightens().iter().all(|moment| *moment < 0.0));
 }
+
+/// Puts the pin of a shoe somewhere in the chassis frame.
+fn put_pin(chain: &mut Chain, shoe: usize, pin: Vector) {
+    let back = Vector::new(-0.5 * chain.rule.path.pitch, 0.0);
+    chain.places[shoe] = [Pose::from_parts(pin + back, Rotation::IDENTITY); 2];
+}
+
+/// The teeth are searched with the reach that all rests have, beyond their tips, too.
+#[test]
+fn a_pin_just_beyond_the_tips_of_the_teeth_is_near_them() {
+    let mut chain = on_wheels();
+    let at_rest = chain.rule.path.places(0.0);
+    chain.rests(
+        stand(),
+        |shoe| stand().chassis * at_rest[shoe],
+        REACH,
+        |_, _| {},
+    );
+    let axle = chain.rule.ends[0].center;
+    let teeth = chain
+        .rule
+        .sprocket
+        .as_ref()
+        .expect("it has one")
+        .teeth
+        .clone();
+    for (gap, is_near) in [
+        (-0.5 * REACH, true),
+        (0.5 * REACH, true),
+        (1.5 * REACH, false),
+    ] {
+        // A tooth is halfway between two seats.
+        let up = direction(std::f64::consts::PI / teeth.count as f64);
+        put_pin(&mut chain, 0, axle + up * (teeth.tip_radius + gap));
+        let mut found = 0;
+        chain.rest_on_teeth(0, stand(), REACH, &mut |_: &Chain, rest: Rest| {
+            found += 1;
+            assert!(rest.gap < REACH && matches!(rest.on, Bearing::Tooth(_)));
+        });
+        assert_eq!(found > 0, is_near, "{gap} m");
+    }
+}
+
+/// Where a straight line between two pins passes the height of an axle, whatever side both pins are on.
+#[test]
+fn a_chain_goes_round_its_sprocket_if_it_passes_behind_the_axle() {
+    let mut chain = on_wheels();
+    let at_rest = chain.rule.path.places(0.0);
+    let axle = chain.rule.ends[0].center;
+    for (above, below, is_off) in [
+        ([0.02, 0.05], [-0.05, -0.02], false),
+        ([0.05, 0.02], [-0.02, -0.05], true),
+    ] {
+        chain.rests(
+            stand(),
+            |shoe| stand().chassis * at_rest[shoe],
+            REACH,
+            |_, _| {},
+        );
+        let count = chain.places.len();
+        let side = |shoe: usize| chain.pin(shoe) - axle;
+        let passes = |shoe: &usize| {
+            let (here, next) = (side(*shoe), side((*shoe + 1) % count));
+            here.x < 0.0 && (here.y > 0.0) != (next.y > 0.0)
+        };
+        let shoe = (0..count).find(passes).expect("it goes round");
+        let [first, second] = if side(shoe).y > 0.0 {
+            [above, below]
+        } else {
+            [below, above]
+        };
+        put_pin(&mut chain, shoe, axle + Vector::from(first));
+        put_pin(&mut chain, (shoe + 1) % count, axle + Vector::from(second));
+        assert_eq!(chain.is_off_wheels(stand()), is_off, "{above:?} {below:?}");
+    }
+}
+
+/// By h^2/4 times the moment per radian with which the force of a pin turns it back; a push would turn it on, and does nothing.
+#[test]
+fn both_shoes_of_a_pin_under_tension_turn_as_if_they_had_more_inertia() {
+    let mut chain = on_wheels();
+    let (h, tension, along) = (2e-3, 30.0, direction(0.7));
+    let (count, own, pitch) = (
+        chain.pins.len(),
+        chain.rule.shoe_inertia,
+        chain.rule.path.pitch,
+    );
+    for pin in [0, 3, count - 1] {
+        for (force, more) in [(-tension, tension * 0.5 * pitch), (tension, 0.0)] {
+            for (i, each) in chain.pins.iter_mut().enumerate() {
+                each.turn([along; 2], pitch);
+                each.force = if i == pin {
+                    along * force
+                } else {
+                    Vector::ZERO
+                };
+            }
+            chain.stiffen(h);
+            for (shoe, inertia) in chain.inertias.iter().enumerate() {
+                let is_of_pin = shoe == pin || shoe == (pin + 1) % count;
+                let expected = own + if is_of_pin { 0.25 * h * h * more } else { 0.0 };
+                assert_relative_eq!(*inertia, expected, max_relative = 1e-14);
+            }
+        }
+    }
+}

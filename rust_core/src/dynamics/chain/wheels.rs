@@ -69,7 +69,7 @@ impl Chain {
     }
 
     /// Finds the rests of a shoe's front pin on the teeth behind and ahead of it.
-    fn rest_on_teeth(
+    pub(super) fn rest_on_teeth(
         &self,
         shoe: usize,
         stand: ChainPose,
@@ -107,7 +107,7 @@ impl Chain {
     }
 
     /// [m] The front pin of a shoe in the chassis frame.
-    fn pin(&self, shoe: usize) -> Vector {
+    pub(super) fn pin(&self, shoe: usize) -> Vector {
         let [_, place] = self.places[shoe];
         place.transform_point(Vector::new(0.5 * self.rule.path.pitch, 0.0))
     }
