@@ -82,8 +82,7 @@ impl Chain {
         };
         let axle = rule.ends[0].center;
         let pin = self.pin(shoe);
-        let most = sprocket.teeth.tip_radius + reach;
-        if (pin - axle).length_squared() > most * most {
+        if (pin - axle).length() > sprocket.teeth.tip_radius + reach {
             return;
         }
         let turned = Rotation::new(sprocket.angle(stand.run));
