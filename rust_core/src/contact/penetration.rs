@@ -201,25 +201,27 @@ mod tests {
     fn what_hangs_over_an_end_of_the_ground_is_not_in_it() {
         let flat = [[-1.0, 0.0], [1.0, 0.0]];
         let lane = Profile::new("terrain", &flat, Surface::sharp(0.9), true).expect("a profile");
-        let wheel = Shape::Disc {
-            center: Vector::ZERO,
-            radius: 0.1,
-        };
-        let part = Part {
+        let wheel = |radius: f64| Part {
             kind: BodyKind::Wheel,
-            shape: wheel,
+            shape: Shape::Disc {
+                center: Vector::ZERO,
+                radius,
+            },
             drive: Some(0),
             friction_limit: f64::INFINITY,
             lane: 0,
             mount: Mount::Chassis,
         };
-        let at = |x: f64| depth(&part, Pose::new(Vector::new(x, 0.08), 0.0), &lane);
+        let at = |x: f64| depth(&wheel(0.1), Pose::new(Vector::new(x, 0.08), 0.0), &lane);
         for x in [-0.89, 0.0, 0.89] {
             assert!((at(x) - 0.02).abs() < 1e-12);
         }
         for x in [-0.91, 0.91, -1.5, 1.5] {
             assert_eq!(at(x), 0.0);
         }
+        // In numbers without rounding, one that ends where the ground ends does not hang over.
+        let flush = |x: f64| depth(&wheel(0.25), Pose::new(Vector::new(x, 0.125), 0.0), &lane);
+        assert_eq!([-0.75, 0.75].map(flush), [0.125; 2]);
     }
 
     fn contact(number: u64, x: f64, distance: f64) -> Contact {
@@ -291,5 +293,19 @@ mod tests {
             [-30_000.0, -50_000.0],
             "that is another part"
         );
+    }
+
+    #[test]
+    fn ground_beside_a_dent_is_forgiven_wherever_the_dent_is() {
+        for place in [-3.0, 0.5, 2.0] {
+            for (apart, forgiven) in [(0.009, 0.01), (-0.009, 0.01), (0.011, -0.03)] {
+                let last = [contact(1, place, -0.04)];
+                let mut dents = Dents::of(&last);
+                let mut contacts = [last[0], contact(2, place + apart, -0.03)];
+                dents.forgive(&mut contacts, &last);
+                let off = contacts[1].distance - forgiven;
+                assert!(off.abs() < 1e-15, "{apart} m from one at {place} m");
+            }
+        }
     }
 }

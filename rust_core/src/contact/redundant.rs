@@ -271,6 +271,9 @@ fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::direction;
+    use crate::scenario::Surface;
+    use crate::terrain::Profile;
 
     #[test]
     fn a_contact_between_two_others_is_redundant_if_it_is_no_deeper_than_their_chord() {
@@ -309,5 +312,51 @@ mod tests {
         without_redundant(&mut contacts);
         let left: Vec<(usize, f64)> = contacts.iter().map(|c| (c.part, c.point.x)).collect();
         assert_eq!(left, [(0, 1.0), (0, 4.0), (0, 5.0), (1, 2.5)]);
+    }
+
+    #[test]
+    fn one_of_two_contacts_in_one_place_is_left_and_both_of_two_apart() {
+        let at = |x: f64, y: f64| Contact::new(0, (0, -1), (Vector::new(x, y), Vector::Y), -1e-4);
+        let left = |a: Contact, b: Contact| {
+            let mut contacts = vec![a, b];
+            without_redundant(&mut contacts);
+            contacts.len()
+        };
+        for (x, y) in [(1.0, 0.3), (-2.0, 0.0), (0.0, 0.0), (0.4, -5.0)] {
+            assert_eq!(left(at(x, y), at(x + 1e-10, y)), 1, "at {x} {y} m");
+            assert_eq!(left(at(x, y), at(x + 1e-6, y)), 2, "at {x} {y} m");
+            assert_eq!(left(at(x, y), at(-x - 1.0, -y)), 2, "at {x} {y} m");
+        }
+        assert_eq!(left(at(-1.0, 0.0), at(1.0, 0.0)), 2);
+    }
+
+    /// It is turned so that the corner of the step faces neither of its sides, only its tip.
+    #[test]
+    fn a_needle_in_a_step_leaves_it_through_the_nearer_face() {
+        let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+        let profile =
+            Profile::new("terrain", &points, Surface::sharp(0.9), true).expect("a profile");
+        let lane = Lane::new(&profile);
+        for (behind, below) in [(1e-4, 5e-4), (5e-4, 1e-4)] {
+            let place = Vector::new(behind, 0.1 - below);
+            // Of 20 degrees, down to the right at 45 degrees.
+            let normals = [-125.0_f64, 35.0].map(|angle| direction(angle.to_radians()));
+            let tip = Tip { place, normals };
+            let mut stays = Vec::new();
+            let reach = (1e-3, 1e-3);
+            lane.touches_of_disc(&lane.region(-0.1, 0.1), place, 0.0, reach, |touch| {
+                if !tip_yields(&lane, &tip, &touch) {
+                    stays.push((touch.normal, -touch.distance));
+                }
+            });
+            let nearer = if behind < below {
+                Vector::NEG_X
+            } else {
+                Vector::Y
+            };
+            assert_eq!(stays.len(), 1, "{stays:?}");
+            assert!((stays[0].0 - nearer).length() < 1e-12, "{stays:?}");
+            assert!((stays[0].1 - 1e-4).abs() < 1e-12, "{stays:?}");
+        }
     }
 }

@@ -288,45 +288,49 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_round_of_the_belt_is_a_turn_clockwise() {
-        let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {
+    /// With a disc of 0.1 m at either end.
+    fn stadium() -> Arc<Envelope> {
+        let discs = [-0.3, 0.3].map(|x| Disc {
             center: Vector::new(x, 0.0),
-            radius,
+            radius: 0.1,
         });
-        let belt = Envelope::new(&discs);
-        let angle = |rounds: f64| belt.angle_at(rounds * belt.length());
-        for k in -200..300 {
-            let rounds = f64::from(k) / 100.0 + 0.005;
-            assert!((angle(rounds) - angle(rounds + 1.0) - TAU).abs() < 1e-9);
-            // It bends by 13 mm of an arc of 6 cm at most from one to the next, and never back.
-            let bend = angle(rounds) - angle(rounds + 0.01);
-            assert!((-1e-9..0.25).contains(&bend), "{rounds}: {bend}");
+        Arc::new(Envelope::new(&discs))
+    }
+
+    #[test]
+    fn grousers_stand_equally_far_apart_all_round_the_belt() {
+        let belt = stadium();
+        let outline = TrackOutline {
+            discs: TrackOutline::two_discs(0.6, [0.12, 0.12]),
+            grouser_height: 0.02,
+            grouser_pitch: 0.1,
+            grouser_thickness: 0.008,
+        };
+        // The belt is 1.828 m long.
+        for (given, count) in [(None, 18), (Some(7), 7)] {
+            let grousers = Grouser::along(&belt, given, 0.02, &outline).expect("not too many");
+            let mut starts: Vec<f64> = grousers.map(|grouser| grouser.start()).collect();
+            assert_eq!(starts.len(), count);
+            starts.push(starts[0] + belt.length());
+            for pair in starts.windows(2) {
+                let off = pair[1] - pair[0] - belt.length() / count as f64;
+                assert!(off.abs() < 1e-12, "{starts:?}");
+            }
         }
     }
 
     #[test]
-    fn grousers_are_a_pitch_apart_along_the_belt() {
-        let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {
-            center: Vector::new(x, 0.0),
-            radius,
-        });
-        let outline = TrackOutline {
-            discs: Vec::new(),
-            grouser_height: 0.012,
-            grouser_pitch: 0.05,
-            grouser_thickness: 0.006,
-        };
-        let belt = Arc::new(Envelope::new(&discs));
-        for count in [3, 12] {
-            let all = Grouser::along(&belt, Some(count), 0.012, &outline).expect("they fit");
-            let pitch = belt.length() / f64::from(count);
-            for (i, grouser) in all.enumerate() {
-                let place = grouser.place(0.0).translation;
-                let expected = belt.point_at(i as f64 * pitch);
-                // Its frame is at the foot, on the belt or below it by less than its height.
-                assert!((place - expected).length() < 0.012, "{count}: {i}");
-            }
+    fn the_direction_of_travel_turns_clockwise_once_per_round_and_never_jumps() {
+        let belt = stadium();
+        let step = belt.length() / 1000.0;
+        let angle = |i: i32| belt.angle_at(f64::from(i) * step);
+        for i in -2000..2000 {
+            let turned = angle(i) - angle(i + 1);
+            // By the step over the radius on an arc, and by nothing on a run.
+            let most = step / 0.1 + 1e-9;
+            assert!((-1e-9..=most).contains(&turned), "{turned} rad at {i}");
+            let round = angle(i) - angle(i + 1000);
+            assert!((round - TAU).abs() < 1e-9, "{round} rad from {i}");
         }
     }
 }

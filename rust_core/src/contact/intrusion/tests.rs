@@ -127,26 +127,31 @@ fn extent(intrusion: &Intrusion, profile: &Profile) -> (f64, f64) {
     })
 }
 
-#[test]
-fn post_in_a_slot_counts_by_its_height_and_thickness() {
+/// A track of three wheels with a slot between each two.
+fn slotted() -> Model {
     let placements = vec![[-0.186, 0.0, 0.08], [0.0, 0.0, 0.08], [0.186, 0.0, 0.08]];
     let wheel = Wheel::Round;
-    let model = model(Track::Hybrid(HybridWheels { placements, wheel }));
-    let envelope = TrackEnvelope::new(&model.parts, (0, Mount::Chassis), 0.0);
+    model(Track::Hybrid(HybridWheels { placements, wheel }))
+}
+
+/// A post that stands halfway between the rear and the middle wheel of a track that is turned by an angle [rad].
+fn post_in_a_slot(angle: f64) -> Intrusion {
+    let envelope = TrackEnvelope::new(&slotted().parts, (0, Mount::Chassis), 0.0);
     let terrain = Terrain::Barrier {
         height: 0.03,
         thickness: 0.02,
         surface: Surface::sharp(0.9),
     };
-    let profile = Ground::new(&terrain, 0.2)
-        .expect("a ground")
-        .lanes
-        .remove(0);
-    // The post stands halfway between the rear and the middle wheel.
-    let pose = Pose::from_translation(Vector::new(0.103, 0.081));
-    let found = envelope.intrusions(&profile, pose);
+    let ground = Ground::new(&terrain, 0.2).expect("a ground");
+    let pose = Pose::from_parts(Vector::new(0.103, 0.081), Rotation::new(angle));
+    let mut found = envelope.intrusions(&ground.lanes[0], pose);
     assert_eq!(found.len(), 1);
-    let post = &found[0];
+    found.remove(0)
+}
+
+#[test]
+fn post_in_a_slot_counts_by_its_height_and_thickness() {
+    let post = post_in_a_slot(0.0);
     // The belt is offset by a millimetre above the ground.
     assert!((post.depth - 0.029).abs() < 1e-12 && (post.root_depth - 0.029).abs() < 1e-12);
     assert!((post.area - 0.02 * 0.029).abs() < 1e-12, "{}", post.area);
@@ -154,6 +159,37 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
         (post.edges.as_slice(), post.bodies),
         ([1, 2].as_slice(), [1, 0])
     );
+}
+
+/// Its edges are 2 cm apart; turned by a thousandth, the belt is 20 um closer to one than to the other.
+#[test]
+fn of_the_edges_of_a_post_the_deeper_counts_and_if_they_are_equally_deep_the_left_one() {
+    for (angle, edge) in [(0.0, 1), (-1e-6, 1), (1e-6, 1), (1e-3, 1), (-1e-3, 2)] {
+        let post = post_in_a_slot(angle);
+        assert_eq!(
+            (post.edges.as_slice(), post.edge),
+            ([1, 2].as_slice(), edge)
+        );
+    }
+}
+
+/// No point of the belt is deeper than its axis, 0.08 m from its lower side.
+#[test]
+fn ground_that_rises_above_the_axles_is_as_deep_as_the_axles() {
+    let envelope = TrackEnvelope::new(&slotted().parts, (0, Mount::Chassis), 0.0);
+    let terrain = Terrain::Step {
+        height: 0.1,
+        surface: Surface::sharp(0.9),
+    };
+    let ground = Ground::new(&terrain, 0.2).expect("a ground");
+    for (rises, depth) in [(-0.03, 0.05), (0.01, 0.08), (0.05, 0.08)] {
+        let pose = Pose::from_translation(Vector::new(-5.0, -rises));
+        let found = envelope.intrusions(&ground.lanes[0], pose);
+        assert_eq!(found.len(), 1);
+        let off = [found[0].depth - depth, found[0].root_depth - depth].map(f64::abs);
+        // The search for the deepest point ends within a nanometre.
+        assert!(off[0] < 1e-9 && off[1] < 1e-9, "{:?}", found[0]);
+    }
 }
 
 /// Facets of a rounded edge are a tenth of a millimetre long, those beside it are centimetres.

@@ -122,16 +122,20 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_chord_hides_what_lies_between_its_ends_and_no_higher() {
-        let at = |x: f64, y: f64| Touch {
+    /// A touch of level ground there [m].
+    fn at(x: f64, y: f64) -> Touch {
+        Touch {
             place: Vector::new(x, y),
             normal: Vector::Y,
             distance: 0.0,
             facet: 0,
             edge: 0,
             on: crate::contact::lane::On::Corner(0),
-        };
+        }
+    }
+
+    #[test]
+    fn a_chord_hides_what_lies_between_its_ends_and_no_higher() {
         let chord = Chord::new(&at(0.0, 0.0), &at(2.0, 0.2)).expect("they bear on one run");
         assert!(chord.hides(Vector::new(1.0, 0.1 + 0.5e-6)));
         assert!(!chord.hides(Vector::new(1.0, 0.1 + 2e-6)));
@@ -141,5 +145,42 @@ mod tests {
             ..at(2.0, 0.2)
         };
         assert!(Chord::new(&at(0.0, 0.0), &tilted).is_none());
+    }
+
+    #[test]
+    fn a_roof_is_parallel_to_its_stretch_and_touches_the_corner_that_rises_highest() {
+        let points = [
+            [1.0, 2.0],
+            [2.0, 2.5],
+            [3.0, 2.4],
+            [4.0, 3.2],
+            [5.0, 3.6],
+            [6.0, 3.0],
+            [7.0, 4.4],
+        ];
+        let profile =
+            Profile::new("ground", &points, Surface::sharp(0.9), true).expect("it is ground");
+        let [a, b] = roof(&Lane::new(&profile).corners);
+        // From end to end it rises by 0.4; the second point is 0.1 m above that line.
+        let off = [a - Vector::new(1.0, 2.1), b - Vector::new(7.0, 4.5)].map(Vector::length);
+        assert!(off[0] < 1e-12 && off[1] < 1e-12, "{a} {b}");
+    }
+
+    #[test]
+    fn a_chord_hides_a_round_corner_if_all_of_its_arc_lies_below() {
+        let chord = Chord::new(&at(0.0, 0.0), &at(2.0, 0.2)).expect("they bear on one run");
+        let down = Vector::new(0.1, -1.0).normalize();
+        for (below, is_hidden) in [(0.021, true), (0.019, false), (0.5, true)] {
+            let corner = Corner {
+                center: Vector::new(1.0, 0.1) + down * below,
+                radius: 0.02,
+                normals: [Vector::NEG_X, Vector::X],
+                is_convex: true,
+                edge: 0,
+                facet: 0,
+                facets: 0,
+            };
+            assert_eq!(chord.hides_corner(&corner), is_hidden, "{below} m below");
+        }
     }
 }

@@ -74,6 +74,19 @@ fn sorted(mut touches: Vec<Touch>) -> Vec<(String, [u64; 5])> {
     touches.iter().map(key).collect()
 }
 
+/// Whether a touch is not on a face farther away than this [m], which the disc did not sink into.
+fn is_within(lane: &Lane, touch: &Touch, center: Vector, far: f64) -> bool {
+    match touch.on {
+        On::Corner(_) => true,
+        On::Face(i) => {
+            let face = &lane.faces[i];
+            let along = (center - face.begin).dot(face.along);
+            let nearest = face.begin + face.along * along.clamp(0.0, face.length);
+            (nearest - center).length() < far
+        }
+    }
+}
+
 /// Everything that a disc bears on, found by visiting every piece.
 fn touches_one_by_one(
     lane: &Lane,
@@ -119,16 +132,7 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
                 let region = lane.region(ends[0], ends[1]);
                 lane.touches_of_disc(&region, center, radius, reach, |t| touches.push(t));
                 let slow = touches_one_by_one(&lane, center, radius, reach);
-                // A face farther away than this was not sunk into.
-                let reaches = |t: &Touch| match t.on {
-                    On::Corner(_) => true,
-                    On::Face(i) => {
-                        let face = &lane.faces[i];
-                        let along = (center - face.begin).dot(face.along);
-                        let nearest = face.begin + face.along * along.clamp(0.0, face.length);
-                        (nearest - center).length() < far
-                    }
-                };
+                let reaches = |t: &Touch| is_within(&lane, t, center, far);
                 touches.retain(reaches);
                 let slow: Vec<Touch> = slow.into_iter().filter(reaches).collect();
                 poses += 1;
@@ -142,6 +146,114 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
         }
     }
     println!("seed {SEED}: {poses} poses, {found} touches");
+}
+
+/// What bounds several pieces must not leave out what is at the very end of one.
+#[test]
+fn the_index_finds_a_disc_with_its_centre_below_the_end_of_a_face() {
+    let mut draw = Draw(20_270_124);
+    let (radius, prediction) = (0.02, SHALLOW.value());
+    let far = radius + prediction;
+    for jitter in [1e-5, 1e-4, 1e-3] {
+        let (_, lane) = lane(1000, jitter, 0.0, &mut draw);
+        let mut found = 0;
+        for face in &lane.faces {
+            // A tenth of a nanometre inside is a tenth of what counts as rounding.
+            for along in [1e-10, face.length - 1e-10] {
+                let end = face.begin + face.along * along;
+                let center = end - face.normal * draw.between(0.0, 0.99 * prediction);
+                let reach = (prediction, prediction);
+                let region = lane.region(center.x - far, center.x + far);
+                let mut touches = Vec::new();
+                lane.touches_of_disc(&region, center, radius, reach, |t| touches.push(t));
+                touches.retain(|t| is_within(&lane, t, center, far));
+                let mut slow = touches_one_by_one(&lane, center, radius, reach);
+                slow.retain(|t| is_within(&lane, t, center, far));
+                found += slow.len();
+                assert_eq!(sorted(touches), sorted(slow), "{jitter} {center}");
+            }
+        }
+        assert!(found >= 2 * lane.faces.len());
+    }
+}
+
+/// It is searched for within the half chord of the disc at the height of the highest ground, of any disc.
+#[test]
+fn a_disc_bears_on_a_step_far_ahead_of_its_axle_however_large_it_is() {
+    for radius in [0.3, 3.0, 30.0] {
+        let (ahead, high) = (0.9 * radius, 0.56 * radius);
+        let mut points: Vec<[f64; 2]> = (-100_i32..90)
+            .map(|i| {
+                let rough = 1e-3 * f64::from(i.rem_euclid(2));
+                [0.01 * radius * f64::from(i), -radius * rough]
+            })
+            .collect();
+        points.extend([[ahead, 0.0], [ahead, high], [2.0 * radius, 0.5 * high]]);
+        let (_, lane) = rounded(&points, 0.0);
+        let above = (radius * radius - ahead * ahead).sqrt();
+        let center = Vector::new(0.0, high + above);
+        let region = lane.region(-radius, radius);
+        assert!(region.is_long());
+        let mut on_step = Vec::new();
+        let reach = (1e-3 * radius, 0.0);
+        lane.touches_of_disc(&region, center, radius, reach, |touch| {
+            if (touch.place - Vector::new(ahead, high)).length() < 1e-9 * radius {
+                on_step.push(touch.distance);
+            }
+        });
+        assert_eq!(on_step.len(), 1, "{radius} m");
+        assert!(on_step[0].abs() < 1e-9 * radius, "{} m", on_step[0]);
+    }
+}
+
+#[test]
+fn a_tip_past_the_end_of_a_face_does_not_bear_on_it() {
+    let (_, lane) = rounded(&[[-1.0, 0.0], [0.0, 0.0], [1.0, -1.0]], 0.0);
+    // Less deep than SHALLOW below the top, a tenth of a millimetre behind the edge of it, and below the slope.
+    let tip = Vector::new(1e-4, -5e-4);
+    let mut touched = Vec::new();
+    let reach = (2e-4, SHALLOW.value());
+    lane.touches_of_disc(&lane.region(-0.1, 0.1), tip, 0.0, reach, |touch| {
+        touched.push(touch.on);
+    });
+    assert_eq!(touched, [On::Face(1)]);
+}
+
+#[test]
+fn the_ends_of_the_ground_are_no_edges() {
+    let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+    for edge_radius in [0.0, 0.02] {
+        let (_, lane) = rounded(&points, edge_radius);
+        let edges: Vec<i32> = lane.corners.iter().map(|corner| corner.edge).collect();
+        assert_eq!(edges, [-1, 0, 1, -1]);
+    }
+}
+
+/// Its facets are chords, and turned from it by half a degree.
+#[test]
+fn an_arc_down_to_the_ground_meets_it_along_its_own_tangent() {
+    let high = 0.06;
+    let points = [
+        [-2.0, 0.0],
+        [-1.0, 0.0],
+        [-1.0, high],
+        [0.0, high],
+        [0.0, 0.0],
+        [1.0, 0.0],
+    ];
+    let (_, lane) = rounded(&points, high);
+    let feet = [
+        (-1.0, [Vector::Y, Vector::NEG_X]),
+        (0.0, [Vector::X, Vector::Y]),
+    ];
+    for (x, normals) in feet {
+        let at_foot =
+            |c: &&Corner| c.radius <= 0.0 && (c.center - Vector::new(x, 0.0)).length() < 1e-9;
+        let foot = lane.corners.iter().find(at_foot).expect("it has a foot");
+        for (found, normal) in foot.normals.into_iter().zip(normals) {
+            assert!((found - normal).length() < 1e-9, "{found} at {x} m");
+        }
+    }
 }
 
 #[test]
@@ -203,6 +315,30 @@ fn few_pieces_are_looked_at_however_finely_a_flat_is_cut() {
             region
         );
         assert!(visited.get() <= 64);
+    }
+}
+
+/// Their number grows by about two each time the ground is twice as long.
+#[test]
+fn few_stretches_are_looked_at_however_long_the_ground_is() {
+    for count in [1000, 10_000, 100_000] {
+        let pitch = 2e-3;
+        let points: Vec<[f64; 2]> = (0..count).map(|i| [pitch * f64::from(i), 0.0]).collect();
+        let (_, lane) = rounded(&points, 0.0);
+        assert_eq!(lane.faces.len() + 1, points.len());
+        let length = pitch * f64::from(count);
+        let (center, reach) = (Vector::new(0.4 * length, 0.1001), 0.101);
+        let (mut looked_at, mut faces) = (0, 0);
+        lane.index.visit(
+            &lane.region(0.0, length),
+            |stretch| {
+                looked_at += 1;
+                stretch.may_face(center, reach)
+            },
+            |_, _| faces += 1,
+        );
+        assert!((1..=16).contains(&faces), "{faces} faces");
+        assert!(looked_at <= 64, "{looked_at} stretches of {count} pieces");
     }
 }
 

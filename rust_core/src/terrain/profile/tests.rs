@@ -158,27 +158,39 @@ fn a_spike_is_refused_and_a_wall_in_two_pieces_is_not() {
     );
 }
 
-/// Pieces of unlike length, from 5 cm to 4 m, and two alike.
 #[test]
-fn a_place_along_a_piece_is_on_the_facet_that_holds_it() {
-    let ends = [0.0, 1.0, 1.05, 5.05, 5.1, 6.1, 6.2];
-    let points = ends.map(|s| Vector::new(0.8, 0.6) * s);
-    for first in 0..ends.len() {
-        for last in first + 1..ends.len() {
-            let length = ends[last] - ends[first];
-            for k in 0..200 {
-                let share = (f64::from(k) + 0.5) / 200.0;
-                let at = ends[first] + share * length;
-                let facet = facet_along(&points, first..last, share);
-                let holds = (first..last).contains(&facet) && ends[facet] <= at + 1e-12;
-                assert!(
-                    holds && at <= ends[facet + 1] + 1e-12,
-                    "{first}..{last}: {share}"
-                );
-            }
-            for (beyond, expected) in [(-0.1, first), (1.1, last - 1)] {
-                assert_eq!(facet_along(&points, first..last, beyond), expected);
+fn a_place_along_a_straight_piece_is_on_the_facet_that_holds_it() {
+    for ends in [
+        &[0.0, 0.25, 0.5, 0.75, 1.0][..],
+        &[0.0, 0.1, 0.2, 1.0],
+        &[0.0, 0.8, 0.9, 1.0],
+        &[0.0, 0.02, 0.5, 0.51, 0.98, 1.0],
+    ] {
+        let on_slope = |share: &f64| Vector::new(1.0 + 4.0 * share, 2.0 + 3.0 * share);
+        let points: Vec<Vector> = ends.iter().map(on_slope).collect();
+        let last = points.len() - 2;
+        let found = |fraction: f64| facet_along(&points, 0..last + 1, fraction);
+        for (facet, pair) in ends.windows(2).enumerate() {
+            for share in [0.01, 0.5, 0.99] {
+                let fraction = pair[0] + share * (pair[1] - pair[0]);
+                assert_eq!(found(fraction), facet, "{fraction} of {ends:?}");
             }
         }
+        assert_eq!([found(-0.1), found(1.1)], [0, last], "beyond {ends:?}");
     }
+}
+
+#[test]
+fn points_on_a_straight_line_are_no_edges() {
+    let points = [
+        [-1.0, 0.0],
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [2.0, 0.5],
+        [4.0, 1.5],
+        [5.0, 1.5],
+    ];
+    let ground = Profile::new("terrain", &points, Surface::sharp(0.5), false).expect("ground");
+    assert_eq!(ground.edge_of_point, [-1, -1, 0, -1, 1, -1]);
+    assert_eq!(ground.edges.len(), 2);
 }

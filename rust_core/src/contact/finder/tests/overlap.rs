@@ -351,3 +351,21 @@ fn a_tip_at_the_foot_of_an_arc_bears_on_the_arc_and_on_the_ground_beside_it() {
         }
     }
 }
+
+/// The left side of the block is as near as its underside, but the corner does not face that side.
+#[test]
+fn a_corner_as_near_to_two_sides_of_a_block_bears_on_the_one_that_it_faces() {
+    let contact = polygon_at_step(&[[0.0, 0.0], [0.1, 0.0], [0.1, 0.05], [0.0, 0.05]]);
+    let (turn, deep) = (Rotation::new(0.1), 3e-4);
+    let up = turn * Vector::Y;
+    // Sides that differ by less than 10 nm count as equally near.
+    for farther in [-1e-6, -1e-9, 0.0, 1e-9, 5e-9, 1e-6] {
+        let corner = turn * Vector::new(deep + farther, deep);
+        let pose = Pose::from_parts(Vector::new(0.0, 0.1) - corner, turn);
+        let mut contacts = Vec::new();
+        contact.find(pose, &Running::default(), 1e-3, &mut contacts);
+        let is_it =
+            |c: &Contact| (c.normal - up).length() < 1e-9 && (c.distance + deep).abs() < 1e-12;
+        assert!(contacts.iter().any(is_it), "{farther} {contacts:?}");
+    }
+}
