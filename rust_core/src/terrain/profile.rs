@@ -159,7 +159,8 @@ impl Profile {
                 continue;
             }
             let id = self.edges.len() as i32;
-            let rounded = radius > 0.0 && angle > 0.0;
+            // A shorter arc would have both ends in one point, and no normals.
+            let rounded = radius * angle >= COLLINEAR.value();
             let tangent = if rounded {
                 radius * libm::tan(0.5 * angle)
             } else {

@@ -404,3 +404,28 @@ fn the_arc_of_a_corner_is_as_long_as_its_angle_on_its_radius() {
     assert!((lengths[0] - 0.05 * right).abs() < 1e-12);
     assert!((lengths[1] - 0.05 * 0.5 * right).abs() < 1e-12);
 }
+
+/// A disc that is 1 um deep, with its centre above the edge, along normals from those of one face to those of the other.
+#[test]
+fn a_rounded_edge_bears_however_short_its_arc_is() {
+    const RADIUS: f64 = 0.1;
+    for (edge_radius, turn) in [
+        (3e-9, 5e-4),
+        (1.5e-9, 5e-4),
+        (1e-6, 5e-7),
+        (1e-4, 5e-9),
+        (1e-4, 1e-6),
+    ] {
+        let (s, c) = libm::sincos(turn);
+        let (_, lane) = rounded(&[[-1.0, 0.0], [0.0, 0.0], [c, -s]], edge_radius);
+        for share in 0..9 {
+            let normal = crate::geometry::direction(
+                std::f64::consts::FRAC_PI_2 - turn * f64::from(share) / 8.0,
+            );
+            let (center, mut found) = (normal * (RADIUS - 1e-6), 0);
+            let region = lane.region(-RADIUS, RADIUS);
+            lane.touches_of_disc(&region, center, RADIUS, (1e-4, 1e-3), |_| found += 1);
+            assert!(found > 0, "{edge_radius} m, {turn} rad: {share}");
+        }
+    }
+}
