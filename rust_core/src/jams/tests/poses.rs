@@ -116,12 +116,26 @@ fn the_pose_between_two_parallel_faces_is_found() {
     }
 }
 
+/// Whether a robot whose two surfaces touch two places in a pose is found to stand in it.
+fn is_found(
+    pieces: &[(Outline, Facing, Vector)],
+    (grips, frictions): ([Grip; 2], [f64; 2]),
+    center_of_mass: Vector,
+    at: &Posture,
+) -> bool {
+    let surfaces = pieces.iter().zip(grips).map(|(p, grip)| surface(p.0, grip));
+    let places = pieces.iter().zip(frictions).map(|(p, mu)| place(p.1, mu));
+    let setting = setting(surfaces.collect(), places.collect(), center_of_mass);
+    let found = setting.leaning(&Cancel::default());
+    let found = found.expect("nobody asks it to end");
+    found.iter().any(|posture| is_near(posture, at))
+}
+
 /// The centre of mass is put over the point in which the lines of two forces meet, or both lines and that of the weight are
 /// parallel.
 #[test]
 fn the_pose_in_which_two_forces_were_made_to_carry_the_weight_is_found() {
     let mut draw = Draw(4);
-    let cancel = Cancel::default();
     let mut tried = 0;
     for case in 0..300 {
         let at = posture(&mut draw);
@@ -157,16 +171,8 @@ fn the_pose_in_which_two_forces_were_made_to_carry_the_weight_is_found() {
             continue;
         }
         tried += 1;
-        let surfaces = (pieces.iter().zip(grips))
-            .map(|(p, grip)| surface(p.0, grip))
-            .collect();
-        let places = (pieces.iter().zip(frictions))
-            .map(|(p, mu)| place(p.1, mu))
-            .collect();
-        let setting = setting(surfaces, places, center_of_mass);
-        let found = setting.leaning(&cancel).expect("nobody asks it to end");
         assert!(
-            found.iter().any(|posture| is_near(posture, &at)),
+            is_found(&pieces, (grips, frictions), center_of_mass, &at),
             "case {case}: {kinds:?} {at:?}"
         );
     }
@@ -266,7 +272,6 @@ fn contacts_that_come_together_are_one_and_others_are_not() {
 #[test]
 fn the_pose_of_two_parallel_runs_that_carry_the_weight_is_found() {
     let mut draw = Draw(6);
-    let cancel = Cancel::default();
     let mut tried = 0;
     for case in 0..200 {
         let at = posture(&mut draw);
@@ -285,17 +290,9 @@ fn the_pose_of_two_parallel_runs_that_carry_the_weight_is_found() {
             continue;
         }
         tried += 1;
-        let surfaces = pieces
-            .iter()
-            .map(|p| surface(p.0, Grip::Driven(1.0)))
-            .collect();
-        let places = (pieces.iter().zip(frictions))
-            .map(|(p, mu)| place(p.1, mu))
-            .collect();
-        let setting = setting(surfaces, places, center_of_mass);
-        let found = setting.leaning(&cancel).expect("nobody asks it to end");
+        let grips = [Grip::Driven(1.0); 2];
         assert!(
-            found.iter().any(|posture| is_near(posture, &at)),
+            is_found(&pieces, (grips, frictions), center_of_mass, &at),
             "case {case}: {at:?}"
         );
     }
