@@ -123,5 +123,6 @@ def reach_of(arms: Flippers | None, track: Track) -> float:
     """
     if arms is None:
         return 0.0
-    wheel = getattr(arms.track or track, "wheel_radius", None) or 0.0
+    opened = getattr(track, "of", track)  # a closed track is a belt round the same wheels
+    wheel = getattr(arms.track or opened, "wheel_radius", None) or 0.0
     return arms.length + max(arms.tip_radius, wheel)

@@ -136,7 +136,12 @@ impl Flipper {
             return Vec::new();
         };
         let [rear, front] = end_discs(&robot.outline);
-        let tip = match flippers.track_model(&robot.track) {
+        // A closed track is a belt round the same wheels.
+        let open = match &robot.track {
+            Track::Closed(closed) => &closed.of,
+            open => open,
+        };
+        let tip = match flippers.track_model(open) {
             Track::Line(LineOfWheels {
                 wheel_radius: Some(radius),
                 ..

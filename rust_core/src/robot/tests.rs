@@ -252,6 +252,14 @@ fn nothing_reaches_farther_than_the_tip_of_an_arm() {
         }));
         let more = self::model(&large).reach() - model.reach();
         assert_relative_eq!(more, flippers.tip_radius, max_relative = 1e-12);
+        let arms = large.flippers.as_mut().expect("it has some");
+        large.track = arms.track.take().expect("it was given");
+        let open = self::model(&large).reach();
+        large.track = Track::Closed(ClosedTrack {
+            of: Box::new(large.track),
+            surface: ClosedSurface::Own,
+        });
+        assert_relative_eq!(self::model(&large).reach(), open);
     }
     for robot in on_all_tracks() {
         let model = model(&robot);
