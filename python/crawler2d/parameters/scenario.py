@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 __all__ = ["Scenario", "check_scenario"]
 
 _LONGEST = 120
-"""Characters of a terrain in a notebook, and of other names: there may be thousands."""
+"""Characters of a terrain in a notebook, or of keys in an error, at most."""
 
-_KEYS = 5
-"""Of another object that are named."""
+_MOST_KEYS = 5
+"""Keys that an error shows of JSON that is no scenario."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +219,7 @@ class Scenario(ScenarioBase):
 
 
 def _refuse_another_object(text: str) -> None:
-    """Refuse JSON that lacks all fields of a scenario: it is not an old one, but something else.
+    """Refuse JSON without any field of a scenario: it is not an old one, but something else.
 
     Raises
     ------
@@ -228,7 +228,7 @@ def _refuse_another_object(text: str) -> None:
     """
     keys = list(json.loads(text))
     if not {"schema", *(field.name for field in fields_of(Scenario))}.intersection(keys):
-        shown = ", ".join(keys[:_KEYS]) + (", ..." if len(keys) > _KEYS else "")
+        shown = ", ".join(keys[:_MOST_KEYS]) + (", ..." if len(keys) > _MOST_KEYS else "")
         rule = "must be what Scenario.to_json writes, with the keys schema, robot, terrain and more"
         value = f"JSON of something else, with the keys {shown[:_LONGEST]}" if keys else "{}"
         raise ScenarioError("scenario", value, rule)

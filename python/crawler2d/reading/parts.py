@@ -39,7 +39,7 @@ __all__ = [
     "inertia",
     "joint_of",
     "joint_or_fixed",
-    "mimicry",
+    "mimic_coupling",
     "moved_links",
     "moving_joint",
     "named_tracks",
@@ -341,8 +341,8 @@ def moving_joint(
     )
 
 
-def mimicry(name: str, mimic: Element, multiplier: str, offset: str) -> Coupling:
-    """Return what lets a joint of this name follow another one, with the texts of both numbers."""
+def mimic_coupling(name: str, mimic: Element, multiplier: str, offset: str) -> Coupling:
+    """Return the coupling by which a joint of this name follows another one."""
     leader = mimic.attributes.get("joint", "none")
     value = f"{leader}, times {multiplier or '1'} plus {offset or '0'} rad"
     return Coupling(

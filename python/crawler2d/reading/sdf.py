@@ -36,7 +36,7 @@ from crawler2d.reading.parts import (
     inertia,
     joint_of,
     joint_or_fixed,
-    mimicry,
+    mimic_coupling,
     moving_joint,
     named_tracks,
     order_links,
@@ -313,7 +313,9 @@ class _Model:
             plugins=plugins,
             driven=driven_by(plugins),
             couplings=tuple(
-                mimicry(part.name, mimic, *(_text(mimic, tag) for tag in ("multiplier", "offset")))
+                mimic_coupling(
+                    part.name, mimic, *(_text(mimic, tag) for tag in ("multiplier", "offset"))
+                )
                 for part in self.parts("joint")
                 for axis in part.element.all("axis")
                 for mimic in axis.all("mimic")

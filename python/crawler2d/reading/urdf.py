@@ -33,7 +33,7 @@ from crawler2d.reading.parts import (
     inertia,
     joint_of,
     joint_or_fixed,
-    mimicry,
+    mimic_coupling,
     moving_joint,
     named_tracks,
     order_links,
@@ -142,7 +142,7 @@ def read_urdf(
         plugins=plugins,
         driven=driven_by(plugins) | _driven(root),
         couplings=tuple(
-            mimicry(
+            mimic_coupling(
                 element.attribute("name"),
                 mimic,
                 *(mimic.attributes.get(name, "") for name in ("multiplier", "offset")),

@@ -33,6 +33,15 @@ fn range(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
 }
 
 /// A range of angles about one [rad].
+/// [rad] Half of a range of angles, which is small or drawn.
+fn half_range(draw: &mut Draw, is_narrow: bool) -> f64 {
+    if is_narrow {
+        1e-3
+    } else {
+        draw.between(0.0, 0.5)
+    }
+}
+
 fn turns(angle: f64, half: f64) -> Turns {
     let mut cell = Cell::ZERO;
     (cell.low[2], cell.high[2]) = (angle - half, angle + half);
@@ -114,11 +123,7 @@ fn a_turned_rectangle_lies_within_its_bounds_and_all_but_reaches_them() {
     let mut draw = Draw(3);
     for case in 0..500 {
         let is_narrow = case % 2 == 0;
-        let half = if is_narrow {
-            1e-3
-        } else {
-            draw.between(0.0, 0.5)
-        };
+        let half = half_range(&mut draw, is_narrow);
         let (angle, all) = (draw.between(-3.0, 3.0), rectangle(&mut draw, 1.0));
         let turns = turns(angle, half);
         let turned = |v: Vector| {
@@ -152,11 +157,7 @@ fn what_is_seen_lies_within_its_distance_and_all_but_reaches_it() {
     let mut draw = Draw(4);
     for case in 0..500 {
         let is_narrow = case % 2 == 0;
-        let half = if is_narrow {
-            1e-3
-        } else {
-            draw.between(0.0, 0.5)
-        };
+        let half = half_range(&mut draw, is_narrow);
         let angle = draw.between(-3.0, 3.0);
         let mut all = rectangle(&mut draw, 1.0);
         if is_narrow {
