@@ -1,8 +1,8 @@
 //! Identity of contacts: each has one number for as long as it lasts, and everything refers to it by that.
 //!
-//! A contact continues the nearest one of the last step and keeps its number. If it opens wider than the
-//! search distance and closes again at the same place, it is still the same contact, though its forces are
-//! gone: otherwise each contact of a rattling robot would be counted many times.
+//! Contacts are paired with those of the last step, the nearest first, and keep their numbers. If one opens wider
+//! than the search distance and closes again at the same place, it is still the same contact, though its forces
+//! are gone: otherwise each contact of a rattling robot would be counted many times.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -53,6 +53,8 @@ struct Found {
     taken: Vec<bool>,
     /// Which contacts that had opened have closed again.
     again: Vec<bool>,
+    /// [m] How far contacts are from those of the last step, and both their indices.
+    pairs: Vec<(f64, usize, usize)>,
 }
 
 /// A contact that has opened.
@@ -83,16 +85,12 @@ impl Identity {
         found.taken.resize(last.len(), false);
         found.again.clear();
         found.again.resize(self.lost.len(), false);
-        let mut from = 0;
-        for contact in contacts {
-            if let Some(known) = self.take_nearest(last, &mut from, contact, near) {
-                (contact.number, contact.began) = (known.number, known.began);
-            } else {
-                contact.number = self.find_again(contact).unwrap_or_else(|| {
-                    self.found.given += 1;
-                    self.found.given
-                });
-            }
+        self.pair(last, contacts, near);
+        for contact in contacts.iter_mut().filter(|c| c.number == 0) {
+            contact.number = self.find_again(contact).unwrap_or_else(|| {
+                self.found.given += 1;
+                self.found.given
+            });
         }
     }
 
@@ -128,29 +126,34 @@ impl Identity {
         self.lost.retain(|lost| lost.contact.part < parts);
     }
 
-    /// Takes the nearest contact of the last step, if it is near enough; each is taken once. Those before
-    /// `from` are too far left for this and all later contacts.
-    fn take_nearest(
-        &mut self,
-        last: &[Contact],
-        from: &mut usize,
-        contact: &Contact,
-        near: f64,
-    ) -> Option<Contact> {
-        let place = (contact.part, contact.point.x);
-        let behind = |l: &Contact| (l.part, l.point.x + near) < place;
-        while last.get(*from).is_some_and(behind) {
-            *from += 1;
+    /// Pairs contacts with those of the last step that are near enough, the nearest first; each is in one pair.
+    fn pair(&mut self, last: &[Contact], contacts: &mut [Contact], near: f64) {
+        let Found { taken, pairs, .. } = &mut self.found;
+        pairs.clear();
+        let mut from = 0;
+        for (i, contact) in contacts.iter().enumerate() {
+            let place = (contact.part, contact.point.x);
+            // What is too far left for this contact is so for all that follow.
+            let behind = |l: &Contact| (l.part, l.point.x + near) < place;
+            from += last[from..].iter().take_while(|l| behind(l)).count();
+            let within = |l: &&Contact| (l.part, l.point.x - near) <= place;
+            for (k, known) in (from..).zip(last[from..].iter().take_while(within)) {
+                let apart = distance(contact, (known.point, known.normal));
+                pairs.extend(
+                    apart
+                        .filter(|apart| *apart < near)
+                        .map(|apart| (apart, i, k)),
+                );
+            }
         }
-        let within = (*from..last.len()).take_while(|i| {
-            let known = &last[*i];
-            (known.part, known.point.x - near) <= place
-        });
-        let free = within.filter(|i| !self.found.taken[*i]);
-        let places = free.map(|i| (i, last[i].point, last[i].normal));
-        let nearest = nearest(places, contact, near)?;
-        self.found.taken[nearest] = true;
-        Some(last[nearest])
+        pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        for &(_, i, k) in pairs.iter() {
+            let (contact, known) = (&mut contacts[i], &last[k]);
+            if contact.number == 0 && !taken[k] {
+                taken[k] = true;
+                (contact.number, contact.began) = (known.number, known.began);
+            }
+        }
     }
 
     /// Takes the number of the nearest contact that has opened, if it is near enough.
@@ -161,7 +164,11 @@ impl Identity {
             let lost = &lost.contact;
             [lost.point, lost.began].map(|place| (i, place, lost.normal))
         });
-        let nearest = nearest(places, contact, SAME_PLACE.value())?;
+        let apart =
+            places.filter_map(|(i, place, normal)| Some((distance(contact, (place, normal))?, i)));
+        let (_, nearest) = apart
+            .filter(|(apart, _)| *apart < SAME_PLACE.value())
+            .min_by(|a, b| a.0.total_cmp(&b.0))?;
         self.found.again[nearest] = true;
         Some(self.lost[nearest].contact.number)
     }
@@ -188,18 +195,9 @@ impl Identity {
     }
 }
 
-/// The known contact of the same part whose place is nearest, if it is nearer than `near` [m]; places come with normals.
-fn nearest(
-    known: impl Iterator<Item = (usize, Vector, Vector)>,
-    contact: &Contact,
-    near: f64,
-) -> Option<usize> {
-    let alike = known.filter(|(_, _, normal)| normal.dot(contact.normal) > SAME_NORMAL);
-    alike
-        .map(|(i, place, _)| (i, (place - contact.point).length()))
-        .filter(|(_, apart)| *apart < near)
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(i, _)| i)
+/// [m] How far a contact is from a known place, if their normals are alike.
+fn distance(contact: &Contact, (place, normal): (Vector, Vector)) -> Option<f64> {
+    (normal.dot(contact.normal) > SAME_NORMAL).then(|| (place - contact.point).length())
 }
 
 /// The contacts of the last step, looked up by number.

@@ -66,6 +66,18 @@ fn a_contact_that_rattles_gets_its_number_back() {
 }
 
 #[test]
+fn a_contact_that_comes_down_beside_another_does_not_take_its_number() {
+    for other in [0.001, 0.007] {
+        let mut steps = Steps::default();
+        assert_eq!(steps.step(&[at(0, 0.004)]), [1]);
+        let both = if other < 0.004 { [2, 1] } else { [1, 2] };
+        let mut places = [0.0041, other];
+        places.sort_by(f64::total_cmp);
+        assert_eq!(steps.step(&places.map(|x| at(0, x))), both);
+    }
+}
+
+#[test]
 fn a_contact_comes_back_to_its_place_and_its_part_alone() {
     let back = |contact: Contact| {
         let mut steps = Steps::default();
