@@ -149,31 +149,11 @@ mod tests {
 
     use super::*;
     use crate::contact;
-    use crate::dynamics::Dynamics;
+    use crate::dynamics::tests::whirling;
     use crate::dynamics::touch::Start;
     use crate::geometry::{Rotation, direction};
     use crate::robot::Shape;
-    use crate::scenario::Scenario;
     use crate::solver::Row;
-
-    /// A robot that whirls through the air with all that moves on it.
-    fn whirling(text: &str) -> (Dynamics, State) {
-        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-        let model = Model::new(&scenario.robot).expect("the robot can be built");
-        let mut state = State::at_rest(&model, Vector::new(0.3, 1.0), 0.2, 0.0);
-        state.velocity = Vector::new(0.4, -0.3);
-        state.angular_velocity = 1.3;
-        for drive in &mut state.drives {
-            drive.spin = -4.0;
-        }
-        for (flipper, rate) in state.flippers.iter_mut().zip([2.1, -1.7]) {
-            flipper.rate = rate;
-        }
-        (
-            Dynamics::new(model, Vec::new(), 0.0, scenario.solver),
-            state,
-        )
-    }
 
     /// The same after a time [s] at these velocities.
     fn after(state: &State, model: &Model, time: f64) -> State {

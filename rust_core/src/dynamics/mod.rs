@@ -15,6 +15,7 @@ mod between;
 mod build;
 mod chain;
 mod chains;
+mod closing;
 mod course;
 mod face;
 mod flippers;
@@ -143,11 +144,15 @@ impl Dynamics {
         &self.model
     }
 
-    /// Whether a contact of the last step with a gap below `travel` [m] was not found again: its part may have passed through
-    /// the ground.
-    pub(crate) fn has_lost(&self, travel: f64) -> bool {
+    /// Whether a contact of the last step was not found again after a `time` [s] in which its gap may have closed: its part
+    /// may have passed through the ground. Nothing moves farther than `travel` [m] by then, and nothing `strays` farther [m]
+    /// than the velocities of the state take it.
+    pub(crate) fn has_lost(&self, state: &State, (time, travel): (f64, f64), strays: f64) -> bool {
         let mut gone = self.identity.gone(&self.loaded);
-        gone.any(|l| (0.0..travel).contains(&l.distance))
+        gone.any(|l| {
+            let closes = self.closing(l, (state, 0.0)).within(time) + strays;
+            (0.0..travel.min(closes)).contains(&l.distance)
+        })
     }
 
     /// Gives the contacts of a step in which nothing moves farther than `travel` [m] their numbers.

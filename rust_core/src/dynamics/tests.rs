@@ -32,6 +32,25 @@ pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     )
 }
 
+/// A robot that whirls through the air with all that moves on it.
+pub(super) fn whirling(text: &str) -> (Dynamics, State) {
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let model = Model::new(&scenario.robot).expect("the robot can be built");
+    let mut state = State::at_rest(&model, Vector::new(0.3, 1.0), 0.2, 0.0);
+    state.velocity = Vector::new(0.4, -0.3);
+    state.angular_velocity = 1.3;
+    for drive in &mut state.drives {
+        drive.spin = -4.0;
+    }
+    for (flipper, rate) in state.flippers.iter_mut().zip([2.1, -1.7]) {
+        flipper.rate = rate;
+    }
+    (
+        Dynamics::new(model, Vec::new(), 0.0, scenario.solver),
+        state,
+    )
+}
+
 /// [s] Length of the steps here.
 pub(super) const STEP: f64 = 1e-3;
 /// [m] How far anything may move in one.

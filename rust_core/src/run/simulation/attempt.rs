@@ -20,6 +20,8 @@ pub(super) struct Attempt {
     /// Positions of the moving parts in its middle, where contacts are searched for.
     pub running: Running,
     pub contacts: Vec<Contact>,
+    /// [m] Room that the gaps which were left out of these keep at the velocities before the step, at least.
+    pub room: f64,
     pub dents: Dents,
     /// [m] How far beyond the pose at its end that search saw.
     pub sight: f64,

@@ -1,8 +1,11 @@
 //! One step: attempted, judged by its local error, and kept, or dropped for a shorter one.
 
+#[cfg(test)]
+mod tests;
+
 use super::Simulation;
 use super::attempt::Attempt;
-use crate::dynamics::SetPoint;
+use crate::dynamics::{SHORTEST, SetPoint};
 use crate::engine::Command;
 use crate::error::{Error, SimulationError};
 use crate::geometry::Vector;
@@ -105,6 +108,12 @@ impl Simulation {
         if attempt.strikes && attempt.state.is_finite() {
             return Ok(());
         }
+        let strays = self
+            .dynamics
+            .strayed(&self.state, attempt.length, self.reach);
+        if strays > attempt.room && attempt.length > SHORTEST.value() {
+            return Err(0.5 * attempt.length);
+        }
         let error = self.local_error(attempt);
         self.step_control
             .judge(self.step_rule, attempt.length, error)
@@ -133,7 +142,12 @@ impl Simulation {
         let mut h = h;
         let strikes = loop {
             let travel = self.find_contacts(attempt, h);
-            if h > 2.0 * COLLISION_STEP.value() && self.dynamics.has_lost(0.5 * travel) {
+            let ahead = (0.5 * h, 0.5 * travel);
+            if h > 2.0 * COLLISION_STEP.value()
+                && self
+                    .dynamics
+                    .has_lost(&self.state, ahead, self.strays(0.5 * h))
+            {
                 h *= 0.5;
                 continue;
             }
@@ -196,19 +210,6 @@ impl Simulation {
         }
     }
 
-    /// [s] For how long the last search for contacts holds: nothing that it could not see may get deeper into the
-    /// robot than the next one looks, which is in the middle of the next step.
-    fn contacts_known_for(&self) -> f64 {
-        let speed = self.dynamics.fastest(&self.state, self.reach);
-        let room = 2.0 * (self.last.sight + UNSEEN.value());
-        2.0 * room / (speed + (speed * speed + 4.0 * self.gain() * room).sqrt())
-    }
-
-    /// [m/s^2] How fast any part may gain speed.
-    fn gain(&self) -> f64 {
-        SPEED_GAIN * self.scenario.gravity
-    }
-
     /// Finds the contacts of a step of `h` [s]; returns how far anything may move in it [m].
     fn find_contacts(&mut self, attempt: &mut Attempt, h: f64) -> f64 {
         let speed = self.dynamics.fastest(&self.state, self.reach);
@@ -223,6 +224,8 @@ impl Simulation {
         let (running, contacts) = (&mut attempt.running, &mut attempt.contacts);
         self.state.running_after(half, model, running);
         self.contact.find(middle, running, prediction, contacts);
+        attempt.room = self.leave_out(attempt, half, speed);
+        let contacts = &mut attempt.contacts;
         self.dynamics.recognise(contacts, travel);
         attempt.dents.clone_from(&self.dents);
         attempt.dents.forgive(contacts, self.dynamics.loaded());
@@ -230,6 +233,57 @@ impl Simulation {
         self.dynamics.outer_force = Vector::new(push, 0.0);
         self.dynamics.prepare(&self.state, contacts, (h, travel));
         travel
+    }
+
+    /// [s] For how long the last search for contacts holds: nothing that it could not see may get deeper into the
+    /// robot than the next one looks, which is in the middle of the next step.
+    fn contacts_known_for(&self) -> f64 {
+        self.known_for(
+            self.last.sight,
+            self.dynamics.fastest(&self.state, self.reach),
+        )
+    }
+
+    /// [s] The same of a search that saw so far [m], at a speed [m/s].
+    fn known_for(&self, sight: f64, speed: f64) -> f64 {
+        let room = 2.0 * (sight + UNSEEN.value());
+        2.0 * room / (speed + (speed * speed + 4.0 * self.gain() * room).sqrt())
+    }
+
+    /// [m/s^2] How fast any part may gain speed.
+    fn gain(&self) -> f64 {
+        SPEED_GAIN * self.scenario.gravity
+    }
+
+    /// Leaves out contacts, found `half` [s] ahead in the middle of a step, whose gaps stay open in it, unless they might get
+    /// deeper than the next search looks; returns the least room [m] that they keep at these velocities.
+    fn leave_out(&self, attempt: &mut Attempt, half: f64, speed: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        if let StepRule::Fixed(_) = self.step_rule {
+            return least;
+        }
+        let near = self.scenario.solver.prediction_distance;
+        let next = half + 0.5 * self.known_for(attempt.sight, speed);
+        let [strays, later] = [2.0 * half, half + next].map(|time| self.strays(time));
+        attempt.contacts.retain(|contact| {
+            let gap = contact.distance;
+            if gap < near {
+                return true;
+            }
+            let closing = self.dynamics.closing(contact, (&self.state, half));
+            let room = gap - closing.within(half);
+            let stays = room < strays || gap + UNSEEN.value() - closing.within(next) < later;
+            if !stays {
+                least = least.min(room);
+            }
+            stays
+        });
+        least
+    }
+
+    /// [m] How far forces may take anything in a `time` [s] from where it goes without them.
+    fn strays(&self, time: f64) -> f64 {
+        0.5 * self.gain() * time * time
     }
 
     /// Makes an attempt the last step; what it replaces is left in it.
@@ -277,169 +331,4 @@ fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
         after
     };
     (piece, strike <= piece)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::robot::Running;
-    use crate::run::ValidScenario;
-    use crate::scenario::{Scenario, Track, Wheel};
-
-    /// [m] How far the tips of gear wheels reach into the ground at their lowest.
-    const DIP: f64 = 5e-6;
-    const STEP: f64 = 0.01;
-    /// Times at which gaps are looked at in a step.
-    const LOOKS: u32 = 2000;
-
-    impl Simulation {
-        /// [m] Gap of the lowest tip after a time [s], if nothing changes until then.
-        fn gap_after(&mut self, time: f64) -> f64 {
-            let model = self.dynamics.model();
-            let pose = self.state.pose_after(time, model);
-            let (mut running, mut contacts) = (Running::default(), Vec::new());
-            self.state.running_after(time, model, &mut running);
-            self.contact.find(pose, &running, 0.05, &mut contacts);
-            let gaps = contacts.iter().map(|contact| contact.distance);
-            gaps.fold(f64::INFINITY, f64::min)
-        }
-
-        /// A step of `h` [s] at most, not kept.
-        fn tried(&mut self, mut h: f64) -> Attempt {
-            let mut attempt = Attempt::default();
-            while let Err(shorter) = self.attempt_step(&mut attempt, h, f64::INFINITY) {
-                h = shorter;
-            }
-            attempt
-        }
-    }
-
-    /// A robot on gear wheels, at rest.
-    fn on_gears(phase: f64) -> Simulation {
-        let text = include_str!("../../../../tests/scenarios/judge_gear3_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-        scenario.start.track_phase = phase;
-        Simulation::new(&ValidScenario::new(&scenario).expect("it is valid"))
-    }
-
-    /// Gear wheels that turn by 0.5 rad in a step, above level ground.
-    fn spinning(phase: f64) -> Simulation {
-        let mut simulation = on_gears(phase);
-        let radius = simulation.dynamics.model().drive_radius;
-        simulation.state.drives[0].spin = -0.5 / STEP * 0.06 / radius;
-        simulation.state.center.x -= 0.5;
-        simulation
-    }
-
-    /// Their phases are no mirror image of themselves: which way they turn matters.
-    #[test]
-    fn a_robot_starts_with_its_lowest_tip_on_the_ground_whatever_its_phase() {
-        for phase in [0.0, 0.004, 0.013, 0.031] {
-            let mut scenario = on_gears(phase).scenario;
-            if let Track::Line(line) = &mut scenario.robot.track
-                && let Wheel::Gear(wheel) = &mut line.wheel
-            {
-                wheel.phase_fraction = 0.2;
-            }
-            let checked = ValidScenario::new(&scenario).expect("it is valid");
-            let gap = Simulation::new(&checked).gap_after(0.0);
-            assert!(gap.abs() < 1e-9, "{gap} m at {phase} m");
-        }
-    }
-
-    /// At its start everything is at rest, and the ground farther away than contacts are searched for then.
-    #[test]
-    fn a_long_step_sees_the_ground_that_it_falls_on() {
-        for i in 1..10 {
-            let mut simulation = on_gears(0.0);
-            simulation.state.center.y += 5e-5 * f64::from(i);
-            let tried = simulation.tried(0.012);
-            let error = simulation.local_error(&tried);
-            assert!(tried.strikes || error > 1e-5, "{error} m");
-        }
-    }
-
-    /// At the speed of its first step it would land almost twice as late.
-    #[test]
-    fn what_falls_lands_when_it_does() {
-        let gap = 5e-5;
-        let mut simulation = on_gears(0.0);
-        let gravity = simulation.scenario.gravity;
-        simulation.state.center.y += gap - simulation.gap_after(0.0);
-        simulation.step().expect("it is finite");
-        let left = libm::sqrt(2.0 * gap / gravity) - simulation.time();
-        let (speed, fallen) = (gravity * simulation.time(), gap - simulation.gap_after(0.0));
-        assert!((gap - fallen) / speed > 1.5 * left, "it must speed up");
-        let tried = simulation.tried(STEP);
-        let off = tried.length - left;
-        assert!(
-            off.abs() < COLLISION_STEP.value(),
-            "{} s, {left} s",
-            tried.length
-        );
-    }
-
-    /// One that were longer could be found too long again and again.
-    #[test]
-    fn no_piece_is_longer_than_the_step_that_was_asked_for() {
-        let little = 0.3 * COLLISION_STEP.value();
-        for h in [
-            STEP,
-            20.0 * COLLISION_STEP.value(),
-            2.0 * COLLISION_STEP.value(),
-        ] {
-            for left in [h, h + little, h + 0.7 * COLLISION_STEP.value(), 2.0 * h] {
-                for strike in [0.0, little, 0.5 * h, h - little, h] {
-                    let (piece, strikes) = cut_at_strike(strike, h, left);
-                    assert!(piece > 0.0 && piece <= h, "{piece} s of {h} s");
-                    assert_eq!(strikes, strike <= piece, "{strike} s, {piece} s of {h} s");
-                }
-            }
-        }
-    }
-
-    /// The step ends 10 us after the strike. Where less than 10 us are left then, a step that may be as long takes them.
-    #[test]
-    fn a_step_with_a_strike_leaves_no_short_rest() {
-        for (strike, h, left, piece) in [
-            (10e-6, 25e-6, 25e-6, 25e-6),
-            (10e-6, 35e-6, 35e-6, 20e-6),
-            (12e-6, 22e-6, 25e-6, 22e-6),
-        ] {
-            let (found, strikes) = cut_at_strike(strike, h, left);
-            assert!((found - piece).abs() < 1e-15, "{found} s, {piece} s");
-            assert!(strikes);
-        }
-    }
-
-    #[test]
-    fn tips_that_come_and_go_within_a_step_strike() {
-        let mut found = 0;
-        for i in 0..40 {
-            let mut simulation = spinning(0.005 * f64::from(i));
-            // Two steps bring a tip to the bottom, whatever the phase.
-            let times = (0..2 * LOOKS).map(|k| f64::from(k) / f64::from(LOOKS) * STEP);
-            let gaps: Vec<f64> = times
-                .clone()
-                .map(|time| simulation.gap_after(time))
-                .collect();
-            let lowest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-            simulation.state.center.y -= lowest + DIP;
-            let lands = |(time, gap): (f64, &f64)| (*gap < lowest + DIP).then_some(time);
-            let expected = times.zip(&gaps).find_map(lands).expect("a tip lands");
-            if expected == 0.0 {
-                continue;
-            }
-            let tried = simulation.tried(STEP);
-            // Near the end of a step, the corner of a tip that lands may be another than in its middle.
-            if expected < 0.9 * STEP {
-                found += 1;
-                let off = tried.length - expected;
-                assert!(off.abs() < 0.05 * STEP, "{} s, {expected} s", tried.length);
-            } else if expected > STEP {
-                assert!(tried.length >= STEP, "{} s", tried.length);
-            }
-        }
-        assert!(found > 10, "{found}");
-    }
 }
