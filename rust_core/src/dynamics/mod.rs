@@ -150,8 +150,8 @@ impl Dynamics {
     pub(crate) fn has_lost(&self, state: &State, (time, travel): (f64, f64), strays: f64) -> bool {
         let mut gone = self.identity.gone(&self.loaded);
         gone.any(|l| {
-            let closes = self.closing(l, (state, 0.0)).within(time) + strays;
-            (0.0..travel.min(closes)).contains(&l.distance)
+            let closes = || self.closing(l, (state, 0.0)).within(time) + strays;
+            (0.0..travel).contains(&l.distance) && l.distance < closes()
         })
     }
 

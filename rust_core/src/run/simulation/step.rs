@@ -5,6 +5,7 @@ mod tests;
 
 use super::Simulation;
 use super::attempt::Attempt;
+use crate::contact::Contact;
 use crate::dynamics::{SHORTEST, SetPoint};
 use crate::engine::Command;
 use crate::error::{Error, SimulationError};
@@ -108,10 +109,7 @@ impl Simulation {
         if attempt.strikes && attempt.state.is_finite() {
             return Ok(());
         }
-        let strays = self
-            .dynamics
-            .strayed(&self.state, attempt.length, self.reach);
-        if strays > attempt.room && attempt.length > SHORTEST.value() {
+        if self.strays_too_far(attempt) {
             return Err(0.5 * attempt.length);
         }
         let error = self.local_error(attempt);
@@ -259,15 +257,16 @@ impl Simulation {
     /// deeper than the next search looks; returns the least room [m] that they keep at these velocities.
     fn leave_out(&self, attempt: &mut Attempt, half: f64, speed: f64) -> f64 {
         let mut least = f64::INFINITY;
-        if let StepRule::Fixed(_) = self.step_rule {
+        let near = self.scenario.solver.prediction_distance;
+        let is_far = |contact: &Contact| contact.distance >= near;
+        if matches!(self.step_rule, StepRule::Fixed(_)) || !attempt.contacts.iter().any(is_far) {
             return least;
         }
-        let near = self.scenario.solver.prediction_distance;
         let next = half + 0.5 * self.known_for(attempt.sight, speed);
         let [strays, later] = [2.0 * half, half + next].map(|time| self.strays(time));
         attempt.contacts.retain(|contact| {
             let gap = contact.distance;
-            if gap < near {
+            if !is_far(contact) {
                 return true;
             }
             let closing = self.dynamics.closing(contact, (&self.state, half));
@@ -279,6 +278,15 @@ impl Simulation {
             stays
         });
         least
+    }
+
+    /// Whether forces have moved an attempt farther than the gaps that it leaves out had room for.
+    fn strays_too_far(&self, attempt: &Attempt) -> bool {
+        let far = || {
+            self.dynamics
+                .strayed(&self.state, attempt.length, self.reach)
+        };
+        attempt.room.is_finite() && attempt.length > SHORTEST.value() && far() > attempt.room
     }
 
     /// [m] How far forces may take anything in a `time` [s] from where it goes without them.

@@ -1,7 +1,6 @@
 //! Steps: where they end, what they see and what they leave out.
 
 use super::*;
-use crate::contact::Contact;
 use crate::robot::Running;
 use crate::run::ValidScenario;
 use crate::scenario::{Scenario, Track, Wheel};
