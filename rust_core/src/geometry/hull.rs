@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::{Disc, Vector, cross, direction};
 
-/// [rad] Smaller turns are rounding errors of collinear tangents.
+/// [rad, m] Smaller turns are rounding errors of collinear tangents, and shorter ways those of discs that touch.
 pub(super) const SAME_TURN: f64 = 1e-12;
 
 /// The arc of the hull round one disc.
@@ -60,8 +60,9 @@ pub(super) struct Run {
 pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
     let down = -0.25 * TAU;
     let support = |d: &Disc| d.radius - d.center.y;
+    let outer: Vec<usize> = (0..discs.len()).filter(|i| !is_inside(discs, *i)).collect();
     // Start at the rearmost of the lowest discs, where the tangent leaves them.
-    let first = (0..discs.len()).fold(0, |best, i| {
+    let first = outer.iter().copied().reduce(|best, i| {
         let (a, b) = (&discs[i], &discs[best]);
         let lower = support(a) - support(b);
         let rearmost = lower.abs() <= SAME_TURN && a.center.x < b.center.x;
@@ -71,13 +72,17 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
             best
         }
     });
+    let Some(first) = first else {
+        return Vec::new();
+    };
     let (mut disc, mut from, mut turned) = (first, down, 0.0);
     let mut arcs: Vec<Arc> = Vec::new();
     // A hull has fewer than two arcs per disc; more would be an endless loop caused by rounding.
     for _ in 0..2 * discs.len() {
         let distance = |i: usize| (discs[i].center - discs[disc].center).length();
-        let next = (0..discs.len())
-            .filter_map(|other| Some((other, turn_to(&discs[disc], &discs[other], from)?)))
+        let next = outer
+            .iter()
+            .filter_map(|other| Some((*other, turn_to(&discs[disc], &discs[*other], from)?)))
             .reduce(|best, other| {
                 // Of several discs on one tangent take the farthest, so that a run is one piece.
                 let same = (best.1 - other.1).abs() < SAME_TURN;
@@ -105,6 +110,21 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
         (disc, from, turned) = (to, from - turn, turned + turn);
     }
     arcs
+}
+
+/// Whether a disc reaches out of another one by no more than rounding; of equal ones, all but the first are inside.
+fn is_inside(discs: &[Disc], i: usize) -> bool {
+    let inner = &discs[i];
+    let mut others = discs.iter().enumerate();
+    others.any(|(k, outer)| {
+        let is_larger = outer
+            .radius
+            .total_cmp(&inner.radius)
+            .then(i.cmp(&k))
+            .is_gt();
+        let reach = (inner.center - outer.center).length() + inner.radius;
+        is_larger && reach - outer.radius <= SAME_TURN
+    })
 }
 
 /// [rad] How far the outward direction turns clockwise on `disc` until `other` reaches as far out.
@@ -255,6 +275,57 @@ mod tests {
             let discs = order.map(|i| disc([-0.4, -0.1, 0.2, 0.5][i], 0.1));
             let ends: Vec<f64> = arcs_round(&discs).iter().map(|arc| arc.center.x).collect();
             assert_eq!(ends, [-0.4, 0.5]);
+        }
+    }
+
+    /// Wherever it touches it, and in whatever order they come.
+    #[test]
+    fn a_disc_that_touches_a_larger_one_from_inside_leaves_no_trace() {
+        let at = |angle: f64, apart: f64, radius: f64| Disc {
+            center: direction(angle) * apart,
+            radius,
+        };
+        for i in 0..100 {
+            let angle = TAU * f64::from(i) / 100.0;
+            for (inner, ahead) in [(0.03, 0.5), (0.2, 0.5), (0.03, 0.7)] {
+                let discs = [
+                    at(0.0, 0.0, 0.3),
+                    at(angle, 0.3 - inner, inner),
+                    at(0.0, ahead, 0.2),
+                    at(0.0, 0.0, 0.3),
+                ];
+                for order in [[0, 1, 2, 3], [1, 0, 2, 3], [2, 1, 3, 0], [3, 2, 1, 0]] {
+                    let arcs = arcs_round(&order.map(|k| discs[k]));
+                    let radii: Vec<f64> = arcs.iter().map(|arc| arc.radius).collect();
+                    assert_eq!(arcs.len(), 2, "{radii:?} at {angle} rad");
+                    assert!(radii.contains(&0.3) && radii.contains(&0.2));
+                    let turned: f64 = arcs.iter().map(|arc| arc.sweep).sum();
+                    assert!((turned - TAU).abs() < 1e-9, "{turned} rad");
+                }
+            }
+        }
+        assert!(arcs_round(&[]).is_empty());
+    }
+
+    #[test]
+    fn an_arc_holds_the_directions_that_it_turns_through_however_wide_it_is() {
+        for (from, sweep) in [(0.3, 1.0), (2.0, 3.0), (-1.0, 3.3), (0.5, 5.0)] {
+            let disc = Disc {
+                center: Vector::X,
+                radius: 0.2,
+            };
+            let arc = Arc::new(0, disc, from, sweep);
+            // Clockwise, in steps that miss both ends.
+            for i in 0..200 {
+                let turn = TAU * (f64::from(i) + 0.37) / 200.0;
+                let spoke = direction(from - turn) * 2.0;
+                assert_eq!(arc.holds(spoke, 0.0), turn < sweep, "{turn} of {sweep} rad");
+            }
+            for (end, outwards) in [(from, 1.0), (from - sweep, -1.0)] {
+                let beyond = |off: f64| direction(end + outwards * off);
+                assert!(arc.holds(beyond(0.01), 0.02) && !arc.holds(beyond(0.01), 0.005));
+                assert!(arc.holds(beyond(-0.01), -0.005) && !arc.holds(beyond(-0.01), -0.02));
+            }
         }
     }
 }
