@@ -55,6 +55,13 @@ impl Grouser {
         opposite != flank && gap > touch.distance && is_met()
     }
 
+    /// [m] How far above the centre of the wheel its lowest corner is when it points there; it is alike on both sides.
+    fn lowest(&self, axis: Vector) -> f64 {
+        let [_, _, tip, base] = self.corners;
+        let lower = |corner: Vector| corner.x * axis.y - corner.y * axis.x.abs();
+        lower(tip).min(lower(base))
+    }
+
     /// Corner 1 or 2, which belong to the tip.
     fn tip(&self, k: usize) -> Tip {
         Tip {
@@ -115,12 +122,9 @@ impl GearContact {
             });
             thin_out(contacts, first, lane, &Disc { center, radius }, prediction);
         }
-        let [_, _, tip, base] = self.grouser.corners;
         for along in &self.directions {
             let axis = turned * *along;
-            let lower = |corner: Vector| corner.x * axis.y - corner.y * axis.x.abs();
-            // The lowest point of a grouser that points up is at its base.
-            if room + lower(tip).min(lower(base)) > 0.0 {
+            if room + self.grouser.lowest(axis) > 0.0 {
                 continue;
             }
             let grouser = Grouser {
@@ -211,6 +215,8 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::scenario::Surface;
+    use crate::terrain::Profile;
 
     #[test]
     fn between_two_grousers_the_root_circle_bears_and_at_their_bases_it_does_not() {
@@ -233,5 +239,110 @@ mod tests {
             let outside = half_base + 0.005;
             assert!(bears(outside) && bears(-outside) && bears(0.5 * TAU / 7.0));
         }
+    }
+
+    /// It points down, is 0.5 m high and tapers from 0.25 m to 0.125 m.
+    fn grouser(x: f64) -> Grouser {
+        let corners = [
+            (-0.125, 0.25),
+            (-0.0625, -0.25),
+            (0.0625, -0.25),
+            (0.125, 0.25),
+        ];
+        let corners = corners.map(|(off, y)| Vector::new(x + off, y));
+        let side = |i: usize| right_of((corners[i + 1] - corners[i]).normalize());
+        Grouser {
+            corners,
+            normals: [0, 1, 2].map(side),
+        }
+    }
+
+    #[test]
+    fn a_grouser_holds_what_lies_between_its_flanks_and_above_its_tip() {
+        for (x, y, is_inside) in [
+            (1.0, 0.0, true),
+            (1.09, 0.0, true),
+            (0.91, 0.0, true),
+            (1.1, 0.0, false),
+            (0.9, 0.0, false),
+            (1.0, -0.24, true),
+            (1.0, -0.26, false),
+            (1.07, -0.24, false),
+        ] {
+            let found = grouser(1.0).contains(Vector::new(x, y));
+            assert_eq!(found, is_inside, "{x} {y}");
+        }
+        let tip = grouser(1.0).tip(1);
+        assert_eq!(tip.place, Vector::new(0.9375, -0.25));
+        assert!(tip.normals[0].x < -0.9 && tip.normals[1] == Vector::NEG_Y);
+    }
+
+    #[test]
+    fn the_lowest_corner_of_a_grouser_is_at_its_tip_or_at_its_base() {
+        let gear = Gear {
+            radius: 0.06,
+            root_radius: 0.05,
+            grousers: 7,
+            tip_thickness: 0.006,
+            base_thickness: 0.02,
+            phase: 0.0,
+        };
+        let wheel = GearContact::new(0, Vector::ZERO, gear);
+        for i in 0..100 {
+            let axis = direction(TAU * f64::from(i) / 100.0);
+            let heights = wheel.grouser.corners.map(|corner| axis.rotate(corner).y);
+            let expected = heights.into_iter().fold(f64::INFINITY, f64::min);
+            let found = wheel.grouser.lowest(axis);
+            assert!((found - expected).abs() < 1e-15, "{axis}: {found}");
+        }
+    }
+
+    /// The tip of a needle in a grouser, 1 cm to the right of its middle, to the left of it or in it.
+    #[test]
+    fn a_corner_in_a_grouser_is_shallower_in_the_flank_that_is_nearer() {
+        let points = [
+            [-1.0, -1.0],
+            [-0.01, -1.0],
+            [0.0, 0.0],
+            [0.01, -1.0],
+            [1.0, -1.0],
+        ];
+        let lane = lane(&points);
+        let corner = lane.corner(2);
+        assert!(corner.is_convex);
+        for (off, shallower) in [
+            (0.01, [true, false]),
+            (-0.01, [false, true]),
+            (0.0, [false; 2]),
+        ] {
+            let grouser = grouser(-off);
+            let distance = |flank: usize| {
+                let spoke = corner.center - grouser.corners[flank];
+                spoke.dot(grouser.normals[flank])
+            };
+            for (flank, opposite_is) in [0, 2].into_iter().zip(shallower) {
+                let by_own = if off.abs() < 1e-12 {
+                    distance(2 - flank)
+                } else {
+                    distance(flank)
+                };
+                let touch = corner.touch(2, -grouser.normals[flank], by_own);
+                let found = grouser.is_shallower_opposite(&lane, flank, &touch);
+                assert_eq!(found, opposite_is, "{off} m, flank {flank}");
+            }
+            let touch = corner.touch(2, Vector::Y, -0.4);
+            assert!(!grouser.is_shallower_opposite(&lane, 1, &touch));
+            // A corner that does not face the opposite flank cannot leave through it.
+            let face = Touch {
+                on: On::Face(1),
+                ..touch
+            };
+            assert!(!grouser.is_shallower_opposite(&lane, 0, &face));
+        }
+    }
+
+    fn lane(points: &[[f64; 2]]) -> Lane {
+        let profile = Profile::new("terrain", points, Surface::sharp(0.9), true);
+        Lane::new(&profile.expect("it is ground"))
     }
 }

@@ -74,7 +74,7 @@ impl ShoeLoop {
             let excess = |p: f64| self.excess(p, fraction(phase) * p, 0.0);
             excess(least) < 0.0 && 0.0 < excess(most)
         };
-        if self.discs.len() > 2 && !(0..PHASES).all(is_between) {
+        if !(0..PHASES).all(is_between) {
             return None;
         }
         let taut = |phase: u32| {
@@ -301,6 +301,23 @@ mod tests {
             let chain = ShoeLoop::new(discs.clone(), count).unwrap();
             let excess = chain.pitch * count as f64 / length - 1.0;
             assert!(0.0 < excess && excess < longer, "{count} shoes: {excess}");
+        }
+    }
+
+    #[test]
+    fn a_chain_is_taut_at_no_pitch_of_a_range_that_is_too_short_or_too_long() {
+        for (rear, front, count) in [(0.0505, 0.0505, 22), (0.06, 0.04, 23)] {
+            let chain = ShoeLoop::new(ends(rear, front), count).expect("its shoes fit");
+            let found = |least: f64, most: f64| {
+                let again = chain
+                    .clone()
+                    .taut_between(least * chain.pitch, most * chain.pitch);
+                again.map(|again| again.pitch / chain.pitch)
+            };
+            // It is taut at pitches that differ by less than a percent as it runs.
+            assert!(found(0.9, 0.98).is_none() && found(1.02, 1.1).is_none());
+            let again = found(0.95, 1.05).expect("it is taut between them");
+            assert!((again - 1.0).abs() < 1e-12, "{again}");
         }
     }
 }

@@ -438,8 +438,7 @@ pub(crate) fn facet_along(points: &[Vector], facets: Range<usize>, fraction: f64
     let is_behind = |i: usize| (points[i] - points[start]).dot(chord) <= far;
     // Pieces are often equally long.
     let guess = start + ((fraction * (end - start) as f64).max(0.0) as usize).min(end - start - 1);
-    let is_first = guess == start || is_behind(guess);
-    if is_first && (guess + 1 == end || !is_behind(guess + 1)) {
+    if is_behind(guess) && !is_behind(guess + 1) {
         return guess;
     }
     let (mut facet, mut behind) = (start, end);

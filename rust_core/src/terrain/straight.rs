@@ -44,11 +44,8 @@ impl Lines {
         if far <= STRAIGHT.value() {
             return;
         }
-        let (direction, sine) = (point / far, STRAIGHT.value() / far);
-        let (along, across) = (
-            direction * (1.0 - sine * sine).sqrt(),
-            left_of(direction) * sine,
-        );
+        let sine = STRAIGHT.value() / far;
+        let (along, across) = (point * (1.0 - sine * sine).sqrt(), left_of(point) * sine);
         let [mut right, mut left] = [along - across, along + across];
         if let Some([known_right, known_left]) = self.0 {
             if cross(right, known_right) > 0.0 {

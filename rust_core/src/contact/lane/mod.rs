@@ -214,9 +214,10 @@ impl Lane {
         }
         let spoke = center - corner.center;
         let far = spoke.length();
+        // At the corner itself it is no direction, and no normal.
         let normal = spoke / far;
-        (far > 0.0 && corner.has_normal(normal))
-            .then(|| corner.touch(i, normal, far - radius - corner.radius))
+        let bears = corner.has_normal(normal);
+        bears.then(|| corner.touch(i, normal, far - radius - corner.radius))
     }
 
     /// The ground that runs of a part in a range of x may meet with a gap below `prediction`.
