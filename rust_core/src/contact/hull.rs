@@ -312,6 +312,10 @@ impl Sector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Rotation;
+    use crate::robot::{BodyKind, Mount};
+    use crate::scenario::Surface;
+    use crate::terrain::Profile;
 
     #[test]
     fn a_sector_holds_what_lies_between_its_ends_however_wide_it_is() {
@@ -331,5 +335,136 @@ mod tests {
     fn a_whole_turn_holds_every_direction() {
         let sector = Sector::new(0.3, 7.0);
         assert!((0..100).all(|i| sector.contains(direction(0.0628 * f64::from(i)))));
+    }
+
+    fn part(shape: Shape) -> Part {
+        Part {
+            kind: BodyKind::Belly,
+            shape,
+            drive: None,
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            mount: Mount::Chassis,
+        }
+    }
+
+    /// A metre long and 0.1 m high; its origin is the middle of its lower side.
+    fn plank() -> HullContact {
+        let corners = [(-0.5, 0.0), (0.5, 0.0), (0.5, 0.1), (-0.5, 0.1)];
+        let corners = corners.map(|(x, y)| Vector::new(x, y)).into();
+        HullContact::new(0, &part(Shape::Polygon { corners }))
+    }
+
+    /// Two discs of 50 mm, 0.4 m apart.
+    fn capsule() -> HullContact {
+        let disc = |x: f64| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.05,
+        };
+        let discs = [-0.2, 0.2].map(disc).into();
+        HullContact::new(
+            0,
+            &part(Shape::Hull {
+                discs,
+                grouser_height: 0.0,
+            }),
+        )
+    }
+
+    fn lane(points: &[[f64; 2]]) -> Lane {
+        let profile = Profile::new("terrain", points, Surface::sharp(0.9), false);
+        Lane::new(&profile.expect("it is ground"))
+    }
+
+    fn found(hull: &HullContact, lane: &Lane, pose: Pose, prediction: f64) -> Vec<Contact> {
+        let mut contacts = Vec::new();
+        hull.find(lane, pose, prediction, &mut contacts);
+        contacts
+    }
+
+    /// Level ground in pieces of 5 mm, of which a tip 50 mm high stands in the middle.
+    #[test]
+    fn a_tip_between_many_pieces_bears_on_a_run_wherever_it_is_along_it() {
+        let height = |i: i32| if i == 0 { 0.05 } else { 0.0 };
+        let points: Vec<[f64; 2]> = (-300..=300)
+            .map(|i| [5e-3 * f64::from(i), height(i)])
+            .collect();
+        let lane = lane(&points);
+        let tip = Vector::new(0.0, 0.05);
+        for (angle, along, gap) in [-0.05, 0.0, 0.05].into_iter().flat_map(|angle| {
+            let places = [-0.45, -0.2, 0.0, 0.3].into_iter();
+            places.flat_map(move |along| [5e-4, -2e-4].map(|gap| (angle, along, gap)))
+        }) {
+            for (hull, below) in [(plank(), 0.0), (capsule(), 0.05)] {
+                let rotation = Rotation::new(angle);
+                let normal = rotation * Vector::Y;
+                // The tip is below that place of the lower run.
+                let on_run = rotation * Vector::new(0.4 * along, -below);
+                let pose = Pose::from_parts(tip + normal * gap - on_run, rotation);
+                let found = found(&hull, &lane, pose, 1e-3);
+                assert_eq!(found.len(), 1, "{angle} rad, {along} m, {gap} m: {found:?}");
+                assert!((found[0].distance - gap).abs() < 1e-12);
+                assert!((found[0].normal - normal).length() < 1e-12);
+                assert!((found[0].point - tip - normal * (0.5 * gap)).length() < 1e-12);
+            }
+        }
+    }
+
+    /// A capsule that was found from 10 mm away, and is 5 mm deep.
+    #[test]
+    fn an_arc_in_a_wall_bears_on_it_unless_the_wall_ends_behind_it() {
+        for (thickness, count) in [(3e-3, 0), (0.02, 1)] {
+            let points = [
+                [-2.0, 0.0],
+                [0.0, 0.0],
+                [0.0, 1.0],
+                [thickness, 1.0],
+                [thickness, 0.0],
+                [2.0, 0.0],
+            ];
+            let pose = Pose::from_translation(Vector::new(5e-3 - 0.25, 0.5));
+            let found = found(&capsule(), &lane(&points), pose, 0.01);
+            assert_eq!(found.len(), count, "{thickness} m: {found:?}");
+            for contact in found {
+                assert!((contact.distance + 5e-3).abs() < 1e-12);
+                assert!((contact.normal - Vector::NEG_X).length() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_hull_bears_on_level_ground_at_the_ends_of_its_lowest_run() {
+        let level = lane(&[[-2.0, 0.0], [2.0, 0.0]]);
+        for (hull, below, half) in [(plank(), 0.0, 0.5), (capsule(), 0.05, 0.2)] {
+            for (gap, count) in [(9e-4, 2), (1.1e-3, 0), (-9e-4, 2)] {
+                let pose = Pose::from_translation(Vector::new(0.3, below + gap));
+                let found = found(&hull, &level, pose, 1e-3);
+                assert_eq!(found.len(), count, "{gap} m: {found:?}");
+                for contact in found {
+                    assert!(((contact.point.x - 0.3).abs() - half).abs() < 1e-12);
+                    assert!((contact.distance - gap).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_lowest_run_is_below_the_hull_however_that_lies() {
+        for (angle, x) in [
+            (0.0, [-0.5, 0.5]),
+            (0.25 * TAU, [-0.1, 0.0]),
+            (0.5 * TAU, [-0.5, 0.5]),
+        ] {
+            let pose = Pose::from_parts(Vector::new(3.0, 1.0), Rotation::new(angle));
+            let found = plank().lowest_run(pose);
+            for (found, expected) in found.into_iter().zip(x) {
+                assert!(
+                    (found - 3.0 - expected).abs() < 1e-12,
+                    "{angle} rad: {found}"
+                );
+            }
+        }
+        let found = capsule().lowest_run(Pose::from_translation(Vector::X));
+        assert!((found[0] - 0.8).abs() < 1e-12 && (found[1] - 1.2).abs() < 1e-12);
     }
 }

@@ -47,3 +47,21 @@ impl From<[f64; 3]> for Twist {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::float_cmp)] // sums of exact numbers
+
+    use super::*;
+
+    /// In numbers without rounding.
+    #[test]
+    fn velocities_add_up_and_points_move_with_them() {
+        let (a, b) = (Twist::from([1.0, 2.0, 4.0]), Twist::from([0.5, -1.5, 3.0]));
+        assert_eq!(a.plus(b, 0.5).entries(), [1.25, 1.25, 5.5]);
+        assert_eq!(a.less(b).entries(), [0.5, 3.5, 1.0]);
+        // Counter-clockwise, a point ahead rises and a point above goes back.
+        assert_eq!(a.at(Vector::new(0.25, 0.0)), Vector::new(1.0, 3.0));
+        assert_eq!(a.at(Vector::new(0.0, 0.5)), Vector::new(-1.0, 2.0));
+    }
+}

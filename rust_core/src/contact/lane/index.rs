@@ -392,3 +392,6 @@ fn levels(pieces: &[Stretch], corners: &[Corner]) -> Vec<Vec<Stretch>> {
     }
     levels
 }
+
+#[cfg(test)]
+mod tests;

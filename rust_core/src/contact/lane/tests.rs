@@ -2,6 +2,8 @@
 
 #![allow(clippy::print_stdout)] // the printed counts say what was judged
 
+mod touches;
+
 use std::cell::Cell;
 
 use super::*;
@@ -10,7 +12,12 @@ use crate::scenario::Surface;
 
 /// Half a metre of ground: flat, or with upright faces and jitter of this size [m]; edges are rounded where
 /// there is room.
-fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profile, Lane) {
+pub(super) fn lane(
+    points: usize,
+    jitter: f64,
+    edge_radius: f64,
+    draw: &mut Draw,
+) -> (Profile, Lane) {
     let pitch = 0.5 / points as f64;
     let mut x = 0.0;
     let points: Vec<[f64; 2]> = (0..points)

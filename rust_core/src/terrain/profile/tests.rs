@@ -194,3 +194,98 @@ fn points_on_a_straight_line_are_no_edges() {
     assert_eq!(ground.edge_of_point, [-1, -1, 0, -1, 1, -1]);
     assert_eq!(ground.edges.len(), 2);
 }
+
+/// A piece of five facets, between pieces of one.
+#[test]
+fn a_place_along_a_straight_piece_is_where_its_fraction_lies() {
+    let on_slope = |share: f64| [1.0 + 4e-4 * share, 2.0 + 3e-4 * share];
+    let shares = [0.0, 0.02, 0.5, 0.51, 0.98, 1.0];
+    let mut points: Vec<[f64; 2]> = shares.map(on_slope).into();
+    points.insert(0, [0.0, 2.0]);
+    points.push([3.0, 2.0]);
+    let ground = Profile::new("terrain", &points, Surface::sharp(0.5), false).expect("ground");
+    assert_eq!(ground.bends(), [0, 1, 6, 7]);
+    for fraction in [0.0, 0.01, 0.2, 0.505, 0.7, 0.99, 1.0] {
+        let place = ground.place_along(1..6, fraction);
+        let off = ground.point_at(place) - Vector::from(on_slope(fraction));
+        assert!(off.length() < 1e-15, "{fraction}: {place}");
+        let facet = 1 + shares[1..5].partition_point(|share| *share <= fraction);
+        assert!((facet as f64..=facet as f64 + 1.0).contains(&place));
+        assert_relative_eq!(ground.place_along(6..7, fraction), 6.0 + fraction);
+        let on_piece = Vector::new(fraction, 2.0);
+        assert!((ground.place_on(0, on_piece) - fraction).abs() < 1e-15);
+    }
+    // Beyond the ends of a facet.
+    let beyond = [-1.0, 2.0].map(|x| ground.place_on(0, Vector::new(x, 2.0)));
+    assert_relative_eq!(beyond.as_slice(), [0.0, 1.0].as_slice());
+}
+
+/// What is left of the face is half a nanometre, which has no direction.
+#[test]
+fn an_arc_that_takes_up_its_face_ends_at_the_next_corner() {
+    let width = 0.1 + 5e-10;
+    let up = [
+        [-1.0, 0.0],
+        [0.0, 0.0],
+        [0.0, 0.3],
+        [width, 0.3],
+        [width, 0.4],
+        [2.0, 0.4],
+    ];
+    let ground = profile(&up, 0.05 + 0.05).expect("it is ground");
+    let corner = Vector::new(width, 0.3);
+    assert_eq!(
+        ground
+            .points
+            .iter()
+            .filter(|point| **point == corner)
+            .count(),
+        1
+    );
+    for pair in ground.points.windows(2) {
+        assert!((pair[1] - pair[0]).length() > COLLINEAR.value(), "{pair:?}");
+    }
+    let [arc, inner] = [1, 2].map(|id| ground.edges[id].span);
+    assert_eq!([arc[1]; 2], inner);
+}
+
+/// A turn of 0.1 mrad beside a piece of a micrometre is off it by a tenth of a nanometre.
+#[test]
+fn a_turn_that_moves_the_shorter_of_two_pieces_by_less_than_a_nanometre_is_no_edge() {
+    for (length, count) in [(1e-6, 0), (1e-4, 1)] {
+        let bend = [[0.0, 2.0], [5.0, 2.0], [5.0 + length, 2.0 + 1e-4 * length]];
+        let mirrored = bend.map(|[x, y]| [-x, y]);
+        for points in [bend, mirrored] {
+            let ground = Profile::new("terrain", &points, Surface::sharp(0.5), false);
+            let edges = ground.expect("it is ground").edges;
+            assert_eq!(edges.len(), count, "{points:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sharp_step_of_nearly_a_nanometre_has_both_of_its_corners() {
+    let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 9e-10], [1.0, 9e-10]];
+    let ground = Profile::new("terrain", &points, Surface::sharp(0.5), false).expect("ground");
+    assert_eq!(ground.points.len(), 4);
+    let spans: Vec<[u32; 2]> = ground.edges.iter().map(|edge| edge.span).collect();
+    assert_eq!(spans, [[1, 1], [2, 2]]);
+}
+
+/// Each of its blocks has two edges that would take 90 facets.
+#[test]
+fn ground_may_have_so_many_edges_that_only_sharp_ones_have_room() {
+    let block = |i: u32| {
+        let x = f64::from(i);
+        [[x, 0.0], [x, 0.2], [x + 0.5, 0.2], [x + 0.5, 0.0]]
+    };
+    let points: Vec<[f64; 2]> = (0..5_700).flat_map(block).collect();
+    assert!(profile(&points, 0.0).is_ok());
+    let error = profile(&points, 0.01).expect_err("they are too many");
+    assert!(
+        error.rule.contains("would take 1026000 facets"),
+        "{}",
+        error.rule
+    );
+    assert!(profile(&points[..22_000], 0.01).is_ok());
+}
