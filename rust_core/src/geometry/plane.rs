@@ -146,4 +146,36 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_direction_is_between_two_others_or_past_one_by_no_more_than_an_angle() {
+        let ends = [direction(0.2), direction(1.0)];
+        let past = libm::sin(0.1);
+        for (angle, sine, is_it) in [
+            (0.6, 0.0, true),
+            (0.21, 0.0, true),
+            (0.99, 0.0, true),
+            (0.19, 0.0, false),
+            (1.01, 0.0, false),
+            (0.11, past, true),
+            (0.09, past, false),
+            (1.09, past, true),
+            (1.11, past, false),
+            // The opposite of what lies between them.
+            (0.6 + std::f64::consts::PI, 0.0, false),
+            (0.6 + std::f64::consts::PI, 1.0, false),
+        ] {
+            let v = direction(angle) * if sine > 0.0 { 1.0 } else { 3.0 };
+            assert_eq!(is_between(v, ends, sine), is_it, "{angle} rad, {sine}");
+        }
+        assert!(!is_between(Vector::ZERO, ends, 0.1));
+    }
+
+    #[test]
+    fn a_turn_about_the_origin_adds_to_the_angle_of_a_point() {
+        for angle in [-2.0, 0.3, 1.0, 4.0] {
+            let found = turned_by(angle)(direction(0.7) * 2.0);
+            assert!((found - direction(0.7 + angle) * 2.0).length() < 1e-15);
+        }
+    }
 }

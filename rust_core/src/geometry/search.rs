@@ -83,4 +83,24 @@ mod tests {
             assert!(calls.get() < 20, "{}", calls.get());
         }
     }
+
+    /// Of a function without a change of sign it is the end that is nearer to one.
+    #[test]
+    fn a_zero_beyond_the_ends_is_sought_no_farther_than_the_nearer_end() {
+        assert_eq!(zero(1.0, 2.0, |x| x).to_bits(), 1.0_f64.to_bits());
+        assert_eq!(zero(-2.0, -1.0, |x| x).to_bits(), (-1.0_f64).to_bits());
+    }
+
+    #[test]
+    fn a_zero_is_known_to_rounding_whatever_its_unit() {
+        for unit in [1e-9, 1e-3, 1e6] {
+            let calls = std::cell::Cell::new(0);
+            let found = zero(0.0, 2.0 * unit, |x| {
+                calls.set(calls.get() + 1);
+                (x / unit) * (x / unit) - 2.0
+            });
+            let off = found / unit - std::f64::consts::SQRT_2;
+            assert!(off.abs() < 1e-15 && calls.get() < 20, "{unit}: {off}");
+        }
+    }
 }

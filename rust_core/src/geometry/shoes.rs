@@ -320,4 +320,96 @@ mod tests {
             assert!((again - 1.0).abs() < 1e-12, "{again}");
         }
     }
+
+    /// A chain of 22 shoes on a sprocket at its rear end.
+    fn on_sprocket() -> ShoeLoop {
+        let chain = ShoeLoop::new(ends(0.0505, 0.0505), 22).expect("its shoes fit");
+        chain.on_sprocket().expect("they fit on a sprocket")
+    }
+
+    /// The pin circle is that of chords of a pitch, and the drum touches their middles.
+    #[test]
+    fn a_sprocket_has_as_many_teeth_as_fit_and_turns_its_pins_evenly() {
+        let chain = on_sprocket();
+        let (half, teeth) = (0.5 * chain.pitch, chain.teeth(1.0).expect("it has teeth"));
+        let fitting = PI / libm::atan(half / 0.0505);
+        assert!((teeth.count as f64 - fitting).abs() < 0.6, "{fitting}");
+        assert!(teeth.tip_radius > teeth.radius && chain.teeth(0.0).is_some());
+        let [drum, front] = chain.ends(chain.pitch)[..] else {
+            panic!("it has two ends");
+        };
+        assert!((drum.radius.hypot(half) - teeth.radius).abs() < 1e-12);
+        assert!((front.radius - 0.0505).abs() < 1e-15);
+        // Its lower run is that of the ends, but for half of what a pin rises and falls on it.
+        let rise = teeth.radius - drum.radius;
+        let lower = 0.0505 - (drum.radius - drum.center.y);
+        assert!((lower - 0.5 * rise).abs() < 1e-12, "{lower} m");
+        assert!((drum.center.x + 0.1825).abs() < 1e-12);
+        let path = chain.path(chain.pitch, 0.0);
+        for k in 0..10 {
+            let phase = 0.1 * f64::from(k) * chain.pitch;
+            let spoke = path.point_at(chain.first_position(phase)) - drum.center;
+            assert!((spoke.length() - teeth.radius).abs() < 1e-12);
+            let turned = chain.first_seat() - libm::atan2(spoke.y, spoke.x);
+            let off = turned - phase / teeth.drive_radius();
+            assert!((off - TAU * (off / TAU).round()).abs() < 1e-12, "{off} rad");
+        }
+    }
+
+    #[test]
+    fn a_chain_on_a_sprocket_closes_and_its_pins_stay_in_their_seats() {
+        let chain = on_sprocket();
+        let teeth = chain.teeth(1.0).expect("it has teeth");
+        let drum = chain.ends(chain.pitch)[0].center;
+        for k in 0..50 {
+            let run = 0.0123 * f64::from(k);
+            let places = chain.places(run);
+            let pin = |i: usize, side: f64| {
+                places[i % 22].transform_point(Vector::new(0.5 * side * chain.pitch, 0.0))
+            };
+            let mut seated = 0;
+            for i in 0..22 {
+                assert!(
+                    (pin(i, 1.0) - pin(i + 1, -1.0)).length() < 1e-9,
+                    "{i} at {run}"
+                );
+                let spoke = pin(i, 1.0) - drum;
+                if (spoke.length() - teeth.radius).abs() > 1e-9 {
+                    continue;
+                }
+                seated += 1;
+                let seat = chain.first_seat() - run / teeth.drive_radius();
+                let steps = (libm::atan2(spoke.y, spoke.x) - seat) / (TAU / teeth.count as f64);
+                // Half the play is 0.02 pitches.
+                assert!(
+                    (steps - steps.round()).abs() < 0.02,
+                    "{steps} steps at {run}"
+                );
+            }
+            assert!(seated >= teeth.count / 2 - 1, "{seated} pins");
+            assert!(chain.travel(run).abs() < 0.02 * chain.pitch);
+        }
+    }
+
+    /// Half a pitch before a joint it begins to turn, and in the middle of a run it does not.
+    #[test]
+    fn a_shoe_moves_along_its_run_and_turns_about_its_disc() {
+        let chain = ShoeLoop::new(ends(0.0505, 0.0505), 22).expect("its shoes fit");
+        let turn = |x: f64, y: f64| chain.motion_at(Vector::new(x, y)).turn * 0.0505;
+        let end = 0.1825;
+        for (x, y, expected) in [
+            (0.0, -0.0505, 0.0),
+            (0.0, 0.0505, 0.0),
+            (end - 0.6 * chain.pitch, 0.0505, 0.0),
+            (end - 0.25 * chain.pitch, 0.0505, 0.25),
+            (-end - 0.0505, 0.0, 1.0),
+            (end + 0.0505, 0.0, 1.0),
+        ] {
+            assert!(
+                (turn(x, y) - expected).abs() < 1e-9,
+                "{x} {y}: {}",
+                turn(x, y)
+            );
+        }
+    }
 }

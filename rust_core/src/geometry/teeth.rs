@@ -266,4 +266,51 @@ mod tests {
         assert!((top.gap + 1e-4).abs() < 1e-12);
         assert!(top.normal.dot(pin.normalize()) > 1.0 - 1e-12);
     }
+
+    #[test]
+    fn one_turn_moves_the_chain_by_a_pitch_for_each_tooth() {
+        let teeth = Teeth::new(11, 0.04, 0.0);
+        assert!((teeth.drive_radius() * TAU - 0.44).abs() < 1e-15);
+    }
+
+    /// Their own seats are half the play away on either side.
+    #[test]
+    fn flanks_of_a_picture_are_where_a_pin_swings_past_and_radial_below_its_seat() {
+        for (count, most) in [(7, 0.0), (11, 0.0), (14, 1.0)] {
+            let teeth = Teeth::new(count, 0.04, most);
+            let (pin, step) = (0.1 * teeth.pitch, TAU / count as f64);
+            let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
+            let outline = teeth.outline(pin);
+            for (tooth, corners) in outline.chunks(12).enumerate() {
+                let [seat, next] = [0.0, 1.0].map(|k| (tooth as f64 + k) * step);
+                let out: Vec<f64> = corners.iter().map(|p| p.length()).collect();
+                let (from, to) = (teeth.radius, teeth.tip_radius - pin);
+                let root = from * libm::cos(0.5 * step) - pin;
+                let rising = (0..5).map(|k| from + (to - from) * f64::from(k) / 4.0);
+                let expected: Vec<f64> = std::iter::once(root).chain(rising).collect();
+                for k in 0..6 {
+                    assert!((out[k] - expected[k]).abs() < 1e-12);
+                    assert!((out[11 - k] - expected[k]).abs() < 1e-12);
+                    // It is alike on both sides of the tooth.
+                    let middle = direction(0.5 * (seat + next));
+                    let [up, down] = [k, 11 - k].map(|k| corners[k].dot(middle));
+                    assert!((up - down).abs() < 1e-12);
+                    let off = libm::atan2(corners[k].y, corners[k].x) - seat;
+                    let off = off - TAU * (off / TAU).round();
+                    if off > 0.5 * step - 1e-9 {
+                        // Both flanks meet.
+                        continue;
+                    }
+                    if k == 0 {
+                        let beside = out[k] * libm::sin(off - play);
+                        assert!((beside - pin).abs() < 1e-12, "{beside} m");
+                    } else {
+                        let behind = seated(&teeth, next + play);
+                        let apart = (corners[k] - behind).length();
+                        assert!((apart - (teeth.pitch - pin)).abs() < 1e-12, "{apart} m");
+                    }
+                }
+            }
+        }
+    }
 }

@@ -414,4 +414,99 @@ mod tests {
             }
         }
     }
+
+    /// Between level ground 100 m long before and behind.
+    #[test]
+    fn each_parametric_terrain_has_its_corners_and_its_goal() {
+        let surface = Surface::sharp(0.9);
+        let (friction, slope) = (surface.friction, 0.5_f64.atan());
+        for (terrain, corners, goal) in [
+            (
+                Terrain::Flat {
+                    length: 3.0,
+                    friction,
+                },
+                vec![],
+                3.0,
+            ),
+            (
+                Terrain::Step {
+                    height: 0.25,
+                    surface,
+                },
+                vec![[0.0, 0.0], [0.0, 0.25]],
+                0.0,
+            ),
+            (
+                Terrain::Ramp {
+                    angle: slope,
+                    length: 0.8,
+                    surface,
+                },
+                vec![[0.0, 0.0], [0.8, 0.4]],
+                0.8,
+            ),
+            (
+                Terrain::Barrier {
+                    height: 0.25,
+                    thickness: 0.5,
+                    surface,
+                },
+                vec![[0.0, 0.0], [0.0, 0.25], [0.5, 0.25], [0.5, 0.0]],
+                0.5,
+            ),
+            (
+                Terrain::Ridge {
+                    height: 0.2,
+                    edge_angle: 2.0 * slope,
+                    surface,
+                },
+                vec![[0.0, 0.0], [0.1, 0.2], [0.2, 0.0]],
+                0.2,
+            ),
+            (
+                Terrain::Gap {
+                    width: 0.5,
+                    depth: 0.25,
+                    surface,
+                },
+                vec![[0.0, 0.0], [0.0, -0.25], [0.5, -0.25], [0.5, 0.0]],
+                0.5,
+            ),
+            (
+                Terrain::HalfRound {
+                    radius: 0.25,
+                    friction,
+                },
+                vec![[0.0, 0.0], [0.0, 0.25], [0.5, 0.25], [0.5, 0.0]],
+                0.5,
+            ),
+        ] {
+            let found = of(&terrain);
+            let count = found.points.len();
+            let (first, last) = (found.points[0], found.points[count - 1]);
+            let ends = corners.first().zip(corners.last());
+            let (from, to) = ends.map_or(([0.0; 2], [goal, 0.0]), |(a, b)| (*a, *b));
+            let run_outs = [
+                first[0] - from[0] + 100.0,
+                first[1] - from[1],
+                last[0] - to[0] - 100.0,
+                last[1] - to[1],
+            ];
+            assert!(run_outs.iter().all(|off| off.abs() < 1e-12), "{terrain:?}");
+            assert!((found.goal - goal).abs() < 1e-12, "{terrain:?}");
+            assert_eq!(count, corners.len() + 2);
+            for (point, corner) in found.points[1..count - 1].iter().zip(&corners) {
+                let off = (point[0] - corner[0])
+                    .abs()
+                    .max((point[1] - corner[1]).abs());
+                assert!(off < 1e-12, "{terrain:?}: {point:?}");
+            }
+        }
+        let half_round = of(&Terrain::HalfRound {
+            radius: 0.25,
+            friction,
+        });
+        assert!((half_round.surface.edge_radius - 0.25).abs() < 1e-15);
+    }
 }

@@ -289,3 +289,54 @@ fn ground_may_have_so_many_edges_that_only_sharp_ones_have_room() {
     );
     assert!(profile(&points[..22_000], 0.01).is_ok());
 }
+
+#[test]
+fn a_range_touches_the_facets_that_reach_into_it() {
+    let ground = hill_and_block();
+    for (low, high, facets) in [
+        (-1.0, 0.5, 0..1),
+        (-1.0, 1.2, 0..2),
+        (1.2, 1.3, 1..2),
+        (1.2, 1.7, 1..3),
+        (1.5, 1.5, 1..3),
+        // Both faces of the block, and its top.
+        (3.9, 4.6, 3..8),
+        (4.2, 4.3, 5..6),
+        (-9.0, 9.0, 0..8),
+        (7.0, 8.0, 8..8),
+    ] {
+        assert_eq!(ground.facets(low, high), facets, "{low} to {high}");
+    }
+    assert_eq!(ground.extent(), (-2.0, 6.0));
+    assert_relative_eq!(ground.lowest(), 0.0);
+}
+
+/// Between two arcs that leave a nanometre of their face, or half of one, which is none.
+#[test]
+fn two_arcs_that_take_up_a_face_share_its_end() {
+    for (left, is_shared) in [(2e-9, false), (5e-10, true)] {
+        let width = 0.2 + left;
+        let points = [
+            [-1.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 0.3],
+            [width, 0.3],
+            [width, 0.0],
+            [2.0, 0.0],
+        ];
+        let ground = profile(&points, 0.1).expect("it is ground");
+        let [rear, front] = [1, 2].map(|id| ground.edges[id].span);
+        assert_eq!(rear[1] == front[0], is_shared, "{left} m");
+        // Neither takes anything of the faces beside them.
+        let [foot, end] = [0, 3].map(|id| ground.edges[id].span);
+        assert!(foot[1] < rear[0] && front[1] < end[0]);
+        for edge in &ground.edges[1..3] {
+            assert!((edge.angle - 0.5 * std::f64::consts::PI).abs() < 1e-12);
+            for i in edge.span[0]..=edge.span[1] {
+                let off = (ground.points[i as usize] - edge.center).length() - 0.1;
+                assert!(off.abs() < 1e-9, "{off} m");
+            }
+            assert_eq!(edge.span[1] - edge.span[0], 90);
+        }
+    }
+}
