@@ -12,7 +12,7 @@ use crate::terrain::{Edge, Profile};
 
 /// Sine of the angle by which a side of the robot may turn in a step: beyond its last normal by this angle, the arc of
 /// a rounded corner reaches out of the ground by less than 4 um.
-const TURN_IN_A_STEP: f64 = 0.02;
+pub(super) const TURN_IN_A_STEP: f64 = 0.02;
 
 /// Where two faces meet.
 #[derive(Clone, Copy, Debug)]
@@ -125,7 +125,7 @@ fn sharp(profile: &Profile, bend: usize, edge: i32) -> Corner {
     let last = bends.len() - 1;
     let point = |i: usize| profile.points[bends[i] as usize];
     let normal_of = |a: usize, b: usize| left_of((point(b) - point(a)).normalize());
-    // Each end of the ground has one normal only.
+    // Each end of the ground has one normal only, and so is not convex.
     let normals = [
         normal_of(bend.saturating_sub(1), bend.max(1)),
         normal_of(bend.min(last - 1), (bend + 1).min(last)),
@@ -133,7 +133,7 @@ fn sharp(profile: &Profile, bend: usize, edge: i32) -> Corner {
     Corner {
         center: point(bend),
         radius: 0.0,
-        is_convex: 0 < bend && bend < last && cross(normals[1], normals[0]) > 0.0,
+        is_convex: cross(normals[1], normals[0]) > 0.0,
         normals,
         edge,
         facet: bends[bend] as usize,

@@ -13,7 +13,7 @@ use std::ops::{Range, RangeInclusive};
 use rapier2d_f64::parry::bounding_volume::{Aabb, BoundingVolume};
 
 use super::Corner;
-use super::features::{Face, ROUNDING};
+use super::features::{Face, ROUNDING, TURN_IN_A_STEP};
 use super::roof::{Roof, roof};
 use crate::geometry::{Vector, cross};
 use crate::terrain::{FINE, Profile};
@@ -142,10 +142,10 @@ impl Stretch {
         self.bounds.mins.x - margin <= high && low <= self.bounds.maxs.x + margin
     }
 
-    /// Whether the stretch may have this normal.
+    /// Whether the stretch may have this normal, or nearly as a corner may.
     pub(crate) fn may_have_normal(&self, normal: Vector) -> bool {
         let [right, left] = self.normals;
-        cross(right, normal) >= -ROUNDING && cross(normal, left) >= -ROUNDING
+        cross(right, normal) >= -TURN_IN_A_STEP && cross(normal, left) >= -TURN_IN_A_STEP
     }
 }
 
