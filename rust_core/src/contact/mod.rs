@@ -105,3 +105,55 @@ impl Contact {
             ])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{Scenario, Surface};
+
+    #[test]
+    fn a_force_is_along_the_normal_and_across_it() {
+        let mut contact = Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), 0.0);
+        (contact.normal_force, contact.friction_force) = (2.0, 3.0);
+        assert_eq!(contact.force(), Vector::new(3.0, 2.0));
+    }
+
+    #[test]
+    fn a_contact_fits_a_robot_and_a_ground_that_have_its_part_its_facet_and_its_edge() {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let robot = Scenario::from_json(text).expect("it is valid").robot;
+        let model = Model::new(&robot).expect("it can be built");
+        let points = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+        let lane = Profile::new("terrain", &points, Surface::sharp(0.9), true);
+        let lanes = [lane.expect("it is ground")];
+        let fits = |part: usize, facet: usize, edge: i32| {
+            let place = (Vector::ZERO, Vector::Y);
+            Contact::new(part, (facet, edge), place, 0.0).fits(&model, &lanes)
+        };
+        let count = model.parts.len();
+        assert!(fits(0, 0, -1) && fits(count - 1, 2, 1));
+        assert!(!fits(count, 0, -1) && !fits(0, 3, -1));
+        assert!(!fits(0, 0, -2) && !fits(0, 0, 2));
+        let mut one = Contact::new(0, (0, -1), (Vector::ZERO, Vector::Y), 0.0);
+        let numbers: [fn(&mut Contact) -> &mut f64; 12] = [
+            |c| &mut c.distance,
+            |c| &mut c.normal_force,
+            |c| &mut c.friction_force,
+            |c| &mut c.surface_speed,
+            |c| &mut c.normal_guess,
+            |c| &mut c.friction_guess,
+            |c| &mut c.point.x,
+            |c| &mut c.point.y,
+            |c| &mut c.normal.x,
+            |c| &mut c.normal.y,
+            |c| &mut c.began.x,
+            |c| &mut c.began.y,
+        ];
+        for number in numbers {
+            let before = std::mem::replace(number(&mut one), f64::NAN);
+            assert!(!one.fits(&model, &lanes));
+            *number(&mut one) = before;
+        }
+        assert!(one.fits(&model, &lanes) && !one.fits(&model, &[]));
+    }
+}

@@ -8,6 +8,7 @@
 #![allow(clippy::print_stdout)] // the printed counts say what was judged
 
 mod judge;
+mod pieces;
 
 use judge::{Judge, Range, SLICES, ranges};
 

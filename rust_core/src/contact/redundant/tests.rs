@@ -272,3 +272,31 @@ fn a_contact_cuts_the_displacements_that_would_close_it() {
     range.cut(&contact(Vector::NEG_Y, -0.5));
     assert!(range.corners.is_empty());
 }
+
+/// In numbers without rounding: else of two ways out that are equally long, each would yield to the other.
+#[test]
+fn a_way_out_yields_to_a_shorter_one_and_not_to_one_as_long() {
+    let lane = block(1.0);
+    let touch = lane.corner(1).touch(1, Vector::Y, -0.25);
+    for (normal, depth, is_open, yields) in [
+        (Vector::X, 0.125, true, true),
+        (Vector::X, 0.25, true, false),
+        (Vector::X, 0.5, true, false),
+        (Vector::X, 0.0, true, false),
+        (Vector::X, -0.125, true, false),
+        (Vector::X, 0.125, false, false),
+        // 15 degrees from its own normal, and 25 degrees.
+        (direction(75.0_f64.to_radians()), 0.125, true, false),
+        (direction(65.0_f64.to_radians()), 0.125, true, true),
+    ] {
+        let found = shorter(&touch, normal, depth, || is_open);
+        assert_eq!(found, yields, "{normal} {depth} m");
+    }
+    for (depth, apart, is_it) in [
+        (-2e-9, 1.0, true),
+        (-0.5e-9, 1.0, false),
+        (-2e-9, 4.0, false),
+    ] {
+        assert_eq!(is_gap(depth, apart), is_it, "{depth} m of {apart} m");
+    }
+}

@@ -354,3 +354,17 @@ fn a_point_that_is_farther_than_the_whole_belt_is_a_round_ahead() {
         assert!((found - position - belt.length()).abs() < 1e-12);
     }
 }
+
+#[test]
+fn the_hull_of_points_is_a_polygon() {
+    let corners = [(0.0, 0.0), (0.4, 0.0), (0.4, 0.3), (0.1, 0.2)];
+    let hull = Envelope::new(&corners.map(|(x, y)| disc(x, y, 0.0)));
+    let points = hull.polyline(0.1);
+    for (x, y) in corners {
+        let off = points.iter().map(|p| (*p - Vector::new(x, y)).length());
+        assert!(off.fold(f64::INFINITY, f64::min) < 1e-15, "{x} {y}");
+    }
+    for position in [0.0, 0.05, hull.length()] {
+        assert!(hull.point_at(position).is_finite(), "{position} m");
+    }
+}
