@@ -12,24 +12,23 @@ __all__ = ["PI", "Drivetrain"]
 
 @dataclass(frozen=True, slots=True)
 class PI(Parameters, kind="pi", path="robot.drivetrain.controller"):
-    """A controller of the speed of each sprocket: proportional and integral.
+    """Proportional-integral control of the speed of each sprocket.
 
     The torque is the gain times the error of the angular velocity, plus the integral gain times the
-    sum of that error over time, within the torque that the motor has at its speed. While the motor
-    is at that limit nothing is added to the sum, so it does not wind up. A gain alone is what
-    physics engines call a velocity motor: `kv` of MuJoCo's velocity actuator, the damping of
-    Isaac's drive.
+    integral of that error over time, limited to the torque that the motor has at its speed. At that
+    limit the integral stops growing (no windup). A gain alone is what physics engines call a
+    velocity motor: `kv` of MuJoCo's velocity actuator, the damping of Isaac's drive.
 
     Parameters
     ----------
     gain : float
-        [N m s/rad] Torque of one sprocket for an error of its angular velocity.
+        [N m s/rad] Torque of one sprocket per error of its angular velocity.
     integral : float
-        [N m/rad] Torque of one sprocket for the sum of those errors, which is an angle.
+        [N m/rad] Torque of one sprocket per integral of that error, an angle.
 
     Examples
     --------
-    On a slope, a gain alone lets the speed fall by the weight over the gain:
+    On a slope, with a gain alone the speed drops in proportion to the load:
 
     >>> from dataclasses import replace
     >>> import crawler2d as c2d
@@ -54,7 +53,7 @@ class PI(Parameters, kind="pi", path="robot.drivetrain.controller"):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drivetrain(Parameters, path="robot.drivetrain"):
-    """What drives the tracks, and within which limits.
+    """The motors and gears that drive the tracks, and their limits.
 
     Parameters
     ----------
@@ -65,32 +64,34 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
     max_torque : float
         [N m] Largest torque of one sprocket, acting at the belt radius. The robot has two.
     torque_sharing : {"track", "wheel"}
-        "track": one motor per track; all its wheels keep one speed, and the sum of their traction
-        is limited. "wheel": each of the N driven wheels of a model that has some, on flippers,
-        too, has its own servo with 1/N of the torque, the rotor inertia and the controller's gains.
+        "track": one motor per track; all its wheels turn at one surface speed, and their total
+        traction is limited. "wheel": for models with driven wheels: each of the N driven wheels,
+        including those on flippers, has its own servo with 1/N of the torque, the rotor inertia and
+        the controller's gains.
     rotor_inertia : float
-        [kg m^2] Of the motor of one track, reflected to its sprocket: the rotor's own times the
-        square of the gear's ratio, MuJoCo's `armature`; at most 100,000 times the moment of inertia
-        of the robot. It turns with the drive over the chassis and holds the track's speed through a
-        blow, which no torque limit can.
+        [kg m^2] Rotor inertia of the motor of one track, reflected to its sprocket: that of the
+        rotor times the square of the gear ratio, MuJoCo's `armature`; at most 100,000 times the
+        moment of inertia of the robot. The rotor turns with the drive relative to the chassis and
+        keeps the track moving through an impact, which no torque limit can.
     no_load_speed : float, optional
-        [m/s] Track speed at which the torque, which falls in a line from `max_torque` at rest, is
-        used up, as that of a DC motor does. None: the motor has `max_torque` at any speed.
+        [m/s] Track speed at which the torque has fallen to 0, linearly from `max_torque` at rest,
+        as in a DC motor. None: the motor has `max_torque` at any speed.
     torque_curve : array_like, shape (n, 2), optional
-        In place of that line: 1 to 1000 increasing track speeds [m/s], from 0, and the torques
-        [N m] of one sprocket there, which start with `max_torque` and do not rise; straight between
-        them, and the last beyond. Against its motion a motor has the torque that it has at rest. To
-        replace, sweep or draw ``"robot.drivetrain.max_torque"`` scales all of them.
+        Replaces that line: 1 to 1000 increasing track speeds [m/s], starting at 0, and the torque
+        [N m] of one sprocket at each. Torques start at `max_torque` and never rise; they are
+        interpolated linearly, and the last one applies beyond. A motor that is driven backwards has
+        its torque at rest. Replacing, sweeping or drawing ``"robot.drivetrain.max_torque"`` scales
+        all torques.
     controller : PI, optional
-        How motors correct the speed of their sprocket. None: they hold the commanded speed as long
+        How motors control the speed of their sprocket. None: they hold the commanded speed as long
         as their torque suffices.
     self_locking : bool
-        Whether the gear cannot be back-driven, as a worm gear. The load then turns no motor back,
-        and none faster than the commanded speed or, where the torque ends before that, its speed
-        without load. At rest the gear holds with any torque, also where the motor is too weak or
-        off. What drives is limited by `max_torque` as ever. A gear that does not lock is taken to
-        turn back without loss, while `max_torque` is what is left after losses. Neither with a
-        `controller` nor on a `ForceTrack`.
+        Whether the gear cannot be back-driven, like a worm gear. Then the load can neither turn a
+        motor back nor make it overrun the commanded speed or, if that is lower, its no-load speed.
+        At rest the gear holds against any torque, even if the motor is too weak or off.
+        `max_torque` still limits what the motor drives. A gear that does not lock is assumed to be
+        back-driven without loss, while `max_torque` is what is left after losses. Not with a
+        `controller` or on a `ForceTrack`.
 
     Examples
     --------
@@ -107,7 +108,7 @@ class Drivetrain(Parameters, path="robot.drivetrain"):
     seized
     cleared
 
-    Switched off on a slope, a robot rolls back, and with worm gears it stands:
+    Switched off on a slope, a robot rolls back; with worm gears it stays put:
 
     >>> slope = c2d.terrains.from_points([(-20.0, -5.0), (20.0, 5.0)], goal=3.0)
     >>> start = c2d.Start(angle=0.245)

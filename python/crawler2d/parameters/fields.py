@@ -1,7 +1,7 @@
-"""Parameter objects: what a field may hold, their JSON, and dotted paths to their fields.
+"""Base of the parameter objects: types of fields, JSON, and dotted paths to fields.
 
-JSON has no non-finite numbers; they are written as the strings "NaN", "Infinity" and "-Infinity",
-so that the validator, which knows the rules, can name the field.
+JSON has no non-finite numbers. They are written as "NaN", "Infinity" and "-Infinity", so that the
+validator, which knows the rules, can name the field.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ class Parameters(TakesKeywords):
     """Base of the parameter dataclasses: fields are normalised once, on creation.
 
     NumPy scalars become Python numbers, whole numbers become floats where the field is a float, and
-    arrays of points become tuples. So objects compare, hash and print the same whatever they were
-    made from, and later changes of an input array do not reach them.
+    arrays of points become tuples. Objects therefore compare, hash and print the same whatever they
+    were made from, and do not change when an input array does.
     """
 
     __slots__ = ()
@@ -61,13 +61,13 @@ class Parameters(TakesKeywords):
     kind: ClassVar[str] = ""
     """Tag of the class in JSON; empty where a field has only one class."""
     default_path: ClassVar[str] = ""
-    """Where a scenario usually holds objects of this class, for errors."""
+    """Usual path of objects of this class in a scenario, for errors."""
     exclusive: ClassVar[tuple[str, ...]] = ()
     """Fields of which only one may be set: replacing one by path clears the others."""
     overridden_by: ClassVar[dict[str, str]] = {}
-    """Fields without effect while another is set, with that one, which replacing them clears."""
+    """Field to the field that overrides it; replacing the first clears the second."""
     proportional: ClassVar[dict[str, str]] = {}
-    """Fields with the rows whose second column is in proportion, which replacing them scales."""
+    """Field to the rows proportional to it in column 2; replacing the field scales them."""
     omitted_defaults: ClassVar[tuple[str, ...]] = ()
     """Fields that JSON omits at their defaults, because older files do not have them."""
     property_fields: ClassVar[tuple[str, ...]] = ()
@@ -75,7 +75,7 @@ class Parameters(TakesKeywords):
 
     @property
     def written_as(self) -> dict[str, tuple[str, ...]]:
-        """By field: the properties that JSON and repr have instead."""
+        """Map each field that JSON and repr replace by properties to those properties."""
         return {}
 
     def __init_subclass__(cls, kind: str | None = None, path: str | None = None) -> None:
@@ -88,17 +88,16 @@ class Parameters(TakesKeywords):
         cls.__repr__ = Parameters.__repr__  # type: ignore[method-assign]
 
     def __repr__(self) -> str:
-        """Write an expression that makes an equal object.
+        """Write an expression that evaluates to an equal object.
 
-        Fields at their defaults are left out, except for those that say which of several models it
-        is.
+        Fields at their defaults are left out, unless they choose one of several models.
         """
         arguments = []
         for field in fields_of(type(self)):
             for name in self.written_as.get(field.name, (field.name,)):
                 value = getattr(self, name)
                 is_model = isinstance(value, Parameters) and value.kind
-                # Texts can be compared whatever a field holds.
+                # Compare as text, which works for any value.
                 if is_model or repr(value) != repr(field.default):
                     arguments.append(f"{name}={value!r}")
         return f"{type(self).__name__}({', '.join(arguments)})"
@@ -106,12 +105,12 @@ class Parameters(TakesKeywords):
     def __post_init__(self) -> None:
         """Convert every field to plain Python objects, and refuse other types.
 
-        Which numbers and names are allowed is for the validator to say.
+        The validator checks which numbers and names are allowed.
 
         Raises
         ------
         ScenarioError
-            If a field has something of another type, such as a string in place of a number.
+            If a value has the wrong type, such as a string where a number is needed.
         """
         cls = type(self)
         for name, hint in field_hints(cls).items():
@@ -127,7 +126,7 @@ class Parameters(TakesKeywords):
 
 
 def _check_type(value: Any, hint: Any, path: str) -> None:
-    """Refuse a value of a type that a field does not have."""
+    """Refuse a value whose type the field does not accept."""
     kinds = alternatives(hint)
     if callable(value) and not isinstance(value, type) and _takes_functions(hint):
         return
@@ -152,12 +151,12 @@ def _takes_functions(hint: Any) -> bool:
 
 
 def _choices(kind: Any) -> tuple[str, ...]:
-    """List the names that a Literal has; any other annotation has none."""
+    """List the names of a Literal; empty for any other annotation."""
     return typing.get_args(kind) if typing.get_origin(kind) is typing.Literal else ()
 
 
 def _expected(hint: Any) -> str:
-    """Say what a field takes."""
+    """Describe what a field takes."""
     words = [cls.__name__ for cls in nested_classes(hint)]
     if words:
         words[0] = f"a {words[0]}"
@@ -171,7 +170,7 @@ def _expected(hint: Any) -> str:
 
 
 def _remedy(value: Any, kinds: tuple[Any, ...]) -> str:
-    """Say what to write instead, where the value does not show what is wrong."""
+    """Say what is wrong where the value does not show it."""
     if isinstance(value, type) and issubclass(value, Parameters):
         return f"; write {value.__name__}(...)"
     return ", not a string" if isinstance(value, str) and not {float, int}.isdisjoint(kinds) else ""
@@ -182,7 +181,7 @@ _HINTS: dict[type[Parameters], dict[str, Any]] = {}
 
 
 def fields_of(cls: type[Parameters]) -> list[dataclasses.Field[Any]]:
-    """List the fields in the order of JSON: those of the class, then those that it inherits."""
+    """List the fields in the order of JSON: the class's own, then inherited ones."""
     if cls not in _FIELDS:
         fields = {field.name: field for field in dataclasses.fields(cls)}  # type: ignore[arg-type]
         names = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
@@ -200,7 +199,7 @@ def field_hints(cls: type[Parameters]) -> dict[str, Any]:
 
 @functools.cache
 def alternatives(hint: Any) -> tuple[Any, ...]:
-    """Split a union into its members; any other annotation is its own only member."""
+    """Split a union into its members; any other annotation is its only member."""
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
         return typing.get_args(hint)
     return (hint,)
@@ -221,7 +220,7 @@ def nested_classes(hint: Any) -> tuple[type[Parameters], ...]:
 def to_dict(parameters: Parameters) -> dict[str, Any]:
     """Convert a parameter object to dicts, lists, numbers and strings.
 
-    Every field is present, but those of `omitted_defaults` only if they differ from their defaults.
+    Every field is present, except `omitted_defaults` at their defaults.
 
     Raises
     ------
@@ -254,7 +253,7 @@ def _json_value(value: Any) -> Any:
 
 
 def from_dict(cls: type[P], values: dict[str, Any]) -> P:
-    """Rebuild a parameter object from the dictionary of `to_dict`, which has been validated."""
+    """Rebuild a parameter object from a validated dictionary of `to_dict`."""
     hints, arguments = field_hints(cls), {}
     for name, value in values.items():
         if isinstance(value, dict):
@@ -273,8 +272,8 @@ _PART = re.compile(r"([^\[\]]*)((?:\[(?:0|-?[1-9][0-9]*)\])*)")
 def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str] = ()) -> P:
     """Copy a parameter object, with the field or element at a path replaced.
 
-    Fields that exclude or override it are set to None, and those in proportion to it are scaled,
-    except those at the paths `given`: the validator refuses two that exclude each other.
+    Fields that exclude or override it become None, and proportional ones are scaled, except for the
+    paths in `given`: the validator refuses two fields that exclude each other.
 
     Raises
     ------
@@ -296,7 +295,7 @@ def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str]
 
 
 def read_path(parameters: Parameters, path: str) -> Any:
-    """Return what is at a path; errors are those of `replace_path`."""
+    """Return the value at a path; raises the errors of `replace_path`."""
     return _nodes_along(parameters, path, None)[-1]
 
 
@@ -328,7 +327,7 @@ def json_pointer(path: str) -> str:
 
 
 def excluded(parameters: Parameters, path: str) -> list[str]:
-    """List the paths of the fields that exclude the one at a path, or override it now."""
+    """List the paths of fields that exclude the one at a path, or currently override it."""
     parent, _, name = path.rpartition(".")
     holder = _holder(parameters, parent)
     names, override = type(holder).exclusive, type(holder).overridden_by.get(name)
@@ -339,7 +338,7 @@ def excluded(parameters: Parameters, path: str) -> list[str]:
 
 
 def in_proportion(parameters: Parameters, path: str) -> dict[str, tuple[tuple[float, float], ...]]:
-    """Return the rows in proportion to the number at a path, by their path; none if that is 0.
+    """Return the rows proportional to the number at a path, by their path; none if it is 0.
 
     Examples
     --------
@@ -364,7 +363,7 @@ def is_whole(parameters: Parameters, path: str) -> bool:
 
 
 def read_number_path(parameters: Parameters, path: str, name: str) -> str:
-    """Refuse the path of anything but a real number; `name` is that of the argument."""
+    """Refuse the path of anything but a real number; `name` is the argument's."""
     number = read_path(parameters, path) if isinstance(path, str) else None
     if type(number) not in (int, float) or is_whole(parameters, path):
         raise ScenarioError(name, path, "must be the path of a number that may have decimals")
@@ -402,7 +401,7 @@ def _replace_at(root: P, path: str, value: Any) -> P:
 
 
 def _replace_field(node: Any, name: str, value: Any, path: str) -> Any:
-    """Replace a field; an error, which has the default path of the object, gets the real one."""
+    """Replace a field; errors get its real path instead of the object's default path."""
     try:
         return dataclasses.replace(node, **{name: value})
     except ScenarioError as error:
@@ -412,7 +411,7 @@ def _replace_field(node: Any, name: str, value: Any, path: str) -> Any:
 
 
 def _nodes_along(root: Parameters, path: str, value: Any) -> list[Any]:
-    """List the root and what each step of a path leads to; errors have the value to be set."""
+    """List the root and the node at each step of a path; errors show the value to be set."""
     nodes: list[Any] = [root]
     parent = ""
     for step in _steps(path):
@@ -444,7 +443,7 @@ def _field_names(cls: type[Parameters]) -> list[str]:
 
 
 def known_paths(parameters: Parameters) -> Iterator[str]:
-    """List the paths of all fields, those of nested objects after their own."""
+    """List the paths of all fields, nested ones after their parents."""
     for name in _field_names(type(parameters)):
         yield name
         nested = getattr(parameters, name)

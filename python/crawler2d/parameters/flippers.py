@@ -13,18 +13,18 @@ __all__ = ["Flippers", "reach_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flippers(Parameters, path="robot.flippers"):
-    """Identical arms at one end of a robot or at both, one on each side.
+    """Identical arms at one end or both ends of a robot, one on each side.
 
-    An arm pivots on the end axle, and a track runs round it from there to an axle at its tip. It is
-    driven by the motors of the robot's tracks, at the same speed over the chassis. The sprocket
-    sits on the pivot, so that the belt also runs along an arm that turns. A motor of its own turns
-    the arm to the commanded angle, as fast as its rate and torque limits allow, and its torque
+    An arm pivots on the end axle. Its track runs round the pivot and an axle at the tip, and is
+    driven by the motors of the robot's tracks, at the same speed relative to the chassis. The
+    sprocket sits on the pivot, so turning the arm also moves its belt along the arm. A motor of its
+    own turns the arm to the commanded angle within its rate and torque limits, and its torque
     reacts on the chassis. Arms do not touch the chassis or each other. `Drive.gait` moves them.
 
     The mass, centre of mass and moment of inertia of a `Robot` are those of the whole robot, arms
-    included. `Robot.with_flippers` mounts arms and adds their mass, `Robot.without_flippers` takes
-    arms and mass off again. Replacing or clearing the field `robot.flippers` alone leaves the mass
-    of the robot unchanged.
+    included. `Robot.with_flippers` mounts arms and adds their mass, `Robot.without_flippers`
+    removes both. Replacing or clearing the field `robot.flippers` alone leaves the mass of the
+    robot unchanged.
 
     Parameters
     ----------
@@ -32,36 +32,35 @@ class Flippers(Parameters, path="robot.flippers"):
         [m] Distance from the pivot to the axle at the tip.
     root_radius, tip_radius : float
         [m] Radii at the pivot and at the tip, measured to the grouser tips; they differ by less
-        than the length. The grousers are those of `robot.outline`, less high than either radius.
-        A line of wheels with a `wheel_radius` has that radius instead.
+        than the length. The grousers are those of `robot.outline`, lower than either radius. A line
+        of wheels with a `wheel_radius` uses that radius instead.
     mass : float
-        [kg] Of one arm with its track; part of `robot.mass`, of which it is at least a
-        hundred-thousandth. All arms and tracks together leave as much for the chassis. It is
-        spread evenly between pivot and tip axle.
+        [kg] Mass of one arm with its track, spread evenly between pivot and tip axle. It is part of
+        `robot.mass`, and at least a hundred-thousandth of it; all arms and tracks together must
+        leave that much for the chassis.
     ends : {"front", "rear", "both"}
         The ends of the robot that have arms.
     angle : float
-        [rad] At time 0. 0 points away from the robot along its axis, upwards > 0.
+        [rad] Angle at time 0: 0 points away from the robot along its axis, upwards > 0.
     rate_limit : float
         [rad/s] Largest turning rate relative to the chassis.
     torque_limit : float
         [N m] Largest torque of the motor of one arm; under more load the arm gives way, unless its
-        gear locks itself.
+        gear is self-locking.
     rotor_inertia : float
-        [kg m^2] Of the motor of one arm, reflected to the pivot: the rotor's own times the square
-        of the gear's ratio; at most 100,000 times the moment of inertia of the robot. It turns with
-        the arm over the chassis.
+        [kg m^2] Rotor inertia of the motor of one arm, reflected to the pivot: that of the rotor
+        times the square of the gear ratio; at most 100,000 times the moment of inertia of the
+        robot. The rotor turns with the arm relative to the chassis.
     self_locking : bool
-        Whether the gear cannot be back-driven, as a worm gear: then no load turns an arm back, or
-        on faster than its motor turns it, whatever the torque limit; that limits what turns the
-        arm. A gear that does not lock is taken to turn back without loss.
+        Whether the gear cannot be back-driven, like a worm gear: then no load, whatever the torque
+        limit, can turn an arm back or faster than its motor turns it; the limit still applies to
+        what the motor drives. A gear that does not lock is assumed to be back-driven without loss.
     track : Track, optional
-        How their tracks are modelled: any model but a chain of shoes or a closed one, and a
-        `ForceTrack` exactly if that of the robot is one. The placements of
-        `HybridWheels` are measured from midway between the arm's axles. None takes the model of the
-        robot's track, with two exceptions: for a chain it takes a belt with grousers, and for small
-        wheels all round it adds wheels where a tip needs more. If the robot's wheels are placed by
-        hand, the model must be given.
+        The model of their tracks: any except a chain of shoes or a closed track, and a `ForceTrack`
+        exactly when the robot's track is one. The placements of `HybridWheels` are measured from
+        the midpoint between the arm's axles. None takes the robot's model, with two exceptions: a
+        belt with grousers replaces a chain, and small wheels all round get more wheels where a tip
+        needs them. If the robot's wheels are placed by hand, the model must be given.
 
     Examples
     --------
@@ -79,7 +78,7 @@ class Flippers(Parameters, path="robot.flippers"):
     >>> str(run.outcome)
     'cleared'
 
-    Worm gears hold a robot on arms whose motors are too weak to lift it:
+    Worm gears keep a robot up on arms whose motors are too weak to lift it:
 
     >>> from dataclasses import replace
     >>> for locks in (False, True):
@@ -117,9 +116,9 @@ def reach_of(arms: Flippers | None, track: Track) -> float:
     Parameters
     ----------
     arms : Flippers or None
-        Those of a robot.
+        The robot's arms.
     track : track model
-        That of the robot, which arms without one of their own have, too.
+        The robot's track, also that of arms without a model of their own.
     """
     if arms is None:
         return 0.0

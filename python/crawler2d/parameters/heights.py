@@ -1,4 +1,4 @@
-"""The height of any terrain at places along x, read off the profiles that the core makes of it."""
+"""Height of any terrain along x, read from the profiles that the core builds."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _LANES = {"left": Lane.LEFT, "right": Lane.RIGHT, "middle": Lane.MIDDLE}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Grain(Parameters, path="robot"):
-    """A robot of 3 mm, for the core builds ground only under one: it stands wherever one could."""
+    """A 3 mm robot that fits anywhere: the core builds ground only for a robot."""
 
     gauge: float
     outline: TrackOutline
@@ -67,7 +67,7 @@ class HasHeights(Parameters, path="terrain"):
 
     @property
     def _turn(self) -> float:
-        """[rad] By how much a part of it is turned, so that the tracks meet it one by one."""
+        """[rad] Yaw of the part that one track meets before the other."""
         return 0.0
 
     @overload
@@ -82,31 +82,31 @@ class HasHeights(Parameters, path="terrain"):
     def height_at(
         self, x: ArrayLike, *, lane: _Lane = None, gauge: float | None = None
     ) -> float | NDArray[np.float64]:
-        """Find the height of the ground as it is simulated, with its edges rounded.
+        """Return the height of the ground as simulated, with rounded edges.
 
         Parameters
         ----------
         x : float or array_like
-            [m] Places along x.
+            [m] Positions along x.
         lane : {"left", "right", "middle"}, optional
-            The ground under the left track, the right track or the belly. None takes that of both
-            tracks, which must be the same.
+            The ground under the left track, the right track or the belly. None requires the same
+            ground under both tracks.
         gauge : float, optional
-            [m] Distance of the tracks of the robot, `Robot.gauge`. Only barriers with a `yaw` need
-            it.
+            [m] Distance between the robot's tracks, `Robot.gauge`. Needed only for barriers with a
+            `yaw`.
 
         Returns
         -------
         float or ndarray
-            [m] Height at each place, in the shape of `x`: at a vertical face that of its upper end,
-            and nan beyond the ends of the ground.
+            [m] Height at each position, in the shape of `x`: the upper end of a vertical face, and
+            NaN beyond the ends of the ground.
 
         Raises
         ------
         ScenarioError
-            If the terrain breaks a rule, or begins where no robot can stand before its first edge;
-            if `x` does not hold numbers; if the tracks are on different ground and `lane` is not
-            given, or a turned barrier has no `gauge`.
+            If the terrain breaks a rule, or leaves no room for a robot before its first edge; if
+            `x` does not hold numbers; if the tracks are on different ground and `lane` is not
+            given; if a turned barrier needs `gauge`.
 
         Examples
         --------
@@ -123,7 +123,7 @@ class HasHeights(Parameters, path="terrain"):
         return float(heights) if heights.ndim == 0 else heights
 
     def _profile(self, lane: str | None, gauge: float | None) -> NDArray[np.float64]:
-        """[m] The points of a lane from left to right, shape (n, 2)."""
+        """[m] Points of a lane from left to right, shape (n, 2)."""
         side = Lane.BOTH if lane is None else _LANES[read_choice(lane, "lane", list(_LANES))]
         if gauge is None and self._turn != 0.0:
             rule = "must be given, for the tracks meet a turned barrier one by one: Robot.gauge"
@@ -150,7 +150,7 @@ def _read_places(x: ArrayLike) -> NDArray[np.float64]:
 
 
 def _heights(profile: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m] Heights of a line whose x never decreases; the upper ones where that is vertical."""
+    """[m] Heights of a line with non-decreasing x; the upper end where it is vertical."""
     x, y = profile.T
     heights = np.interp(places, x, y, left=np.nan, right=np.nan)
     corners, first = np.unique(x, return_index=True)

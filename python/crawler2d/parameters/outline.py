@@ -17,23 +17,22 @@ __all__ = ["TrackOutline"]
 class TrackOutline(Parameters, path="robot.outline"):
     """Side view of the track: a taut belt round discs, measured to the grouser tips.
 
-    Two discs are given by their `axle_distance`, `front_radius` and `rear_radius`, with the chassis
-    frame midway between their axles; any number of them by `discs`. Then the chassis frame is that
-    of `discs`, with its origin between the end axles, x forward along the chassis and y up.
+    Give two discs by `axle_distance`, `front_radius` and `rear_radius`; the origin of the chassis
+    frame is then midway between their axles. Give any number by `discs`, in a chassis frame with
+    its origin between the end axles, x forward along the chassis and y up.
 
     Parameters
     ----------
     discs : array_like, shape (n, 3)
-        [m] Centre x and y in the chassis frame and radius of each disc, in any order. The track
-        must bend round each: a disc inside the hull of the others is refused, and so are less than
-        2 discs and more than 64.
+        [m] Centre x and y in the chassis frame and radius of each of 2 to 64 discs, in any order.
+        The track must bend round each: a disc inside the hull of the others is refused.
     axle_distance : float
-        [m] Distance of the end axles along the chassis. The end axles are those of the discs that
-        reach farthest back and forwards, of two that reach equally far the higher one; the rear one
-        is the sprocket's. At least 0.1 mm.
+        [m] Distance between the end axles along the chassis, at least 0.1 mm. The end axles are the
+        centres of the discs that reach farthest back and forwards (the higher one if two reach
+        equally far); the rear one carries the sprocket.
     front_radius, rear_radius : float
-        [m] Radius of the disc on each end axle. Two discs that are given by these differ by less
-        than their distance, or one would enclose the other.
+        [m] Radius of the disc on each end axle. The radii of two discs differ by less than their
+        distance, or one would enclose the other.
     grouser_height : float
         [m] Height of the grousers above the belt, less than the smallest radius; 0 for a smooth
         belt.
@@ -45,13 +44,14 @@ class TrackOutline(Parameters, path="robot.outline"):
     Raises
     ------
     ScenarioError
-        If `discs` does not hold real numbers, is masked or has another shape, or is given with a
-        distance or a radius that follows from it; if one of the three is missing or not a number.
+        If `discs` does not hold real numbers, is masked, has another shape, or is given together
+        with a distance or radius; if, without `discs`, one of those three is missing or not a
+        number.
 
     Notes
     -----
-    `axle_distance`, `front_radius` and `rear_radius` can be read of any outline, and replaced, by
-    `dataclasses.replace` or by path, in one that could have been given by them.
+    `axle_distance`, `front_radius` and `rear_radius` can be read from any outline. They can be
+    replaced, by `dataclasses.replace` or by path, in an outline that they define fully.
 
     Examples
     --------
@@ -71,7 +71,7 @@ class TrackOutline(Parameters, path="robot.outline"):
 
     discs: tuple[Disc, ...]
     if TYPE_CHECKING:
-        # Properties, which `dataclasses.replace` can set.
+        # Properties that `dataclasses.replace` can set.
         axle_distance: float
         front_radius: float
         rear_radius: float
@@ -107,7 +107,7 @@ class TrackOutline(Parameters, path="robot.outline"):
 
         @property
         def axle_distance(self) -> float:
-            """[m] Distance of the end axles along the chassis."""
+            """[m] Distance between the end axles along the chassis."""
             rear, front = self.ends
             return front[0] - rear[0]
 
@@ -130,12 +130,12 @@ class TrackOutline(Parameters, path="robot.outline"):
 
     @property
     def written_as(self) -> dict[str, tuple[str, ...]]:
-        """Distance and radii in place of the discs, if they say it all."""
+        """Write distance and radii instead of the discs, if they define the outline fully."""
         return {"discs": self.property_fields} if is_centered_pair(self.discs) else {}
 
 
 def _disc_pair(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
-    """Place two discs by distance and radii; those not given are of other discs."""
+    """Place two discs by distance and radii; missing ones are taken from `discs`."""
     values = given
     if discs is not None:  # `dataclasses.replace` gives both
         pair = read_rows(discs, "robot.outline.discs", rows=True, columns=3)
@@ -151,7 +151,7 @@ def _disc_pair(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
         if name not in values:
             raise ScenarioError(path, None, "must be given unless discs are")
         numbers[name] = real_number(values[name], path)
-    if not numbers["axle_distance"] > 0.0:  # two discs do not show it
+    if not numbers["axle_distance"] > 0.0:  # the discs would not show it
         raise ScenarioError(
             "robot.outline.axle_distance", numbers["axle_distance"], "must be > 0 m"
         )

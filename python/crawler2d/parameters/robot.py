@@ -1,4 +1,4 @@
-"""A robot as built, and the model of its track."""
+"""A tracked robot and the model of its track."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _GROUSER_HEIGHT = 0.012 / 0.064
 _GROUSER_PITCH = 0.048 / 0.064
 _GROUSER_THICKNESS = 0.006 / 0.048
 
-# With enough torque to hold the robot on this slope with this margin, geometry limits climbing.
+# Enough torque to hold the robot on this slope, with this margin: geometry limits climbing.
 _HOLDING_SLOPE = math.radians(45.0)
 _HOLDING_MARGIN = 1.6
 
@@ -39,7 +39,7 @@ _LEVEL = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
 
 @dataclass(frozen=True, slots=True)
 class Robot(Parameters, path="robot"):
-    """A tracked robot: `track` is the model of its track, everything else is how it is built.
+    """A tracked robot: `track` is the model of its track, the other fields are its design.
 
     Total mass, centre of mass and moment of inertia are the same for every track model.
 
@@ -48,27 +48,28 @@ class Robot(Parameters, path="robot"):
     name : str
         Name shown in tables and plots, of at most 1000 characters.
     mass : float
-        [kg] Of the whole robot, including both tracks and all flippers.
+        [kg] Mass of the whole robot, including both tracks and all flippers.
     center_of_mass : array_like, shape (2,)
-        [m] In the chassis frame: that of the outline, x forward, y up.
+        [m] Centre of mass in the chassis frame, which is that of the outline: x forward, y up.
     moment_of_inertia : float
-        [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0. More
-        than that of all moving parts, and than `track_mass` times the square of the largest radius.
+        [kg m^2] Moment of inertia of the whole robot about its centre of mass, with the flippers at
+        angle 0. Larger than that of all moving parts, and than `track_mass` times the square of the
+        largest radius.
     track_mass : float
-        [kg] Of both tracks together, all of it moving at track speed: at least a
-        hundred-thousandth of `mass`, and as much is left for the chassis.
+        [kg] Mass of both tracks together, all moving at track speed: at least a hundred-thousandth
+        of `mass`, which must leave as much for the chassis.
     outline : TrackOutline
         Side view of the track.
     gauge : float
         [m] Lateral distance between the tracks.
     drivetrain : Drivetrain
-        What drives the tracks, and its limits.
+        The motors and gears that drive the tracks, and their limits.
     belly : array_like, shape (n, 2), optional
-        [m] Convex polygon of 3 to 64 corners in the chassis frame, counter-clockwise; None: it
-        never touches.
+        [m] Underside of the chassis: a convex polygon of 3 to 64 corners in the chassis frame,
+        counter-clockwise; None: it never touches the ground.
     flippers : Flippers, optional
-        Pivoting arms, or None. Setting this field alone changes no mass: see `with_flippers`
-        and `without_flippers`.
+        Pivoting arms, or None. Setting this field does not change any mass; `with_flippers` and
+        `without_flippers` do.
     track : Track
         The model of the track.
     """
@@ -99,7 +100,7 @@ class Robot(Parameters, path="robot"):
         -------
         Robot
             A copy. Nothing else changes, except that a model without driven wheels, such as a
-            `BeltTrack`, which has one drive per side, sets ``torque_sharing="track"``.
+            `BeltTrack`, has one drive per side and sets ``torque_sharing="track"``.
 
         Examples
         --------
@@ -129,12 +130,12 @@ class Robot(Parameters, path="robot"):
         Returns
         -------
         Robot
-            A copy with the arms, which count as uniform rods at angle 0 from pivot to tip.
+            A copy with the arms, added as uniform rods from pivot to tip at angle 0.
 
         Raises
         ------
         ScenarioError
-            If mass or length of the arms is not a number, or `ends` is none of the three.
+            If mass or length of the arms is not a number, or `ends` is not one of its three values.
 
         Examples
         --------
@@ -149,20 +150,20 @@ class Robot(Parameters, path="robot"):
         return replace(_add_arms(self.without_flippers(), flippers, 1.0), flippers=flippers)
 
     def without_flippers(self) -> Robot:
-        """Take the arms and their mass off: the robot as it would be built without them.
+        """Remove the arms and their mass.
 
-        Setting `flippers` to None leaves mass, centre of mass and moment of inertia as they are:
-        the chassis then carries the mass of the arms.
+        Setting `flippers` to None, in contrast, keeps mass, centre of mass and moment of inertia:
+        the mass of the arms then belongs to the chassis.
 
         Returns
         -------
         Robot
-            A copy without arms, less the mass that `with_flippers` adds for them.
+            A copy without arms and without the mass that `with_flippers` adds for them.
 
         Raises
         ------
         ScenarioError
-            If nothing is left for the chassis.
+            If no mass is left for the chassis.
 
         Examples
         --------
@@ -178,7 +179,7 @@ class Robot(Parameters, path="robot"):
     def without_rotors(self) -> Robot:
         """Remove the rotor inertia of all motors, as in a simulator that does not model it.
 
-        The engine rapier takes only such robots, and most published simulations have such drives.
+        The engine rapier takes only such robots, and most published simulations have no rotors.
         With rotor inertia a robot gets over more edges.
 
         Returns
@@ -206,12 +207,12 @@ class Robot(Parameters, path="robot"):
         Returns
         -------
         Table
-            One row per wheel, the left side first; on each side first the wheels of the chassis, in
-            the order of eq. (1) of the paper. Empty for belts, skids and chains of shoes. Columns:
-            `side` ("left", "right"), `carrier` ("chassis", "front flipper", "rear flipper"), `body`
-            (number as in the contacts where both tracks meet the same ground, shared by the wheels
-            of both sides), `x` and `y` [m] (axle in the chassis frame, with the flippers at their
-            `angle`), `radius` [m] (of the circumscribed circle), `area` [m^2] (of the true
+            One row per wheel: the left side first, and on each side the wheels of the chassis
+            first, in the order of eq. (1) of the paper. Empty for belts, skids and chains of shoes.
+            Columns: `side` ("left", "right"), `carrier` ("chassis", "front flipper", "rear
+            flipper"), `body` (number as in the contacts if both tracks meet the same ground; the
+            same on both sides), `x` and `y` [m] (axle in the chassis frame, with the flippers at
+            their `angle`), `radius` [m] (of the circumscribed circle), `area` [m^2] (of the true
             outline), `moment_of_inertia` [kg m^2] (this wheel's share of the moving mass: the
             wheels of the chassis share `track_mass`, those of a flipper a tenth of its mass) and
             `mass` [kg] (of a uniform wheel with this outline and moment of inertia).
@@ -236,8 +237,8 @@ class Robot(Parameters, path="robot"):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the side view in the chassis frame, with the flippers at their `angle`.
 
-        It shows what the track model consists of, belly, axles and centre of mass, the main
-        dimensions and, where the model deviates from it, the outline of the track as built.
+        Shows the bodies of the track model, belly, axles, centre of mass, the main dimensions and,
+        where the model deviates from it, the outline of the real track.
 
         Parameters
         ----------
@@ -276,37 +277,37 @@ class Robot(Parameters, path="robot"):
         track_width: float | None = None,
         chassis_width: float | None = None,
     ) -> str:
-        """Write the robot as a model in SDF 1.6, as Gazebo reads it.
+        """Write the robot as an SDF 1.6 model for Gazebo.
 
-        In three dimensions, with both sides: wheels on joints that turn, gear wheels as cylinders
-        with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
-        joints, the belly. `read_robot` reads back what the file states; all of the robot is in a
-        comment. ``docs/conventions.md``, "Writing a model file", says what each format holds and
-        which figures are estimates. SDF has no place for rotor inertias, controllers, curves of
-        torque and the torque of belts: they are left out, and the comment says so.
+        The model is three-dimensional and has both sides: wheels on revolute joints, gear wheels as
+        cylinders with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on
+        limited joints, the belly. `read_robot` reads back what the file states; a comment holds the
+        complete robot. ``docs/conventions.md``, "Writing a model file", says what each format holds
+        and which figures are estimates. SDF has no element for rotor inertias, controllers, torque
+        curves and the torque of belts: they are left out, and the comment says so.
 
         Parameters
         ----------
         path : str or PathLike, optional
-            File to write; None writes none.
+            File to write; None returns only the text.
         friction : float
-            [-] Coefficient of all of its surfaces: in Gazebo the smaller one of two
-            surfaces counts.
+            [-] Friction coefficient of all its surfaces; Gazebo uses the smaller one of two
+            surfaces.
         track_width : float, optional
-            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+            [m] Width of each track. None takes a quarter of the gauge, as on Absolem.
         chassis_width : float, optional
-            [m] Of the belly across. None takes the free width between the tracks.
+            [m] Width of the belly. None takes the free width between the tracks.
 
         Returns
         -------
         str
-            The text of the file; a console shows only its length.
+            The text of the file; an interactive console shows only its length.
 
         Raises
         ------
         ScenarioError
-            If the format cannot hold the robot (chains of shoes, travelling grousers, a pushing
-            force), or its masses leave none for the chassis.
+            If the format cannot represent the robot (chains of shoes, travelling grousers, a
+            pushing force), or no mass is left for the chassis.
 
         Examples
         --------
@@ -326,11 +327,11 @@ class Robot(Parameters, path="robot"):
         track_width: float | None = None,
         chassis_width: float | None = None,
     ) -> str:
-        """Write the robot as URDF, as ROS and most simulators read it.
+        """Write the robot as URDF for ROS and most simulators.
 
-        As `to_sdf`, with the same parameters, result and errors; but URDF holds neither belts nor
-        motors: wheels have the limits of theirs. How the `friction` of two surfaces is combined
-        depends on the simulator.
+        Like `to_sdf`, with the same parameters, result and errors. URDF has no belts and no motors:
+        a wheel's joint has the limits of its motor. The simulator decides how the `friction` of two
+        surfaces is combined.
 
         Examples
         --------
@@ -354,13 +355,13 @@ class Robot(Parameters, path="robot"):
         track_width: float | None = None,
         chassis_width: float | None = None,
     ) -> str:
-        """Write the robot as MJCF, as MuJoCo reads it.
+        """Write the robot as MJCF for MuJoCo.
 
-        As `to_sdf`, with the same parameters, result and errors. Wheels have servos of their speed,
-        flippers of their rate, both with the rotor inertia as ``armature``; the wheels of a track
-        divide it, and the gain of its controller. Without a controller, servos are firm. Curves of
-        torque and the torque of belts are left out. Surfaces of belts move at the largest speed; at
-        run time ``MjModel.geom_surfacevel`` sets another one. Gear wheels and belly may have any
+        Like `to_sdf`, with the same parameters, result and errors. Wheels have speed servos and
+        flippers rate servos, both with the rotor inertia as ``armature``; the wheels of a track
+        divide it and the gain of its controller among them. Without a controller, servos are stiff.
+        Torque curves and the torque of belts are left out. Belt surfaces move at the largest speed;
+        ``MjModel.geom_surfacevel`` changes it at run time. Gear wheels and belly may have any
         shape. The `friction` applies whatever the ground has. The file has no ground.
 
         Examples
@@ -382,17 +383,16 @@ class Robot(Parameters, path="robot"):
         track_width: float | None = None,
         chassis_width: float | None = None,
     ) -> str:
-        """Write the robot in front of an obstacle, as a world for Gazebo or a scene for MuJoCo.
+        """Write the robot in front of an obstacle: a world for Gazebo or a scene for MuJoCo.
 
-        It stands where a `Scenario` starts it. The ground is the profile of the terrain, extruded
-        across twice the width of the robot, under each track its own if the two differ: boxes and,
-        where it slopes, convex prisms on a plane at the lowest height, or below that where the
-        tracks have different friction. The robot is that of `to_sdf` or `to_mjcf`, with the
-        friction of the terrain between the two, however the engine combines it. Gravity is 9.81
-        m/s^2.
+        The robot stands where a `Scenario` starts it. The ground is the profile of the terrain,
+        extruded to twice the width of the robot, separately for each track if the two differ: boxes
+        and, on slopes, convex prisms on a plane at the lowest height, or below that if the tracks
+        have different friction. The robot is that of `to_sdf` or `to_mjcf`, with the friction of
+        the terrain between the two, however the engine combines it. Gravity is 9.81 m/s^2.
 
-        ``gz sim -r world.sdf`` runs the world: its wheels and belts obey the topic
-        ``/model/NAME/cmd_vel``; ``python -m mujoco.viewer --mjcf=scene.xml`` runs the scene.
+        ``gz sim -r world.sdf`` runs the world, and the topic ``/model/NAME/cmd_vel`` drives its
+        wheels and belts; ``python -m mujoco.viewer --mjcf=scene.xml`` runs the scene.
 
         Parameters
         ----------
@@ -401,18 +401,18 @@ class Robot(Parameters, path="robot"):
         terrain : terrain
             Any of `crawler2d.terrains`, such as one of `Audit.obstacles`.
         track_width, chassis_width
-            As those of `to_sdf`.
+            See `to_sdf`.
 
         Returns
         -------
         str
-            As that of `to_sdf`.
+            See `to_sdf`.
 
         Raises
         ------
         ScenarioError
-            If the suffix is another one, the terrain breaks a rule or has segments of unlike
-            friction, or the format cannot hold the robot.
+            If the suffix is unknown, the terrain breaks a rule or has segments of different
+            friction, or the format cannot represent the robot.
 
         Examples
         --------
@@ -433,13 +433,13 @@ class Robot(Parameters, path="robot"):
 
     @property
     def description(self) -> str:
-        """Its name and track models, for titles."""
+        """Name and track models, for titles."""
         arms = None if self.flippers is None else self.flippers.track
         of_arms = "" if arms is None else f"; flippers: {arms.description}"
         return f"{self.name}: {self.track.description}{of_arms}"
 
     def _at_rest(self, terrain: Terrain = _LEVEL) -> str:
-        """Write a scenario in which only the robot or the terrain can break a rule."""
+        """Write a scenario with nothing else that could break a rule."""
         drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
         return ScenarioBase(self, terrain, drive=drive, solver=solver).to_json()
 
@@ -482,12 +482,12 @@ class Robot(Parameters, path="robot"):
         max_speed: float = 1.0,
         track: Track | None = None,
     ) -> Robot:
-        """Make a robot from three numbers; rules set the others, see the notes.
+        """Make a robot from three numbers; the notes give the rules for all others.
 
         Parameters
         ----------
         mass : float
-            [kg] Of the whole robot.
+            [kg] Mass of the whole robot.
         axle_distance : float
             [m] Distance between the end axles.
         radius : float

@@ -25,7 +25,7 @@ _LONGEST = 120
 """Characters of a terrain in a notebook, or of keys in an error, at most."""
 
 _MOST_KEYS = 5
-"""Keys that an error shows of JSON that is no scenario."""
+"""Keys of JSON that is not a scenario, in an error, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Scenario(ScenarioBase):
     drive : Drive
         The command.
     start : Start
-        How the robot stands at time 0.
+        Position and angle of the robot at time 0.
     goal : float, optional
         [m] The x that the whole robot must pass; None takes the terrain's.
     gravity : float
@@ -74,9 +74,9 @@ class Scenario(ScenarioBase):
         ----------
         fields : mapping of str to object
             New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Elements
-            have an index: ``{"terrain.points[3][1]": 0.06}``. Of two fields that exclude each
-            other, setting one clears the other; ``"terrain.friction"`` is that of all segments.
-            ``"robot.track"`` sets `torque_sharing` as `Robot.with_track` does.
+            have an index: ``{"terrain.points[3][1]": 0.06}``. Setting one of two fields that
+            exclude each other clears the other; ``"terrain.friction"`` replaces the friction of all
+            segments. ``"robot.track"`` sets `torque_sharing` as `Robot.with_track` does.
 
         Returns
         -------
@@ -86,8 +86,8 @@ class Scenario(ScenarioBase):
         Raises
         ------
         ScenarioError
-            If `fields` is no mapping. If a path is not a field; the message lists the fields and
-            the nearest name. If an index is out of range; the message gives the length.
+            If `fields` is not a mapping; if a path is not a field (the message lists the fields and
+            the nearest name); if an index is out of range (the message gives the length).
 
         Warns
         -----
@@ -119,7 +119,7 @@ class Scenario(ScenarioBase):
         Parameters
         ----------
         text : str
-            What `to_json` wrote, or any JSON object with the same keys.
+            Output of `to_json`, or any JSON object with the same keys.
 
         Returns
         -------
@@ -219,12 +219,12 @@ class Scenario(ScenarioBase):
 
 
 def _refuse_another_object(text: str) -> None:
-    """Refuse JSON without any field of a scenario: it is not an old one, but something else.
+    """Refuse JSON without any field of a scenario.
 
     Raises
     ------
     ScenarioError
-        If it does.
+        If no key is a field of a scenario.
     """
     keys = list(json.loads(text))
     if not {"schema", *(field.name for field in fields_of(Scenario))}.intersection(keys):
@@ -235,14 +235,14 @@ def _refuse_another_object(text: str) -> None:
 
 
 def check_scenario(scenario: object) -> Scenario:
-    """Refuse anything but a scenario, as the argument of that name."""
+    """Refuse an argument `scenario` that is not a Scenario."""
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
     return scenario
 
 
 def _leaves_mass_of_arms(before: Robot, after: Robot) -> bool:
-    """Whether arms were removed, but mass, centre of mass and inertia left unchanged."""
+    """Whether arms were removed while mass, centre of mass and inertia stayed the same."""
     names = ("mass", "center_of_mass", "moment_of_inertia")
     masses = [[getattr(robot, name) for name in names] for robot in (before, after)]
     return before.flippers is not None and after.flippers is None and masses[0] == masses[1]

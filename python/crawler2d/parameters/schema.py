@@ -45,8 +45,8 @@ _ROW = re.compile(r"(\w+)((?:\[\d+\])*)")
 def scenario_schema() -> Json:
     """Describe scenario files in JSON Schema, draft 2020-12.
 
-    What a field holds is that of its class, its description that of the docstring, and its range
-    that of the core. Rules that join several fields are left to `Scenario.from_json`.
+    Types come from the classes, descriptions from their docstrings, ranges from the core.
+    `Scenario.from_json` checks rules about several fields.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def scenario_schema() -> Json:
 
 
 def _classes(cls: type[Parameters], found: tuple[type[Parameters], ...] = ()) -> Any:
-    """List a class and all that its fields may hold, each once."""
+    """List a class and all classes that its fields may hold, each once."""
     if cls in found:
         return found
     found = (*found, cls)
@@ -136,7 +136,7 @@ def _value(hint: Any, name: str, limits: dict[Place, Json]) -> Json:
 
 
 def _descriptions(cls: type[Parameters]) -> dict[str, str]:
-    """Read what the docstring says of each field."""
+    """Read the description of each field from the docstring."""
     section = re.search(
         r"^Parameters\n-+\n(.*?)(?=^\w[^\n]*\n-+$|\Z)",
         inspect.getdoc(cls) or "",
@@ -152,13 +152,13 @@ def _descriptions(cls: type[Parameters]) -> dict[str, str]:
 
 @functools.cache
 def _sample() -> Scenario:
-    """Make a scenario whose parts stand in for those that are not asked about."""
+    """Make a valid scenario, to fill in everything except the class under test."""
     robot = Robot.simple(20.0, axle_distance=0.4, radius=0.06)
     return Scenario(robot.with_track(LineOfWheels(4)), Step(0.05))
 
 
 def _written_as(cls: type[Parameters]) -> dict[str, tuple[str, ...]]:
-    """By field: those that a file may have instead."""
+    """Map each field to those that a file may have instead."""
     held: Any = _sample()
     if not cls.property_fields:
         return {}
@@ -170,8 +170,8 @@ def _written_as(cls: type[Parameters]) -> dict[str, tuple[str, ...]]:
 def _limits(cls: type[Parameters]) -> dict[Place, Json]:
     """Ask the core for the range of every number of a class.
 
-    Each number is below its range at first. The core refuses one after the other, names its range,
-    and is given the end of that.
+    All numbers start below their range. The core refuses them one at a time and names the range;
+    the number then moves to its end.
     """
     limits: dict[Place, Json] = {}
     for values in _with_wrong_numbers(cls):
@@ -195,7 +195,7 @@ def _limits(cls: type[Parameters]) -> dict[Place, Json]:
 
 
 def _with_wrong_numbers(cls: type[Parameters]) -> Iterator[Json]:
-    """Write objects of a class of which every number is wrong: one for each way to write it."""
+    """Write objects of a class with all numbers out of range, one for each notation."""
     values: Json = {"kind": cls.kind} if cls.kind else {}
     for name, hint in field_hints(cls).items():
         values[name] = _wrong(hint, f"{cls.default_path}.{name}".removeprefix("."))
@@ -207,7 +207,7 @@ def _with_wrong_numbers(cls: type[Parameters]) -> Iterator[Json]:
 
 
 def _wrong(hint: Any, path: str) -> Any:
-    """Choose a value for a field: numbers are wrong, all else is right."""
+    """Choose a value for a field: valid unless it is a number."""
     kinds, shape, nested = alternatives(hint), shape_of_rows(hint), nested_classes(hint)
     if shape is not None:
         rows, columns = shape
@@ -223,7 +223,7 @@ def _wrong(hint: Any, path: str) -> Any:
 
 
 def _part(path: str, classes: tuple[type[Parameters], ...]) -> Json:
-    """Take what the sample holds at a path, or else the first class that needs no arguments."""
+    """Take the sample's object at a path, or the first class that needs no arguments."""
     held: Any = _sample()
     for name in path.split("."):
         held = getattr(held, name, None)
@@ -234,7 +234,7 @@ def _part(path: str, classes: tuple[type[Parameters], ...]) -> Json:
 
 
 def _refusal(cls: type[Parameters], values: Json) -> tuple[str, list[int], str] | None:
-    """Let the core read an object; return field, indices and rule if it refuses a field of that."""
+    """Let the core read an object; return field, indices and rule if it refuses one."""
     scenario = to_dict(_sample())
     holder, (*parents, last) = scenario, cls.default_path.split(".")
     for name in parents:
@@ -254,7 +254,7 @@ def _refusal(cls: type[Parameters], values: Json) -> tuple[str, list[int], str] 
 
 
 def _range(rule: str) -> tuple[Json | None, float]:
-    """Turn a rule about one number into its range, and a number in it; None if it is another."""
+    """Turn a rule about one number into its range and a number in it; None for other rules."""
     if match := _WHOLES.match(rule):
         low, high = int(match[1] or match[2]), int(match[2])
         return {"minimum": low, "maximum": high}, low

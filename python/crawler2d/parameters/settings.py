@@ -1,4 +1,4 @@
-"""Settings of a scenario besides robot and ground: command, gait, start, solver, criteria."""
+"""Settings of a scenario: command, gait, start, solver and criteria."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ class Hold(Parameters, kind="hold", path="drive.gait"):
     Parameters
     ----------
     angle : float
-        [rad] Relative to the chassis, upwards > 0; of the flippers at both ends.
+        [rad] Angle of all flippers relative to the chassis, upwards > 0.
     schedule : array_like, shape (n, 2), optional
-        Up to 10,000 increasing times [s], and the angles [rad] that apply from then on.
+        Up to 10,000 increasing times [s], and the angle [rad] that applies from each on.
     front, rear : float, optional
-        [rad] Of the flippers at that end, all the time; None follows `angle` and `schedule`.
+        [rad] Constant angle of the flippers at that end; None follows `angle` and `schedule`.
 
     Examples
     --------
-    The front flippers go down after three seconds, the rear ones stay:
+    The front flippers go down after three seconds; the rear ones stay:
 
     >>> Hold(0.8, [(3.0, 0.0)], rear=-0.3).schedule
     ((3.0, 0.0),)
@@ -46,16 +46,16 @@ class Hold(Parameters, kind="hold", path="drive.gait"):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb(Parameters, kind="climb", path="drive.gait"):
-    """Reach up with the flippers to meet an obstacle, sweep down to lift the chassis over it.
+    """Reach up with the flippers to meet an obstacle, then sweep down to lift the chassis.
 
-    The driver knows what an operator could see from a distance: the angle of the chassis, and
-    whether the flippers touch something beyond their roots. The front ones are held at
-    `reach_angle` until they do; then they sweep down to `sweep_angle`. As soon as the chassis is
-    raised by more than `level_angle`, the rear ones push down to `push_angle` and lift it from
-    behind. When the chassis is level again and nothing touches the rear ones, or when they have
-    stood it on its nose, by more than `level_angle`, for a second, all return: the front ones to
-    `reach_angle`, the rear ones to their starting angle. The speed of the tracks is that of the
-    `Drive`; the gait never reverses.
+    The gait uses only what an operator could see from a distance: the angle of the chassis, and
+    whether a flipper touches something beyond its root. The front flippers stay at `reach_angle`
+    until they touch something, then sweep down to `sweep_angle`. As soon as the chassis is raised
+    by more than `level_angle`, the rear ones push down to `push_angle` and lift it from behind. All
+    return when the chassis is level again and nothing touches the rear ones, or when the nose has
+    pointed down by more than `level_angle` for a second: the front ones to `reach_angle`, the rear
+    ones to their starting angle. The tracks keep the speed of the `Drive`; the gait never reverses
+    them.
 
     Parameters
     ----------
@@ -79,21 +79,20 @@ Gait = Hold | Climb
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive(Parameters, path="drive"):
-    """What a driver commands: the speed of the tracks, and how the flippers move.
+    """The driver's command: track speed and flipper gait.
 
     Parameters
     ----------
     speed : float
-        [m/s] Track speed; above 0 drives towards +x. No command exceeds the `max_speed` of the
+        [m/s] Track speed; above 0 drives towards +x. Commands are limited to the `max_speed` of the
         drivetrain.
     schedule : array_like, shape (n, 2), optional
-        Up to 10,000 increasing times [s], and the speeds [m/s] that apply from then on.
+        Up to 10,000 increasing times [s], and the speed [m/s] that applies from each on.
     gait : Hold, Climb or callable, optional
-        How the flippers move; None holds them where they start. It has no effect on a robot
-        without flippers, so that a sweep may remove the flippers and keep the gait. A function is
-        for a `Simulation` alone, which calls it every 10 ms of simulated time with its `State`. It
-        returns the angle [rad] of all flippers, or a pair of those at the front and at the rear;
-        None leaves their command unchanged.
+        How the flippers move; None keeps their initial angle. Ignored on a robot without flippers,
+        so a sweep may remove the flippers and keep the gait. A function works only in a
+        `Simulation`, which calls it with its `State` every 10 ms of simulated time. It returns one
+        angle [rad] for all flippers or a pair (front, rear); None leaves the command unchanged.
 
     Examples
     --------
@@ -110,14 +109,14 @@ class Drive(Parameters, path="drive"):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start(Parameters, path="start"):
-    """How the robot stands at time 0: at rest, touching the ground.
+    """Position and angle of the robot at time 0: at rest, touching the ground.
 
     Parameters
     ----------
     approach : float
-        [m] From the robot's foremost point to the first edge at or beyond x = 0, or to that of a
-        barrier which begins before its step field. The ground must reach under the whole robot
-        there.
+        [m] Distance from the robot's foremost point to the first edge at or beyond x = 0, or to the
+        first edge of a barrier that begins before its step field. The ground must reach under the
+        whole robot.
     track_phase : float
         [m] Initial advance of all wheels, or of the belt.
     angle : float
@@ -135,38 +134,38 @@ _STEP_IN_RAPIER = 1.25e-4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solver(Parameters, path="solver"):
-    """How the equations of motion are solved; the defaults are from a convergence study.
+    """Settings of the solver of the equations of motion; a convergence study gave the defaults.
 
-    The length of a step follows from an accuracy, or it is given; one excludes the other. A path
-    that sets one, as in ``scenario.replace({"solver.time_step": 1e-3})``, takes the other off.
-    `dataclasses.replace` does not: there, the other must be set to None, too.
+    Either `accuracy` controls the length of the steps, or `time_step` fixes it. Setting one by
+    path, as in ``scenario.replace({"solver.time_step": 1e-3})``, clears the other; with
+    `dataclasses.replace`, also set the other to None.
 
     Parameters
     ----------
     engine : {"own", "rapier"}
-        What moves the robot: "own" is crawler2d's own dynamics; "rapier" builds the same robot of
-        bodies, joints and motors of the game engine rapier, and is there for comparison (see
-        docs/decisions/0016). It holds lines, circumferential and hybrid wheels and force tracks
-        without arms; nothing else, no snapshots, and no accuracy: its steps are 0.125 ms unless
-        given. All other settings but the time step keep their defaults, and drives have no rotors,
-        no torque that falls with speed, no controllers and no gears that lock.
+        What moves the robot: "own" is crawler2d's own dynamics; "rapier" builds the same robot from
+        bodies, joints and motors of the game engine rapier, for comparison (see
+        docs/decisions/0016). It supports only lines of wheels, circumferential and hybrid wheels
+        and force tracks, without arms; no snapshots; and no accuracy: its steps are 0.125 ms unless
+        `time_step` is given. All other settings must keep their defaults, and drives have no
+        rotors, no torque that falls with speed, no controllers and no self-locking gears.
     contact : {"own", "reference"}
-        How contacts are found: "own" uses our own exact geometry; "reference" takes those of wheels
-        from rapier's queries of convex pieces on one polyline. It is slower, cuts rounded edges
-        into facets, and is there for comparison.
+        How contacts are found: "own" uses our own exact geometry; "reference", for comparison,
+        takes the contacts of wheels from rapier's queries of convex pieces on one polyline. It is
+        slower and cuts rounded edges into facets.
     accuracy : float, optional
         [m] Local error of a step: the difference between its motion and the mean of the velocities
         at its ends times its length, the largest over all points of the robot and all driven
-        surfaces. Steps are as long as it allows, 20 us to 16 ms. It limits what one step adds, and
-        promises nothing about the whole path. None takes 0.3 um, unless a time step is given.
+        surfaces. Steps are as long as this allows, 20 us to 16 ms. It limits the error of one step,
+        not that of the whole path. None takes 0.3 um, unless a time step is given.
     time_step : float, optional
-        [s] The same length for every step, in place of an accuracy, for comparison. Steps are
-        shorter only where something strikes the ground, a command changes or a run ends. No wheel
-        at the largest speed of the tracks, and no flipper, may turn by more than 0.7 rad in a step.
+        [s] Fixed length of a step, instead of an accuracy, for comparison. Steps are shorter only
+        where something strikes the ground, a command changes or a run ends. No wheel at the largest
+        speed of the tracks, and no flipper, may turn by more than 0.7 rad in a step.
     iterations : int, optional
-        Largest number of rounds in the search for forces that satisfy all contacts; each is a
-        path of pivots to states that fit all contacts and motors, and settles. None takes 8;
-        usually none is needed.
+        Largest number of rounds in the search for forces that satisfy all contacts; each round
+        pivots until the states of all contacts and motors fit, and settles. None takes 8; usually
+        none is needed.
     contact_frequency : float
         [Hz] Natural frequency of the contact softness.
     contact_damping_ratio : float
@@ -174,15 +173,15 @@ class Solver(Parameters, path="solver"):
     max_push_speed : float
         [m/s] Largest speed at which a penetration is pushed out.
     prediction_distance : float
-        [m] Gap up to which contacts are searched for, at least; in a fast or long step, as far as
-        the robot moves in it.
+        [m] Smallest gap up to which contacts are searched for; in a fast or long step, the distance
+        that the robot moves in it, if larger.
     restitution : float
         [-] Coefficient of restitution: the fraction of the impulses of an impact that contacts
         return, 0 to 1 (Poisson's hypothesis, for normal and friction impulses alike). With 0, the
-        default, an impact against edges that jam each other stops the robot at once; with 1
-        contacts give all of it back, as springs without dampers would. Where an outcome differs
-        between the two, it depends on what impacts give back, which rigid bodies leave open. Not
-        for chains, nor in rapier.
+        default, an impact on edges that jam each other stops the robot at once; with 1 contacts
+        return the whole impulse, like springs without dampers. An outcome that differs between the
+        two depends on the restitution, which rigid-body mechanics does not determine. Not for
+        chains or rapier.
 
     Examples
     --------
@@ -205,7 +204,7 @@ class Solver(Parameters, path="solver"):
     restitution: float = 0.0
 
     def __post_init__(self) -> None:
-        """Take the default accuracy, or step in rapier, if nothing says how long steps are."""
+        """Set the default accuracy, or rapier's default step, if neither is given."""
         Parameters.__post_init__(self)
         if self.time_step is None and self.accuracy in (None, _ACCURACY):
             in_rapier = self.engine == "rapier"
@@ -230,41 +229,41 @@ class SeizureCriteria(Parameters, path="criteria"):
     stationary_windows : int
         Stop windows for which a state must be stationary to end the run early.
     clear_time : float
-        [s] How long the robot must stay beyond the goal.
+        [s] Time that the robot must stay beyond the goal.
     clear_angle : float
-        [rad] How far the angle between chassis and ground may be off that at which the track stands
-        on level ground, for the goal to count.
+        [rad] Largest deviation of the angle between chassis and ground, at the goal, from that of
+        the track standing on level ground.
     tip_over_angle : float
         [rad] Chassis angle at which the robot has tipped over.
     intrusion_depth : float
         [m] Ground inside the envelope of the track is an intrusion if deeper than this, 0 to 0.1.
-        It is less than the smallest radius of the track model, without grousers. The default is
-        more than round wheels and belts sink in when they strike an edge (0.2 mm).
-        With 0, the ground that the robot rests on joins the pieces under it.
+        It is less than the smallest radius of the track model, without grousers. The default
+        exceeds the penetration of round wheels and belts that strike an edge (0.2 mm). With 0, the
+        ground that the robot rests on joins the pieces under it.
     intrusion_load : float
         [-] Fraction of the weight above which an intrusion counts as loaded.
     belly_load : float
         [-] Fraction of the weight on the belly that makes a stop without a seizure a hang-up. The
         default exceeds the usual uncertainty of the friction coefficient.
     sliding_speed : float
-        [-] Fraction of the commanded speed from which a surface slides, or a drive turns. A contact
-        that sticks creeps in the solver by a thousandth of that.
+        [-] Fraction of the commanded speed above which a surface counts as sliding, or a drive as
+        turning. A sticking contact creeps in the solver by a thousandth of that.
     torque_limit : float
-        [-] Fraction of the torque limit from which a motor counts as at its limit, on average.
+        [-] Fraction of the torque limit above which, on average, a motor counts as at its limit.
     cycling_distance : float
-        [m] A robot that moves back and forth by this much within a stop window is cycling: more
-        than the rattle of jammed grousers, less than the spacing of any wheels.
+        [m] A robot that moves back and forth by this much within a stop window is cycling. The
+        default is more than the rattle of jammed grousers and less than the spacing of any wheels.
     imbalance : float
-        [-] Fraction of the weight that may be unbalanced in the equilibrium of a stationary state.
+        [-] Largest imbalance of a stationary state in equilibrium, as a fraction of the weight.
     mean_imbalance : float
-        [-] The same for the mean forces of a state that keeps rattling.
+        [-] The same for the mean forces of a rattling state.
     creep_from, creep_to : float
         [-] Fractions of the commanded distance between which the robot counts as creeping.
     escape_distance : float
         [m] Advance that counts as escaping from a stop.
     escape_time : float
-        [s] Time that a robot has in a trial to escape from a stop, in addition to the time in which
-        it would drive `escape_distance` as commanded.
+        [s] Time for a robot in a trial to escape from a stop, in addition to the time needed to
+        drive `escape_distance` as commanded.
     """
 
     stop_window: float = 1.0
@@ -291,7 +290,7 @@ class SeizureCriteria(Parameters, path="criteria"):
 
 @dataclass(frozen=True, slots=True)
 class ScenarioBase(Parameters):
-    """The base of `Scenario`, for modules that `Scenario` imports, such as `robot`.
+    """Base of `Scenario`, for modules that `Scenario` imports, such as `robot`.
 
     Parameters
     ----------
@@ -313,7 +312,7 @@ class ScenarioBase(Parameters):
 
     @takes_keywords
     def to_json(self, *, indent: int | None = None) -> str:
-        """Write the scenario as JSON, every field present, no bit lost.
+        """Write the scenario as JSON, with every field and exact numbers.
 
         Parameters
         ----------

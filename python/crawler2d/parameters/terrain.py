@@ -29,7 +29,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ground(HasHeights):
-    """What the robot touches of any terrain but `Lanes`, whose lanes have it each.
+    """A terrain with one ground for both tracks: any but `Lanes`.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Ground(HasHeights):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GroundWithEdges(Ground):
-    """The same of a terrain with edges of one radius.
+    """A terrain whose convex edges all have one radius.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class Ramp(GroundWithEdges, kind="ramp"):
 
 @dataclass(frozen=True, slots=True)
 class Barrier(GroundWithEdges, kind="barrier"):
-    """A parallelepiped on level ground, its front face at x = 0.
+    """A block on level ground, with its front face at x = 0.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ class Barrier(GroundWithEdges, kind="barrier"):
 
 @dataclass(frozen=True, slots=True)
 class Ridge(GroundWithEdges, kind="ridge"):
-    """A triangular prism on level ground that begins at x = 0, its edge on top.
+    """A triangular prism on level ground, starting at x = 0, with its edge on top.
 
     Parameters
     ----------
@@ -209,16 +209,16 @@ class HalfRound(Ground, kind="half_round"):
 
 @dataclass(frozen=True, slots=True)
 class DiagonalBarrier(GroundWithEdges, kind="diagonal_barrier"):
-    """A parallelepiped on level ground whose front face is turned about the vertical.
+    """A block on level ground, turned about the vertical axis.
 
-    The tracks meet it `gauge` tan(`yaw`) apart, and each crosses `thickness` / cos(`yaw`) of it,
-    where `gauge` is the robot's. Roll and yaw of the robot are held, as in any side view. The belly
-    is assumed to be as wide as the gauge.
+    With `gauge` that of the robot, the tracks meet it `gauge` tan(`yaw`) apart, and each crosses it
+    over a length of `thickness` / cos(`yaw`). The robot does not roll or yaw, as in any side view.
+    The belly is assumed to be as wide as the gauge.
 
     Parameters
     ----------
     yaw : float
-        [rad] Turn of the barrier, counter-clockwise seen from above, at most 80 degrees either way.
+        [rad] Yaw of the barrier, counter-clockwise seen from above, at most 80 degrees either way.
         Above 0 the left track meets it first, at x = 0.
     height : float
         [m] Height, above 0.
@@ -248,11 +248,11 @@ class RandomStepfield(GroundWithEdges, kind="random_stepfield"):
     Parameters
     ----------
     seed : int
-        Seed of the random heights, 0 to 2^32 - 1; the draws depend on nothing else.
+        Seed of the random heights, 0 to 2^32 - 1; heights depend on nothing else.
     pattern : {"flat", "hill", "diagonal"}
-        "flat": any level is equally likely. "hill" and "diagonal": up to a ridge and down again,
-        plus or minus one level at random; the ridge lies across the field, or askew, met first on
-        the left.
+        "flat": all levels are equally likely. "hill" and "diagonal": up to a ridge and down again,
+        plus or minus one level at random; the ridge lies straight across the field ("hill"), or
+        diagonally, met first on the left.
     posts : int
         Posts in a row.
     post : float
@@ -265,10 +265,10 @@ class RandomStepfield(GroundWithEdges, kind="random_stepfield"):
     barrier_height : float
         [m] Height of a barrier across the middle of the field; 0 for none.
     barrier_thickness : float
-        [m] Thickness of the barrier at right angles to its front face. One that is longer than the
+        [m] Thickness of the barrier at right angles to its front face. A barrier longer than the
         field begins before x = 0.
     barrier_yaw : float
-        [rad] Turn of the barrier, as for `DiagonalBarrier`.
+        [rad] Yaw of the barrier, as for `DiagonalBarrier`.
     edge_radius : float
         [m] Radius of the convex edges; 0 is sharp.
     friction : float
@@ -300,19 +300,19 @@ class Points(GroundWithEdges, kind="points"):
     ----------
     points : array_like, shape (n, 2)
         [m] 2 to 200,000 points (x, y) in order, from left to right or from right to left. Vertical
-        faces are allowed, overhangs are not, nor faces that fold back on each other. Any array of
+        faces are allowed; overhangs and faces that fold back on each other are not. Any array of
         real numbers; it is copied.
     goal : float
         [m] The x that the whole robot must pass, on this ground.
     edge_radius : float
-        [m] Radius of every convex edge; 0 is sharp. A million facets of 1 degree are the most that
-        all edges together may take.
+        [m] Radius of every convex edge; 0 is sharp. All edges together may have at most a million
+        facets of 1 degree.
     friction : float
         [-] Coulomb friction between robot and ground.
     segment_friction : array_like, shape (n - 1,), optional
-        [-] Of each segment between two points, in place of `friction`; at a corner the larger of
-        two. Not in rapier. To replace or sweep ``"terrain.friction"`` leaves these out; draws of it
-        are draws of each segment.
+        [-] Friction of each segment between two points, instead of `friction`; at a corner the
+        larger of the two applies. Not in rapier. Replacing or sweeping ``"terrain.friction"``
+        removes these; distributions of it are drawn for each segment.
 
     Raises
     ------
@@ -346,9 +346,9 @@ Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points
 class Lanes(HasHeights, kind="lanes"):
     """A profile under each track and one under the belly.
 
-    Each track has half of the moving track mass and half of the motor force; roll and yaw are held.
-    Equal profiles are simulated as one, with both tracks lumped together. All profiles have a
-    stretch of x in common, on which the farther goal of the two tracks lies.
+    Each track has half of the moving track mass and half of the motor force; the robot does not
+    roll or yaw. Equal profiles are simulated as one, with both tracks lumped together. All profiles
+    must overlap in x, and the farther of the two tracks' goals must lie in the overlap.
 
     Parameters
     ----------

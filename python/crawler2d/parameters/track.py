@@ -1,4 +1,4 @@
-"""How a track is modelled: one class for each family of the literature.
+"""Track models: one class for each family in the literature.
 
 Figures, sections and equations are those of the paper "Gear Wheels based Simulation of Crawlers for
 Mobile Robot Servosila Engineer".
@@ -46,18 +46,18 @@ class GearWheel(Parameters, kind="gear", path="robot.track.wheel"):
         Grousers on the wheel, 3 to 200. None takes the whole number that comes closest to the
         robot's grouser pitch on the root circle, or 8 if that number is less than 6.
     grouser_height : float, optional
-        [m] Radius of the wheel less that of its root circle, which must be left. None takes the
+        [m] Radius of the wheel minus that of its root circle, which must be > 0. None takes the
         robot's grouser height, but at most a quarter of the radius.
     tip_thickness : float, optional
         [m] Thickness of a grouser at its tip. None takes the robot's, reduced in the same
         proportion as the height.
     base_thickness : float, optional
         [m] Thickness of a grouser at the root circle, at least that at the tip. Neighbours must not
-        overlap there, and flanks must stay outside that circle. None takes the thickness at the
-        tip: parallel flanks.
+        overlap there, and flanks must stay outside the circle. None takes the thickness at the tip:
+        parallel flanks.
     phase_fraction : float
-        [-] Wheel n, counted from 1 at the rear, starts turned by n times this share of the angle
-        between two grousers: eq. (1) of the paper, where it is a third.
+        [-] Wheel n, counted from 1 at the rear, starts turned by n times this fraction of the angle
+        between two grousers: eq. (1) of the paper, which uses a third.
 
     Examples
     --------
@@ -78,22 +78,23 @@ Wheel = RoundWheel | GearWheel
 
 @dataclass(frozen=True, slots=True)
 class LineOfWheels(Parameters, kind="line", path="robot.track"):
-    """Driven wheels on the straight line between the end axles, evenly spaced (LWA, Figures 1-3).
+    """Evenly spaced driven wheels on the line between the end axles (LWA, Figures 1-3).
 
-    An outline of more than two discs is refused.
+    Only for outlines of two discs.
 
     Parameters
     ----------
     count : int
         Wheels per side, including the two at the end axles; at least 2.
     wheel_radius : float, optional
-        [m] Radius of every wheel. None takes the outline's, linear between unequal ends. At half
-        the spacing the wheels touch; larger ones overlap, smaller ones leave gaps.
+        [m] Radius of every wheel. None takes that of the outline, interpolated linearly between
+        unequal ends. With a radius of half the spacing the wheels touch; larger ones overlap,
+        smaller ones leave gaps.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
     as_track : bool
-        Whether the wheels stand for a track. False: nothing runs round them, as on a wheeled robot
-        or between the flippers of MARV, and no ground between them is inside a track.
+        Whether the wheels model a track. False: no track runs round them, as on a wheeled robot or
+        between the flippers of MARV, so ground between them is not inside a track.
 
     Examples
     --------
@@ -109,7 +110,7 @@ class LineOfWheels(Parameters, kind="line", path="robot.track"):
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         return f"{self.count} {self.wheel.kind} wheels in a line"
 
 
@@ -118,16 +119,16 @@ class CircumferentialWheels(Parameters, kind="circumferential", path="robot.trac
     """Small driven wheels all round the outline, each touching it from inside (CWA, Figures 6, 7).
 
     The first wheel sits at the rear end of the lower run; the others follow in the direction of
-    belt travel: up round the rear, then forward on top. Their centres lie inside the outline, at
-    the distance of the radius. *Spaced* wheels, of a given radius, divide that path into equal
+    belt travel: up round the rear, then forward on top. Their centres lie on a path one wheel
+    radius inside the outline. *Spaced* wheels have a given radius and divide that path into equal
     lengths, arcs included. *Tight* wheels are as large as their count allows: each touches both
-    neighbours, so that the straight distance between centres is exactly 2 radii.
+    neighbours, so the straight distance between centres is exactly 2 radii.
 
     Parameters
     ----------
     count : int
         Wheels per side, at least 3. The radius of tight wheels must not exceed half the smallest
-        radius of the outline; on the Servosila Engineer that takes at least 14 wheels.
+        radius of the outline; the Servosila Engineer needs at least 14 wheels for that.
     wheel_radius : float, optional
         [m] Radius of every wheel, less than the smallest radius of the outline. None: tight wheels.
     wheel : RoundWheel or GearWheel
@@ -146,19 +147,19 @@ class CircumferentialWheels(Parameters, kind="circumferential", path="robot.trac
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         return f"{self.count} {self.wheel.kind} wheels all round"
 
 
 @dataclass(frozen=True, slots=True)
 class HybridWheels(Parameters, kind="hybrid", path="robot.track"):
-    """Driven wheels of various sizes, placed by hand (Figure 8), all with one surface speed.
+    """Driven wheels of various sizes, placed by hand (Figure 8), with the same surface speed.
 
     Parameters
     ----------
     placements : array_like, shape (n, 3)
-        [m] Centre x and y in the chassis frame and radius of each wheel, the rearmost first; 1 to
-        200 wheels.
+        [m] Centre x and y in the chassis frame and radius of each of 1 to 200 wheels, the rearmost
+        first.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
 
@@ -179,33 +180,33 @@ class HybridWheels(Parameters, kind="hybrid", path="robot.track"):
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         wheels = "wheel" if len(self.placements) == 1 else "wheels"
         return f"{len(self.placements)} {self.wheel.kind} {wheels} placed by hand"
 
 
 @dataclass(frozen=True, slots=True)
 class BeltTrack(Parameters, kind="belt", path="robot.track"):
-    """A taut smooth belt: its surface moves along the outline at track speed.
+    """A taut smooth belt whose surface moves along the outline at track speed.
 
-    The contact surface is closed: no edge can get between wheels.
+    The contact surface is closed, so no edge can get between wheels.
     """
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         return "smooth belt"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
-    """A taut belt with grousers that travel along it, after Okada et al. (2020).
+    """A taut belt with travelling grousers, after Okada et al. (2020).
 
-    The grousers run rearwards with the belt along the ground, turn with it round the sprockets and
-    come back on top. Belt and grousers are not bodies of their own: their place follows from the
-    travel of the drive, and every contact acts on the drive through its lever arm. Round the
-    sprockets the tips are faster than the belt; an edge met there lifts the robot by some
-    hundredths of a millimetre. Height and thickness are those of `robot.outline`; both must be > 0.
+    The grousers move with the belt: rearwards along the ground, round the sprocket, and forwards on
+    top. Belt and grousers are not separate bodies: the travel of the drive sets their position, and
+    every contact acts on the drive through its lever arm. Round the ends the tips are faster than
+    the belt; an edge met there lifts the robot by some hundredths of a millimetre. Height and
+    thickness are those of `robot.outline`; both must be > 0.
 
     Parameters
     ----------
@@ -218,7 +219,7 @@ class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         return "belt with grousers"
 
 
@@ -226,60 +227,62 @@ class GrouserBeltTrack(Parameters, kind="grouser_belt", path="robot.track"):
 class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
     """A chain of rigid shoes linked by pins, on a guide or on wheels (section 2.3, Figures 9, 10).
 
-    Every shoe is a body. The outer faces of the plates run along the roots of the outline and the
-    pins along the middle of the plates, so that the robot stands as high as the real one. Grousers
-    are those of `robot.outline`; with a `grouser_height` of 0 there are none.
+    Every shoe is a body. The outer faces of the plates run along the grouser roots of the outline
+    and the pins along the middle of the plates, so the robot stands as high as the real one.
+    Grousers are those of `robot.outline`; a `grouser_height` of 0 means none.
 
     *Guide*: the plates slide without friction on a guide of the outline's shape. The drive pulls on
-    the shoes round the rear end, and the chassis takes the reaction: a sprocket without teeth, to
-    whose travel each shoe adds a pitch as it goes round.
+    the shoes round the rear end, and the chassis takes the reaction, as with a sprocket without
+    teeth. Each shoe that goes round adds a pitch to its travel.
 
-    *Sprocket*: the full mechanism, on an outline of two discs. At the rear a toothed wheel with its
+    *Sprocket*: the full mechanism, on an outline of two discs: at the rear a toothed wheel with its
     own speed, inertia and torque limit, at the front an idler, between them road wheels and return
-    rollers. The chain is driven only by the flanks of the teeth, which act on its pins. The
-    sprocket has the number of teeth that comes closest to the outline, and the radius that follows;
-    it turns evenly, so the chain does not. The teeth take the pins beside the plates. Idler, road
-    wheels and rollers turn with what they touch.
+    rollers. Only the flanks of the teeth drive the chain, by pushing on its pins beside the plates.
+    The number of teeth is the one closest to the outline, and sets the sprocket's radius. The
+    sprocket turns evenly, so the chain does not. Idler, road wheels and rollers roll with the
+    surfaces they touch.
 
-    In both, the front end sits on a tensioner, a spring with a damper, which follows the small
-    changes of length that the polygon of shoes needs as it runs.
+    In both, the front end sits on a tensioner, a spring with a damper, which takes up the small
+    changes of length of the running polygon of shoes.
 
-    A run has the forces and gaps of the pins (`Run.track_tension`, `max_track_tension`,
-    `max_pin_gap`), the poses of the shoes (`Run.shoe_poses`), the slip between chain and sprocket
-    (`max_sprocket_slip`), and may end as *detracked*.
+    A run records pin forces and gaps (`Run.track_tension`, `max_track_tension`, `max_pin_gap`), the
+    poses of the shoes (`Run.shoe_poses`) and the slip between chain and sprocket
+    (`max_sprocket_slip`); it may end as *detracked*.
 
     Parameters
     ----------
     shoe_count : int, optional
         Shoes per chain, 3 to 400; None takes the whole number that comes closest to the outline's
         `grouser_pitch`: 22 for the Engineer. A shoe must not be longer than the diameter of the
-        smallest disc, half the axle distance or a straight run, also if the chain is a tenth longer
-        than the belt in its place; and it must weigh at least 1/3000 of the rest of the robot.
+        smallest disc, half the axle distance or a straight run, even if the chain is a tenth longer
+        than the belt it replaces; and it must weigh at least 1/3000 of the rest of the robot.
     mechanism : {"guide", "sprocket"}
-        What the chain runs on and what drives it.
+        What carries and drives the chain.
     shoe_shape : {"rectangle", "trapezoid"}
         A flat plate with a grouser in the middle, or one body that tapers from the pins to the tip.
     plate_thickness : float, optional
-        [m] Thickness of the plates, less than the smallest radius without its grousers. None takes
-        1/16 of the pitch, our assumption.
+        [m] Thickness of the plates, less than the smallest radius without grousers. None takes 1/16
+        of the pitch, our assumption.
     pre_tension : float, optional
         [N] Force of the tensioner of one track. None takes 1/40 of the robot's weight, our
         assumption: much more would lift the robot over the corners of the polygon.
     tensioner_stiffness : float, optional
-        [N/m] Stiffness of that tensioner. None: a tenth of the pitch takes up its whole force.
+        [N/m] Stiffness of that tensioner. None: a travel of a tenth of the pitch takes up its whole
+        force.
     tensioner_damping : float, optional
         [N s/m] Damping of that tensioner. None: critical damping for the mass of one track.
     pin_stiffness : float
-        [N m/rad] Stiffness of the bushing of each pin of one track, such as those of rubber in live
-        tracks: a spring that is at rest where the shoes of the pin are in line.
+        [N m/rad] Stiffness of the bushing of each pin of one track, such as the rubber bushings of
+        live tracks: a spring that is relaxed when the two shoes are in line.
     pin_damping : float
-        [N m s/rad] Its damping. The pin that closes the chain, its master link, has no bushing.
+        [N m s/rad] Damping of each bushing. The pin that closes the chain, its master link, has
+        none.
     road_wheel_count : int, optional
         Wheels on the lower run of one track between sprocket and idler, 0 to 200. None takes enough
-        to leave gaps of at most one pitch: shoes sink into larger gaps. Only with a sprocket.
+        for gaps of at most one pitch, as shoes sink into larger ones. Only with a sprocket.
     return_roller_count : int, optional
-        Rollers under the upper run of one track, 0 to 200. None takes enough to leave gaps of at
-        most two pitches. Only with a sprocket.
+        Rollers under the upper run of one track, 0 to 200. None takes enough for gaps of at most
+        two pitches. Only with a sprocket.
 
     Examples
     --------
@@ -308,22 +311,22 @@ class SegmentalTrack(Parameters, kind="segmental", path="robot.track"):
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         return f"chain of shoes {'on a guide' if self.mechanism == 'guide' else 'round a sprocket'}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceTrack(Parameters, kind="force", path="robot.track"):
-    """No moving surface: the drive pushes the chassis along its axis, x of the chassis frame.
+    """No moving surface: the drive pushes the chassis along x of the chassis frame.
 
-    The force follows the speed command and is limited like the traction of a track. It acts in the
-    air, too: a known flaw of this model, kept on purpose.
+    The force follows the speed command and is limited like the traction of a track. It acts even in
+    the air: a known flaw of this model, kept on purpose.
 
     Parameters
     ----------
     support : {"skids", "wheels"}
-        What carries the robot: skids in the shape of the outline, or a line of round wheels that
-        turn freely and independently, for an outline of two discs only.
+        What carries the robot: skids in the shape of the outline, or, for outlines of two discs, a
+        line of round wheels that turn freely and independently.
     skid_friction : float
         [-] Friction of the skids; the smaller of this and the terrain's friction applies.
     wheel_count : int
@@ -336,7 +339,7 @@ class ForceTrack(Parameters, kind="force", path="robot.track"):
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         carrying = "skids" if self.support == "skids" else f"{self.wheel_count} free wheels"
         return f"{carrying} pushed by a force"
 
@@ -350,21 +353,21 @@ OpenTrack = WheeledTrack | BeltTrack | GrouserBeltTrack | SegmentalTrack | Force
 
 @dataclass(frozen=True, slots=True)
 class ClosedTrack(Parameters, kind="closed", path="robot.track"):
-    """A belt closed round the bodies of another model: what that model would be without pockets.
+    """A belt round the bodies of another model, which removes its pockets.
 
-    It is taut round the circumscribed circles of the bodies, on the chassis and on every arm, and
-    has all of their mass and motor force. Where `BeltTrack` follows the robot's outline, this
-    follows the model: on an arm of smaller wheels, or round wheels placed by hand. A belly that
-    lies inside it is covered.
+    The belt is taut round the circumscribed circles of the bodies, on the chassis and on every arm,
+    and has all of their mass and motor force. `BeltTrack` follows the robot's outline; this follows
+    the model, such as an arm with smaller wheels, or wheels placed by hand. A belly inside it is
+    covered.
 
     Parameters
     ----------
     of : track model
-        The model round whose bodies it runs; not a closed one.
+        The model whose bodies the belt encloses; not a closed track.
     surface : {"own", "smooth"}
-        "own": grousers where the model has some, as high as the model's, as thick and as far apart
-        as the outline's, within the same circles, at most 200; none if that thickness is 0.
-        "smooth": none.
+        "own": grousers if the model has some, with the model's height and the outline's thickness
+        and pitch, within the same circles, at most 200; none if that thickness is 0. "smooth":
+        none.
 
     Examples
     --------
@@ -384,7 +387,7 @@ class ClosedTrack(Parameters, kind="closed", path="robot.track"):
 
     @property
     def description(self) -> str:
-        """What it is, for titles."""
+        """Short description, for titles."""
         return f"belt closed round {self.of.description}"
 
 
