@@ -1,11 +1,11 @@
 """Simulate tracked robots in side view, with any model of their tracks.
 
-A track is a belt, a set of wheels, a chain of shoes or a mere force. Units are SI, angles radians,
-x forward, y up.
+A track is a belt, a set of wheels, a chain of shoes or just a force. Units are SI, angles are in
+radians, x points forward, y up.
 
-`simulate` drives a robot, of `robots` or from `read_robot`, over a ground of `terrains`. `sweep`,
-`rate`, `compare` and `studies` say how often it gets over. `audit` says where a model file seizes:
-stops with an edge between two wheels that stand for a track.
+`simulate` drives a robot, from `robots` or `read_robot`, over one of the `terrains`. `sweep`,
+`rate`, `compare` and `studies` find how often it gets over. `audit` finds where a model file
+seizes: stops with an edge between two wheels that model a track.
 
 >>> import crawler2d as c2d
 >>> robot = c2d.robots.engineer(flippers=None).with_track(c2d.BeltTrack())
@@ -18,7 +18,7 @@ import sys
 
 from crawler2d.common import ctrl_c
 
-# All else takes a moment, in which it may be regretted that the command was called.
+# The imports below take a moment, in which Ctrl-C must already work.
 if ctrl_c.is_command(sys.argv, sys.orig_argv):
     ctrl_c.end_in_one_line()
 
@@ -159,7 +159,7 @@ __all__ = [
 
 __version__ = str(build_info()["version"])
 
-# Imported when first named: they take as long as the rest, and not every user needs them.
+# Imported on first use: they take as long as the rest, and not every user needs them.
 _LAZY = {
     "Audit": "crawler2d.audits.audit",
     "audit": "crawler2d.audits.audit",
@@ -170,7 +170,7 @@ _LAZY = {
     "Until": "crawler2d.sweeps.sequential",
     "check_store": "crawler2d.sweeps.store",
     "compare": "crawler2d.sweeps.sweep",
-    "envs": "crawler2d.envs",  # not public by `*`: it needs gymnasium
+    "envs": "crawler2d.envs",  # not in `__all__`: it needs gymnasium
     "join_stores": "crawler2d.sweeps.store",
     "load": "crawler2d.runs.saved",
     "newcombe": "crawler2d.sweeps.statistics",
@@ -198,7 +198,7 @@ if not TYPE_CHECKING:  # mypy would accept any name
 
 
 def __dir__() -> list[str]:
-    """List all public names, imported or not, for completion."""
+    """List all public names, including those not yet imported, for completion."""
     own = (name for name in globals() if name.startswith("__"))
     return sorted({*own, *__all__, *_LAZY, "errors"})
 

@@ -1,4 +1,4 @@
-"""Simulate tracked robots in side view, and say which track models seize on an obstacle.
+"""Simulate tracked robots in side view, and find which track models seize on an obstacle.
 
 crawler2d COMMAND --help lists the options of a command.
 """
@@ -27,20 +27,20 @@ __all__ = ["Command", "main", "run_command"]
 _COMMANDS = ("demo", "run", "view", "audit", "atlas", "schema", "info", "completion")
 
 _SIGPIPE = 13
-"""Not every system has it."""
+"""Missing on some systems."""
 
 _MOVED = {
     "study": "python -m research seizure",
     "paper": "python -m research paper",
     "paper-chart": "python -m research chart",
 }
-"""Commands that need a clone of the project, by the names that they had in the package."""
+"""Commands that moved to a clone of the project, by their former names in the package."""
 
 
 class Command(NamedTuple):
-    """A subcommand: what it says of itself, its options, and what it does with them.
+    """A subcommand: its summary, its options, and the function that runs it.
 
-    Its options come with `parser`, that of the whole command line.
+    The parsed options include `parser`, the one for the whole command line.
     """
 
     text: str
@@ -56,25 +56,25 @@ def run_command(
     *,
     version: str | None = None,
 ) -> int:
-    """Run the subcommand that is given on a command line; returns its exit status.
+    """Run the subcommand of a command line; return its exit status.
 
     Parameters
     ----------
     prog, text : str
         Name and description of the program.
     commands : mapping of str to Command
-        Its subcommands.
+        Subcommands by name.
     given : sequence of str, optional
-        The command line; None takes that of the process.
+        Command line; None takes that of the process.
     version : str, optional
-        What ``--version`` prints; None: there is no such option.
+        Text that ``--version`` prints; None for no such option.
 
     Notes
     -----
-    An error and Ctrl-C end in one line; the notes of a KeyboardInterrupt say what is kept.
+    Errors and Ctrl-C end with one line; the notes of a KeyboardInterrupt say what is kept.
     """
     given = sys.argv[1:] if given is None else given
-    if isinstance(sys.stdout, io.TextIOWrapper):  # one in a code page, as on Windows, lacks letters
+    if isinstance(sys.stdout, io.TextIOWrapper):  # code pages, as on Windows, lack some characters
         sys.stdout.reconfigure(errors="backslashreplace")
     parser = _Parser(prog=prog, description=text, formatter_class=_Help)
     if version is not None:
@@ -98,13 +98,13 @@ def run_command(
         ctrl_c.raise_again()
         with _one_line_warnings(called):
             status = commands[options.command].run(options)
-        print(end="", flush=True)  # noqa: T201 - nothing may fail later, unseen
+        print(end="", flush=True)  # noqa: T201 - a failure later would go unseen
     except KeyboardInterrupt as interrupt:
         kept = "; ".join(getattr(interrupt, "__notes__", ()))
         _tell(called, f"interrupted{kept and f': {kept}'}")
         return 128 + signal.SIGINT
     except BrokenPipeError:
-        _give_up_output()  # what reads has seen enough, as `head` does
+        _give_up_output()  # the reader closed the pipe, like `head`
         return 128 + _SIGPIPE
     except OSError as error:
         is_own = isinstance(error, Crawler2dError)
@@ -120,18 +120,18 @@ def run_command(
 
 
 def _give_up_output() -> None:
-    """Let what could not be printed go: Python would complain of it when it ends."""
+    """Discard unprinted output, or Python would complain about it at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command of the package; returns its exit status."""
+    """Run a command of the package; return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
     if given and given[0] in _MOVED:
         now = _MOVED[given[0]]
         _tell(f"crawler2d {given[0]}", f"is now `{now}`, in a clone of the project")
         return 2
-    # Only what is needed is imported: the audit takes as long as all the rest.
+    # Import only what is needed: the audit takes as long as all the rest.
     is_alone = bool(given) and given[0] in _COMMANDS and given[0] != "completion"
     named = (given[0],) if is_alone else () if "--version" in given else _COMMANDS
     commands = {}
@@ -147,17 +147,17 @@ def _version() -> str:
 
 
 def _tell(called: str, text: str) -> None:
-    """Print one line to standard error, unless that was closed."""
-    if sys.stderr is None:  # which print takes for the standard output
+    """Print one line to standard error, unless it is closed."""
+    if sys.stderr is None:  # print would use the standard output
         return
-    # A terminal shows ^C where the line would begin.
+    # A terminal shows ^C at the beginning of the line.
     begin = "\n" if text.startswith("interrupted") and sys.stderr.isatty() else ""
     print(f"{begin}{called}: {' '.join(text.split())}", file=sys.stderr)  # noqa: T201
 
 
 @contextmanager
 def _one_line_warnings(called: str) -> Iterator[None]:
-    """Show warnings about a scenario without the line of code that simulates it."""
+    """Show scenario warnings without the line of code that raised them."""
     with warnings.catch_warnings():
         others = warnings.showwarning
 
@@ -172,7 +172,7 @@ def _one_line_warnings(called: str) -> Iterator[None]:
 
 
 class _Help(argparse.HelpFormatter):
-    """Keeps the paragraphs of a description apart."""
+    """Keeps the paragraphs of a description separate."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         return "\n\n".join(
@@ -182,12 +182,12 @@ class _Help(argparse.HelpFormatter):
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says in one line what is wrong with the options, and which was probably meant."""
+    """Reports wrong options in one line, with the nearest known one."""
 
     def parse_known_args(  # type: ignore[override] # its overloads are of one namespace
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> Any:
-        """Take a choice that begins with a minus, as in ``--forward -x``, for a value."""
+        """Accept a choice that begins with a minus, as in ``--forward -x``, as a value."""
         given = list(sys.argv[1:] if args is None else args)
         for k in range(len(given) - 1, 0, -1):
             action = self._option_string_actions.get(given[k - 1])

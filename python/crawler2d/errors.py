@@ -1,4 +1,4 @@
-"""Exceptions and warnings of the package; all of them keep their attributes when pickled.
+"""Exceptions and warnings of the package; all keep their attributes when pickled.
 
 Every exception is a `Crawler2dError`, except `BatchInterrupted`, which is defined with the runs
 that it holds: ``except Exception`` must not swallow an interrupt.
@@ -30,13 +30,13 @@ __all__ = [
     "warn",
 ]
 
-# The core cuts values at the same length. A whole number of more bits exceeds every float.
+# The core cuts values at the same length. Whole numbers with more bits exceed every float.
 _LONGEST_TEXT = 80
 _LARGEST_WHOLE = 1024
 
 
 class _Short(reprlib.Repr):
-    """Short texts of objects; Python refuses to print whole numbers of thousands of digits."""
+    """Short representations; Python refuses to print whole numbers of thousands of digits."""
 
     def repr_int(self, x: int, level: int) -> str:
         if x.bit_length() <= _LARGEST_WHOLE:
@@ -45,7 +45,7 @@ class _Short(reprlib.Repr):
 
 
 def _short(value: object) -> object:
-    """Keep small values; any other object may be huge, or fail to print or pickle."""
+    """Keep small values; other objects may be huge, or fail to print or pickle."""
     if isinstance(value, str):
         return value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]}..."
     if isinstance(value, (float, type(None))):
@@ -70,15 +70,15 @@ class Crawler2dError(Exception):
 
 
 class ScenarioError(Crawler2dError, ValueError):
-    """A field or an argument breaks a rule; nothing has been simulated.
+    """A field or an argument breaks a rule; nothing was simulated.
 
     Parameters
     ----------
     path : str
         Dotted path of the field, such as ``robot.track.count``.
     value : object
-        Its value. Anything but a number, a string or None is kept as its text; long
-        texts are shortened, and so are whole numbers too large for a float.
+        Its value. Anything but a number, a string or None is kept as text; long texts and whole
+        numbers too large for a float are shortened.
     rule : str
         The rule it breaks, "must be ...", and after a colon or semicolon what to write instead;
         the message has the value between the two.
@@ -103,16 +103,16 @@ class ScenarioError(Crawler2dError, ValueError):
         self.rule = rule
 
     def __str__(self) -> str:
-        """Say in one line what is wrong, the value, and what to write instead."""
+        """Return rule, value and remedy in one line."""
         match = _WRONG.match(self.rule)
         end = match.end() if match else len(self.rule)
         return f"{self.path} {self.rule[:end]}, got {self.value}{self.rule[end:]}"
 
 
 class ArgumentError(ScenarioError, TypeError):
-    """A function or class was called with an unknown keyword, or without one that is needed.
+    """A function or class was called with an unknown keyword, or without a required one.
 
-    The rule lists those that it takes, and suggests the nearest.
+    The rule lists the known keywords and suggests the nearest.
 
     Examples
     --------
@@ -126,7 +126,7 @@ class ArgumentError(ScenarioError, TypeError):
 
 
 class ScenarioWarning(UserWarning):
-    """A scenario is legal but probably not what was meant; it is simulated as it is.
+    """A scenario is legal but probably not intended; it is simulated as it is.
 
     Also issued if a run sank deeper into the ground than the softness of its contacts explains.
 
@@ -216,12 +216,12 @@ class StoreError(Crawler2dError, OSError):
     Parameters
     ----------
     message : str
-        Which file, what is wrong, and what helps.
+        The file, what is wrong, and how to fix it.
 
     Attributes
     ----------
     runs : list of Run
-        What a sweep or a study had simulated when its store failed: one per scenario of the last
+        Runs that a sweep or study had simulated when its store failed: one per scenario of the last
         batch, in order; `table` arranges them. An unfinished run has a `RunUnfinished` as its
         `error`. Empty if nothing was simulated.
     """
@@ -232,18 +232,18 @@ class StoreError(Crawler2dError, OSError):
 
 
 class InternalError(Crawler2dError, RuntimeError):
-    """A fault of crawler2d itself, or of its process, not of the scenario."""
+    """A bug in crawler2d or a failure of its process, not a fault of the scenario."""
 
 
 def own_error(error: BaseException) -> Crawler2dError:
-    """Return an error of the package; wrap any other, such as a MemoryError."""
+    """Return an error of the package; wrap others, such as a MemoryError."""
     if isinstance(error, Crawler2dError):
         return error
     return InternalError(f"{type(error).__name__}: {error}")
 
 
 def raise_first(results: Iterable[object]) -> None:
-    """Raise the first error of the package among results of any kind."""
+    """Raise the first error of the package in a list of results."""
     for result in results:
         if isinstance(result, Crawler2dError):
             raise result
@@ -268,7 +268,7 @@ def warn(path: str, value: object, reason: str) -> None:
 
 @contextlib.contextmanager
 def ignore_warnings() -> Iterator[None]:
-    """Issue no `ScenarioWarning`: they are reported elsewhere, or would be out of place."""
+    """Suppress each `ScenarioWarning`: they are reported elsewhere, or would be out of place."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ScenarioWarning)
         yield

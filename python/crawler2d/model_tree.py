@@ -1,7 +1,7 @@
-"""The neutral tree: links, joints and collision shapes of a robot, whatever its format.
+"""Links, joints and collision shapes of a robot, independent of the file format.
 
-Everything is in the frame of the model, whose z axis points up, with all joints at zero; metres,
-kilograms, radians. What is None was not given.
+Everything is in the frame of the model, z up, with all joints at zero, in metres, kilograms and
+radians. None means not given.
 """
 
 from __future__ import annotations
@@ -58,17 +58,17 @@ class Where:
 
 
 NOWHERE = Where("", 0)
-"""Of parts that do not come from a file."""
+"""Line of parts that do not come from a file."""
 
 TWO_TURNS = 4.0 * math.pi * (1.0 - 1e-3)
-"""[rad] A range of as much is no limit, as for wheels: files round it."""
+"""[rad] A range this large counts as no limit, as for wheels; files round it."""
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Pose:
-    """A frame in another one.
+    """Pose of a frame in another one.
 
     Parameters
     ----------
@@ -89,27 +89,27 @@ class Pose:
     turn: Array = field(default_factory=lambda: np.eye(3))
 
     def then(self, inner: Pose) -> Pose:
-        """Return a frame that is given in this one, in the frame of this one."""
+        """Return the pose of a frame given in this one, in the parent frame."""
         return Pose(place=self.at(inner.place), turn=self.turn @ inner.turn)
 
     def seen_from(self, frame: Pose) -> Pose:
-        """Return this frame in another one; both are given in the same frame."""
+        """Return this pose relative to another one; both are given in the same frame."""
         return Pose(place=frame.turn.T @ (self.place - frame.place), turn=frame.turn.T @ self.turn)
 
     @property
     def rpy(self) -> tuple[float, float, float]:
-        """[rad] Roll about x, then pitch about y, then yaw about z, all of them fixed axes."""
+        """[rad] Roll about x, then pitch about y, then yaw about z, about fixed axes."""
         turn = self.turn
         level = math.hypot(turn[0, 0], turn[1, 0])
         pitch = math.atan2(-turn[2, 0], level)
-        if level < 1e-9:  # x points up or down: roll and yaw turn about one axis
+        if level < 1e-9:  # x points up or down: roll and yaw have the same axis
             return math.atan2(-turn[1, 2], turn[1, 1]), pitch, 0.0
         roll = math.atan2(turn[2, 1], turn[2, 2])
         return roll, pitch, math.atan2(turn[1, 0], turn[0, 0])
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
-        """[-] The turn as a quaternion, its real part first."""
+        """[-] The rotation as a quaternion, real part first."""
         cr, cp, cy = (math.cos(0.5 * angle) for angle in self.rpy)
         sr, sp, sy = (math.sin(0.5 * angle) for angle in self.rpy)
         return (
@@ -120,18 +120,18 @@ class Pose:
         )
 
     def at(self, point: Sequence[float] | Array) -> Array:
-        """[m] Return a point of this frame, shape (3,), or several, shape (n, 3)."""
+        """[m] Transform a point of this frame, shape (3,), or several, shape (n, 3)."""
         moved: Array = np.asarray(point, dtype=float) @ self.turn.T + self.place
         return moved
 
     def along(self, direction: Sequence[float] | Array) -> Array:
-        """Return a direction of this frame."""
+        """Transform a direction of this frame."""
         turned: Array = self.turn @ np.asarray(direction, dtype=float)
         return turned
 
 
 def from_rpy(angles: Sequence[float], place: Sequence[float] = (0.0, 0.0, 0.0)) -> Pose:
-    """Turn by roll about x, then pitch about y, then yaw about z [rad], all of them fixed axes."""
+    """Rotate by roll about x, then pitch about y, then yaw about z [rad], about fixed axes."""
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in angles)
     turn = np.array(
         [
@@ -144,7 +144,7 @@ def from_rpy(angles: Sequence[float], place: Sequence[float] = (0.0, 0.0, 0.0)) 
 
 
 def from_quaternion(wxyz: Sequence[float], place: Sequence[float] = (0.0, 0.0, 0.0)) -> Pose:
-    """Turn by a quaternion of any length but 0, its real part first."""
+    """Rotate by a quaternion of any non-zero length, real part first."""
     w, x, y, z = np.asarray(wxyz, dtype=float) / math.hypot(*wxyz)
     turn = np.array(
         [
@@ -157,7 +157,7 @@ def from_quaternion(wxyz: Sequence[float], place: Sequence[float] = (0.0, 0.0, 0
 
 
 def unit(vector: Sequence[float] | Array) -> Array | None:
-    """Return the direction of a vector; None if it has none."""
+    """Return the unit vector; None for a zero vector."""
     length = math.hypot(*vector)
     return None if length < 1e-9 else np.asarray(vector, dtype=float) / length
 
@@ -173,7 +173,7 @@ class Friction:
     direction : ndarray, shape (3,), optional
         The first direction; None leaves it to the engine.
     priority : int
-        Of this shape's coefficients over those of others, in MuJoCo.
+        Priority of this shape's coefficients over those of others, in MuJoCo.
     first_at, second_at : Where
         The lines of both.
     """
@@ -195,25 +195,25 @@ class Shape:
     name : str
         As in the file.
     kind : {"box", "cylinder", "capsule", "sphere", "hull"}
-        A "hull" is that of `points`.
+        A "hull" is the convex hull of `points`.
     pose : Pose
-        Of its frame; the axis of cylinders and capsules is z.
+        Pose of its frame; the axis of cylinders and capsules is z.
     radius : float
-        [m] Of cylinder, capsule and sphere.
+        [m] Radius of a cylinder, capsule or sphere.
     length : float
-        [m] Of a cylinder, or of a capsule without its caps.
+        [m] Length of a cylinder, or of a capsule without its caps.
     size : ndarray, shape (3,)
-        [m] Of a box.
+        [m] Size of a box.
     points : ndarray, shape (n, 3)
-        [m] Of a hull, in the frame of the model.
+        [m] Points of a hull, in the frame of the model.
     friction : Friction, optional
-        Of its surface.
+        Friction of its surface.
     surface_speed : float
-        [m/s] At which the file itself moves its surface; 0: it does not.
+        [m/s] Speed at which the file itself moves the surface; 0 if it does not.
     at : Where
         Its line.
     pose_at, size_at : Where
-        The lines of its pose and of its radius or size, if not its own.
+        Lines of its pose and of its radius or size, if different.
     """
 
     name: str
@@ -252,7 +252,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unread:
-    """A collision shape that was left out, of which only its existence is known.
+    """A collision shape that was left out.
 
     Parameters
     ----------
@@ -278,21 +278,21 @@ class Link:
     name : str
         As in the file.
     pose : Pose
-        Of its frame.
+        Pose of its frame.
     mass : float
         [kg] Its mass.
     center : ndarray, shape (3,)
         [m] Its centre of mass.
     inertia : ndarray, shape (3, 3)
-        [kg m^2] About that.
+        [kg m^2] Inertia tensor about the centre of mass.
     shapes : tuple of Shape
         Its collision shapes.
     unread : tuple of Unread
-        Those that were left out.
+        Collision shapes that were left out.
     at : Where
         Its line.
     pose_at, mass_at : Where
-        The lines of its pose and of its mass, if not its own.
+        Lines of its pose and of its mass, if different.
     """
 
     name: str
@@ -318,42 +318,43 @@ class Link:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Joint:
-    """What joins a link to another.
+    """A joint between two links.
 
     Parameters
     ----------
     name : str
         As in the file.
     kind : str
-        "fixed", "hinge", "slide", or the file's own word for anything else.
+        "fixed", "hinge", "slide", or the file's term for anything else.
     parent, child : str
         The links.
     place : ndarray, shape (3,)
-        [m] Where it is.
+        [m] Position.
     axis : ndarray, shape (3,)
-        Direction about which it turns or along which it slides.
+        Axis about which it turns or along which it slides.
     lower, upper : float
-        [rad] or [m] Limits; infinite where there are none.
+        [rad] or [m] Limits; infinite if there are none.
     effort : float, optional
         [N m] or [N] Largest torque or force of its motor.
     velocity : float, optional
         [rad/s] or [m/s] Largest speed.
     stiffness : float
-        [N m/rad] or [N/m] Of a spring.
+        [N m/rad] or [N/m] Stiffness of a spring.
     damping : float
-        [N m s/rad] or [N s/m] Of viscous friction.
+        [N m s/rad] or [N s/m] Viscous friction.
     friction : float
-        [N m] or [N] Of dry friction.
+        [N m] or [N] Dry friction.
     armature : float
-        [kg m^2] or [kg] Of the motor's rotor behind its gear, on top of the link's inertia.
+        [kg m^2] or [kg] Inertia of the motor's rotor reflected through its gear, in addition to the
+        link's.
     gain : float, optional
-        [N m s/rad] or [N s/m] Of a servo of its speed: torque or force per error of the speed.
+        [N m s/rad] or [N s/m] Gain of a speed servo: torque or force per error of the speed.
     at : Where
         Its line.
     effort_at, velocity_at, dynamics_at : Where
-        The lines of its limits, and of damping, friction and armature, if not its own.
+        Lines of its limits, and of damping, friction and armature, if different.
     gain_at : Where
-        The line of its servo.
+        Line of its servo.
     """
 
     name: str
@@ -407,16 +408,16 @@ def _default_lines(part: Shape | Link | Joint, *names: str) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coupling:
-    """What moves joints together, and is not read.
+    """A coupling of joints, which is not read.
 
     Parameters
     ----------
     joints : tuple of str
-        Those that it moves.
+        The coupled joints.
     name : str
-        What it is, such as "mimic".
+        Its kind, such as "mimic".
     value, reason : str
-        What it says, and what becomes of it, for a warning.
+        Its content and how it is treated, for a warning.
     at : Where
         Its line.
     """
@@ -430,7 +431,7 @@ class Coupling:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plugin:
-    """A plugin of the file with its settings: path, text and line of each."""
+    """A plugin of the file and its settings: path, text and line of each."""
 
     name: str
     filename: str
@@ -444,12 +445,12 @@ class Plugin:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Tree:
-    """A robot as its file has it.
+    """A robot as described by its file.
 
     Parameters
     ----------
     name : str
-        Of the model.
+        Name of the model.
     format : str
         "SDF 1.6", "URDF", "MJCF".
     file : str
@@ -457,17 +458,17 @@ class Tree:
     links : tuple of Link
         The root first, parents before their children.
     joints : mapping of str to Joint
-        By the link that is the child.
+        Joints by their child link.
     plugins : tuple of Plugin
-        In their order.
+        Plugins in the order of the file.
     driven : mapping of str to Where
-        The joints that the file gives a motor, with the line that does.
+        Joints with a motor, and the line that declares it.
     tracks : tuple of str
-        Links whose surface something outside the file moves.
+        Links whose surface is moved from outside the file.
     couplings : tuple of Coupling
-        What moves joints together.
+        Couplings of joints.
     at : Where
-        Line of the model.
+        Line of the model element.
     """
 
     name: str
@@ -483,5 +484,5 @@ class Tree:
 
     @property
     def by_name(self) -> dict[str, Link]:
-        """Its links by name."""
+        """Links by name."""
         return {link.name: link for link in self.links}

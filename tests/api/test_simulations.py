@@ -25,19 +25,19 @@ def driven(many: c2d.Simulations, seconds: int = 20) -> c2d.Simulations:
 @pytest.mark.parametrize("threads", [1, 3])
 def test_each_simulation_has_the_bits_that_it_has_alone(threads: int) -> None:
     state = driven(c2d.Simulations(SCENARIOS, threads=threads)).state()
-    for place, scenario in enumerate(SCENARIOS):
+    for index, scenario in enumerate(SCENARIOS):
         alone = c2d.Simulation(scenario)
         for k in range(20):
-            angle = 0.5 * np.sin(0.3 * k + place)
+            angle = 0.5 * np.sin(0.3 * k + index)
             speed = 0.1 + 0.01 * k
             alone.command(speed=speed, flipper_angle=angle, rear_flipper_angle=-angle)
             alone.advance(0.05)
         own = alone.state()
-        assert (state.position[place] == own.position).all()
-        assert (state.velocity[place] == own.velocity).all()
-        assert state.chassis_angle[place] == own.chassis_angle
-        assert (state.flipper_angles[place] == own.flipper_angles).all()
-        assert state.time[place] == own.time
+        assert (state.position[index] == own.position).all()
+        assert (state.velocity[index] == own.velocity).all()
+        assert state.chassis_angle[index] == own.chassis_angle
+        assert (state.flipper_angles[index] == own.flipper_angles).all()
+        assert state.time[index] == own.time
 
 
 def test_a_reset_one_is_as_new_and_the_others_go_on() -> None:
@@ -114,7 +114,7 @@ def test_what_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(c2d.ScenarioError, match=r"drive\.gait must not be a function"):
         c2d.Simulations([own])
     many = c2d.Simulations(SCENARIOS)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be different indices from 0 to 3"):
         many.reset([4])
     with pytest.raises(c2d.ScenarioError, match=r"duration must be"):
         many.advance(-1.0)
@@ -132,9 +132,9 @@ def test_anything_but_a_list_of_scenarios_is_refused(given: Any) -> None:
 @pytest.mark.parametrize("which", [[[0, 1]], [[0], [1, 2]], [0.5], "first", {}, [0, 1, 0]])
 def test_invalid_places_are_refused(which: Any) -> None:
     many = c2d.Simulations(SCENARIOS)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be different indices from 0 to 3"):
         many.advance(0.1, which)
-    with pytest.raises(c2d.ScenarioError, match=r"which must be different places from 0 to 3"):
+    with pytest.raises(c2d.ScenarioError, match=r"which must be different indices from 0 to 3"):
         many.reset(which)
 
 

@@ -1,4 +1,4 @@
-"""Environments of Gymnasium in which a policy drives a robot over obstacles, and an audit of it.
+"""Gymnasium environments in which a policy drives a robot over obstacles, and their audit.
 
 Importing this module registers ``crawler2d/FlipperClimb-v0`` and ``crawler2d/StepField-v0``.
 
@@ -36,7 +36,7 @@ def __dir__() -> list[str]:
 
 
 _IDS = {"FlipperClimb-v0": "flipper_climb", "StepField-v0": "step_field"}
-"""Names of the scenarios, by id."""
+"""Map each id to the name of its scenario."""
 
 for _name, _scenario in _IDS.items():
     gymnasium.register(

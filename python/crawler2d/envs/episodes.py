@@ -1,4 +1,4 @@
-"""Episodes of a task side by side: what `FlipperEnv` has one of, and `FlipperVectorEnv` many."""
+"""Episodes of a task: one for `FlipperEnv`, many for `FlipperVectorEnv`."""
 
 from __future__ import annotations
 
@@ -25,32 +25,32 @@ if TYPE_CHECKING:
 __all__ = ["Episodes", "Step"]
 
 _STOPPED, _DIVERGED = "stopped", "diverged"
-"""Outcomes that need no trial: any stop, and no result."""
+"""Outcomes without trials: any stop, and no result."""
 
 _SAME_TIME = 1e-9
-"""[s] Times that differ by less differ by rounding."""
+"""[s] Smaller differences of times are rounding errors."""
 
 _BELOW, _HIGH = 0.12, 0.45
-"""[-] What is seen below the start and the height of the view, in its widths."""
+"""[-] Depth of the view below the start, and its height, as fractions of its width."""
 
 _PICTURE, _DOTS_PER_INCH = (6.4, 3.6), 100
-"""[inch] Size of a rendered picture, and its resolution."""
+"""[inch] Size of a rendered picture, and its resolution [dpi]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What a step of N episodes has led to.
+    """The result of a step of N episodes.
 
     Attributes
     ----------
     observations : ndarray of float32, shape (N, n)
         What a policy sees.
     rewards : Rewards
-        Of this step.
+        The rewards of this step.
     terminated, truncated : ndarray of bool, shape (N,)
-        Whether an episode has ended by what happened, or by time, a stop or an error.
+        Whether each episode was ended by the robot's state, or by time, a stop or an error.
     outcomes, errors : tuple of str or None, length N
-        How those that have ended did, and why those cannot go on that failed.
+        Outcome of each ended episode, and reason of each failed one.
     """
 
     observations: NDArray[np.float32]
@@ -67,7 +67,7 @@ class Step:
 
 
 class Episodes:
-    """N episodes of a task, bit by bit as each would be alone."""
+    """N episodes of a task; each gives bit by bit the result of a single one."""
 
     def __init__(
         self, task: Task, scenarios: Sequence[_core.PreparedScenario], threads: int | None
@@ -76,20 +76,20 @@ class Episodes:
         self._full_speeds = np.array([each.speed for each in scenarios])
         self._durations = np.array(_durations_of(scenarios))
         self._states = self._many.state()
-        self._starts = _places_of(self._states)
+        self._starts = _positions(self._states)
 
     @property
     def states(self) -> States:
-        """The present states."""
+        """The current states."""
         return self._states
 
-    def reset(self, places: NDArray[np.intp], scenarios: Sequence[_core.PreparedScenario]) -> None:
-        """Begin new episodes at some places."""
-        self._many.reset(places, scenarios)
-        self._full_speeds[places] = [each.speed for each in scenarios]
-        self._durations[places] = _durations_of(scenarios)
+    def reset(self, indices: NDArray[np.intp], scenarios: Sequence[_core.PreparedScenario]) -> None:
+        """Start new episodes at some indices."""
+        self._many.reset(indices, scenarios)
+        self._full_speeds[indices] = [each.speed for each in scenarios]
+        self._durations[indices] = _durations_of(scenarios)
         self._states = self._many.state()
-        self._starts[places] = _places_of(self._states)[places]
+        self._starts[indices] = _positions(self._states)[indices]
 
     def observe(self) -> NDArray[np.float32]:
         """Return what a policy sees, shape (N, n)."""
@@ -101,7 +101,7 @@ class Episodes:
         Raises
         ------
         ScenarioError
-            If actions have another shape, or those of the driven are not finite.
+            If actions have the wrong shape, or those of driven episodes are not finite.
         """
         task, before, count = self._task, self._states, len(self._many)
         driven = np.ones(count, bool) if which is None else which
@@ -115,7 +115,7 @@ class Episodes:
         return self._judged(task.rewards(before, after), after)
 
     def _advance(self, driven: NDArray[np.bool_]) -> None:
-        """Advance by `dt`, or to the end of the duration if that comes before."""
+        """Advance by `dt`, or to the end of the duration if that is earlier."""
         left = self._durations - self._states.time
         whole = driven & (left > self._task.dt - _SAME_TIME)
         self._many.advance(self._task.dt, whole)
@@ -123,7 +123,7 @@ class Episodes:
             self._many.advance(rest, driven & (left == rest))
 
     def _judged(self, rewards: Rewards, states: States) -> Step:
-        """Say which episodes have ended, and how."""
+        """Find which episodes have ended, and how."""
         count = len(self._many)
         terminated, failed = np.zeros(count, bool), np.zeros(count, bool)
         terminated[states.ended] = True
@@ -134,13 +134,13 @@ class Episodes:
             truncated |= states.stopped
         truncated &= ~terminated
         outcomes: list[str | None] = [None] * count
-        for place in np.flatnonzero(terminated | truncated).tolist():
-            without = _STOPPED if states.stopped[place] else str(Outcome.TIMED_OUT)
-            outcomes[place] = _DIVERGED if failed[place] else states.outcome[place] or without
+        for index in np.flatnonzero(terminated | truncated).tolist():
+            without = _STOPPED if states.stopped[index] else str(Outcome.TIMED_OUT)
+            outcomes[index] = _DIVERGED if failed[index] else states.outcome[index] or without
         return Step(self.observe(), rewards, terminated, truncated, tuple(outcomes), states.error)
 
     def _read(self, actions: ArrayLike, driven: NDArray[np.bool_]) -> NDArray[np.float64]:
-        """Clip actions to their range; those of episodes that are not driven may be anything."""
+        """Clip actions to their range, whatever those of episodes that are not driven."""
         try:
             array = np.asarray(actions, float)
         except (TypeError, ValueError):
@@ -156,18 +156,18 @@ class Episodes:
         clipped: NDArray[np.float64] = np.clip(array, -1.0, 1.0)
         return clipped
 
-    def run(self, place: int, trials: Trials = "auto") -> Run:
-        """Return one episode as a run, with trials of what would free the robot if it is stopped.
+    def run(self, index: int, trials: Trials = "auto") -> Run:
+        """Return one episode as a run, with trials if the robot is stopped.
 
         Raises
         ------
         SimulationDiverged
             If the state became non-finite.
         """
-        return self._many.to_run(place, trials=trials)
+        return self._many.to_run(index, trials=trials)
 
-    def render(self, place: int) -> NDArray[np.uint8]:
-        """Draw one of them as it is now, shape (height, width, 3).
+    def render(self, index: int) -> NDArray[np.uint8]:
+        """Draw the current state of one episode, shape (height, width, 3).
 
         Raises
         ------
@@ -178,13 +178,13 @@ class Episodes:
         agg = extra("matplotlib.backends.backend_agg", "plot")
         figure = figures.Figure(figsize=_PICTURE, dpi=_DOTS_PER_INCH, layout="constrained")
         canvas = agg.FigureCanvasAgg(figure)
-        ax = Simulation.from_snapshot(self._many.snapshot(place)).plot(figure.subplots())
+        ax = Simulation.from_snapshot(self._many.snapshot(index)).plot(figure.subplots())
         if legend := ax.get_legend():
             legend.remove()
-        # The same view for all of an episode: from behind the start to beyond the goal.
+        # The view stays the same for a whole episode: from behind the start to beyond the goal.
         robot = self._task.scenario.robot
         reach = robot.outline.axle_distance + (robot.flippers.length if robot.flippers else 0.0)
-        x, y, to_goal = self._starts[place]
+        x, y, to_goal = self._starts[index]
         left, right = x - 1.5 * reach, x + to_goal + 1.5 * reach
         bottom = y - _BELOW * (right - left)
         ax.set(xlim=(left, right), ylim=(bottom, bottom + _HIGH * (right - left)))
@@ -193,10 +193,10 @@ class Episodes:
 
 
 def _durations_of(scenarios: Sequence[_core.PreparedScenario]) -> list[float]:
-    """[s] Return how long episodes last, which models, obstacles and draws may set."""
+    """[s] Return the durations of episodes; models, obstacles and draws may differ in them."""
     return [json.loads(each.text)["duration"] for each in scenarios]
 
 
-def _places_of(states: States) -> NDArray[np.float64]:
-    """[m] Return where robots are, and how far they have to the goal, shape (N, 3)."""
+def _positions(states: States) -> NDArray[np.float64]:
+    """[m] Return the positions of the robots and their distances to the goal, shape (N, 3)."""
     return np.column_stack([states.position, states.to_goal])

@@ -1,4 +1,4 @@
-"""One robot that a policy drives over obstacles, as an environment of Gymnasium."""
+"""A Gymnasium environment in which a policy drives one robot over obstacles."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ __all__ = [
 ]
 
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}
-"""Of both environments; `metadata_of` has the `render_fps` of another `dt` than the default."""
+"""Metadata of both environments; `metadata_of` sets `render_fps` for other values of `dt`."""
 
 
 _OF_ITSELF = ("num_envs", "render_mode", "autoreset_mode", "threads")
-"""Arguments of an environment that are none of its task."""
+"""Arguments of an environment that do not belong to its task."""
 
 
 class TakesMadeKeywords(TakesKeywords):
-    """Base of what Gymnasium makes, which raises another of any TypeError, from its text alone."""
+    """Base of objects that Gymnasium makes, which re-raises any TypeError from its text alone."""
 
     def __new__(cls, *given: Any, **keywords: Any) -> Self:
         """Check the keywords; `__init__` takes them."""
@@ -53,54 +53,54 @@ class TakesMadeKeywords(TakesKeywords):
 
 
 class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
-    """A robot on obstacles whose tracks and flippers a policy commands.
+    """A robot on obstacles; a policy commands its tracks and flippers.
 
-    An action holds the speed of the tracks, as a share of the scenario's `drive.speed`, and of
-    those flippers that there are, the front ones first, a rate as a share of their `rate_limit` or
-    an angle as a share of half a turn: numbers from -1 to 1, shape (1 to 3,). Larger ones
-    are clipped. The motors follow within their own limits.
+    An action holds the track speed, as a fraction of the scenario's `drive.speed`, then for each
+    end with flippers, front first, a rate as a fraction of their `rate_limit` or an angle as a
+    fraction of half a turn: numbers from -1 to 1, shape (1 to 3,), clipped to that range. The
+    motors follow within their own limits.
 
-    An observation holds pitch [rad], its rate [rad/s], the speed of the tracks [m/s], and of the
-    flippers that there are the angles [rad] and the torques [N m], both sides together. A
-    privileged one also holds 16 heights of the ground [m], over the origin of the chassis frame,
-    from one axle distance behind it to two ahead. `observation_names` lists them.
+    An observation holds pitch [rad], its rate [rad/s], track speed [m/s], and for each end with
+    flippers their angle [rad] and torque [N m], the sum of both sides. A privileged one also holds
+    16 heights of the ground [m], relative to the origin of the chassis frame, from one axle
+    distance behind it to two ahead. `observation_names` lists them.
 
-    The reward of a step is by how much the robot comes closer to the goal [m]; less, times their
-    weights, the height of a fall to a velocity as large as the change of its chassis' and the
-    height to which the work of its motors would lift it; and 1 m at the end of an episode that
-    clears, less 1 m at that of one that is terminated otherwise. ``info`` has the terms as
+    The reward of a step is the progress towards the goal [m], minus two weighted penalties: shock,
+    the height of a free fall that reaches the change of the chassis' velocity, and effort, the
+    height to which the work of the motors would lift the robot. The end of an episode adds 1 m if
+    it clears, and subtracts 1 m if it is terminated otherwise. ``info`` has the terms as
     `reward_progress`, `reward_shock`, `reward_effort` and `reward_ending`.
 
     An episode is terminated when the robot has cleared the obstacle, tipped over or left the
-    terrain. It is truncated when the scenario's duration is over, when the simulation fails, of
-    which ``info["error"]`` says why, and if asked for when the robot is stopped. Then
+    terrain. It is truncated when the scenario's duration is over, when the simulation fails
+    (``info["error"]`` says why) and, with `end_when_stopped`, when the robot is stopped. Then
     ``info["outcome"]`` is `cleared`, `tipped_over`, `left_terrain`, `stopped`, `timed_out` or
     `diverged`; `run` says why it stopped.
 
     Parameters
     ----------
     scenario : Scenario or {"flipper_climb", "step_field"}
-        Robot, ground, start and duration; its drive may have neither gait nor schedule. The first
-        name has an Absolem on belts in front of a step of 0.1 to 0.4 m, the second one on random
-        step fields.
+        Robot, ground, start and duration; its drive must have no gait and no schedule. The first
+        name is an Absolem on belts in front of a step of 0.1 to 0.4 m, the second the same robot on
+        random step fields.
     terrain : Terrain, optional
-        Another ground.
+        Replaces the scenario's ground.
     randomize : mapping of str to distribution, optional
-        What differs from episode to episode, as `vary` of a sweep. None takes that of the named
-        scenario, and ``variability.of_start() | variability.of_contact()`` for others and on
-        another ground; ``{}`` takes nothing at all.
+        Distributions to draw from for each episode, see `vary` of `sweep`. None takes those of the
+        named scenario; for other scenarios or another ground it takes ``variability.of_start() |
+        variability.of_contact()``. ``{}`` varies nothing.
     dt : float
-        [s] Between two actions, >= 0.001.
+        [s] Time between two actions, >= 0.001.
     observe : {"proprioception", "privileged"}
-        What a policy sees.
+        What the policy observes.
     flipper_command : {"rate", "angle"}
-        What it commands of the flippers.
+        What it commands for the flippers.
     end_when_stopped : bool
-        Whether a stop truncates an episode: by detection, nothing is tried.
+        Whether a detected stop truncates an episode; no trials are made.
     shock_weight, effort_weight : float
-        [-] Of these terms of the reward, >= 0.
+        [-] Weights of these penalties, >= 0.
     render_mode : {"rgb_array"}, optional
-        Whether `render` returns a picture; None in another engine than crawler2d's own.
+        Whether `render` returns a picture; must be None in rapier.
 
     Raises
     ------
@@ -154,30 +154,30 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
 
     @property
     def observation_names(self) -> list[str]:
-        """Names of the numbers of an observation."""
+        """Names of the numbers in an observation."""
         return self.task.names
 
     @property
     def state(self) -> States:
-        """The present state, each array with one row; everything that a policy does not see."""
+        """The complete current state; each array has one row."""
         return self._begun().states
 
     @property
     def run(self) -> Run:
-        """The episode so far as a run, with its diagnosis: it is simulated once more."""
+        """The episode so far as a run with its diagnosis, simulated again."""
         return self._begun().run(0)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode, with another draw.
+        """Start an episode with a new draw.
 
         Parameters
         ----------
         seed : int, optional
-            Of this and all later draws; None goes on with the present ones.
+            Seed of this and all later draws; None continues the current ones.
         options : dict, optional
-            Without meaning.
+            Ignored.
 
         Returns
         -------
@@ -186,7 +186,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
             Empty.
         """
         super().reset(seed=seed, options=options)
-        if self.np_random is not self._drawn_from:  # of a seed, or set from outside
+        if self.np_random is not self._drawn_from:  # seeded, or set from outside
             self._supply.forget(0)
             self._drawn_from = self.np_random
         scenarios = self._supply.take([0], [self.np_random])
@@ -200,12 +200,12 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Drive on for `dt`, or to the end of the duration if that comes before.
+        """Drive for `dt`, or to the end of the duration if that is earlier.
 
         Parameters
         ----------
         action : array_like, shape (1 to 3,)
-            [-] Speed and flippers, from -1 to 1.
+            [-] Track speed and flippers, from -1 to 1.
 
         Returns
         -------
@@ -213,12 +213,12 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
         reward : float
         terminated, truncated : bool
         info : dict
-            The terms of the reward; at the end of the episode its outcome.
+            The terms of the reward; at the end of an episode also its outcome.
 
         Raises
         ------
         ScenarioError
-            If the action has another shape or is not finite.
+            If the action has the wrong shape or is not finite.
         gymnasium.error.ResetNeeded
             If the episode has ended.
         """
@@ -248,7 +248,7 @@ class FlipperEnv(TakesMadeKeywords, gymnasium.Env, EzPickle):
 
 
 def task_of(given: Mapping[str, Any]) -> Task:
-    """Read the task among the arguments of an environment."""
+    """Make the task from the arguments of an environment."""
     return Task.read(**{name: value for name, value in given.items() if name not in _OF_ITSELF})
 
 
@@ -263,12 +263,12 @@ def spaces_of(task: Task) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:
 
 
 def metadata_of(task: Task) -> dict[str, Any]:
-    """Frames per second of a video in real time: one a step."""
+    """Frames per second of a real-time video: one per step."""
     return METADATA | {"render_fps": max(round(1.0 / task.dt), 1)}
 
 
 def check_render_mode(mode: str | None, task: Task) -> str | None:
-    """Refuse an unknown render mode, and any for what cannot be copied to be drawn."""
+    """Refuse unknown render modes, and any for engines whose state cannot be copied."""
     modes = METADATA["render_modes"]
     if mode is not None and mode not in modes:
         raise ScenarioError("render_mode", mode, f"must be None or one of {modes}")

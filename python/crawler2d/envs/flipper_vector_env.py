@@ -1,4 +1,4 @@
-"""Many robots that a policy drives over obstacles, as a vector environment of Gymnasium."""
+"""A Gymnasium vector environment in which a policy drives many robots over obstacles."""
 
 from __future__ import annotations
 
@@ -38,25 +38,25 @@ _MOST = 100_000
 
 
 class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
-    """Many of `FlipperEnv`, advanced together on all cores.
+    """Many `FlipperEnv`, advanced together on all cores.
 
-    Environment k with seed s is bit by bit what `FlipperEnv` is with seed s + k, whatever the
-    number of environments and threads. One that fails ends its episode, and the others go on.
+    Environment k with seed s gives bit by bit the results of `FlipperEnv` with seed s + k, for any
+    number of environments and threads. If one fails, its episode ends and the others continue.
 
     Parameters
     ----------
     num_envs : int
-        How many, 1 to 100,000.
+        Number of environments, 1 to 100,000.
     scenario, terrain, randomize, dt, observe, flipper_command, end_when_stopped
         See `FlipperEnv`.
     shock_weight, effort_weight, render_mode
         See `FlipperEnv`.
     autoreset_mode : AutoresetMode or str
-        When an episode that has ended is followed by another, see `gymnasium.vector.AutoresetMode`:
-        "NextStep", in whose step the action is without meaning; "SameStep", where ``info`` has
-        `final_obs` and `final_info`; or "Disabled", where `reset` is called with a mask.
+        When a new episode follows one that has ended, see `gymnasium.vector.AutoresetMode`:
+        "NextStep", which ignores the action of that step; "SameStep", with `final_obs` and
+        `final_info` in ``info``; or "Disabled", which needs `reset` with a mask.
     threads : int, optional
-        Most threads; None takes one a core.
+        Largest number of threads; None takes one per core.
 
     Raises
     ------
@@ -112,32 +112,32 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
 
     @property
     def observation_names(self) -> list[str]:
-        """Names of the numbers of an observation."""
+        """Names of the numbers in an observation."""
         return self.task.names
 
     @property
     def state(self) -> States:
-        """The present states; everything that a policy does not see."""
+        """The complete current states."""
         return self._begun().states
 
-    @property  # type: ignore[misc] # that of the base can be set
+    @property  # type: ignore[misc] # the base class has a setter
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override] # one each
-        """The generators of the draws."""
+        """Random generators of the draws."""
         self._seed([None] * self.num_envs)
         return tuple(self._generators)
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override] # one each
-        """Their seeds."""
+        """Seeds of the generators."""
         self._seed([None] * self.num_envs)
         return tuple(self._seeds)
 
-    def run(self, place: int) -> Run:
-        """Return the present episode of one as a run, with its diagnosis, see `FlipperEnv.run`.
+    def run(self, index: int) -> Run:
+        """Return the current episode of one environment as a run, see `FlipperEnv.run`.
 
-        Where another one follows in the same step, that is the new one.
+        With "SameStep", an episode that has ended is already replaced by the new one.
         """
-        return self._begun().run(whole_number(place, "place", 0, self.num_envs - 1))
+        return self._begun().run(whole_number(index, "index", 0, self.num_envs - 1))
 
     def reset(
         self,
@@ -145,14 +145,14 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin episodes, each with another draw.
+        """Start episodes, each with a new draw.
 
         Parameters
         ----------
         seed : int or sequence of int or None, optional
-            Environment k takes seed + k; or one each.
+            One seed, to which environment k adds k, or one per environment.
         options : dict, optional
-            `reset_mask`, a mask of shape (N,), says which are to begin; without it all do.
+            `reset_mask`, of shape (N,), selects the environments to reset; without it, all.
 
         Returns
         -------
@@ -190,12 +190,12 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         NDArray[np.bool_],
         dict[str, Any],
     ]:
-        """Drive on for `dt`, or to the end of the duration if that comes before.
+        """Drive for `dt`, or to the end of the duration if that is earlier.
 
         Parameters
         ----------
         actions : array_like, shape (N, 1 to 3)
-            [-] Speeds and flippers, from -1 to 1.
+            [-] Track speeds and flippers, from -1 to 1.
 
         Returns
         -------
@@ -203,16 +203,16 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         rewards : ndarray, shape (N,)
         terminated, truncated : ndarray of bool, shape (N,)
         infos : dict
-            The terms of the rewards, and outcomes where episodes have ended, each with a mask.
+            The terms of the rewards, and outcomes of ended episodes, each with a mask.
 
         Raises
         ------
         ScenarioError
-            If the actions have another shape or are not finite.
+            If the actions have the wrong shape or are not finite.
         gymnasium.error.ResetNeeded
-            If an episode has ended and nothing follows by itself.
+            If an episode has ended and there is no automatic reset.
         KeyboardInterrupt
-            On Ctrl-C; then reset.
+            On Ctrl-C; reset before continuing.
         """
         episodes, mode = self._begun(), self.metadata["autoreset_mode"]
         over = self._ended
@@ -239,29 +239,29 @@ class FlipperVectorEnv(TakesMadeKeywords, VectorEnv, EzPickle):
         """Draw each robot on its ground; None without a render mode."""
         if self.render_mode is None:
             return None
-        return tuple(self._begun().render(place) for place in range(self.num_envs))
+        return tuple(self._begun().render(index) for index in range(self.num_envs))
 
     def _begin(self, mask: NDArray[np.bool_]) -> None:
-        """Begin episodes where a mask says so."""
-        places = np.flatnonzero(mask)
-        scenarios = self._supply.take(places.tolist(), self._generators)
+        """Start the episodes selected by a mask."""
+        indices = np.flatnonzero(mask)
+        scenarios = self._supply.take(indices.tolist(), self._generators)
         if self._episodes is None:
             self._episodes = Episodes(self.task, scenarios, self._threads)
         else:
-            self._episodes.reset(places, scenarios)
+            self._episodes.reset(indices, scenarios)
         self._ended = self._ended & ~mask
 
     def _seed(self, seeds: list[int | None]) -> None:
-        """Set generators of given seeds, and of others where there are none yet."""
+        """Make generators for given seeds, and for environments that have none yet."""
         if not self._generators:
             pairs = [seeding.np_random(seed) for seed in seeds]
             self._generators = [generator for generator, _ in pairs]
             self._seeds = [seed for _, seed in pairs]
             return
-        for place, seed in enumerate(seeds):
+        for index, seed in enumerate(seeds):
             if seed is not None:
-                self._generators[place], self._seeds[place] = seeding.np_random(seed)
-                self._supply.forget(place)
+                self._generators[index], self._seeds[index] = seeding.np_random(seed)
+                self._supply.forget(index)
 
     def _begun(self) -> Episodes:
         if self._episodes is None:
@@ -278,7 +278,7 @@ def _read_mode(given: AutoresetMode | str) -> AutoresetMode:
 
 
 def _infos(step: Step, shown: NDArray[np.bool_], ended: NDArray[np.bool_]) -> dict[str, Any]:
-    """Give what is shown of a step as arrays with masks, as Gymnasium does."""
+    """Return the infos of a step as arrays with masks, as Gymnasium does."""
     infos: dict[str, Any] = {}
     if not shown.any():
         return infos
@@ -296,8 +296,8 @@ def _infos(step: Step, shown: NDArray[np.bool_], ended: NDArray[np.bool_]) -> di
 
 
 def _rows(observations: NDArray[np.float32], mask: NDArray[np.bool_]) -> NDArray[np.object_]:
-    """Return the rows of a mask, as an array of objects that is None elsewhere."""
+    """Return the rows selected by a mask as an array of objects, with None elsewhere."""
     rows = np.full(len(mask), None, dtype=object)
-    for place in np.flatnonzero(mask):
-        rows[place] = observations[place].copy()
+    for index in np.flatnonzero(mask):
+        rows[index] = observations[index].copy()
     return rows

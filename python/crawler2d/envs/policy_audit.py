@@ -1,4 +1,4 @@
-"""What a policy achieves on other track models than the one it was trained on."""
+"""Test a policy on track models other than the one it was trained on."""
 
 from __future__ import annotations
 
@@ -56,26 +56,25 @@ def audit_policy(
     threads: int | None = None,
     progress: bool | Progress | None = True,
 ) -> FigureDataset:
-    """Drive a policy on several track models over several obstacles, and a gait for comparison.
+    """Compare a policy with a gait on several track models and obstacles.
 
-    What a policy gains over the gait on the model that it was trained on may be lost on others:
-    then it may have learned to use what only that model does, such as a pocket between two wheels
-    that hooks an edge. All models and both drivers meet the same draws.
+    If the policy beats the gait on the model that it was trained on but not on others, it may have
+    learned to exploit that model, such as a pocket between two wheels that hooks an edge. All
+    models and both drivers get the same draws.
 
     Parameters
     ----------
     policy : callable
-        Maps observations, shape (N, n), to actions, shape (N, m), as those of `env`; rows of
-        episodes that have ended do not matter. Of stable-baselines3:
-        ``lambda seen: model.predict(seen, deterministic=True)[0]``.
+        Maps observations, shape (N, n), to actions, shape (N, m), like those of `env`; rows of
+        ended episodes are ignored. With stable-baselines3: ``lambda seen: model.predict(seen,
+        deterministic=True)[0]``.
     env : FlipperEnv or FlipperVectorEnv
-        What it was trained on: scenario, `dt`, and what a policy sees and commands. It is not
+        The environment of the training: scenario, `dt`, observations and commands. It is not
         changed.
     models : mapping of str to model
-        What replaces the scenario's own, as for `compare`; the first is what the policy was trained
-        on.
+        Models to compare, see `compare`; the first is the one that the policy was trained on.
     obstacles : mapping of str or number to Terrain
-        By label; or mappings from paths to values, as for `compare`.
+        Terrains by label; or mappings from paths to values, see `compare`.
     baseline : Climb or Hold
         The gait for comparison, at the speed of the scenario.
     repeats : int
@@ -83,31 +82,31 @@ def audit_policy(
     seed, vary, progress
         See `sweep`.
     threads : int, optional
-        Most threads; None takes one a core.
+        Largest number of threads; None takes one per core.
 
     Returns
     -------
     FigureDataset
         The table of `sweep` with the dimensions `driver` (policy, baseline), `model`, `obstacle`
-        and `repeat`, so that it says where each run stopped and why; ``plot()`` draws the rates.
-        With 95 % intervals, besides:
+        and `repeat`, including where and why each run stopped; ``plot()`` draws the rates. In
+        addition, with 95 % intervals:
 
         - `rate`, `low`, `high`: rate of clearing, Wilson's interval;
-        - `gain`, `gain_low`, `gain_high`: the policy's rate minus the baseline's, over the pairs
-          of runs that both have an outcome, with Newcombe's interval for paired data;
+        - `gain`, `gain_low`, `gain_high`: the policy's rate minus the baseline's, over pairs of
+          runs that both have an outcome, with Newcombe's interval for paired data;
         - `lost`, `lost_low`, `lost_high`: the gain on the first model minus that on this one; the
-          interval adds the squares of those of both gains, as if these were independent;
-        - `ending`: how most of the runs end that do not clear, and how many do.
+          interval combines those of both gains by their squares, as if they were independent;
+        - `ending`: the commonest ending of the runs that do not clear, with its count.
 
-        The attribute `summary` says in words where a gain is lost; `first_model` is the label of
-        the first model.
+        The attribute `summary` describes where a gain is lost; `first_model` is the label of the
+        first model.
 
     Raises
     ------
     ScenarioError
         If an argument or a scenario breaks a rule, or a model has flippers at other ends.
     SimulationDiverged
-        If a state became non-finite under the baseline; under the policy its run is `diverged`.
+        If a state became non-finite under the baseline; under the policy the run is `diverged`.
     ImportError
         If xarray is missing; the message names the extra to install.
 
@@ -166,11 +165,11 @@ def _task_of(env: Any) -> Task:
     task = getattr(getattr(env, "unwrapped", None), "task", None)
     if not isinstance(task, Task):
         raise ScenarioError("env", env, "must be a FlipperEnv or a FlipperVectorEnv")
-    return replace(task, ends_when_stopped=False)  # the baseline may go on, too
+    return replace(task, ends_when_stopped=False)  # the baseline does not end then, either
 
 
 def _check_flippers(task: Task, models: Axis) -> None:
-    """Refuse models whose flippers a policy could not command, or that it would miss."""
+    """Refuse models with flippers at other ends than the policy commands."""
     for label, values in models.values.items():
         robot = task.scenario.replace(values).robot
         if flipper_ends(robot) != task.ends:
@@ -179,7 +178,7 @@ def _check_flippers(task: Task, models: Axis) -> None:
 
 
 class _Counted:
-    """Passes on what was done since the last report."""
+    """Reports progress since the last call."""
 
     def __init__(self, report: Reporter) -> None:
         self._report, self._done = report, 0
@@ -196,7 +195,7 @@ def _drive(
     threads: int,
     report: Reporter,
 ) -> list[Row]:
-    """Have the policy drive all scenarios to their ends, and return their rows."""
+    """Drive all scenarios to the end with the policy, and return their rows."""
     episodes = Episodes(task, scenarios, threads)
     observations = episodes.observe()
     runs = np.ones(len(scenarios), bool)
@@ -206,18 +205,18 @@ def _drive(
         report(int((runs & step.ended).sum()))
         runs &= ~step.ended
 
-    def row(place: int) -> Row:
+    def row(index: int) -> Row:
         try:
-            return Row.of_record(episodes.run(place, trials=None))
+            return Row.of_record(episodes.run(index, trials=None))
         except Crawler2dError as error:
-            return Row.of_error(error, scenarios[place].identity, scenarios[place].text)
+            return Row.of_error(error, scenarios[index].identity, scenarios[index].text)
 
     with ThreadPoolExecutor(threads) as pool:
         return list(pool.map(row, range(len(scenarios))))
 
 
 def _compared(driven: xarray.Dataset, compared: xarray.Dataset) -> FigureDataset:
-    """Put both drivers into one table, with rates, gains and what is lost of them."""
+    """Put both drivers into one table, with rates, gains and losses."""
     xr = extra("xarray", "analysis")
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
@@ -249,7 +248,7 @@ def _compared(driven: xarray.Dataset, compared: xarray.Dataset) -> FigureDataset
 
 
 def _gain(ours: NDArray[np.object_], theirs: NDArray[np.object_]) -> Interval:
-    """Compare two drivers by their outcomes, of the pairs in which both runs have one."""
+    """Compare two drivers over the pairs in which both runs have an outcome."""
     ended = np.isin([ours, theirs], list(map(str, Outcome))).all(axis=0)
     ours, theirs = ours[ended] == Outcome.CLEARED, theirs[ended] == Outcome.CLEARED
     if not ended.any():
@@ -266,7 +265,7 @@ def _lost(first: Sequence[float], other: Sequence[float]) -> Interval:
 
 
 def _ending(runs: xarray.Dataset) -> str:
-    """Say how most of the runs end that do not clear, such as ``seized, straddled: 7 of 20``."""
+    """Describe the commonest failure, such as ``seized, straddled: 7 of 20``."""
     outcomes, mechanisms = (runs[name].to_numpy() for name in ("outcome", "mechanism"))
     ends = Counter(
         ", ".join(filter(None, pair))
@@ -280,7 +279,7 @@ def _ending(runs: xarray.Dataset) -> str:
 
 
 def _summary(found: xarray.Dataset) -> str:
-    """Say in words what is gained on the first model, and where it is lost."""
+    """Describe the gain on the first model, and where it is lost."""
     trained, *others = found["model"].to_numpy().tolist()
     lines = []
     for obstacle in found["obstacle"].to_numpy().tolist():

@@ -1,4 +1,4 @@
-"""The scenarios of the registered environments, and what differs from episode to episode."""
+"""Scenarios of the registered environments, and what varies between episodes."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ __all__ = ["read_scenario"]
 _NAMES = ("flipper_climb", "step_field")
 
 _DRIVE = Drive(speed=0.39)
-"""A little slower than the robot can, so that the speed can vary either way."""
+"""[m/s] A little below the robot's limit, so that the speed can vary both ways."""
 
 _DURATION = 10.0
-"""[s] Twice what a robot needs that does not hesitate."""
+"""[s] Twice the time of a robot that drives without pauses."""
 
 
 def read_scenario(
     given: object, terrain: Terrain | None, randomize: Mapping[str, Any] | None
 ) -> tuple[Scenario, Mapping[str, Any] | None]:
-    """Return the scenario of an environment, and what is drawn for each episode.
+    """Return the scenario of an environment and its distributions.
 
     Raises
     ------
     ScenarioError
-        If it is neither a scenario nor the name of one, or its drive leaves nothing to a policy.
+        If it is neither a scenario nor the name of one, or its drive has commands of its own.
     """
     if isinstance(given, Scenario):
         scenario = given

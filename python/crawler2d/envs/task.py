@@ -1,4 +1,4 @@
-"""What a policy is to do: commands from actions, observations and rewards from states."""
+"""The task of a policy: actions to commands, states to observations and rewards."""
 
 from __future__ import annotations
 
@@ -32,31 +32,31 @@ FlipperCommand = Literal["rate", "angle"]
 _VIEWS, _COMMANDS = get_args(Observe), get_args(FlipperCommand)
 
 _FASTEST_TURN = 20.0
-"""[rad/s] Rates of the chassis beyond this are observed as this."""
+"""[rad/s] Limit of the observed rate of the chassis."""
 _FARTHEST_HEIGHT = 5.0
-"""[m] The same of heights, from the chassis."""
+"""[m] Limit of the observed heights, relative to the chassis."""
 
 ENDING = 1.0
-"""[m] What clearing is worth, and what tipping over costs: about the way of an episode."""
+"""[m] Reward for clearing and cost of tipping over: about the distance of an episode."""
 
 _HEIGHTS = np.linspace(-1.0, 2.0, 16)
-"""[-] Where a privileged policy sees the ground, in axle distances from the chassis frame."""
+"""[-] Positions of a privileged policy's heights, in axle distances from the chassis frame."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rewards:
-    """The terms of N rewards, which are their sum.
+    """The terms of N rewards; each reward is their sum.
 
     Attributes
     ----------
     progress : ndarray, shape (N,)
-        [m] By how much the robot has come closer to the goal.
+        [m] Progress towards the goal.
     shock : ndarray, shape (N,)
-        [m] Less the height of a fall to a velocity as large as the change of the chassis'.
+        [m] Minus the height of a free fall that reaches the change of the chassis' velocity.
     effort : ndarray, shape (N,)
-        [m] Less the height to which the work of all motors would lift the robot.
+        [m] Minus the height to which the work of all motors would lift the robot.
     ending : ndarray, shape (N,)
-        [m] `ENDING` once it has cleared, less so much once it has ended otherwise.
+        [m] `ENDING` after clearing, minus `ENDING` after any other termination.
     """
 
     progress: NDArray[np.float64]
@@ -77,19 +77,19 @@ class Task:
     Attributes
     ----------
     scenario : Scenario
-        Before anything is drawn.
+        The scenario before any draw.
     planner, world : Planner, World
-        What is drawn for each episode, and what it is drawn about.
+        Distributions for each episode, and the nominal values.
     dt : float
-        [s] Between two actions; the last one may have less.
+        [s] Time between two actions; the last one may be shorter.
     sees_heights : bool
-        Whether a policy sees the ground.
+        Whether the policy observes the ground.
     commands_angles : bool
-        Whether it commands angles of flippers, not rates.
+        Whether it commands flipper angles instead of rates.
     ends_when_stopped : bool
         Whether a stop ends an episode.
     weights : tuple of float
-        [-] Of shock and effort.
+        [-] Weights of shock and effort.
     """
 
     scenario: Scenario
@@ -120,7 +120,7 @@ class Task:
         Raises
         ------
         ScenarioError
-            If one of them breaks a rule.
+            If an argument breaks a rule.
         """
         scenario, vary = read_scenario(scenario, terrain, randomize)
         varied = Variation.read(scenario, vary, (), "randomize")
@@ -153,17 +153,17 @@ class Task:
 
     @functools.cached_property
     def ends(self) -> list[int]:
-        """Columns of the flippers that there are: 0 in front, 1 at the rear."""
+        """Columns of the existing flippers: 0 front, 1 rear."""
         return flipper_ends(self.scenario.robot)
 
     @functools.cached_property
     def offsets(self) -> NDArray[np.float64]:
-        """[m] Where a privileged policy sees the ground, from the chassis frame along x."""
+        """[m] Positions of a privileged policy's heights, along x from the chassis frame."""
         return self.scenario.robot.outline.axle_distance * _HEIGHTS
 
     @functools.cached_property
     def names(self) -> list[str]:
-        """Of the observed numbers."""
+        """Names of the observed numbers."""
         ends = [("front", "rear")[k] for k in self.ends]
         names = ["pitch", "pitch_rate", "track_speed"]
         names += [f"{end}_{what}" for what in ("angle", "torque") for end in ends]
@@ -171,7 +171,7 @@ class Task:
 
     @functools.cached_property
     def bounds(self) -> NDArray[np.float32]:
-        """Largest observed numbers; what is beyond is observed as this."""
+        """Limits of the observed numbers."""
         robot = self.scenario.robot
         bounds = [np.pi, _FASTEST_TURN, 2.0 * robot.drivetrain.max_speed]
         if robot.flippers:
@@ -186,7 +186,7 @@ class Task:
         Raises
         ------
         ScenarioError
-            If what was drawn breaks a rule.
+            If a drawn scenario breaks a rule.
         """
         paths = self.planner.variation.distributions
         rows = np.array([each.random(len(paths)) for each in generators])
@@ -212,7 +212,7 @@ class Task:
         return actions[:, 0] * full, values
 
     def observe(self, many: Simulations, states: States) -> NDArray[np.float32]:
-        """Return what a policy sees, shape (N, number of names); 0 for what is not finite."""
+        """Return the observations, shape (N, number of names), with 0 for non-finite numbers."""
         ends, (count,) = self.ends, states.time.shape
         seen = np.empty((count, len(self.names)))
         seen[:, 0] = _wrapped(states.chassis_angle)
@@ -229,7 +229,7 @@ class Task:
         return seen.astype(np.float32)
 
     def rewards(self, before: States, after: States) -> Rewards:
-        """Return the terms of the rewards of a step; 0 for one that has failed in it."""
+        """Return the terms of the rewards of a step; 0 for an episode that failed in it."""
         robot, gravity = self.scenario.robot, self.scenario.gravity
         of_shock, of_effort = self.weights
         change = ((after.velocity - before.velocity) ** 2).sum(axis=1)
@@ -238,8 +238,8 @@ class Task:
             power = after.flipper_torques[:, self.ends] * after.flipper_rates[:, self.ends]
             work += np.abs(power).sum(axis=1) * (after.time - before.time)
         ending = np.zeros(len(work))
-        for place in after.ended:
-            ending[place] = ENDING if after.outcome[place] == Outcome.CLEARED else -ENDING
+        for index in after.ended:
+            ending[index] = ENDING if after.outcome[index] == Outcome.CLEARED else -ENDING
         terms = Rewards(
             np.maximum(before.to_goal, 0.0) - np.maximum(after.to_goal, 0.0),
             change * (-of_shock / (2.0 * gravity)),
@@ -253,13 +253,13 @@ class Task:
 
 
 def flipper_ends(robot: Robot) -> list[int]:
-    """Return columns of the flippers that a robot has: 0 in front, 1 at the rear."""
+    """Return the columns of a robot's flippers: 0 front, 1 rear."""
     names = ("front", "rear")
     return [k for k in (0, 1) if robot.flippers and robot.flippers.ends in ("both", names[k])]
 
 
 def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[rad] The same angles from -pi to pi."""
+    """[rad] Wrap angles to the range from -pi to pi."""
     wrapped: NDArray[np.float64] = np.remainder(angles + np.pi, 2.0 * np.pi) - np.pi
     return wrapped
 

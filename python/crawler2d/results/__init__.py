@@ -1,1 +1,1 @@
-"""Results of a run, as data: outcome, diagnosis, figures, history."""
+"""Results of a run as data: outcome, diagnosis, metrics, history."""

@@ -1,4 +1,4 @@
-"""The diagnosis of a stop, and the sentence that states it."""
+"""The diagnosis of a stop, and its sentence."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _CHANGES = {
     "no belly": "without its belly",
     "flippers level": "flippers level",
 }
-"""The change of each trial in words; the controls change nothing."""
+"""The change of each trial in words; controls change nothing."""
 _ENDS = {
     Outcome.CLEARED: "clears",
     Outcome.TIPPED_OVER: "tips over",
@@ -67,40 +67,40 @@ _GRIPS = {
     "interlocked": ", with the flank of a grouser against it",
     "pinched": ", closing the gap around it",
 }
-"""What the mechanism adds to the bodies that bear on the ground inside."""
+"""What the mechanism adds to the text about the bodies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Diagnosis:
-    """Why a robot stopped although commanded to move; see `Run.diagnosis`.
+    """Why a robot stopped despite its command; see `Run.diagnosis`.
 
-    ``str(diagnosis)`` says it in a sentence. All forces, speeds and the pose are means over the
-    last one to two stop windows before `time`.
+    ``str(diagnosis)`` summarises it in a sentence. Forces, speeds and pose are means over the last
+    one to two stop windows before `time`.
 
     Attributes
     ----------
     outcome : Outcome
-        Which kind of stop it is, after what was tried: "seized" if the robot is `jammed` and a
-        closed track gets free, else the symptom; "timed_out" if it was `transient`.
+        Kind of stop, given the trials: "seized" if the robot is `jammed` and a closed track gets
+        free, else the symptom; "timed_out" if it was `transient`.
     symptom : Outcome
-        What is seen, before anything is tried: cycling, hung_up, stalled or slipping.
+        Kind of stop before any trial: cycling, hung_up, stalled or slipping.
     transient : bool
-        Whether the stop would not have lasted: the unchanged robot got free when it went on, or
-        when its track was rebuilt.
+        Whether the stop would not have lasted: the unchanged robot got free, or it did with its
+        track rebuilt.
     trials : tuple of TrialResult
         The trials so far and their results; `Run.trials` and `Run.what_if` add to it.
     freed_by : tuple of str
-        Names of those that freed the robot.
+        Names of the trials that freed the robot.
     reached_by_belt : bool or None
-        Whether a belt that was tried from the start came as far as the robot; None if none was.
+        Whether a belt tried from the start got as far as the robot; None if none was tried.
     belly_side : {"", "underside", "tail", "nose"}
-        Where the ground pushes against the belly: at its tail if the robot stands on that.
+        Side of the belly that the ground pushes on: "tail" if the robot stands on its tail.
     jammed : bool
-        Whether ground between two bodies of a track, deeper than their root circles, bears on that
-        track.
+        Whether ground between two bodies of a track, deeper than their root circles, presses on
+        that track.
     mechanism : Mechanism or None
-        How the most loaded ground inside the track is held, whether that is the reason or not. None
-        if there is no such ground, or if one body sticks to it and turns with it.
+        How the most loaded ground inside the track is held, whether or not it is the reason. None
+        without such ground, or if a single body sticks to it and turns with it.
     time, since : float
         [s] When the stop was examined, and when it began.
     position : tuple of float
@@ -109,27 +109,26 @@ class Diagnosis:
         [rad] Chassis angle, nose up > 0.
     intrusion : Intrusion or None
         The most loaded ground inside the track, if it carries more than `criteria.intrusion_load`:
-        where it is `jammed`, or else anywhere.
+        the jammed one if `jammed`, else any.
     contacts : Table
-        The contacts that bear: the columns of `Run.contacts` without `time` and `penetration`, plus
-        `slides` and `in_pocket`.
+        The load-bearing contacts: the columns of `Run.contacts` without `time` and `penetration`,
+        plus `slides` and `in_pocket`.
     belly_share : float
         [-] Fraction of the load that the belly carries.
     sliding_share : float
-        [-] Fraction of the normal force that is at contacts sliding at their friction limit.
+        [-] Fraction of the normal force at contacts that slide at their friction limit.
     stalled_share : float
-        [-] Fraction of the motors with ground contact that are at their torque limit.
+        [-] Fraction of motors at their torque limit, among those with ground contact.
     progress : float
-        [-] Fraction of the commanded distance made in the last stop window.
+        [-] Distance made in the last stop window, as a fraction of the commanded one.
     stationary : bool
-        The pose did not change.
+        Whether the pose stayed the same.
     imbalance : float or None
-        [-] Smallest residual force that any choice of contact forces leaves, as a fraction of the
-        weight.
+        [-] Smallest residual force over all admissible contact forces, as a fraction of the weight.
     certified : bool
-        The imbalance is within `criteria`: the pose may be an equilibrium.
+        Whether the imbalance is within `criteria`: forces can balance the pose.
     certificate : float or None
-        [-] The imbalance if it is, else None.
+        [-] The imbalance if certified, else None.
     """
 
     outcome: Outcome
@@ -154,7 +153,7 @@ class Diagnosis:
 
     @classmethod
     def from_core(cls, result: Mapping[str, Any]) -> Diagnosis:
-        """Convert the dictionary that the core returns, or one of an older file."""
+        """Convert a dictionary from the core or an older file."""
         values = dict(result)
         if "passing" in values:  # its former name, in files of November 2026
             values["transient"] = values.pop("passing")
@@ -179,16 +178,16 @@ class Diagnosis:
 
     @property
     def reached_by_belt(self) -> bool | None:
-        """Whether a belt came as far as the robot from the start; None if none was tried."""
+        """Whether a belt tried from the start got as far as the robot; None if none was tried."""
         starts = [tried.distance >= 0.0 for tried in self.trials if tried.is_from_the_start]
         return any(starts) if starts else None
 
     @property
     def belly_side(self) -> Literal["", "underside", "tail", "nose"]:
-        """Where the ground pushes against the belly; "" if it does not.
+        """Side of the belly that the ground pushes on; "" if it does not.
 
-        At the tail or the nose if it pushes along the belly more than away from its underside: so
-        it does when a robot stands on the tail of its hull.
+        "tail" or "nose" if it pushes along the belly more than up from its underside, as when a
+        robot stands on the tail of its hull.
         """
         on_belly = self.contacts["body_kind"] == BodyKind.BELLY
         force = self.contacts["normal_force"][on_belly]
@@ -210,14 +209,14 @@ class Diagnosis:
         return values
 
     def __str__(self) -> str:
-        """Say it in one sentence."""
+        """Summarise it in one sentence."""
         return sentence(self)
 
 
 def sentence(d: Diagnosis) -> str:
     """Describe a stop, then the trials.
 
-    Each clause states one fact; what follows from the outcome or from another clause is left out.
+    Each clause states one fact; facts that follow from the outcome or another clause are left out.
     """
     clauses = (_intrusion, _bearers, _belly, _drives, _progress, _balance)
     facts = ": ".join(filter(None, (_head(d), "; ".join(filter(None, (f(d) for f in clauses))))))
@@ -228,7 +227,7 @@ def sentence(d: Diagnosis) -> str:
 
 
 def trial_text(d: Diagnosis, tried: TrialResult) -> str:
-    """Describe the change and the result of a trial; empty for a control."""
+    """Describe change and result of a trial; empty for a control."""
     return f"{_CHANGES[tried.name]}: {_result(d, tried)}" if tried.name in _CHANGES else ""
 
 
@@ -245,7 +244,7 @@ def _word(outcome: Outcome) -> str:
 
 
 def _continuation(d: Diagnosis) -> str:
-    """Say which control got out of a transient stop."""
+    """Name the control that got out of a transient stop."""
     control = next(tried for tried in d.trials if tried.freed)
     by_itself = control.name == "unchanged"
     text = "It goes on by itself" if by_itself else "With its track rebuilt it goes on"
@@ -253,7 +252,7 @@ def _continuation(d: Diagnosis) -> str:
 
 
 def _belt_limit(d: Diagnosis) -> str:
-    """Say so if no belt that was tried from the start came to the stop, or none got past it."""
+    """Say if no belt tried from the start reached the stop, or got past it."""
     starts = [tried for tried in d.trials if tried.is_from_the_start]
     if not starts or any(map(_is_past, starts)):
         return ""
@@ -287,7 +286,7 @@ def _result(d: Diagnosis, tried: TrialResult) -> str:
 
 
 def _advance(tried: TrialResult) -> str:
-    """Say how far ahead or short of the stop a trial ended."""
+    """Describe how far ahead or short of the stop a trial ended."""
     if abs(tried.distance) < _LEAST_DEPTH:
         return ""
     direction = "further on" if tried.distance > 0.0 else "short of here"
@@ -307,7 +306,7 @@ def _end(d: Diagnosis, tried: TrialResult) -> str:
 
 
 def _is_jammed_elsewhere(d: Diagnosis, tried: TrialResult) -> bool:
-    """Whether a trial ended in a jam at another edge, or in another track, than the stop."""
+    """Whether a trial ended in a jam at another edge or in another track than the stop."""
     was, jam = d.intrusion, tried.intrusion
     if not tried.jammed or jam is None:
         return False
@@ -316,7 +315,7 @@ def _is_jammed_elsewhere(d: Diagnosis, tried: TrialResult) -> bool:
 
 
 def _intrusion(d: Diagnosis) -> str:
-    """Say which ground is inside the track, and where, unless the head says that."""
+    """Describe the ground inside the track, and its position unless already given."""
     piece = d.intrusion
     if piece is None:
         return ""
@@ -342,7 +341,7 @@ def _track(piece: Intrusion) -> str:
 
 
 def _where(piece: Intrusion) -> str:
-    """Say between which bodies a piece of ground is."""
+    """Name the bodies on either side of a piece of ground."""
     rear, front = sorted(piece.bodies)
     kind = BodyKind(piece.body_kinds[0])
     if rear != front and kind.is_in_chain:
@@ -362,7 +361,7 @@ def _in_chain(piece: Intrusion) -> list[str]:
 
 
 def _bearers(d: Diagnosis) -> str:
-    """Say which bodies bear on the ground inside the track, most loaded first."""
+    """Describe the bodies that press on the ground inside the track, most loaded first."""
     inside = d.contacts["in_pocket"].astype(bool)
     bodies, forces = d.contacts["body"][inside], d.contacts["normal_force"][inside]
     slides = d.contacts["slides"][inside].astype(bool)
@@ -386,12 +385,12 @@ def _bearers(d: Diagnosis) -> str:
 
 
 def end_text(outcome: Outcome) -> str:
-    """Say how a trial ends, in the present tense."""
+    """Describe how a trial ends, in the present tense."""
     return _ENDS[outcome]
 
 
 def body_name(d: Diagnosis, body: int) -> str:
-    """Name a body that bears in a stop."""
+    """Name a load-bearing body."""
     kinds = d.contacts["body_kind"][d.contacts["body"] == body]
     kind = BodyKind(kinds[0]) if len(kinds) else BodyKind.WHEEL
     return _NAMES.get(kind, f"wheel {body}")
@@ -412,7 +411,7 @@ def _belly(d: Diagnosis) -> str:
 
 
 def _drives(d: Diagnosis) -> str:
-    """Describe motors and surfaces, unless the ground inside the track implies it."""
+    """Describe motors and surfaces, unless implied by the ground inside the track."""
     if d.stalled_share > 0.0:
         of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
         return f"{of}the motors are at their torque limit"
@@ -433,7 +432,7 @@ def _progress(d: Diagnosis) -> str:
 
 
 def _balance(d: Diagnosis) -> str:
-    """Say if the forces do not balance."""
+    """State if the forces do not balance."""
     if d.certified:
         return ""
     if d.imbalance is None:
@@ -447,7 +446,7 @@ def _percent(fraction: float) -> str:
 
 
 def vocabulary() -> dict[str, Any]:
-    """List words and limits of the sentence, for a page that writes it of the core's own data."""
+    """List words and limits of the sentence, for pages that write it from the core's data."""
     return {
         "names": {kind.value: name for kind, name in _NAMES.items()},
         "in_chain": [kind.value for kind in BodyKind if kind.is_in_chain],

@@ -1,4 +1,4 @@
-"""What is found about a stop: intrusions, trials, and whether forces could balance it."""
+"""Findings about a stop: intrusions, trials, and its balance of forces."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["Balance", "Intrusion", "Mechanism", "Pull", "TrialResult"]
 
 
 class Mechanism(StrEnum):
-    """How the ground inside the track is held; the first that applies, in this order."""
+    """How ground inside the track is held; the first that applies, in this order."""
 
     FOULED = "fouled"
     PINCHED = "pinched"
@@ -40,7 +40,7 @@ class Intrusion:
     Attributes
     ----------
     edge : int
-        The convex edge that reaches deepest.
+        The deepest convex edge.
     edges : tuple of int
         All edges of the piece, from left to right.
     bodies : tuple of int
@@ -48,15 +48,15 @@ class Intrusion:
     body_kinds : tuple of int
         Kinds of these bodies, as in the contacts.
     side : {"both", "left", "right"}
-        Which track it is in; "both" where the tracks meet the same ground.
+        The track that it is in; "both" if the tracks are on the same ground.
     carrier : {"chassis", "front flipper", "rear flipper"}
-        What carries that track.
+        The part that carries that track.
     depth, root_depth : float
-        [m] Depth inside the belt round the circumscribed circles and round the root circles.
+        [m] Depths inside the belts round the circumscribed circles and the root circles.
     x, y : float
-        [m] The deepest point.
+        [m] Position of the deepest point.
     force : float
-        [N] Mean normal force of the track on the piece; the belly jams nothing.
+        [N] Mean normal force of the track, without the belly, on the piece.
     """
 
     edge: int
@@ -81,34 +81,34 @@ class TrialResult:
     name : str
         What was changed.
     freed : bool
-        Whether that freed the robot: within `duration` it cleared, or got ahead of its greatest x
-        by `criteria.escape_distance` and did not tip over, leave the terrain or throw its track
-        afterwards.
+        Whether that freed the robot: within `duration` it cleared, or got
+        `criteria.escape_distance` beyond its greatest x, and did not tip over, leave the terrain or
+        throw its track afterwards.
     starts, freeing : int
-        From how many instants it was tried, and from how many of these it freed the robot. A robot
-        that stands still is tried from one; one that rattles from up to five, a fifth of a stop
+        Number of instants from which it was tried, and how many of these freed the robot. A
+        stationary robot is tried from one; a rattling robot from up to five, a fifth of a stop
         window apart, of which four must free it.
     distance : float
-        [m] How far the robot got ahead of its greatest x; less than 0 if it did not come so far.
+        [m] Advance beyond the greatest x before the stop; below 0 if it fell short.
     time : float
-        [s] How long it took to get free; inf if it did not.
+        [s] Time to get free; inf if it did not.
     outcome : Outcome
-        How it ended: cleared, tipped over, timed out while it was moving, or what was seen of the
-        next stop, of which nothing was tried.
+        How it ended: cleared, tipped over, timed out while moving, or the symptom of the next stop,
+        without trials.
     jammed : bool
         Whether it ended in a stop with ground jammed between two bodies of a track.
     intrusion : Intrusion or None
-        The most loaded ground inside the track in that stop: where it is jammed, or else anywhere.
+        The most loaded ground inside the track in that stop: the jammed one if `jammed`, else any.
     duration : float
-        [s] For how long it was tried, unless it ended before: `criteria.escape_time` plus the time
-        in which it would drive `criteria.escape_distance` as commanded, or from the start of the
-        run on as long as the run may last.
+        [s] Length of the trial, unless it ended early: `criteria.escape_time` plus the time needed
+        to drive `criteria.escape_distance` as commanded, or, from the start of the run, the
+        scenario's duration.
     position : tuple of float
-        [m] Of the chassis frame at its end.
+        [m] Position of the chassis frame at the end.
     chassis_angle : float
-        [rad] Chassis angle then, nose up > 0.
+        [rad] Chassis angle at the end, nose up > 0.
     flipper_angles : tuple of float
-        [rad] Of each pair of flippers then, the front first, upwards > 0.
+        [rad] Angle of each pair of flippers at the end, front first, upwards > 0.
     """
 
     name: str
@@ -135,26 +135,26 @@ class TrialResult:
 
     @property
     def is_from_the_start(self) -> bool:
-        """Whether the robot started where its run did, and not in the pose of the stop."""
+        """Whether it began at the start of the run instead of the pose of the stop."""
         return self.name.endswith(", from the start")
 
 
 _TRIED = (0.02, 5.0)
-"""Factors of the friction between which the core searches."""
+"""Range of factors of the friction that the core searches."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pull:
-    """A contact that would have to hold the robot down.
+    """A contact that would have to pull for equilibrium.
 
     Attributes
     ----------
     body : int
-        As in the contacts.
+        Number of the body, as in the contacts.
     point : tuple of float
-        [m] Where.
+        [m] Position.
     force : float
-        [N] By how much.
+        [N] Pulling force.
     """
 
     body: int
@@ -166,22 +166,22 @@ class Pull:
 class Balance:
     """Whether the pose of a stop is an equilibrium of rigid bodies with Coulomb friction.
 
-    Only pose, contacts and what slides there are taken from the run; the forces are found anew, by
-    linear programming: sliding contacts have friction at its limit, against their slip, others any
-    within it; motors have any force within theirs, and the ground only pushes.
+    Only pose, contacts and their sliding come from the run; linear programming finds the forces.
+    Sliding contacts have friction at its limit, against their slip; other contacts any friction
+    within the limit; motors any force within theirs; and the ground only pushes.
 
     Attributes
     ----------
     imbalance : float
-        [-] Smallest residual force that any choice of forces leaves, as a fraction of the weight.
+        [-] Smallest residual force over all admissible forces, as a fraction of the weight.
     tolerance : float
         [-] Largest imbalance of an equilibrium: `criteria.imbalance`, or `criteria.mean_imbalance`
-        for a robot that does not stand still.
+        for a robot that is not stationary.
     holds_between : tuple of two floats, or None
-        [-] By which factors of the friction the pose is an equilibrium: the interval nearest to 1,
-        searched from 0.02 to 5; beyond these 0 and inf. None if it is one at none of them.
+        [-] Factors of the friction for which the pose is an equilibrium: the interval nearest to 1,
+        searched from 0.02 to 5; 0 and inf if it extends beyond. None if there is none.
     pulls : tuple of Pull
-        The contacts that would have to pull, in the balance in which they pull least; () in an
+        The contacts that would have to pull, for the balance with the least pull; () in an
         equilibrium.
     """
 
@@ -203,11 +203,11 @@ class Balance:
         return self.imbalance <= self.tolerance
 
     def __str__(self) -> str:
-        """Say it in a few words."""
+        """Describe it briefly."""
         return self.describe([f"body {pull.body}" for pull in self.pulls])
 
     def describe(self, names: Sequence[str]) -> str:
-        """Say it, with the names of the bodies that would have to pull."""
+        """Describe it, with the names of the bodies that would have to pull."""
         if self.holds:
             return f"an equilibrium{self._friction_range()}"
         text = (
@@ -220,7 +220,7 @@ class Balance:
         return f"{text}; it would be one{self._friction_range()}"
 
     def _friction_range(self) -> str:
-        """Say at which friction it holds."""
+        """Describe the range of friction for which it holds."""
         if self.holds_between is None:
             return ""
         low, high = self.holds_between

@@ -1,4 +1,4 @@
-"""How a run ended, and the words of a diagnosis with their meanings."""
+"""Outcomes of runs, and the terms of a diagnosis with their meanings."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OUTCOMES = {
     "slipping": "stopped while the track slips",
     "timed_out": "the time was over while the robot was moving, or in a transient stop",
 }
-"""How a run can end; if several apply, the first."""
+"""Outcomes of a run; if several apply, the first."""
 
 _ENDING = {
     "detracked": "throwing the track",
@@ -62,7 +62,7 @@ TRIALS = {
     "no belly": "the belly is taken off",
     "flippers level": "the flippers turn to angle 0",
 }
-"""What is changed at a stop, one thing at a time."""
+"""The change that each trial makes at a stop."""
 
 
 def rate_label(outcome: str) -> str:
@@ -77,7 +77,7 @@ def rate_label(outcome: str) -> str:
 
 
 def glossary_text(words: dict[str, str], indent: str = "") -> str:
-    """List words and their meanings for a docstring, all lines but the first indented."""
+    """List terms and meanings for a docstring, with all lines but the first indented."""
     return f"\n{indent}".join(f"- {word}: {meaning}" for word, meaning in words.items())
 
 
@@ -105,7 +105,7 @@ class Outcome(StrEnum):
 
     @property
     def is_stop(self) -> bool:
-        """Whether the robot made no progress although commanded to move."""
+        """Whether the robot made no progress despite its command."""
         return self in _STOPS
 
     @property

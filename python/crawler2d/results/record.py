@@ -1,4 +1,4 @@
-"""The results of a run as data: outcome, metrics, history, and its row in tables and stores."""
+"""Results of a run as data: outcome, metrics, history, and the row in tables and stores."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ __all__ = ["NO_RESULT", "Record", "Row", "diagnosis_json", "read_diagnosis"]
 
 
 _BUILD: Mapping[str, Any] = MappingProxyType(_core.build_info())
-"""What all runs of this process share."""
+"""The build that all runs of this process share."""
 
 
 class _History:
@@ -55,18 +55,18 @@ class _History:
 
 
 class Record:
-    """The data of a `Run`, which documents them; pictures need nothing else.
+    """The data of a `Run`, documented there; pictures need nothing else.
 
     Parameters
     ----------
     scenario : Scenario
-        What was simulated.
+        The simulated scenario.
     result : mapping
-        Results that the core returned.
+        Results from the core.
     error : Crawler2dError, optional
         The reason if there is no result.
     parent : tuple of Scenario and float, optional
-        For a branch, or a run of a `Simulation`: the scenario it set out from, and when [s].
+        For a branch, or a run of a `Simulation`: the scenario it started from, and when [s].
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class Record:
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
         self.wall_time: float = result.get("wall_time", 0.0)
-        build = result.get("build", _BUILD)  # a loaded run may have that of another core
+        build = result.get("build", _BUILD)  # a loaded run may have another build
         self.build = _BUILD if build == _BUILD else MappingProxyType(dict(build))
         self._trace = {name: freeze_array(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
@@ -94,7 +94,7 @@ class Record:
     def reason(self) -> str:
         """Why the robot did not clear, in a sentence; empty if it did.
 
-        For a stop it is the diagnosis; for a tip-over the run is simulated once more.
+        For a stop it is the diagnosis; for a tip-over the run is simulated again.
 
         Examples
         --------
@@ -105,13 +105,13 @@ class Record:
         """
         if self.error is not None:
             return str(self.error)
-        if self.diagnosis is not None:  # to which further trials are added
+        if self.diagnosis is not None:  # further trials are added to it
             return str(self.diagnosis)
         return self._reason_without_stop
 
     @cached_property
     def _reason_without_stop(self) -> str:
-        """Why a run that has a result and did not stop did not clear."""
+        """Why a run with a result neither cleared nor stopped."""
         metrics, after, text = self.metrics, f"after {self.metrics['time']:.2f} s", ""
         match self.outcome:
             case Outcome.TIPPED_OVER:
@@ -135,12 +135,12 @@ class Record:
 
     @property
     def mechanism(self) -> Mechanism | None:
-        """How ground inside the track is held, if the run ended in a stop with such ground."""
+        """How ground inside the track is held, if the run stopped with such ground."""
         return None if self.diagnosis is None else self.diagnosis.mechanism
 
     @property
     def is_creeping(self) -> bool:
-        """Whether its final progress was between `criteria.creep_from` and `criteria.creep_to`."""
+        """Whether the final progress was between `criteria.creep_from` and `criteria.creep_to`."""
         criteria = self.scenario.criteria
         progress = self.metrics.get("progress", 1.0)
         return criteria.creep_from <= progress < criteria.creep_to
@@ -156,12 +156,10 @@ class Record:
     chassis_angle = _History("[rad] Nose up > 0, shape (n,).")
     angular_velocity = _History("[rad/s] Rate of change of the chassis angle, shape (n,).")
     commanded_speed = _History(
-        "[m/s] Set-point of the drivetrain, within its acceleration limits, shape (n,)."
+        "[m/s] Set point of the drivetrain, after its acceleration limits, shape (n,)."
     )
     track_speed = _History("[m/s] Surface speed of the track, mean over the drives, shape (n,).")
-    track_position = _History(
-        "[m] How far the track surface has run, mean over the drives, shape (n,)."
-    )
+    track_position = _History("[m] Travel of the track surface, mean over the drives, shape (n,).")
     slip_ratio = _History("[-] 1 - v / track_speed, 0 where the track stands still, shape (n,).")
     tractive_effort = _History(
         "[N] Force of the ground along the driven surfaces, mean of the interval, shape (n,)."
@@ -172,9 +170,7 @@ class Record:
     drive_speeds = _History(
         "[m/s] Surface speed of each of the k drives, motors before free wheels, shape (n, k)."
     )
-    drive_positions = _History(
-        "[m] How far the surface of each of the k drives has run, shape (n, k)."
-    )
+    drive_positions = _History("[m] Travel of the surface of each of the k drives, shape (n, k).")
     drive_forces = _History(
         "[N] Motor force of each drive, 0 for free wheels, mean of the interval, shape (n, k)."
     )
@@ -191,25 +187,25 @@ class Record:
         "[rad] Angle of the flippers at each of k ends, front first, upwards > 0, shape (n, k)."
     )
     flipper_torques = _History(
-        "[N m] Of the flipper motors, both sides together, upwards > 0, last step; (n, k)."
+        "[N m] Torque of the flipper motors, both sides, upwards > 0, last step, shape (n, k)."
     )
 
     @property
     def bodies(self) -> Table:
-        """Bodies of the robot, one row each, in the order of `poses`; computed when asked for.
+        """Bodies of the robot, one row each, in the order of `poses`; computed on access.
 
-        First come those that can meet the ground: row k is the `body` k of the contacts. After them
-        come the wheels within belts and guides, which meet nothing.
+        Bodies that can touch the ground come first: row k is `body` k of the contacts. Then come
+        the wheels inside belts and guides, which touch nothing.
 
         =========  ====  ==========================================================================
         column     unit  meaning
         =========  ====  ==========================================================================
-        `body`           as in the contacts; -1: it meets nothing
+        `body`           as in the contacts; -1: touches nothing
         `kind`           code of a `BodyKind`
         `lane`           code of the `Lane` of its track
         `carrier`        "chassis", "front flipper" or "rear flipper"
         `shoe`           number of the shoe that it belongs to, as in `shoe_poses`; -1: none
-        `radius`   m     of a circle; nan where it is none
+        `radius`   m     radius of a circle; NaN for other shapes
         `outline`  m     corners in its own frame, counter-clockwise, shape (m, 2)
         =========  ====  ==========================================================================
         """
@@ -219,14 +215,14 @@ class Record:
     def poses(self) -> NDArray[np.float64]:
         """[m, m, rad] Origin x, y and angle of the frame of each of k bodies, shape (n, k, 3).
 
-        They are computed from the history when asked for: keep them while you need them. Angles
-        count full turns, so poses may be interpolated between samples. Belts, skids, the guide and
-        the belly have the frame of what carries them; a belt's surface moves within its outline.
-        The idler of a chain is where it is built.
+        Computed from the history on every access, so keep the result. Angles count full turns, so
+        poses may be interpolated between samples. Belts, skids, the guide and the belly have the
+        frame of the part that carries them; a belt's surface moves within its outline. The idler of
+        a chain is shown without the motion of its tensioner.
 
         Examples
         --------
-        Where the outline of the second wheel from the rear is in the end:
+        Final position of the outline of the second wheel from the rear:
 
         >>> import numpy as np
         >>> import crawler2d as c2d
@@ -256,7 +252,7 @@ class Record:
         raise AttributeError(message, name=name, obj=self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the data; arrays are read-only in the copy, too."""
+        """Pickle the data; arrays stay read-only in the copy."""
         result = {
             "outcome": self.outcome,
             "diagnosis": None if self.diagnosis is None else self.diagnosis.to_dict(),
@@ -281,10 +277,10 @@ class Record:
 
     @property
     def ending(self) -> str:
-        """How it ended, in a few words, and when.
+        """How and when the run ended, in a few words.
 
-        A run goes on for some time once a goal is reached or a stop has begun: the time is that of
-        the goal, or when the stop began.
+        A run continues for a while after it reaches the goal or a stop begins: the time given is
+        that of the goal or of the beginning of the stop.
         """
         if self.error is not None:
             return type(self.error).__name__
@@ -296,9 +292,9 @@ class Record:
 
     @property
     def provenance(self) -> str:
-        """What made it: the version of crawler2d and the identity of the scenario, for files.
+        """Version of crawler2d and identity of the scenario, to mark files.
 
-        Films have it as their comment, and pages in their last line. Identities include seeds.
+        It is the comment of films and the last line of pages. Identities include seeds.
 
         Raises
         ------
@@ -324,7 +320,7 @@ class Record:
 
     @property
     def subject(self) -> str:
-        """What ran, in one line."""
+        """Robot and ground, in one line."""
         robot, terrain = self.scenario.robot, self.scenario.terrain
         kinds = (_kind(getattr(robot, "track", None)), _kind(terrain))
         return ", ".join(map(str, (getattr(robot, "name", robot), *kinds)))
@@ -336,7 +332,7 @@ def _kind(part: object) -> str:
 
 
 NO_RESULT = ("diverged", "refused", "failed")
-"""Outcomes of runs without a result: non-finite state, broken rule, any other error."""
+"""Outcomes of runs without a result: non-finite state, broken rule, other error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -346,15 +342,15 @@ class Row:
     Attributes
     ----------
     identity : str
-        Of its scenario; "" if that breaks a rule.
+        Identity of the scenario; "" if it breaks a rule.
     scenario : str
-        Its JSON text; "" if it breaks a rule.
+        The scenario as JSON; "" if it breaks a rule.
     outcome : str
         How it ended, or one of `NO_RESULT`.
     metrics : mapping of str to float
         As in `Run.metrics`; empty without a result.
     diagnosis : mapping, optional
-        Of a stop, as `Diagnosis.from_core` reads it.
+        Diagnosis of a stop, as read by `Diagnosis.from_core`.
     wall_time : float
         [s] Computing time on one thread; nan without a result.
     error : Crawler2dError, optional
@@ -371,7 +367,7 @@ class Row:
 
     @classmethod
     def of_result(cls, identity: str, scenario: str, result: Mapping[str, Any]) -> Row:
-        """Take what the core returned for a scenario."""
+        """Make a row from the core's result for a scenario."""
         error = result.get("error")
         if error is not None:
             return cls.of_error(own_error(error), identity, scenario)
@@ -386,20 +382,20 @@ class Row:
 
     @classmethod
     def of_error(cls, error: Crawler2dError, identity: str = "", scenario: str = "") -> Row:
-        """Take a run without a result."""
+        """Make a row for a run without a result."""
         diverged, refused, failed = NO_RESULT
         match error:
             case SimulationDiverged():
                 outcome = diverged
             case ScenarioError():
                 outcome = refused
-            case _:  # out of memory, or a fault of the program
+            case _:  # out of memory, or a bug
                 outcome = failed
         return cls(identity, scenario, outcome, {}, error=error)
 
     @classmethod
     def of_record(cls, run: Record) -> Row:
-        """Take a run that was simulated alone or in a batch."""
+        """Make a row from a run."""
         try:
             text, identity = run.scenario.to_json(), run.scenario.identity
         except ScenarioError:
@@ -419,7 +415,7 @@ def _diagnosis_of(values: Mapping[str, Any] | None) -> Diagnosis | None:
 
 
 def diagnosis_json(diagnosis: Mapping[str, Any]) -> str:
-    """Write a diagnosis as JSON, no bit lost."""
+    """Write a diagnosis as JSON with exact numbers."""
     return json.dumps(diagnosis, default=np.ndarray.tolist, separators=(",", ":"))
 
 
@@ -434,6 +430,6 @@ def read_diagnosis(text: str) -> dict[str, Any]:
         if inside := each.get("intrusion"):
             inside.update({name: tuple(inside[name]) for name in ("edges", "bodies", "body_kinds")})
     if values["mechanism"] == "bellied":
-        # Earlier builds used it for ground that only the belly rests on.
+        # Earlier builds used this name for ground that only the belly rests on.
         values["mechanism"] = None
     return values

@@ -1,4 +1,4 @@
-"""A run in one file: arrays in NumPy's .npz, texts as JSON, nothing pickled."""
+"""A run in one file: arrays in NumPy's .npz, text as JSON, nothing pickled."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["SIGNATURE", "check_suffix", "read_open_run", "read_run", "write_run"
 R = TypeVar("R")
 
 SIGNATURE = b"PK\x03\x04"
-"""How a .npz begins, which is a zip file."""
+"""First bytes of a .npz, which is a zip file."""
 
 _SUFFIX = ".npz"
 _FORMAT = "crawler2d run"
@@ -41,12 +41,12 @@ _OTHER = "is not a saved run: Run.save writes them, and Scenario.from_json reads
 
 
 def check_suffix(path: Path, name: str) -> None:
-    """Refuse a place whose suffix is that of another format, under the name of an argument.
+    """Refuse a path with the suffix of another format; `name` is the argument's.
 
     Raises
     ------
     ScenarioError
-        If it has one.
+        If the suffix is wrong.
     """
     if path.suffix.lower() not in ("", _SUFFIX):
         rule = f"must end in {_SUFFIX}, the format of saved runs, or have no suffix"
@@ -91,33 +91,33 @@ def write_run(run: Record, path: Path) -> None:
 
 
 def _is_text(column: np.ndarray[Any, Any]) -> bool:
-    """Whether a column holds texts or tuples."""
+    """Whether a column holds strings or tuples."""
     return column.dtype.kind in "OU"
 
 
 def _texts(columns: Mapping[str, np.ndarray[Any, Any]]) -> dict[str, list[Any] | None]:
-    """List the columns of a table in order, with the values of those that are no arrays."""
+    """List the columns of a table in order, with the values of those that are not arrays."""
     return {name: each.tolist() if _is_text(each) else None for name, each in columns.items()}
 
 
 def read_run(path: str | os.PathLike[str], make: Callable[..., R]) -> R:
-    """Read what `write_run` wrote; see `crawler2d.load`.
+    """Read a file of `write_run`; see `crawler2d.load`.
 
     Parameters
     ----------
     path : str or path-like
         The file.
     make : callable
-        Takes what `Record` does.
+        Called like `Record`.
 
     Raises
     ------
     StoreError
-        If the file cannot be read, or is no run, damaged or of a newer format.
+        If the file cannot be read, is not a run, is damaged or has a newer format.
     """
     try:
-        # A number would be an open file of this process, which would be closed.
-        file = open(os.fspath(path), "rb")  # noqa: SIM115 - what fails later is another fault
+        # A number would be a file descriptor of this process, and would be closed.
+        file = open(os.fspath(path), "rb")  # noqa: SIM115 - later errors have other causes
     except OSError as error:
         raise StoreError(f"{path} cannot be read: {error.strerror or error}") from None
     with file:
@@ -125,7 +125,7 @@ def read_run(path: str | os.PathLike[str], make: Callable[..., R]) -> R:
 
 
 def read_open_run(file: IO[bytes], path: str | os.PathLike[str], make: Callable[..., R]) -> R:
-    """Read a run from a file that is open, or its content; see `read_run`."""
+    """Read a run from an open file or its content; see `read_run`."""
     if file.read(len(SIGNATURE)) != SIGNATURE:
         raise StoreError(f"{path} {_OTHER}")
     file.seek(0)
@@ -135,16 +135,16 @@ def read_open_run(file: IO[bytes], path: str | os.PathLike[str], make: Callable[
             return make(*_arguments(entries, about, path))
     except StoreError:
         raise
-    except Exception as error:  # there is no end to what a changed file may raise
+    except Exception as error:  # a changed file may raise anything
         fault = f"{type(error).__name__}: {error}"
         raise StoreError(f"{path} is damaged ({fault}): {_AGAIN}") from error
 
 
 def _entries(file: Any, path: str | os.PathLike[str]) -> Any:
-    """Open the arrays of a file whose checksums are right."""
+    """Open the arrays of a file after checking its checksums."""
     try:
         entries = np.load(file, allow_pickle=False)
-        if entries.zip.testzip() is None:  # before anything is made of it
+        if entries.zip.testzip() is None:  # before using any of it
             return entries
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError):
         pass
@@ -152,7 +152,7 @@ def _entries(file: Any, path: str | os.PathLike[str]) -> Any:
 
 
 def _about(entries: Any, path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read what the file says of itself, and whether this program can read the rest."""
+    """Read the header, and check that this version can read the rest."""
     try:
         about = json.loads(str(entries["about"]))
     except (KeyError, ValueError):
@@ -170,7 +170,7 @@ def _about(entries: Any, path: str | os.PathLike[str]) -> dict[str, Any]:
 def _arguments(
     entries: Any, about: dict[str, Any], path: str | os.PathLike[str]
 ) -> tuple[Scenario, dict[str, Any], None, tuple[Scenario, float] | None]:
-    """Read what a `Record` is made of."""
+    """Read the arguments of a `Record`."""
     tables = {
         table: {
             name: entries[f"{table}/{name}"] if texts is None else texts

@@ -1,4 +1,4 @@
-"""How a robot tipped over, and which changes would have kept it upright."""
+"""How a robot tipped over, and what would have kept it upright."""
 
 from __future__ import annotations
 
@@ -25,30 +25,30 @@ _SHIFTS = (0.02, 0.05, 0.1, 0.2)
 
 @dataclass(frozen=True, kw_only=True)
 class TipOver:
-    """How a robot tipped over, and what would have held it; see `Run.tip_over`.
+    """How a robot tipped over, and what would have prevented it; see `Run.tip_over`.
 
-    ``str(tip_over)`` says it in some sentences. The instant is the last one at which the centre of
-    mass was ahead of the rearmost contact, or of a fall forwards behind the foremost one. That may
-    be the end of the run, if the robot is driven over without losing its balance.
+    ``str(tip_over)`` summarises it in a few sentences. `time` is the last instant at which the
+    centre of mass was ahead of the rearmost contact (for a fall forwards: behind the foremost one).
+    It may be the end of the run, if the robot is driven over without losing its balance.
 
     Attributes
     ----------
     backwards : bool
-        Whether it went over its rear, nose up.
+        Whether it tipped over its rear, nose up.
     time : float
-        [s] The instant.
+        [s] When it lost its balance.
     end : float
         [s] When the chassis tilted by more than `criteria.tip_over_angle`, and the run ended.
     chassis_angle : float
-        [rad] Chassis angle then, nose up > 0.
+        [rad] Chassis angle at `time`, nose up > 0.
     center_of_mass : tuple of float
-        [m] Centre of mass of the whole robot then.
+        [m] Centre of mass of the whole robot at `time`.
     pivot : tuple of float
-        [m] The outermost contact that bore then on the side to which it fell.
+        [m] The outermost load-bearing contact at `time`, on the side to which it fell.
     tried : tuple of (str, Outcome)
-        What was changed from the start of the run on, and how that run ended: half of the speed, a
-        tenth of it, and the centre of mass moved away from the pivot by 2, 5, 10 and 20 % of the
-        axle distance, until the robot did not tip over.
+        Each change, made from the start of the run, and the outcome of that run: half and a tenth
+        of the speed, and the centre of mass moved away from the pivot by 2, 5, 10 and 20 % of the
+        axle distance, until the robot stayed upright.
     """
 
     backwards: bool
@@ -65,7 +65,7 @@ class TipOver:
         return tuple(change for change, end in self.tried if end is not Outcome.TIPPED_OVER)
 
     def __str__(self) -> str:
-        """Say it in some sentences."""
+        """Describe it in a few sentences."""
         direction, nose = ("backwards", "up") if self.backwards else ("forwards", "down")
         beyond, last = ("behind", "rearmost") if self.backwards else ("beyond", "foremost")
         did = f"passed {beyond}" if self.time < self.end else f"did not get {beyond}"
@@ -80,14 +80,14 @@ class TipOver:
 
 
 def find_tip_over(scenario: Scenario, *, try_changes: bool) -> TipOver | None:
-    """Simulate a scenario and say how it tipped over; None if it did not.
+    """Simulate a scenario and find how it tipped over; None if it did not.
 
     Parameters
     ----------
     scenario : Scenario
         What is simulated.
     try_changes : bool
-        Whether to try what would have held it, which takes up to six more runs.
+        Whether to try what would have prevented it, which takes up to six more runs.
     """
     fields = _core.tip_over(scenario.to_json())
     if fields is None:
@@ -97,7 +97,7 @@ def find_tip_over(scenario: Scenario, *, try_changes: bool) -> TipOver | None:
 
 
 def _try_changes(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, Outcome]]:
-    """Yield each change, and how the run then ends."""
+    """Yield each change and the outcome of its run."""
     for change, fraction in _SLOWER.items():
         yield change, _outcome(_slower(scenario, fraction))
     length = scenario.robot.outline.axle_distance
@@ -112,7 +112,7 @@ def _try_changes(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, 
 
 
 def _slower(scenario: Scenario, fraction: float) -> Scenario:
-    """Drive the same way in more time: flippers, too, are moved at the same places."""
+    """Drive the same route in more time: flippers also move at the same positions."""
     drive = scenario.drive
     changes: dict[str, Any] = {
         "drive.speed": fraction * drive.speed,
@@ -127,7 +127,7 @@ def _slower(scenario: Scenario, fraction: float) -> Scenario:
 
 
 def _stretched(schedule: Sequence[tuple[float, float]], fraction: float) -> Any:
-    """Move the times of a schedule apart; None if all are later than a run can last."""
+    """Stretch the times of a schedule; None if all are later than a run can last."""
     return [(t / fraction, to) for t, to in schedule if t / fraction <= _LONGEST] or None
 
 

@@ -27,7 +27,7 @@ class BatchInterrupted(KeyboardInterrupt):
     runs : sequence of Run
         One per scenario, in order. An unfinished run has a `RunUnfinished` as its `error`.
     store : str
-        The file that keeps the finished runs; "" if there is none.
+        File that holds the finished runs; "" if there is none.
     """
 
     runs: list[Run]
@@ -39,7 +39,7 @@ class BatchInterrupted(KeyboardInterrupt):
         self.store = store
 
     def __str__(self) -> str:
-        """Say how many runs were finished."""
+        """Return how many runs were finished."""
         finished = sum(not isinstance(run.error, RunUnfinished) for run in self.runs)
         kept = f"{self.store} keeps them" if self.store else ".runs holds them"
         return f"interrupted after {finished} of {len(self.runs)} runs; {kept}"
@@ -59,17 +59,17 @@ def simulate(
     Parameters
     ----------
     scenario : Scenario or Robot
-        What to simulate; a robot needs a terrain.
+        A scenario, or a robot with a `terrain`.
     terrain : Terrain, optional
         The ground; replaces the scenario's.
     record : {"full", "summary"}
         Whether to keep the history, or only outcome, metrics and events.
     sample_interval : float
-        [s] Time between samples of the history: they fall on its multiples, and on the end.
+        [s] Time between samples of the history, which fall on its multiples and on the end.
     trials : {"auto", "all"} or sequence of str, optional
-        What to try if the run ends in a stop, see `Run.trials`. What the outcome needs is always
-        tried: whether the stop lasts and, if the robot is jammed, a closed track. None adds
-        nothing, "auto" twice the torque and twice the friction.
+        Trials to make if the run ends in a stop, see `Run.trials`. Those that decide the outcome
+        are always made: whether the stop lasts and, if the robot is jammed, a closed track. None
+        adds nothing, "auto" adds twice the torque and twice the friction.
     **fields : object
         Other fields of the scenario, such as ``duration=5.0``.
 
@@ -81,9 +81,9 @@ def simulate(
     Raises
     ------
     ScenarioError
-        If the scenario breaks a rule; nothing has been simulated.
+        If the scenario breaks a rule; nothing is simulated.
     ArgumentError
-        If a keyword is neither one of these nor a field of the scenario.
+        If a keyword is neither an argument nor a field of the scenario.
     LimitError
         If the run needs more memory than the system has, or than the environment variable
         CRAWLER2D_MEMORY allows [GiB]; the default is 8.
@@ -126,15 +126,15 @@ def simulate_many(
     record : {"full", "summary"}
         Whether to keep the histories, or only outcomes, metrics and events.
     sample_interval : float
-        [s] Time between samples of the histories: they fall on its multiples, and on the end.
+        [s] Time between samples of the histories, which fall on its multiples and on the end.
     trials : {"auto", "all"} or sequence of str, optional
-        What to try in every run that ends in a stop; see `simulate`.
+        Trials to make in every run that ends in a stop; see `simulate`.
     progress : bool or callable
-        True shows a bar; a callable is given the number of finished runs and of all runs.
+        True shows a progress bar; a callable gets the numbers of finished and of all runs.
     on_error : {"raise", "record"}
         What to do if a scenario gives no result. "raise" raises its error: before the first run if
-        a scenario breaks a rule, after the last run if a run failed. "record" keeps the error in
-        `Run.error`, and all other runs.
+        a scenario breaks a rule, after the last run if a run failed. "record" stores the error in
+        `Run.error` and keeps all other runs.
 
     Returns
     -------
@@ -151,7 +151,7 @@ def simulate_many(
     SimulationDiverged
         If a state became non-finite.
     BatchInterrupted
-        On Ctrl-C; its `runs` holds the finished runs, and the scenarios of the others.
+        On Ctrl-C; its `runs` holds the finished runs and the scenarios of the others.
 
     Examples
     --------
@@ -213,7 +213,7 @@ def complete(
     terrain: Terrain | None,
     fields: dict[str, Any],
 ) -> Scenario:
-    """Make a scenario of the arguments of a call, which has keywords of its own besides fields."""
+    """Make a scenario from the arguments of a call that also has keywords of its own."""
     if isinstance(scenario, Scenario):
         whole = scenario if terrain is None else scenario.replace({"terrain": terrain})
     elif not isinstance(scenario, Robot):

@@ -1,4 +1,4 @@
-"""Branches of a run: it continues from an instant with something changed, as in trials."""
+"""Branches of a run: continue from an instant with something changed, as trials do."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ _SETS = {"auto": ("torque x 2", "friction x 2"), "all": _ALL}
 
 
 def trial_names(trials: Trials) -> tuple[str, ...]:
-    """List the requested trials; those that the outcome needs are made in any case."""
+    """List the requested trials; those that decide the outcome are always made."""
     if trials is None:
         return ()
     if isinstance(trials, str) and trials in _SETS:
@@ -75,10 +75,10 @@ def trial_names(trials: Trials) -> tuple[str, ...]:
 class Trial(TrialResult, Generic[R]):
     """The result of one change at a stop, and the run that shows it; see `Run.trials`.
 
-    One thing is changed in the pose of the stop, and the robot drives on for `criteria.escape_time`
-    plus the time in which it would drive `criteria.escape_distance` as commanded; or the run begins
-    anew. Torque, friction, belly and a push leave the rest of the state as it is. Another track
-    takes over pose and speeds, and ground inside it is let out without a push.
+    A trial changes one thing in the pose of the stop and drives on, for `criteria.escape_time` plus
+    the time needed to drive `criteria.escape_distance` as commanded; or it restarts the run.
+    Torque, friction, belly and a push leave the rest of the state unchanged. Another track takes
+    over pose and speeds; ground inside it is released without pushing the robot.
 
     Attributes
     ----------
@@ -87,14 +87,14 @@ class Trial(TrialResult, Generic[R]):
     position, chassis_angle, flipper_angles
         See `TrialResult`.
     run : Run
-        From the instant of the stop on, or, where the robot rattles and is tried from several, from
-        the first that ended as most of them; simulated again when it is first asked for.
+        The run from the instant of the stop on. If the robot rattles and is tried from several
+        instants, the first that ended like most of them. Simulated again on first access.
     """
 
     simulate: Callable[[], R] = field(repr=False)
 
     def __repr__(self) -> str:
-        """Say what was changed and how it ended; a run has a dozen of them."""
+        """Show what was changed and how it ended, in one line."""
         end = "jammed" if self.jammed else str(self.outcome).replace("_", " ")
         how = f"free after {self.time:.1f} s, then {end}" if self.freed else end
         return f"Trial({self.name}: {how})"
@@ -107,20 +107,20 @@ class Trial(TrialResult, Generic[R]):
 
     @cached_property
     def run(self) -> R:
-        """The run that the result is of."""
+        """The run behind the result."""
         return self.simulate()
 
 
 class EscapeForce(NamedTuple("_Levels", [("low", float), ("high", float)])):
-    """The push that moves a robot on, in the commanded direction; see `Run.escape_force`.
+    """The push in the commanded direction that frees a robot; see `Run.escape_force`.
 
     Attributes
     ----------
     low : float
-        [N] The last level that did not move it on; 0 if the first did.
+        [N] The last level that did not free it; 0 if the first did.
     high : float
-        [N] The first level with which it got ahead of where it had come before by
-        `criteria.escape_distance`; inf if ten weights were not enough.
+        [N] The first level that moved it `criteria.escape_distance` beyond its greatest x so far;
+        inf if ten weights were not enough.
     tips : bool
         Whether that push tipped it over within two seconds.
     """
@@ -135,7 +135,7 @@ class EscapeForce(NamedTuple("_Levels", [("low", float), ("high", float)])):
 
 
 def trials_at(run: Record, time: float, names: tuple[str, ...]) -> tuple[TrialResult, ...]:
-    """Make trials at a stop; those with nothing to change on the robot are left out."""
+    """Make trials at a stop, without those that change nothing on the robot."""
     results = _core.trials(run.scenario.to_json(), time, list(names))
     return tuple(map(TrialResult.from_core, results))
 
@@ -149,7 +149,7 @@ def trial_at(run: Record, time: float, name: str) -> TrialResult:
 
 
 def run_of_trial(run: Record, time: float, name: str) -> tuple[Scenario, dict[str, Any]]:
-    """Simulate a trial that was made, with its history."""
+    """Simulate a trial again, with its history."""
     simulated = _core.run_of_trial(run.scenario.to_json(), time, name, 0.01, "full")
     assert simulated is not None  # it was made, so it changes something on the robot
     text, result = simulated
@@ -159,7 +159,7 @@ def run_of_trial(run: Record, time: float, name: str) -> tuple[Scenario, dict[st
 def try_variant(
     run: Record, time: float, variant: Scenario, push: tuple[float, float]
 ) -> tuple[TrialResult, int]:
-    """Try to continue from a stop as another scenario; return the start of its run, too."""
+    """Continue from a stop as another scenario; also return the start of that run."""
     found = _core.what_if(run.scenario.to_json(), time, variant.to_json(), push)
     if found is None:
         raise ScenarioError("run", run, "must have stopped")
@@ -168,7 +168,7 @@ def try_variant(
 
 
 def refuse_without_result(run: Record) -> None:
-    """Refuse a run that ended with an error, and one that its scenario does not define."""
+    """Refuse a run that ended with an error, or that its scenario does not define."""
     if run.parent is not None:
         rule = "must not be a branch itself, nor of a Simulation: take the original run"
         raise ScenarioError("run", run, rule)
@@ -177,7 +177,7 @@ def refuse_without_result(run: Record) -> None:
 
 
 def branch_time(run: Record, at: float | str) -> float:
-    """[s] The instant given by `at`: a time of the run, or the stop it ended in."""
+    """[s] Read `at`: a time of the run, or the stop it ended in."""
     _refuse_unrepeatable(run)
     end = run.metrics["time"]
     if isinstance(at, str) and at == "stop":
@@ -225,7 +225,7 @@ def branch_scenario(
     drive: Drive | None,
     duration: float | None,
 ) -> Scenario:
-    """Change the given fields of a run's scenario; our own dynamics move every branch."""
+    """Change the given fields of a run's scenario; branches always use our own dynamics."""
     robot = run.scenario.robot
     if track == "closed":
         own = robot.track

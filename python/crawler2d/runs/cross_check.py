@@ -1,4 +1,4 @@
-"""A run compared with the same scenario in the other engine, and how often both agreed."""
+"""Compare a run with the same scenario in the other engine."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ STUDY = {
     "hybrid": (128, 126, 18, 16),
     "hybrid gears": (128, 117, 69, 78),
 }
-"""Runs; those in which both got over or neither did; got over in crawler2d; in rapier.
+"""Runs; both or neither got over; got over in crawler2d; got over in rapier.
 
-From docs/studies/agreement.md, "The cells of the seizure study"; a test holds both together.
+From docs/studies/agreement.md, "The cells of the seizure study"; a test compares both.
 """
 
 _DIRECTIONS = {
@@ -62,21 +62,21 @@ _DIRECTIONS = {
     ),
     "24 gears all round": "at steps Chipmunk gets over as seldom as crawler2d, rapier more often",
 }
-"""Which way the two differ where a third engine was asked; same page, "As ensembles"."""
+"""How the two differ where a third engine was run; same page, "As ensembles"."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Agreement:
-    """How often both engines agreed on models of one kind; ``str(...)`` says it.
+    """How often both engines agreed on models of one kind; ``str(...)`` summarises it.
 
     Attributes
     ----------
     models : tuple of str
-        Those of the study that are of this kind; empty if it has none.
+        The study's models of this kind; empty if it has none.
     runs, agreeing : int
-        Number of runs, and of those in which both got over or neither did.
+        Number of runs, and of runs in which both or neither got over.
     own, rapier : int
-        How many got over in crawler2d's own dynamics, and in rapier's.
+        Number of runs that got over in crawler2d's own dynamics and in rapier.
     """
 
     models: tuple[str, ...]
@@ -86,7 +86,7 @@ class Agreement:
     rapier: int
 
     def __str__(self) -> str:
-        """Say how often they agreed, and which way they differ."""
+        """Summarise how often they agreed and how they differ."""
         if not self.models:
             return "How often both engines agree on such a model was not studied"
         text = (
@@ -99,7 +99,7 @@ class Agreement:
 
 
 def agreement_of(robot: Robot) -> Agreement:
-    """Look up how often both engines agreed on models of the kind of a robot's.
+    """Look up how often both engines agreed on models like a robot's.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def agreement_of(robot: Robot) -> Agreement:
 
 
 def _models_like(robot: Robot) -> tuple[str, ...]:
-    """Name the models of the study that are of the kind of a robot's, whatever the numbers."""
+    """Name the study's models of the same kind as a robot's, whatever their numbers."""
     track = robot.track
     if isinstance(track, ForceTrack):
         return ("force on skids", "force on wheels")
@@ -132,10 +132,10 @@ def _models_like(robot: Robot) -> tuple[str, ...]:
 
 
 _PARTED = 1e-3
-"""[m] Distance from which on two paths count as parted."""
+"""[m] Distance at which two paths count as separate."""
 
 _SAMPLE = 0.1
-"""[s] Simulated time whose computing time is measured beforehand."""
+"""[s] Simulated time that is run first to measure its computing time."""
 _LONG = 2.0
 """[s] Longer computing times are announced."""
 
@@ -148,35 +148,35 @@ R = TypeVar("R", bound=Record)
 class CrossCheck(Generic[R]):
     """A run, the same scenario in the other engine, and where they differ; see `Run.cross_check`.
 
-    ``str(check)`` says it in some sentences. Poses are those in which the runs ended: of a stop,
-    the mean of its diagnosis.
+    ``str(check)`` summarises it in a few sentences. Poses are those at the end of the runs: for a
+    stop, the mean pose of its diagnosis.
 
     Attributes
     ----------
     run, other : Run
-        The run, and that in the other engine, both with their histories.
+        The run and the one in the other engine, both with history.
     same_outcome : bool
-        Whether both had the same outcome. "seized" depends on trials, which crawler2d's own
-        dynamics make in both; see docs/decisions/0016.
+        Whether both had the same outcome. "seized" depends on trials, for which both use
+        crawler2d's own dynamics; see docs/decisions/0016.
     distance : float
-        [m] From the pose in which `run` ended to that of `other`.
+        [m] Distance between the final poses of `run` and `other`.
     turn : float
-        [rad] Chassis angle of `other` less that of `run`.
+        [rad] Final chassis angle of `other` minus that of `run`.
     parted_at : float or None
-        [s] The first sample of `run` at which the origins of the chassis frames were more than
-        1 mm apart; None if there was none before one of the runs ended.
+        [s] First sample of `run` at which the origins of the chassis frames were more than 1 mm
+        apart; None if one of the runs ended before.
     balances : tuple of Balance or None
-        Whether the stop of `run` and that of `other` are equilibria of rigid bodies with Coulomb
-        friction; None for a run that did not end in a stop.
+        Whether the stops of `run` and `other` are equilibria of rigid bodies with Coulomb friction;
+        None for a run that did not end in a stop.
     forces : Table
-        Forces of the ground on each body that bears in a stop, see below.
+        Forces of the ground on each load-bearing body in a stop, see below.
     agreement : Agreement
-        How often both engines agreed on such a model in a study, and which way they differ.
+        How often both engines agreed on such a model in a study, and how they differ.
 
     Notes
     -----
-    The forces have one row for each body that bears in either stop; where a run did not end in a
-    stop, its columns are NaN.
+    The forces have one row for each body that bears load in either stop; columns of a run that did
+    not end in a stop are NaN.
 
     ==============================  ====  =====================================================
     column                          unit  meaning
@@ -203,7 +203,7 @@ class CrossCheck(Generic[R]):
         return self.run.outcome == self.other.outcome
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw both robots where they ended, both paths, and where these parted.
+        """Draw both robots where they ended, both paths, and where the paths separate.
 
         Parameters
         ----------
@@ -226,7 +226,7 @@ class CrossCheck(Generic[R]):
         return plot_both((self.run, self.other), names, self.parted_at, ax, str(self))
 
     def __str__(self) -> str:
-        """Say what differs, and what statics says of the stops."""
+        """Describe the differences, and whether each stop is a static equilibrium."""
         return ". ".join(_sentences(self)) + "."
 
 
@@ -251,7 +251,7 @@ def compare_engines(
         show = announce if callable(announce) else partial(_announce, engine)
         show(*_expected_time(run, scenario))
     other = simulate(scenario)
-    # Statics of its stop are those of the run as this build repeats it.
+    # Check statics on the run as repeated by this build.
     is_repeatable = run.build["build_id"] == _core.build_info()["build_id"]
     first = run if run.has_history and is_repeatable else simulate(run.scenario)
     (x, y, angle), (other_x, other_y, other_angle) = _last_pose(first), _last_pose(other)
@@ -268,9 +268,9 @@ def compare_engines(
 
 
 def _expected_time(run: Record, scenario: Scenario) -> tuple[float, float]:
-    """[s] How long a scenario will take if it ends when a run did, and if it lasts to the end.
+    """[s] Expected computing time if the scenario ends when a run did, and at most.
 
-    By the time of its first steps, here and now: costs of models differ by a factor of a hundred.
+    Timed on its first steps: costs of models differ by a factor of a hundred.
     """
     simulation = _core.Simulation(scenario.to_json())
     begin = time.perf_counter()
@@ -280,7 +280,7 @@ def _expected_time(run: Record, scenario: Scenario) -> tuple[float, float]:
 
 
 def _announce(engine: str, likely: float, most: float) -> None:
-    """Print the expected time to stderr, if it may be long."""
+    """Print the expected time to stderr if it may be long."""
     if most >= _LONG:
         sys.stderr.write(
             f"cross_check: {engine} will take about {likely:.2g} s if its run ends when this one"
@@ -305,7 +305,7 @@ def _balance(run: Record) -> Balance | None:
 
 
 def _last_pose(run: Record) -> tuple[float, float, float]:
-    """[m, m, rad] Of its stop, or else its end."""
+    """[m, m, rad] Pose of the stop, or else at the end."""
     if run.diagnosis is not None:
         (x, y), angle = run.diagnosis.position, run.diagnosis.chassis_angle
     else:
@@ -314,7 +314,7 @@ def _last_pose(run: Record) -> tuple[float, float, float]:
 
 
 def _parted_at(run: Record, other: Record) -> float | None:
-    """[s] When the paths are first more than `_PARTED` apart."""
+    """[s] Time at which the paths are first more than `_PARTED` apart."""
     both = run.time <= other.time[-1]
     there = np.stack([np.interp(run.time[both], other.time, each) for each in other.position.T])
     apart = np.hypot(*(run.position[both].T - there)) > _PARTED
@@ -353,7 +353,7 @@ def _loads(run: Record) -> dict[tuple[int, int, int], tuple[float, float]] | Non
 
 
 def _sentences(check: CrossCheck[R]) -> Iterator[str]:
-    """Say how each run ended, when they parted, and which stop is an equilibrium."""
+    """Describe how each run ended, when the paths separated, and which stop is an equilibrium."""
     runs = (check.run, check.other)
     ends = [f"{_engine(run)}: {_ended(run)}" for run in runs]
     if all(run.diagnosis is not None for run in runs):

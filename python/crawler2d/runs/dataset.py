@@ -50,7 +50,7 @@ _DIMENSIONS = {
 
 
 def build_attributes(build: Mapping[str, Any] | None = None) -> dict[str, str | int]:
-    """Return what a core is made of, None this one, as attributes of a data set."""
+    """Return the build of a core (None: this one) as attributes of a data set."""
     return {f"build_{name}": value for name, value in (build or build_info()).items()}
 
 

@@ -23,15 +23,15 @@ _STEPS = 100
 
 
 def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
-    """Change numbers of a scenario with sliders, and see how the robot drives then.
+    """Change numbers of a scenario with sliders and replay the run.
 
-    Each change simulates the scenario again, which for belts and round wheels takes a core a
-    tenth of a second at most. Sliders begin at the nearest of their values to that of the scenario.
+    Each change simulates the scenario again, which takes at most a tenth of a second for belts and
+    round wheels. Sliders start at their value nearest to that of the scenario.
 
     Parameters
     ----------
     scenario : Scenario
-        Where to begin.
+        The initial scenario.
     **ranges : tuple of two floats
         Lowest and highest value of each number: by its name, if no other has that name, such as
         ``height=(0.02, 0.15)``, or by its path, ``**{"terrain.height": (0.02, 0.15)}``.
@@ -39,13 +39,13 @@ def explore(scenario: Scenario, **ranges: tuple[float, float]) -> Explorer:
     Returns
     -------
     Explorer
-        A notebook shows it. Its `run` and its `scenario` are those of the present values.
+        Shown by a notebook. Its `run` and `scenario` follow the current values.
 
     Raises
     ------
     ScenarioError
         If the scenario breaks a rule; if a name is unknown or ambiguous, or belongs to no number;
-        if a range is not two numbers, the lower first.
+        if a range is not two increasing numbers.
     ImportError
         If anywidget is missing; the message names the extra to install.
 
@@ -89,9 +89,9 @@ class Explorer:
     Attributes
     ----------
     scenario : Scenario
-        With the values of the sliders.
+        The scenario with the values of the sliders.
     run : Run
-        Its run. Where the values break a rule, the one before; the notebook says which.
+        Its run. If the values break a rule, the previous one, and the notebook shows the rule.
     sliders : dict of str to Widget
         By path.
     replay : Replay
@@ -138,7 +138,7 @@ class Explorer:
 
 
 def _slider(widgets: Any, scenario: Scenario, path: str, bounds: tuple[float, float]) -> Any:
-    """Make a slider that begins as near to the value of the scenario as it can be set."""
+    """Make a slider that starts at its value nearest to that of the scenario."""
     low, high = bounds
     value = min(max(read_path(scenario, path), low), high)
     look: dict[str, Any] = {"description": _label(path), "layout": {"width": "100%"}}
@@ -156,7 +156,7 @@ def _label(path: str) -> str:
 
 
 def _round_step(most: float) -> float:
-    """Find the largest of 1, 2, 5, 10, ... and their tenths that is no larger."""
+    """Return the largest of 1, 2, 5, 10, ... and their tenths that does not exceed `most`."""
     power = math.floor(math.log10(most))
     factor = next(factor for factor in (5, 2, 1) if factor * 10.0**power <= most * (1.0 + 1e-9))
     return float(f"{factor}e{power}")

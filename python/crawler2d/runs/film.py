@@ -35,44 +35,44 @@ def animate(
     width: int = 800,
     progress: bool | Progress | None = True,
 ) -> Path:
-    """Write one video of several runs, at the same time, to the same scale.
+    """Write one video of several runs, synchronised and to the same scale.
 
-    Every run has its own picture: the side view with the contact forces. A run that has ended
-    stands still, with its outcome in the title, until the last one ends. A branch stands still
-    until the time at which it branched off.
+    Every run has its own side view with the contact forces. A run that has ended is frozen, with
+    its outcome in the title, until the last one ends. A branch is frozen until the time at which it
+    branched off.
 
     Parameters
     ----------
     runs : sequence of Run
         One to twelve runs with history.
     path : str or path-like
-        Where to write it: a ``.gif`` or an ``.mp4``, see `Run.animate`.
+        File to write: a ``.gif`` or an ``.mp4``, see `Run.animate`.
     labels : sequence of str, optional
-        Label of each run; None takes the models of their tracks.
+        Label of each run; None uses their track models.
     fps : float
         [1/s] Frames per second, from 1 to 50.
     speed : float
-        [-] How many times faster than real time; below 1 is slow motion.
+        [-] Playback speed relative to real time; below 1 is slow motion.
     follow : bool, optional
-        Whether each view moves with its robot. False shows all that any of them visits; None does
-        so unless the robots would be too small to see.
+        Whether each view moves with its robot. False shows the whole area that they visit; None
+        does so unless the robots would be too small to see.
     side_by_side : bool
         Whether the views are side by side; else they are one above the other.
     width : int
         [px] Width of each picture, from 200 to 4000.
     progress : bool or callable
-        As for `simulate_many`; frames are counted.
+        See `simulate_many`; counts frames.
 
     Returns
     -------
     Path
-        The written file. It appears once it is complete.
+        The written file, which appears only when complete.
 
     Raises
     ------
     ScenarioError
-        If `runs` is empty or holds anything but runs, there are not as many labels, the path has
-        another suffix, or a number is out of range.
+        If `runs` is empty or holds anything but runs, the number of labels differs, the suffix is
+        unknown, or a number is out of range.
     ImportError
         If matplotlib, or for an MP4 ffmpeg is missing; the message names the extra to install.
     AttributeError

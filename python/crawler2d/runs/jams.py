@@ -1,4 +1,4 @@
-"""All poses in which a robot can stand still while its drives run."""
+"""All jams: poses in which a robot can stand still while its drives run."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ if TYPE_CHECKING:
 __all__ = ["Jam", "JamContact", "jams", "on_belt"]
 
 _STILL = 1e-6
-"""[-] Share of the weight below which a contact carries nothing."""
+"""[-] Fraction of the weight below which a contact counts as unloaded."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JamContact:
-    """A contact that carries a jammed robot.
+    """A load-bearing contact of a jammed robot.
 
     Attributes
     ----------
     body : int
         Number of the body, as in the contacts of a run.
     body_kind : BodyKind
-        What it is.
+        Its kind.
     edge : int or None
-        Number of the edge of the ground that it is on, None on a face.
+        Number of the edge of the ground that it touches, None on a face.
     x, y : float
-        [m] The point of the ground.
+        [m] Position of the contact.
     normal_x, normal_y : float
         [-] Unit vector from the ground to the robot.
     normal_force : float
-        [N] How much it carries.
+        [N] Force along the normal.
     friction_force : float
-        [N] Along the normal turned by -90 degrees, so that a level ground pushes forwards above 0.
+        [N] Force along the normal turned by -90 degrees: on level ground, above 0 is forwards.
     """
 
     body: int
@@ -58,7 +58,7 @@ class JamContact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jam:
-    """A pose in which a robot can stand still while its drives run; ``str(jam)`` says it.
+    """A pose in which a robot can stand still while its drives run; ``str(jam)`` describes it.
 
     Attributes
     ----------
@@ -67,20 +67,20 @@ class Jam:
     chassis_angle : float
         [rad] Nose up > 0.
     contacts : tuple of JamContact
-        What carries it, from the rear of the ground. Where the loads are not determined, as on
-        three wheels in a row, they are the mean of all that carry it on three contacts.
+        Load-bearing contacts, from the rear. If statics does not determine the loads, as on three
+        wheels in a row, they are the mean over all sets of three contacts that can carry the robot.
     between : tuple of 2 ints or None
         Numbers of the bodies on either side of the ground that reaches deepest into the track, the
-        smaller first; None if none does.
+        smaller one first; None without such ground.
     depth : float
-        [m] How deep, inside the belt round the circumscribed circles; 0 if nothing does.
+        [m] Its depth inside the belt round the circumscribed circles; 0 without such ground.
     stable : bool
-        Whether the robot stays there, within 1 mm and 0.01 rad, in a simulation of 2 s in which it
-        is pushed forwards and then back by 1 % of its weight.
+        Whether the robot stays within 1 mm and 0.01 rad in a simulation of 2 s that pushes it
+        forwards and then back with 1 % of its weight.
     belt_holds : bool
-        Whether a belt round the same bodies is held at the same place: it has a stable jam there in
-        which the ends of the track are nearer to where they are here than the smallest radius of
-        the wheels in contact.
+        Whether a belt round the same bodies jams at the same place: it has a stable jam with both
+        ends of the track closer to their positions here than the smallest radius of the wheels in
+        contact.
     """
 
     position: tuple[float, float]
@@ -92,7 +92,7 @@ class Jam:
     belt_holds: bool
 
     def __str__(self) -> str:
-        """Say it in one line."""
+        """Describe it in one line."""
         held = ", ".join(map(_contact_text, self.contacts))
         where = f"x = {self.position[0]:z.3f} m, {math.degrees(self.chassis_angle):z.1f} degrees"
         if self.between is not None and self.between[0] != self.between[1]:
@@ -119,40 +119,39 @@ def jams(
 ) -> tuple[Jam, ...]:
     """Find all poses in which a robot can stand still while its drives run.
 
-    Driven surfaces slide at every contact in a direction that is known, so each contact has one
-    unknown, its normal force. Three contacts fix the pose, and three balances fix three forces; two
-    contacts, or one, leave as many freedoms of the pose as they lack forces. So all such poses are
-    isolated, and each is a zero of a polynomial, of which none is passed over: see
-    docs/studies/jams.md. Only the friction counts, not the speed.
+    Driven surfaces slide at every contact in a known direction, so each contact has one unknown,
+    its normal force. Three contacts fix the pose, and three equations of equilibrium fix three
+    forces; with one or two contacts, the pose has as many degrees of freedom as forces are missing.
+    All such poses are therefore isolated zeros of polynomials, and all zeros are found: see
+    docs/studies/jams.md. The result depends on the friction, not on the speed.
 
-    Motors have any torque, flippers stay as at the start. What stands still on the robot, its
-    belly, may have any friction within its cone; its jams are intervals of poses, of which the ends
-    are returned where they are found: not all are.
+    Motors have unlimited torque, and flippers keep their initial angle. On surfaces that do not
+    move (the belly) friction may lie anywhere in its cone; jams on them are intervals of poses, and
+    those of their ends that are found are returned: not all are.
 
     Parameters
     ----------
     scenario : Scenario or Robot
-        Robot and ground; a robot needs a terrain. Its track model has round wheels or a smooth
-        belt.
+        A scenario, or a robot with a `terrain`. Its track model has round wheels or a smooth belt.
     terrain : Terrain, optional
         The ground, the same under both tracks; replaces the scenario's.
     friction : float, optional
-        [-] Of the ground, above 0; None takes the terrain's.
+        [-] Friction of the ground, above 0; None takes the terrain's.
     **fields : object
         Other fields of the scenario. A `drive.speed` below 0 drives backwards.
 
     Returns
     -------
     tuple of Jam
-        From the rear; those tilted by more than `criteria.tip_over_angle` are left out.
+        All jams from the rear on, except those tilted by more than `criteria.tip_over_angle`.
 
     Raises
     ------
     ScenarioError
-        If the scenario breaks a rule, or has another track model, no friction, friction by segment,
-        no speed, or another ground under each track.
+        If the scenario breaks a rule, or has an unsupported track model, no friction, friction by
+        segment, no speed, or different ground under each track.
     SimulationDiverged
-        If the simulation that tells whether one is stable became non-finite.
+        If the simulation that tests stability became non-finite.
 
     Examples
     --------
@@ -185,7 +184,7 @@ def on_belt(scenario: Scenario) -> Scenario:
 
 
 def _held(scenario: Scenario) -> list[tuple[float, float, float]]:
-    """Poses in which a belt round the same bodies is held: position [m] and angle [rad]."""
+    """Stable jams of a belt round the same bodies: position [m] and angle [rad]."""
     found = _core.jams(on_belt(scenario).to_json())
     poses = zip(found["x"], found["y"], found["angle"], found["stable"], strict=True)
     return [(x, y, angle) for x, y, angle, stable in poses if stable]
@@ -234,7 +233,7 @@ def _read(
 def _is_near(
     ends: tuple[Disc, Disc], reach: float, pose: tuple[float, ...], other: tuple[float, ...]
 ) -> bool:
-    """Tell whether the ends of the track are at the same place in two poses, within a reach [m]."""
+    """Whether the ends of the track are within a distance [m] of each other in two poses."""
     return all(math.dist(_at(pose, disc), _at(other, disc)) < reach for disc in ends)
 
 

@@ -12,7 +12,7 @@ from crawler2d.common.arrays import read_scalar
 from crawler2d.common.extras import extra
 from crawler2d.errors import LimitError, ScenarioError
 
-# More threads than this are surely a mistake; each has a stack of its own.
+# More threads are surely a mistake: each needs its own stack.
 _MOST = 1024
 _VARIABLE = "CRAWLER2D_THREADS"
 _RULE = f"must be a whole number from 1 to {_MOST}"
@@ -61,10 +61,10 @@ def _limit() -> int:
 
 
 Progress = Callable[[int, int], None]
-"""Called with the number of finished runs and of all runs."""
+"""Called with the numbers of finished and of all runs."""
 
 _LINES = 10
-"""Lines at most, if the output is not a terminal: one for each such part of the runs."""
+"""Number of lines if the output is not a terminal: one for each such part of the runs."""
 
 
 class Reporter:
@@ -73,11 +73,11 @@ class Reporter:
     Parameters
     ----------
     show : callable
-        Given the number of finished runs and of all runs.
+        Called with the numbers of finished and of all runs.
     total : int
         Number of runs.
     done : int
-        How many of them are finished at the beginning.
+        Number of runs that are already finished.
     """
 
     def __init__(self, show: Progress, total: int, done: int = 0) -> None:
@@ -85,12 +85,12 @@ class Reporter:
         show(done, total)
 
     def __call__(self, more: int) -> None:
-        """Count runs that have been finished."""
+        """Count more finished runs."""
         self._done += more
         self._show(self._done, self._total)
 
     def expect(self, more: int) -> None:
-        """Raise the total by more runs to come."""
+        """Add runs to the total."""
         self._total += more
         self._show(self._done, self._total)
 
@@ -104,8 +104,8 @@ def reporter(
     Parameters
     ----------
     progress : bool, callable or None
-        True shows a bar or a line, False and None nothing; a callable is given the number of
-        finished runs and of all runs.
+        True shows a bar or a line, False and None nothing; a callable gets the numbers of finished
+        and of all runs.
     total, done : int
         See `Reporter`.
     unit : str
@@ -129,16 +129,16 @@ def reporter(
 
 @contextlib.contextmanager
 def _bar(total: int, begun: int, unit: str) -> Iterator[Progress]:
-    if sys.stderr is None:  # so Python has it where the process was started without one
+    if sys.stderr is None:  # if the process was started without one
         yield lambda _done, _total: None
         return
-    # Notebooks draw their own bar and are no terminal; a log would get one copy of it a second.
+    # Notebooks are not terminals but draw their own bar; a log would get a new bar every second.
     if not sys.stderr.isatty() and not _in_a_notebook():
         yield _line(unit)
         return
     try:
         tqdm = extra("tqdm.auto", "progress").tqdm
-    except ImportError:  # then a line must do
+    except ImportError:  # use a line instead
         yield _line(unit)
         return
     with tqdm(total=total, initial=begun, unit=unit) as bar:
@@ -151,14 +151,14 @@ def _bar(total: int, begun: int, unit: str) -> Iterator[Progress]:
 
 
 def _in_a_notebook() -> bool:
-    """Whether this code runs in a kernel, not only next to imported parts of one."""
+    """Whether this code runs in a kernel; importing parts of one is not enough."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return hasattr(shell, "kernel")
 
 
 def _line(unit: str) -> Progress:
-    """Write one line, overwritten on a terminal; elsewhere a new line for every tenth."""
+    """Write one line that is overwritten on a terminal; elsewhere a new line for every tenth."""
     begin = time.monotonic()
     last = 0
 
@@ -171,7 +171,7 @@ def _line(unit: str) -> Progress:
             return
         last = part
         end = "\r" if terminal and done < total else "\n"
-        # No disk that is full, or terminal that is gone, is worth the runs.
+        # Do not lose the runs over a full disk or a closed terminal.
         with contextlib.suppress(OSError):
             sys.stderr.write(f"{done} of {total} {unit}s, {now - begin:.0f} s{end}")
             sys.stderr.flush()

@@ -1,4 +1,4 @@
-"""A finished run, which can be branched, tried at its stop, and compared with another engine."""
+"""A finished run, with its branches, trials and comparison with another engine."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ __all__ = ["Run"]
 
 
 class Run(ShownRun):
-    """One finished run, as `simulate` returns it.
+    """A finished run, as returned by `simulate`.
 
     Its arrays are read-only and share their first dimension, the n samples of `time`. With
     ``record="summary"`` there is no history; using it raises an AttributeError that says so.
@@ -54,15 +54,14 @@ class Run(ShownRun):
     Attributes
     ----------
     scenario : Scenario
-        What was simulated.
+        The simulated scenario.
     outcome : Outcome or None
-        How it ended; None if there is no result, see `error`.
+        How the run ended; None if there is no result, see `error`.
     diagnosis : Diagnosis or None
-        Why it stopped, if it did; ``print(run.diagnosis)`` says it in one sentence, and `reason`
-        says why a run that did not stop did not clear.
+        Why the robot stopped, if it did; ``print(run.diagnosis)`` gives one sentence. `reason` says
+        why a run that did not stop did not clear either.
     metrics : dict of str to float
-        Figures of the whole run, listed below. They are read-only; ``dict(run.metrics)`` is a copy
-        that can be changed.
+        Figures of the whole run, listed below. Read-only; ``dict(run.metrics)`` is a mutable copy.
     edges : Table
         Corners of the ground: `id`, `lane`, `x`, `y` [m], `angle` [rad] (convex > 0), `radius` [m].
     events : Table
@@ -70,11 +69,11 @@ class Run(ShownRun):
     wall_time : float
         [s] Computing time on one thread.
     build : mapping of str to object
-        What simulated it, as `build_info` says; of a loaded run it may be another build.
+        The build that simulated it, see `build_info`; a loaded run may have another one.
     error : Crawler2dError or None
-        Why there is no result, in a batch that was interrupted or has ``on_error="record"``.
+        Why there is no result, in a batch that was interrupted or used ``on_error="record"``.
     parent : tuple of Scenario and float, or None
-        For a branch, or a run of a `Simulation`: the scenario it set out from, and when [s].
+        For a branch, or a run of a `Simulation`: the scenario it started from, and when [s].
 
     Notes
     -----
@@ -82,16 +81,16 @@ class Run(ShownRun):
 
     {metrics}
 
-    On level ground the track distance exceeds the path length by the slip; on gear wheels also
-    because they roll on less than their circumscribed circle. On uneven ground the two differ even
-    without slip: the track runs less where the nose comes down over a crest, and more in a hollow.
-    A belt with grousers reads less than the distance driven over ridges: where it stands on its
-    ends, the tips are faster than the belt.
+    On level ground the track distance exceeds the path length by the slip, and with gear wheels
+    also because their effective rolling radius is smaller than the circumscribed one. On uneven
+    ground the two differ even without slip: the track travels less where the nose comes down over a
+    crest, and more in a hollow. A belt with grousers travels less than the robot over ridges: at
+    its ends the tips are faster than the belt.
 
-    The events, in order of their start. A "stop" is a span without progress although commanded to
-    move; an "intrusion" is a span in which an edge was deeper than `criteria.intrusion_depth`
-    inside the taut belt round the track's own bodies. A stop has the most loaded of the intrusions
-    present at its end. Events still under way end with the run.
+    The events, in order of their start. A "stop" is a period without progress despite a commanded
+    speed; an "intrusion" is a period in which an edge was deeper than `criteria.intrusion_depth`
+    inside the taut belt round the track's own bodies. A stop lists the most loaded intrusion
+    present at its end. Ongoing events end with the run.
 
     ================  ====  =======================================================================
     column            unit  meaning
@@ -125,42 +124,42 @@ class Run(ShownRun):
         """Continue from an instant of this run with something changed.
 
         The run is repeated bit by bit up to that instant, and continues from the same pose and
-        speeds; everything else stays as it was. Another torque or friction, a push, or removing the
-        belly change nothing else. With another track or belly only pose and speeds carry over:
-        where ground is inside it, the track is dented, which does not push the robot, and the dent
-        goes away as the robot moves on. So it is with any branch of a run in
-        rapier: crawler2d's own dynamics move it, at the run's time step.
+        speeds. Another torque or friction, a push, or removing the belly leave the rest of the
+        state unchanged. With another track or belly only pose and speeds carry over: ground inside
+        the track dents it without pushing the robot, and the dent disappears as the robot moves on.
+        The same holds for any branch of a run in rapier, which crawler2d's own dynamics continue at
+        the run's time step.
 
         Parameters
         ----------
         at : float or "stop"
-            [s] The instant; "stop" is that of the diagnosis. The branch begins with the end of the
+            [s] The instant; "stop" is that of the diagnosis. The branch starts at the end of the
             step that reaches it.
         track : track model or "closed", optional
-            Another model of the robot's track; "closed" is `ClosedTrack` of its own.
+            Another track model; "closed" is the `ClosedTrack` of its own.
         friction : float, optional
-            [-] Another friction of the ground, of all its lanes and segments.
+            [-] Another friction of the ground, in all lanes and segments.
         max_torque : float, optional
             [N m] Another torque of one sprocket, see `Drivetrain`.
         belly : array_like, optional
-            [m] Another belly, as `Robot` has it; None takes it off, "built" leaves it as it is.
+            [m] Another belly, see `Robot`; None removes it, "built" keeps it.
         drive : Drive, optional
             Another command. The times of its schedules count from the start of this run.
         push : tuple of two floats, optional
-            [N], [s] A horizontal force at the chassis' centre of mass, above 0 towards +x, and the
-            time in which it rises from 0, evenly; then it stays.
+            [N], [s] A constant horizontal force at the chassis' centre of mass, above 0 towards +x,
+            and the time over which it ramps up from 0.
         duration : float, optional
-            [s] How long to continue; None takes the scenario's duration, from that instant.
+            [s] Duration of the branch; None takes the scenario's.
         record : {"full", "summary"}
             Whether to keep the history, or only outcome, metrics and events.
         sample_interval : float
-            [s] Time between samples of the history: they fall on its multiples, and on both ends.
+            [s] Time between samples of the history, which fall on its multiples and on both ends.
 
         Returns
         -------
         Run
-            The run from that instant on; stops, metrics and outcome count from there, but for
-            `time` and `time_to_clear`, which are on the clock of this run.
+            The run from that instant on. Stops, metrics and outcome count from there, except `time`
+            and `time_to_clear`, which count from the start of this run.
 
         Raises
         ------
@@ -189,28 +188,28 @@ class Run(ShownRun):
         return self._branch_as(variant, time, push, record=record, sample_interval=sample_interval)
 
     def trials(self) -> tuple[Trial[Run], ...]:
-        """Try everything that might free the robot from the stop that the run ended in.
+        """Try everything that might free the robot from the stop at the end of the run.
 
-        The results are added to the diagnosis, and so to plots and pages of the run.
+        The results are added to the diagnosis, and so appear in plots and pages of the run.
 
         Returns
         -------
         tuple of Trial
-            Each change, by `Trial.name`, and its result, in this order, without those that have
-            nothing to change on the robot:
+            The results, by `Trial.name` and in this order, without trials that change nothing on
+            the robot:
 
             - "unchanged": the run goes on; "rebuilt": its own track is built again. If either frees
-              it, the stop was transient, and no more is claimed of it;
-            - "closed track": `ClosedTrack` of its own, in this pose; "closed track, clear of the
-              ground": the same at rest, in the nearest pose in which no ground is inside it. A pose
-              with an edge between two wheels is one that no belt comes to. "closed smooth track":
-              in this pose, without grousers;
+              the robot, the stop was transient, and nothing else is concluded;
+            - "closed track": the `ClosedTrack` of its own, in this pose; "closed track, clear of
+              the ground": the same at rest, in the nearest pose with no ground inside it, as no
+              belt can reach a pose with an edge between two wheels; "closed smooth track": in this
+              pose, without grousers;
             - "belt": along the outlines of chassis and flippers, in this pose; "belt, from the
-              start" and "closed track, from the start": in place of the whole run. These are freed
+              start" and "closed track, from the start": the whole run again. These count as freed
               if they get past the stop;
-            - "one motor" for each track in place of one for each wheel;
+            - "one motor": one per track instead of one per wheel;
             - "torque x 2", "torque x 10", "friction x 2", "no belly";
-            - "flippers level": turned to angle 0.
+            - "flippers level": flippers turned to angle 0.
 
         Raises
         ------
@@ -242,12 +241,12 @@ class Run(ShownRun):
         drive: Drive | None = None,
         push: tuple[float, float] | None = None,
     ) -> Trial[Run]:
-        """Try one thing at the stop that the run ended in.
+        """Try one change at the stop at the end of the run.
 
         Parameters
         ----------
         name : str, optional
-            One of those of `trials`; without it, the changes are those of `branch`.
+            Name of one of the `trials`; without it, give changes as for `branch`.
         track, friction, max_torque, belly, drive, push
             See `branch`.
 
@@ -259,8 +258,9 @@ class Run(ShownRun):
         Raises
         ------
         ScenarioError
-            If the run did not end in a stop, or is a branch itself; if the name is unknown, has
-            nothing to change on the robot, or is given with a change; if a change breaks a rule.
+            If the run did not end in a stop, or is a branch itself; if the named trial is unknown,
+            changes nothing on the robot, or is given together with a change; if a change breaks a
+            rule.
 
         Examples
         --------
@@ -314,17 +314,17 @@ class Run(ShownRun):
             self.diagnosis = replace(self.diagnosis, trials=trials)
 
     def escape_force(self) -> EscapeForce:
-        """Measure the push that moves the robot on from the stop that the run ended in.
+        """Measure the push that frees the robot from the stop at the end of the run.
 
-        A horizontal force at the chassis' centre of mass, in the commanded direction, is raised by
-        a tenth every half a second, from a hundredth of the weight on, until the robot has got
-        ahead of its greatest x before the stop by `criteria.escape_distance`.
+        A horizontal force at the chassis' centre of mass, in the commanded direction, starts at a
+        hundredth of the weight and grows by a tenth every half second, until the robot is
+        `criteria.escape_distance` beyond its greatest x before the stop.
 
         Returns
         -------
         EscapeForce
-            [N] A tuple: the highest level that did not move it on and the lowest that did. Its
-            `tips` says whether that push tipped it over.
+            [N] A tuple: the highest level that did not free it and the lowest that did. Its `tips`
+            says whether that push tipped the robot over.
 
         Raises
         ------
@@ -335,16 +335,16 @@ class Run(ShownRun):
         return EscapeForce(*_core.escape_force(self.scenario.to_json(), time))
 
     def tip_over(self) -> TipOver:
-        """Say how the robot tipped over, and try what would have kept it upright.
+        """Explain how the robot tipped over, and try what would have kept it upright.
 
-        The run is simulated again, and up to six times with one thing changed: with half of the
-        speed, with a tenth, and with the centre of mass moved away from the contact about which the
-        robot turned, by 2, 5, 10 and 20 % of the axle distance, until it does not tip over.
+        The run is simulated again, and up to six times with one change: at half and at a tenth of
+        the speed, and with the centre of mass moved away from the contact about which the robot
+        turned, by 2, 5, 10 and 20 % of the axle distance, until it stays upright.
 
         Returns
         -------
         TipOver
-            Which way it tipped, where its centre of mass was, and the results of the trials.
+            Direction of tipping, position of the centre of mass, and the results of the trials.
 
         Raises
         ------
@@ -371,31 +371,31 @@ class Run(ShownRun):
     ) -> CrossCheck[Run]:
         """Simulate the same scenario in the other engine, and compare.
 
-        What crawler2d's own dynamics moved is moved by rapier, and the other way round, at that
-        engine's default accuracy; nothing else differs. A run without history, or of another build,
-        is simulated again. Where both stop at different places, or one does not stop, a static
-        analysis finds which stop is an equilibrium. Runs of gear wheels and of many small wheels
-        are chaotic: for these compare rates, with a `sweep` or `compare` over ``solver.engine``.
+        A run of crawler2d's own dynamics is repeated in rapier, and vice versa, at that engine's
+        default accuracy; nothing else differs. A run without history, or of another build, is
+        simulated again. If both stop at different places, or only one stops, a static analysis
+        finds which stop is an equilibrium. Runs with gear wheels or many small wheels are chaotic:
+        for these compare rates, with a `sweep` or `compare` over ``solver.engine``.
 
         Parameters
         ----------
         announce : bool or callable
-            rapier may take a thousand times as long. True prints the expected time to stderr, if it
-            may exceed 2 s; a callable is given two times [s]: if its run ends when this one did,
-            and if it lasts to the end of the scenario.
+            rapier may take a thousand times as long. True prints the expected time to stderr if it
+            may exceed 2 s; a callable gets two times [s]: if its run ends when this one did, and if
+            it lasts for the whole `duration`.
 
         Returns
         -------
         CrossCheck
-            Both runs, when their paths part, how far apart they end, the forces at the stops, the
-            `Balance` of each, and how often both agreed on such a model in a study.
+            Both runs, when their paths separate, how far apart they end, the forces and the
+            `Balance` at the stops, and how often both engines agreed on such a model in a study.
 
         Raises
         ------
         ScenarioError
-            If rapier does not hold the scenario, see `Solver`; the path is that of the field. It
-            holds no rotors, which `Robot.without_rotors` leaves off. If the run has no result, or
-            is a branch.
+            If rapier does not support the scenario, see `Solver`; the path names the field. It does
+            not support rotors: remove them with `Robot.without_rotors`. If the run has no result,
+            or is a branch.
         SimulationDiverged
             If the state became non-finite in the other engine.
 

@@ -1,4 +1,4 @@
-"""Runs read from files that `Run.save` wrote."""
+"""Read runs that `Run.save` wrote."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["load"]
 def load(path: str | os.PathLike[str]) -> Run:
     """Read a run that `Run.save` wrote.
 
-    Nothing in the file is executed, whoever wrote it.
+    Nothing in the file is executed, so files from strangers are safe.
 
     Parameters
     ----------
@@ -23,13 +23,13 @@ def load(path: str | os.PathLike[str]) -> Run:
     Returns
     -------
     Run
-        The same run to the last bit. `Run.build` says what simulated it: branches, trials and
-        `escape_force` repeat the run, and are refused if that was another build.
+        The same run, bit by bit. Branches, trials and `escape_force` repeat the run, so they are
+        refused if another build (`Run.build`) simulated it.
 
     Raises
     ------
     StoreError
-        If the file cannot be read; if it is no saved run, is cut short or damaged, or of a newer
+        If the file cannot be read, is not a saved run, is truncated or damaged, or has a newer
         format. The message says which, and what to do.
 
     Examples

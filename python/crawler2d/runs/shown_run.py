@@ -1,4 +1,4 @@
-"""What a run is looked at and written as: pictures, videos, pages, data sets, files."""
+"""Output of a run: pictures, videos, pages, data sets, files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["ShownRun"]
 
 
 class ShownRun(Record):
-    """The methods of `Run` that only read it."""
+    """The methods of `Run` that show or write it."""
 
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled dataset.
@@ -52,16 +52,17 @@ class ShownRun(Record):
     def plot(
         self, ax: Axes | None = None, *, time: ArrayLike | None = None, trials: bool = True
     ) -> Axes:
-        """Draw the side view: ground, robot at some instants, and its contacts at the last of them.
+        """Draw the side view: ground, robot at some instants, and contacts at the last of them.
 
         Parameters
         ----------
         ax : Axes, optional
             Where to draw; None makes a figure.
         time : array_like, shape (k,), optional
-            [s] When to draw the robot, at the end if later; None draws it about every robot length.
+            [s] Times at which to draw the robot, later ones at the end; None draws it about every
+            robot length.
         trials : bool
-            Whether to draw where the trials ended that freed the robot, if its stop is drawn.
+            Whether to draw the end of each trial that freed the robot, if its stop is drawn.
 
         Returns
         -------
@@ -71,7 +72,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If `time` is no number, or not finite, or `trials` neither True nor False.
+            If `time` is not a finite number, or `trials` not True or False.
         ImportError
             If matplotlib is missing; the message names the extra to install.
         AttributeError
@@ -98,7 +99,7 @@ class ShownRun(Record):
 
     @takes_keywords
     def plot_history(self, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes, Axes]:
-        """Draw chassis angle, speeds and drive force over time, stops shaded.
+        """Plot chassis angle, speeds and drive force over time, with stops shaded.
 
         Parameters
         ----------
@@ -132,36 +133,36 @@ class ShownRun(Record):
         width: int = 800,
         progress: bool | Progress | None = True,
     ) -> Path:
-        """Write a video of the side view with the contact forces, which ends with the outcome.
+        """Write a video of the side view with contact forces; it ends with the outcome.
 
-        `crawler2d.animate` puts several runs into one. The comment of the file is `provenance`.
+        `crawler2d.animate` puts several runs into one video. The file's comment is `provenance`.
 
         Parameters
         ----------
         path : str or path-like
-            Where to write it. Its suffix says what: ``.gif`` for slides and web pages, ``.mp4`` for
-            a smaller file that can be paused.
+            File to write. The suffix sets the format: ``.gif`` for slides and web pages, ``.mp4``
+            for a smaller file that can be paused.
         fps : float
             [1/s] Frames per second, from 1 to 50.
         speed : float
-            [-] How many times faster than real time; below 1 is slow motion.
+            [-] Playback speed relative to real time; below 1 is slow motion.
         follow : bool, optional
-            Whether the view moves with the robot. False shows all that it visits; None does so
-            unless the robot would be too small to see.
+            Whether the view moves with the robot. False shows the whole area that it visits; None
+            does so unless the robot would be too small to see.
         width : int
             [px] Width of the video, from 200 to 4000.
         progress : bool or callable
-            As for `simulate_many`; frames are counted.
+            See `simulate_many`; counts frames.
 
         Returns
         -------
         Path
-            The written file. It appears once it is complete.
+            The written file, which appears only when complete.
 
         Raises
         ------
         ScenarioError
-            If the path has another suffix, or a number is out of range.
+            If the suffix is unknown, or a number is out of range.
         ImportError
             If matplotlib, or for an MP4 ffmpeg is missing; the message names the extra to install.
         AttributeError
@@ -200,9 +201,9 @@ class ShownRun(Record):
         Parameters
         ----------
         path : str or path-like, optional
-            Where to write the page; None returns its text.
+            File to write; None returns the text.
         time : float, optional
-            [s] Instant at which the page opens; None takes the end if the run stopped, else the
+            [s] Time at which the page opens; None takes the end if the run stopped, else the
             beginning.
 
         Returns
@@ -213,7 +214,7 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If `time` is no number, or not finite.
+            If `time` is not a finite number.
         OSError
             If the file cannot be written.
         AttributeError
@@ -231,12 +232,12 @@ class ShownRun(Record):
         """Write the run to one file, which `crawler2d.load` reads.
 
         The file is a NumPy ``.npz``: the scenario as JSON, every array and table, metrics,
-        diagnosis and `build`. What was at the path is replaced once the file is complete.
+        diagnosis and `build`. An existing file is replaced only when the new one is complete.
 
         Parameters
         ----------
         path : str or path-like
-            Where to write it; its suffix is ``.npz``, or it has none.
+            File to write, with the suffix ``.npz`` or none.
 
         Returns
         -------
@@ -246,13 +247,13 @@ class ShownRun(Record):
         Raises
         ------
         ScenarioError
-            If the run has no result, see `error`, or the path has another suffix.
+            If the run has no result, see `error`, or the suffix is wrong.
         OSError
             If the file cannot be written.
 
         Examples
         --------
-        The history needs nothing but NumPy to be read:
+        NumPy alone reads the history:
 
         >>> import tempfile
         >>> import numpy as np
@@ -273,24 +274,23 @@ class ShownRun(Record):
 
     @takes_keywords
     def widget(self, *, time: float | None = None) -> Replay:
-        """Replay the run in a widget of a live notebook, whose time can be read and set.
+        """Replay the run in a widget of a live notebook; its time can be read and set.
 
         Parameters
         ----------
         time : float, optional
-            [s] Instant at which it opens; None takes the end if the run stopped, else the
-            beginning.
+            [s] Time at which it opens; None takes the end if the run stopped, else the beginning.
 
         Returns
         -------
         Replay
-            A widget. Its `time` [s] is the instant that is shown, for `observe` and `jslink` of
-            ipywidgets; `show` replays another run in its place.
+            A widget. Its `time` [s] is the displayed instant, for `observe` and `jslink` of
+            ipywidgets; `show` replaces the run.
 
         Raises
         ------
         ScenarioError
-            If `time` is no number, or not finite.
+            If `time` is not a finite number.
         ImportError
             If anywidget is missing; the message names the extra to install.
         AttributeError

@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 __all__ = ["Simulation", "State"]
 
 _BETWEEN_DECISIONS = 0.01
-"""[s] Between two calls of a gait that is a function."""
+"""[s] Time between two calls of a gait function."""
 
 _LONGEST = 1e5
-"""[s] Of one advance, as in the core."""
+"""[s] Longest single advance, as in the core."""
 
 _SAME_TIME = 1e-9
-"""[s] Times that differ by less differ by rounding."""
+"""[s] Smaller differences of times are rounding errors."""
 
 _ANGLES = {"front": "flipper_angle", "rear": "rear_flipper_angle"}
 """Commands of a gait by the end of the flippers."""
@@ -48,7 +48,7 @@ _COMMANDS = ("drive.speed", *_ANGLES.values(), "flipper_rate", "rear_flipper_rat
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class State:
-    """The state at one instant, with the names of the arrays of a `Run`.
+    """The state at one instant, named like the arrays of a `Run`.
 
     Attributes
     ----------
@@ -59,21 +59,22 @@ class State:
     chassis_angle, angular_velocity : float
         [rad], [rad/s] Nose up > 0.
     commanded_speed : float
-        [m/s] Set-point of the drivetrain, within its acceleration limits.
+        [m/s] Set point of the drivetrain, after its acceleration limits.
     track_speed : float
         [m/s] Surface speed of the track, mean over the drives.
     track_position : float
-        [m] How far the track surface has run, mean over the drives.
+        [m] Travel of the track surface, mean over the drives.
     drive_positions : ndarray, shape (d,)
-        [m] The same of each of d drives.
+        [m] The same for each of d drives.
     shoe_poses : ndarray, shape (s, 3)
-        [m, m, rad] Middle between the pins and direction of travel of each shoe of a chain.
+        [m, m, rad] Midpoint between the pins and direction of travel, for each shoe of a chain.
     flipper_angles : ndarray, shape (k,)
-        [rad] Of the flippers at each of k ends, front first, relative to the chassis, upwards > 0.
+        [rad] Angle of the flippers at each of k ends, front first, relative to the chassis, upwards
+        > 0.
     contacts : Table
         Contacts at this instant, with the forces of the last step.
     outcome : Outcome or None
-        The outcome, once it is certain; whatever is commanded then does not change it.
+        The outcome, once it is certain; later commands do not change it.
     """
 
     time: float
@@ -94,13 +95,13 @@ class State:
 class Simulation(TakesKeywords):
     """A running simulation of a scenario.
 
-    It has no end: it can be advanced beyond the scenario's duration and outcome. Any thread may use
-    it, one at a time. A copy, also one made by `copy` or `pickle`, is independent.
+    It can be advanced beyond the scenario's duration and outcome. Any thread may use it, one at a
+    time. Copies, by `copy` or `pickle`, are independent.
 
     Parameters
     ----------
     scenario : Scenario
-        What to simulate; the robot is at its start.
+        What to simulate; the robot begins at its start.
 
     Raises
     ------
@@ -117,7 +118,7 @@ class Simulation(TakesKeywords):
     >>> round(sim.state().track_speed, 3)
     0.1
 
-    A gait of one's own lifts the front flippers against the pitch of the chassis:
+    A custom gait raises the front flippers to compensate the chassis angle:
 
     >>> def keep_level(state):
     ...     return 0.6 - state.chassis_angle, 0.0
@@ -153,8 +154,8 @@ class Simulation(TakesKeywords):
         Parameters
         ----------
         duration : float
-            [s] By how much; the last step ends there. If the time is split into other pieces, the
-            steps differ, and the state differs a little.
+            [s] Time to advance; the last step ends exactly there. Splitting it differently changes
+            the steps, and so the state slightly.
 
         Raises
         ------
@@ -166,7 +167,7 @@ class Simulation(TakesKeywords):
         duration = real_number(duration, "duration")
         gait, flippers = self._gait, self._simulated.robot.flippers
         if gait is None or flippers is None or not 0.0 < duration <= _LONGEST:
-            self._core.advance(duration)  # which refuses what is out of range
+            self._core.advance(duration)  # checks the range
             return
         end = self.time + duration
         while (left := end - self.time) > _SAME_TIME:
@@ -177,7 +178,7 @@ class Simulation(TakesKeywords):
             self._core.advance(left if left < ahead + _SAME_TIME else ahead)
 
     def _follow(self, gait: Callable[[State], Any], flippers: Flippers) -> None:
-        """Ask a function where the flippers are to be, and command it."""
+        """Call a gait function and command the angles that it returns."""
         self._decisions += 1
         angles = gait(self.state())
         if angles is None:
@@ -210,7 +211,7 @@ class Simulation(TakesKeywords):
         rear_flipper_rate: float | None = None,
         push: float | None = None,
     ) -> None:
-        """Give new commands, which the motors follow within their limits, or push the robot.
+        """Change the commands, which the motors follow within their limits, or push the robot.
 
         Parameters
         ----------
@@ -218,11 +219,10 @@ class Simulation(TakesKeywords):
             [m/s] Track speed; above 0 drives towards +x, until the next entry of the schedule.
             None leaves it unchanged.
         flipper_angle, rear_flipper_angle : float, optional
-            [rad] Of the flippers at the front and at the rear, relative to the chassis, upwards >
-            0; from now on, overriding the gait. None leaves them unchanged.
+            [rad] Angle of the front and rear flippers, relative to the chassis, upwards > 0; from
+            now on, overriding the gait. None leaves them unchanged.
         flipper_rate, rear_flipper_rate : float, optional
-            [rad/s] The same by the rates at which they turn, in place of an angle; at 0 they stay
-            where they are.
+            [rad/s] Turning rate, instead of an angle; at 0 the flippers keep their angle.
         push : float, optional
             [N] Horizontal external force at the chassis' centre of mass, from now on; above 0
             pushes towards +x. None leaves it unchanged.
@@ -230,9 +230,9 @@ class Simulation(TakesKeywords):
         Raises
         ------
         ScenarioError
-            If a value is not a number, `speed` exceeds the drivetrain's, an angle a full turn or a
-            rate the flippers' own, its end has no flippers, an end is given both, or `push` exceeds
-            1e15 N. Then no command changes.
+            If a value is not a number, `speed` exceeds the drivetrain's limit, an angle a full turn
+            or a rate the flippers' limit, an end has no flippers or gets both angle and rate, or
+            `push` exceeds 1e15 N. Then no command changes.
         """
         given = {
             "drive.speed": speed,
@@ -251,7 +251,7 @@ class Simulation(TakesKeywords):
         }
 
     def _give(self, given: Mapping[str, Any]) -> None:
-        """Check commands by the path of each, and pass them on."""
+        """Check commands by path, and pass them to the core."""
         speed, front, rear, front_rate, rear_rate, push = (
             None if given.get(name) is None else real_number(given[name], name)
             for name in _COMMANDS
@@ -264,12 +264,12 @@ class Simulation(TakesKeywords):
 
     @takes_keywords
     def reset(self, start: Start | None = None) -> None:
-        """Go back to time 0 and forget all commands: as if it were new, bit by bit.
+        """Return to time 0 and forget all commands: bit by bit like a new simulation.
 
         Parameters
         ----------
         start : Start, optional
-            Another start, which becomes that of `scenario`. None takes the scenario's.
+            New start, which replaces that of `scenario`. None keeps it.
 
         Raises
         ------
@@ -291,30 +291,30 @@ class Simulation(TakesKeywords):
         if start is not None:
             self._set_out(self.scenario.replace({"start": start}))
             return
-        with ignore_warnings():  # they were given when it was made
+        with ignore_warnings():  # given before, by the constructor
             self._set_out(self.scenario)
 
     @takes_keywords
     def to_run(self, *, sample_interval: float = 0.01, trials: Trials = None) -> Run:
-        """Return all that it has done so far as a run, with its history.
+        """Return everything up to now as a run with history.
 
-        It is simulated once more with the same commands, and so bit by bit the same; a simulation
-        that goes on from a snapshot, as a copy does, has its history from there on, but metrics and
-        events of all that it has done.
+        The simulation is repeated with the same commands, so the run is the same bit by bit. If it
+        continues from a snapshot, as copies do, the history starts there; metrics and events cover
+        everything.
 
         Parameters
         ----------
         sample_interval : float
             [s] Time between samples of the history.
         trials : {"auto", "all"}, sequence of str or None
-            As for `simulate`: what to try if the robot has stopped.
+            Trials to make if the robot has stopped, see `simulate`.
 
         Returns
         -------
         Run
-            To be plotted, saved and explained like any other. Its scenario does not hold what was
-            commanded, so it cannot be repeated: `parent` says where it started from, and `branch`
-            and `trials` raise an error.
+            Can be plotted, saved and explained like any other. Its scenario does not contain the
+            commands, so it cannot be repeated: `branch` and `trials` raise an error. `parent` says
+            where it started.
 
         Raises
         ------
@@ -378,12 +378,12 @@ class Simulation(TakesKeywords):
         Returns
         -------
         bytes
-            For `from_snapshot` of the same build of crawler2d: 3 to 40 kB plus the scenario.
+            Input of `from_snapshot` of the same build of crawler2d: 3 to 40 kB plus the scenario.
 
         Raises
         ------
         ScenarioError
-            If its gait is a function, or another engine moves it.
+            If its gait is a function, or its engine is rapier.
         """
         if self._gait is not None:
             rule = "must not be a function for a snapshot or a copy, which hold no code"
@@ -392,12 +392,12 @@ class Simulation(TakesKeywords):
 
     @classmethod
     def from_snapshot(cls, snapshot: bytes) -> Simulation:
-        """Restore a simulation from a snapshot; it continues bit by bit the same.
+        """Restore a simulation from a snapshot; it continues identically, bit by bit.
 
         Parameters
         ----------
         snapshot : bytes
-            What `snapshot` wrote.
+            Output of `snapshot`.
 
         Returns
         -------
@@ -406,10 +406,9 @@ class Simulation(TakesKeywords):
 
         Notes
         -----
-        A snapshot from a stranger is as safe to load as a scenario from one: it runs no code, and
-        its state is checked to be possible for its own robot and ground. Whether a simulation
-        really led to that state cannot be checked: the pose and the history so far are whatever the
-        snapshot says.
+        Snapshots from strangers are as safe to load as scenarios: no code runs, and the state is
+        checked to be possible for its robot and ground. Whether a simulation really led to that
+        state cannot be checked: pose and history are whatever the snapshot says.
 
         Raises
         ------
@@ -438,7 +437,7 @@ class Simulation(TakesKeywords):
         return simulation
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Copy and pickle as a snapshot: the copy is independent, and needs the same build."""
+        """Copy and pickle as a snapshot: copies are independent and need the same build."""
         return type(self).from_snapshot, (self.snapshot(),)
 
     def diagnosis(self) -> Diagnosis | None:
@@ -468,24 +467,24 @@ class Simulation(TakesKeywords):
         return State(**state)
 
     def intrusions(self) -> Table:
-        """Find the ground that is inside the track now.
+        """Find the ground that is currently inside the track.
 
         Returns
         -------
         Table
             One row per connected piece of ground deeper than `criteria.intrusion_depth` inside the
             taut belt round the track's own bodies, from left to right. Shallower ground, such as
-            what a resting robot sinks into, neither counts nor connects two pieces. Columns: `lane`
-            (0 under both tracks, 1 the left one, 2 the right one), `edge` (the convex edge that
-            reaches deepest, the left one of several, -1 if there is none), `edges` (all edges of
-            the piece), `bodies` (on either side of the deepest point, in order of belt travel),
+            the penetration of a resting robot, does not count, and does not connect two pieces.
+            Columns: `lane` (0 under both tracks, 1 the left one, 2 the right one), `edge` (the
+            deepest convex edge, the leftmost of several, -1 if there is none), `edges` (all edges
+            of the piece), `bodies` (on either side of the deepest point, in order of belt travel),
             `depth` and `root_depth` [m] (largest depth inside the belt round the circumscribed
             circles and round the root circles), `area` [m^2] (of the ground deeper than the
             criterion), `x` and `y` [m] (the deepest point).
 
         Examples
         --------
-        A blade, 20 mm high and 10 mm thick, between two wheels:
+        A block 20 mm high and 10 mm thick between two wheels:
 
         >>> import crawler2d as c2d
         >>> blade = [(-0.36, 0), (-0.36, 0.02), (-0.35, 0.02), (-0.35, 0)]

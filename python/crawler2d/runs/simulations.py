@@ -1,4 +1,4 @@
-"""Many simulations that are commanded and advanced together, on all cores."""
+"""Command and advance many simulations together, on all cores."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ class States:
     time : ndarray of float, shape (N,)
         [s] Simulated time.
     position, velocity : ndarray of float, shape (N, 2)
-        [m], [m/s] Of the origin of the chassis frame.
+        [m], [m/s] Position and velocity of the origin of the chassis frame.
     chassis_angle, angular_velocity : ndarray of float, shape (N,)
         [rad], [rad/s] Nose up > 0.
     track_speed : ndarray of float, shape (N,)
         [m/s] Mean surface speed of the tracks; above 0 drives towards +x.
     flipper_angles, flipper_rates, flipper_torques : ndarray of float, shape (N, 2)
-        [rad], [rad/s], [N m] Of the flippers at the front and at the rear, upwards > 0; NaN where
-        there are none. Torques are of both sides together, means over the last step.
+        [rad], [rad/s], [N m] Angle, rate and torque of the front and rear flippers, upwards > 0;
+        NaN if there are none. Torques are the sum of both sides, averaged over the last step.
     to_goal : ndarray of float, shape (N,)
-        [m] How far the rear of the robot still has to the goal along x; below 0 beyond it.
+        [m] Distance along x from the rear of the robot to the goal; below 0 beyond it.
     drive_work : ndarray of float, shape (N,)
-        [J] Work of the motors of the tracks so far, without those of the flippers.
+        [J] Work of the track motors so far, without the flipper motors.
     stopped : ndarray of bool, shape (N,)
-        Whether the robot is stopped, by `SeizureCriteria`; nothing is tried to find out why.
+        Whether the robot is stopped by `SeizureCriteria`; no trials find out why.
     outcome : tuple of str or None, length N
-        How it ended, such as `cleared` or `tipped_over`; None while it drives or stands.
+        How each ended, such as `cleared` or `tipped_over`; None while it drives or is stopped.
     error : tuple of str or None, length N
-        Why it cannot go on, such as a state that became non-finite.
+        Why it cannot continue, such as a state that became non-finite.
     """
 
     time: NDArray[np.float64]
@@ -69,32 +69,32 @@ class States:
 
     @property
     def ended(self) -> list[int]:
-        """Places of those that have an outcome."""
-        return [place for place, outcome in enumerate(self.outcome) if outcome is not None]
+        """Indices of those that have an outcome."""
+        return [index for index, outcome in enumerate(self.outcome) if outcome is not None]
 
     @property
     def failed(self) -> list[int]:
-        """Places of those that cannot go on."""
-        return [place for place, error in enumerate(self.error) if error is not None]
+        """Indices of those that cannot continue."""
+        return [index for index, error in enumerate(self.error) if error is not None]
 
 
 class Simulations(TakesKeywords):
-    """Running simulations side by side, as `Simulation` is one: for training and for control.
+    """Many independent `Simulation` objects in one, for training and control.
 
-    Each is independent, and bit by bit what it would be alone, whatever the number of threads. One
-    that fails stands still, says why in its state, and the others go on.
+    Each gives bit by bit the result of a single `Simulation`, for any number of threads. If one
+    fails, its state says why, and the others continue.
 
     Parameters
     ----------
     scenarios : sequence of Scenario
-        What to simulate; every robot is at its start.
+        What to simulate; every robot begins at its start.
     threads : int, optional
-        Most threads; None takes one a core.
+        Largest number of threads; None takes one per core.
 
     Raises
     ------
     ScenarioError
-        If there are no scenarios, one breaks a rule, or has a gait that is a function.
+        If there are no scenarios, or one breaks a rule or has a gait function.
 
     Examples
     --------
@@ -122,9 +122,9 @@ class Simulations(TakesKeywords):
         return self._count
 
     @takes_keywords
-    def scenario(self, place: int) -> Scenario:
-        """Return the scenario of one."""
-        return Scenario.from_json(self._core.scenario(self._place(place)).text)
+    def scenario(self, index: int) -> Scenario:
+        """Return the scenario of one simulation."""
+        return Scenario.from_json(self._core.scenario(self._index(index)).text)
 
     @takes_keywords
     def command(
@@ -136,25 +136,24 @@ class Simulations(TakesKeywords):
         flipper_rate: ArrayLike | None = None,
         rear_flipper_rate: ArrayLike | None = None,
     ) -> None:
-        """Give new commands, which the motors follow within their limits.
+        """Change the commands, which the motors follow within their limits.
 
         Parameters
         ----------
         speed : float or array_like, shape (N,), optional
             [m/s] Track speeds; above 0 drives towards +x. NaN and None leave them unchanged.
         flipper_angle, rear_flipper_angle : float or array_like, shape (N,), optional
-            [rad] Of the flippers at the front and at the rear, relative to the chassis, upwards >
-            0. NaN and None leave them unchanged.
+            [rad] Angle of the front and rear flippers, relative to the chassis, upwards > 0. NaN
+            and None leave them unchanged.
         flipper_rate, rear_flipper_rate : float or array_like, shape (N,), optional
-            [rad/s] The same by the rates at which they turn, in place of an angle; at 0 they stay
-            where they are.
+            [rad/s] Turning rate, instead of an angle; at 0 the flippers keep their angle.
 
         Raises
         ------
         ScenarioError
-            If an array has another shape, a speed exceeds the drivetrain's, an angle a full turn or
-            a rate the flippers' own, its end has no flippers, or is given both. Then no command
-            changes.
+            If an array has the wrong shape, a speed exceeds the drivetrain's limit, an angle a full
+            turn or a rate the flippers' limit, or an end has no flippers or gets both angle and
+            rate. Then no command changes.
         """
         angles, rates = (
             np.column_stack([self._column(front, name), self._column(rear, f"rear_{name}")])
@@ -172,26 +171,27 @@ class Simulations(TakesKeywords):
 
     @takes_keywords
     def advance(self, duration: float, which: ArrayLike | None = None) -> None:
-        """Advance them.
+        """Advance the simulations.
 
         Parameters
         ----------
         duration : float
-            [s] By how much; the last step ends there.
+            [s] Time to advance; the last step ends exactly there.
         which : array_like of int or of bool, optional
-            Their places, or a mask of shape (N,). None takes all.
+            Their indices, or a mask of shape (N,). None takes all.
 
         Raises
         ------
         ScenarioError
-            If `duration` is not a number, it or a place is out of range, or a place stands twice.
+            If `duration` is not a number, it or an index is out of range, or an index is given
+            twice.
         KeyboardInterrupt
-            On Ctrl-C; then they stand at different times, and are to be reset.
+            On Ctrl-C; the simulations are then at different times and must be reset.
         """
         duration = real_number(duration, "duration")
         if not 0.0 <= duration <= 1e5:
             raise ScenarioError("duration", duration, "must be >= 0 s and <= 100000 s")
-        self._core.advance(self._places(which), duration, self._threads)
+        self._core.advance(self._indices(which), duration, self._threads)
 
     @takes_keywords
     def reset(
@@ -199,36 +199,36 @@ class Simulations(TakesKeywords):
         which: ArrayLike | None = None,
         scenarios: Sequence[Scenario | _core.PreparedScenario] | None = None,
     ) -> None:
-        """Reset some to their start, bit by bit as if they were new.
+        """Reset simulations to their start: bit by bit like new ones.
 
         Parameters
         ----------
         which : array_like of int or of bool, optional
-            Their places, or a mask of shape (N,). None takes all.
+            Their indices, or a mask of shape (N,). None takes all.
         scenarios : sequence of Scenario, optional
-            Others in place of theirs, one for each.
+            New scenarios, one for each.
 
         Raises
         ------
         ScenarioError
-            If a place is out of range or stands twice, or a scenario breaks a rule; then nothing
+            If an index is out of range or given twice, or a scenario breaks a rule; then nothing
             changes.
         """
-        places = self._places(which)
+        indices = self._indices(which)
         others = None if scenarios is None else _prepared(scenarios)
-        if others is not None and len(others) != len(places):
-            raise ScenarioError("scenarios", len(others), f"must be {len(places)} of them")
-        self._core.reset(places, others)
+        if others is not None and len(others) != len(indices):
+            raise ScenarioError("scenarios", len(others), f"must be {len(indices)} of them")
+        self._core.reset(indices, others)
 
     def state(self) -> States:
-        """Return their states: copies, which advancing does not change."""
+        """Return a copy of all states; advancing does not change it."""
         columns = self._core.states()
         outcome, error = (tuple(columns.pop(name)) for name in ("outcome", "error"))
         return States(outcome=outcome, error=error, **columns)
 
     @takes_keywords
     def heights(self, offsets: ArrayLike) -> NDArray[np.float64]:
-        """Find the height of the ground near each robot.
+        """Return the height of the ground near each robot.
 
         Parameters
         ----------
@@ -238,13 +238,13 @@ class Simulations(TakesKeywords):
         Returns
         -------
         ndarray of float, shape (N, K)
-            [m] At a vertical face that of its upper end; of grounds that differ that under the left
-            track.
+            [m] Heights: the upper end of a vertical face, and the ground under the left track if
+            the tracks are on different ground.
 
         Raises
         ------
         ScenarioError
-            If an offset is no number, or not finite.
+            If an offset is not a finite number.
         """
         array = _numbers(offsets, "offsets").ravel()
         if not np.isfinite(array).all():
@@ -252,55 +252,55 @@ class Simulations(TakesKeywords):
         return self._core.heights(array.tolist())
 
     @takes_keywords
-    def snapshot(self, place: int) -> bytes:
-        """Write the complete state of one, for `Simulation.from_snapshot`."""
-        return bytes(self._core.snapshot(self._place(place)))
+    def snapshot(self, index: int) -> bytes:
+        """Write the complete state of one simulation, for `Simulation.from_snapshot`."""
+        return bytes(self._core.snapshot(self._index(index)))
 
     @takes_keywords
-    def to_run(self, place: int, *, sample_interval: float = 0.01, trials: Trials = None) -> Run:
-        """Return all that one has done since it set out as a run, see `Simulation.to_run`.
+    def to_run(self, index: int, *, sample_interval: float = 0.01, trials: Trials = None) -> Run:
+        """Return everything that one did since its start as a run, see `Simulation.to_run`.
 
         Parameters
         ----------
-        place : int
-            Which one.
+        index : int
+            Its index.
         sample_interval : float
             [s] Time between samples of the history.
         trials : {"auto", "all"}, sequence of str or None
-            As for `simulate`: what to try if the robot has stopped.
+            Trials to make if the robot has stopped, see `simulate`.
 
         Raises
         ------
         ScenarioError
-            If the place is out of range.
+            If the index is out of range.
         SimulationDiverged
             If the state became non-finite.
         """
         kept, _ = check_recording(sample_interval, "full")
-        place = self._place(place)
-        result = self._core.to_run(place, kept, list(trial_names(trials)))
-        scenario = self.scenario(place)
+        index = self._index(index)
+        result = self._core.to_run(index, kept, list(trial_names(trials)))
+        scenario = self.scenario(index)
         return Run(scenario, result, parent=(scenario, 0.0))
 
-    def _place(self, place: int) -> int:
-        return whole_number(place, "place", 0, len(self) - 1)
+    def _index(self, index: int) -> int:
+        return whole_number(index, "index", 0, len(self) - 1)
 
-    def _places(self, which: ArrayLike | None) -> list[int]:
+    def _indices(self, which: ArrayLike | None) -> list[int]:
         if which is None:
             return list(range(len(self)))
         try:
-            places = np.atleast_1d(np.asarray(which))
+            indices = np.atleast_1d(np.asarray(which))
         except ValueError:  # of NumPy, where rows have unlike lengths
-            places = np.array([which], object)
-        if places.dtype == bool:
-            places = np.flatnonzero(self._shaped(places, "which"))
-        is_whole = places.size == 0 or np.issubdtype(places.dtype, np.integer)
-        # A place that is given twice would be advanced twice.
-        is_list = is_whole and places.ndim == 1 and np.unique(places).size == places.size
-        if not is_list or not ((places >= 0) & (places < len(self))).all():
-            rule = f"must be different places from 0 to {len(self) - 1}, or a mask"
+            indices = np.array([which], object)
+        if indices.dtype == bool:
+            indices = np.flatnonzero(self._shaped(indices, "which"))
+        is_whole = indices.size == 0 or np.issubdtype(indices.dtype, np.integer)
+        # An index given twice would be advanced twice.
+        is_list = is_whole and indices.ndim == 1 and np.unique(indices).size == indices.size
+        if not is_list or not ((indices >= 0) & (indices < len(self))).all():
+            rule = f"must be different indices from 0 to {len(self) - 1}, or a mask"
             raise ScenarioError("which", which, rule)
-        found: list[int] = places.tolist()
+        found: list[int] = indices.tolist()
         return found
 
     def _column(self, values: ArrayLike | None, name: str) -> NDArray[np.float64]:
@@ -317,7 +317,7 @@ class Simulations(TakesKeywords):
 
 
 def _numbers(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Read real numbers: no texts, no masked ones, which NumPy would take as numbers."""
+    """Read real numbers; refuse strings and masked values, which NumPy accepts."""
     if isinstance(values, np.ma.MaskedArray):
         raise ScenarioError(name, values, "must not be masked")
     try:
@@ -332,7 +332,7 @@ def _numbers(values: ArrayLike, name: str) -> NDArray[np.float64]:
 def _prepared(
     scenarios: Sequence[Scenario | _core.PreparedScenario],
 ) -> list[_core.PreparedScenario]:
-    """Validate them, if that has not been done; equal robots and grounds are built once."""
+    """Validate the scenarios unless already done; build equal robots and grounds once."""
     if not isinstance(scenarios, Iterable):
         raise ScenarioError("scenarios", scenarios, "must be several: give them in a list")
     found: list[_core.PreparedScenario] = []
