@@ -1,1 +1,1 @@
-"""Ready-made robots of the literature, and terrains of every kind."""
+"""Ready-made robots from the literature, and terrains of every kind."""

@@ -1,4 +1,4 @@
-"""Surveyed profiles: points read from a text file, and lines with fewer points."""
+"""Surveyed profiles: read points from a text file, and simplify lines."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def read_survey(path: str | PathLike[str]) -> NDArray[np.float64]:
         where = f"{path}, line {number},"
         fields = _SEPARATOR.split(content)
         if is_first and not any(map(_is_number, fields)):
-            is_first = False  # names of the columns
+            is_first = False  # column names
             continue
         is_first = False
         points.append(_read_point(fields, where, content))
@@ -74,7 +74,7 @@ def _read_point(fields: list[str], where: str, line: str) -> tuple[float, float]
 
 
 def _check_order(x: NDArray[np.float64], lines: list[int], path: Path) -> None:
-    """Refuse an x that goes back, from whichever side the file begins."""
+    """Refuse an x that goes back, in either direction of the file."""
     steps = np.diff(x) if x[0] <= x[-1] else -np.diff(x)
     back = np.flatnonzero(steps < 0.0)
     if back.size:
@@ -84,7 +84,7 @@ def _check_order(x: NDArray[np.float64], lines: list[int], path: Path) -> None:
 
 
 def simplified(points: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
-    """[m] Leave out points within a distance of the line through the others (Douglas and Peucker).
+    """[m] Drop points within a distance of the line through the others (Douglas and Peucker).
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def simplified(points: NDArray[np.float64], tolerance: float) -> NDArray[np.floa
     Returns
     -------
     ndarray, shape (k, 2)
-        [m] The points that are kept, with both ends.
+        [m] The remaining points, with both ends.
 
     Examples
     --------

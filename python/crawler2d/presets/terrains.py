@@ -1,4 +1,4 @@
-"""Functions that make terrains: the short way to write the ground of a scenario."""
+"""Functions that make terrains: the short way to define the ground of a scenario."""
 
 from __future__ import annotations
 
@@ -67,10 +67,10 @@ diagonal_barrier = DiagonalBarrier
 random_stepfield = RandomStepfield
 
 
-if not TYPE_CHECKING:  # which would let any name pass
+if not TYPE_CHECKING:  # mypy would accept any name
 
     def __getattr__(name: str) -> object:
-        """Say what a side view does not have."""
+        """Raise an AttributeError that explains limits of the side view."""
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{limits_hint(name)}")
 
 
@@ -117,9 +117,9 @@ def stepfield_with_barrier(
         [m] Height of the barrier. None takes one and a half times the largest possible height of a
         post, 0.15 m in the default field.
     thickness : float
-        [m] Of the barrier.
+        [m] Thickness of the barrier.
     yaw : float
-        [rad] Turn of the barrier about the vertical, as for `DiagonalBarrier`.
+        [rad] Yaw of the barrier, as for `DiagonalBarrier`.
     **fields
         Further fields of `RandomStepfield`.
 
@@ -131,14 +131,14 @@ def stepfield_with_barrier(
     Raises
     ------
     ScenarioError
-        If the barrier's height would follow from fields that are not numbers.
+        If the default height depends on fields that are not numbers.
 
     Notes
     -----
     "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer" drives over such
     fields (Table 2) without giving their dimensions. Its Figures 18 and 19 have barriers of 0.10
-    and 0.20 m; 0.15 m is the middle, and the highest obstacle of its line of wheels (Table 3). The
-    thickness is an estimate: that of a post.
+    and 0.20 m; 0.15 m is the mean, and the highest obstacle of its line of wheels (Table 3). The
+    thickness, that of a post, is an estimate.
 
     Examples
     --------
@@ -154,7 +154,7 @@ def stepfield_with_barrier(
 
 
 def from_points(points: ArrayLike, *, goal: float, **fields: Any) -> Points:
-    """Make a terrain of any polyline.
+    """Make a terrain from any polyline.
 
     Parameters
     ----------
@@ -192,27 +192,27 @@ def from_csv(
     simplify: float | None = None,
     **fields: float,
 ) -> Points:
-    r"""Make a terrain of a surveyed profile.
+    r"""Make a terrain from a surveyed profile.
 
     Parameters
     ----------
     path : str or path-like
         A text file with a point on each line: x and y [m] in order, from left to right or from
-        right to left, as for `from_points`. A comma, a semicolon, a tab or spaces separate them,
-        and decimals have a point. The first line may name the columns; empty lines are skipped,
-        and so is what follows a "#".
+        right to left, as for `from_points`. Separators are commas, semicolons, tabs or spaces; the
+        decimal separator is a point. The first line may name the columns; empty lines and comments
+        after "#" are skipped.
     goal : float
         [m] The x that the whole robot must pass.
     origin : float
         [m] The x of the file that becomes x = 0. The robot starts to the left of the first edge at
-        or beyond it, on ground that the file must have.
+        or beyond it; the file must have ground there.
     simplify : float, optional
-        [m] Leave out points that lie within this distance of the line through the others (Douglas
-        and Peucker). The points that stay do not move, so an edge that stays is where it was
-        surveyed; but lower edges vanish, a row of points round an edge becomes one corner or a few,
-        and the faces beside an edge turn by up to this distance over their length. Round edges with
-        `edge_radius`. Ground in a track counts from `criteria.intrusion_depth` on, 0.5 mm: take a
-        fraction of that where runs seize, and compare. None keeps every point.
+        [m] Drop points within this distance of the line through the others (Douglas and Peucker).
+        Remaining points do not move, so remaining edges are where they were surveyed; but lower
+        edges vanish, a row of points round an edge becomes one or a few corners, and faces turn by
+        up to this distance over their length. Round edges with `edge_radius`. Ground in a track
+        counts from `criteria.intrusion_depth` on, 0.5 mm: if runs seize, use a fraction of that and
+        compare. None keeps every point.
     **fields : float
         Further fields of `Points`, such as `edge_radius` [m] and `friction` [-].
 
@@ -224,11 +224,11 @@ def from_csv(
     Raises
     ------
     ScenarioError
-        If a line has anything but two finite numbers, x goes back, or the file has fewer than two
-        points or is no text in UTF-8: with its path, the line and the value. If `origin` is no
-        number, or `simplify` none from 0 on.
+        If a line is not two finite numbers, x goes back, the file has fewer than two points or is
+        not UTF-8 text; the message has path, line and value. If `origin` is not a number, or
+        `simplify` not a number >= 0.
     ArgumentError
-        If a keyword is neither one of these nor a field of `Points`.
+        If a keyword is neither an argument nor a field of `Points`.
     OSError
         If the file cannot be read.
 

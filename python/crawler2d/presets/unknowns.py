@@ -1,7 +1,7 @@
-"""Ranges of the uncertain parameters of a robot and its floor, for `unknown` of a sweep.
+"""Ranges of the uncertain parameters of a robot and its floor, for `unknown` of sweeps.
 
-They are the same in every run but not known exactly, so they are sampled in an outer loop: each
-sample is a possible robot on a possible floor, and has its own rate.
+They are constant but not known exactly, so they are sampled in an outer loop: each sample is a
+possible robot on a possible floor, with its own rate.
 
 >>> import crawler2d as c2d
 >>> robot = c2d.robots.engineer(flippers=None)
@@ -41,12 +41,12 @@ def __dir__() -> list[str]:
 
 Range = tuple[Distribution, str]
 
-# [s] In which its rated torque brings a bare rotor up to no-load speed. Gears do not change it, and
-# it differs less than the inertias of motors of one power: of 38 types by maxon and Faulhaber, 20
-# to 330 W, eight in ten lie in this range, slotted rotors low, flat ones high. The rated torque is
-# that whose copper loss heats the winding to its limit, 14 % above the makers' own in seven motors;
-# k_t, R, inertia, speed and thermal resistances are those of ekrimsk/MGDB (17337fa2). Five geared
-# joints of the KUKA youBot have 0.03 to 0.06 s.
+# [s] Time in which the rated torque accelerates a bare rotor to no-load speed. Gears do not change
+# it, and it varies less than the inertia of motors of one power: of 38 types by maxon and
+# Faulhaber, 20 to 330 W, eight in ten lie in this range, slotted rotors low, flat ones high. The
+# rated torque is the one whose copper loss heats the winding to its limit, 14 % above the makers'
+# figure for seven motors; k_t, R, inertia, speed and thermal resistances are from ekrimsk/MGDB
+# (17337fa2). Five geared joints of the KUKA youBot have 0.03 to 0.06 s.
 RUN_UP = (0.016, 0.1)
 
 _X, _Y = "robot.center_of_mass[0]", "robot.center_of_mass[1]"
@@ -67,7 +67,7 @@ GENERAL: Mapping[str, Range] = {
     _TORQUE: (scaled(0.5, 2.0), "half to twice"),
     BELLY_HEIGHTS: (shifted(-0.1, 0.1, unit="robot.outline.front_radius"), "a tenth of the radius"),
 }
-"""Of a robot that is no preset: general estimates."""
+"""General estimates, for robots that are not presets."""
 
 RANGES: Mapping[str, Mapping[str, Range]] = {
     "engineer": {
@@ -130,7 +130,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
         BELLY_HEIGHTS: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
     },
 }
-"""Of the presets, by name."""
+"""Ranges of the presets, by name."""
 
 
 def of_restitution(robot: Robot) -> Ranges:
@@ -139,7 +139,7 @@ def of_restitution(robot: Robot) -> Ranges:
     Parameters
     ----------
     robot : Robot
-        A robot on chains has none: their contacts give nothing back.
+        The robot; one on chains has none, as their contacts have no restitution.
 
     Examples
     --------
@@ -156,7 +156,7 @@ def of_restitution(robot: Robot) -> Ranges:
 def of_robot(robot: Robot) -> Ranges:
     """List uncertain parameters of a robot: centre of mass, torque, rotors, ground clearance.
 
-    Of Absolem and MARV also the mass and the torque of the flippers, which were published twice.
+    For Absolem and MARV also mass and flipper torque, of which two values were published.
 
     Parameters
     ----------
@@ -166,10 +166,10 @@ def of_robot(robot: Robot) -> Ranges:
     Returns
     -------
     Ranges
-        For `unknown`; printing it shows each range and where it comes from. Those of a preset rest
-        on what its docstring says of its values; those of another robot are general. The inertia
-        of a rotor is then 0.016 to 0.1 s, in which the rated torque of eight in ten catalogue
-        motors runs them up, times the largest torque over the largest speed; one that the robot
+        For `unknown`; printing it shows each range and its source. Ranges of a preset are based on
+        the sources in its docstring; those of other robots are general. The general rotor inertia
+        is 0.016 to 0.1 s, the time in which the rated torque of eight in ten catalogue motors
+        accelerates them, times the largest torque over the largest speed; an inertia that the robot
         states is taken as known. A preset after `Robot.without_rotors` has none.
 
     Raises
@@ -204,7 +204,7 @@ def of_ground() -> Ranges:
     Returns
     -------
     Ranges
-        For `unknown`. What varies from patch to patch of one floor is `variability.of_contact`.
+        For `unknown`. See `variability.of_contact` for the variation between patches of one floor.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def of_ground() -> Ranges:
 
 
 def _rotors(robot: Robot) -> dict[str, Range]:
-    """Estimate the inertia of rotors that a robot does not state, if their motors have torque."""
+    """Estimate the rotor inertia that a robot does not state, if its motors have torque."""
     robot.wheels()  # refuses a robot that breaks a rule
     drive, arms = robot.drivetrain, robot.flippers
     ratios = {}

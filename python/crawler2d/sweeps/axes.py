@@ -1,4 +1,4 @@
-"""The axes and columns of tables: swept fields with their labels, and the columns of stops."""
+"""Axes and columns of tables: swept fields with labels, and columns about stops."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ _LONGEST = 60
 
 
 def read_labels(values: object, place: str) -> dict[Label, Any]:
-    """Read the values of an axis: a mapping from labels, or a sequence that labels itself.
+    """Read the values of an axis: a mapping from labels, or a sequence.
 
     Parameters
     ----------
     values : mapping or iterable
-        What the user gave.
+        The user's argument.
     place : str
-        The argument that holds them, for messages.
+        Name of the argument, for messages.
 
     Returns
     -------
@@ -111,7 +111,7 @@ def _label(value: object, where: str) -> Label:
 
 
 def _text(value: Any) -> str:
-    """Write a value as the call that makes it, without defaults."""
+    """Write a value as its constructor call, without defaults."""
     value = read_scalar(value, whole=True)
     if isinstance(value, np.ndarray):
         value = value.tolist()
@@ -129,7 +129,7 @@ def _text(value: Any) -> str:
 
 
 def _matters(value: Any, field: dataclasses.Field[Any]) -> bool:
-    """Whether the value would differ with the default of a field."""
+    """Whether the value would differ if a field had its default."""
     is_required = field.default is dataclasses.MISSING
     return is_required or dataclasses.replace(value, **{field.name: field.default}) != value
 
@@ -141,11 +141,11 @@ _ALWAYS = (
     *("closed track", "closed track, clear of the ground", "belt"),
     *("belt, from the start", "closed track, from the start"),
 )
-"""Trials that every jam has."""
+"""Trials made for every jam."""
 
 
 def short_name(trial: str) -> str:
-    """Name a trial as in the names of its columns.
+    """Convert the name of a trial for column names.
 
     Examples
     --------
@@ -160,7 +160,7 @@ def stop_columns(
 ) -> dict[str, Column]:
     """Return type, unit and values of each column by name; empty for runs that did not stop.
 
-    The given trials, and those of every jam, have three columns each, named after them.
+    The given trials, and those made for every jam, have three columns each.
     """
 
     def of(name: str, empty: Any) -> list[Any]:
@@ -215,7 +215,7 @@ COLUMNS = (
     ),
     *("rate", "low", "high", "count", "distinct", "band_low", "band_median", "band_high"),
 )
-"""Columns of a sweep and of its rates, without the metrics; no axis may have these names."""
+"""Columns of a sweep and its rates, without metrics; axes must not use these names."""
 
 Coordinate = tuple[str, "NDArray[Any]", dict[str, str]]
 """Dimension, values and attributes, as xarray expects them."""
@@ -228,10 +228,10 @@ class Axis:
     name: str
     paths: tuple[str, ...]
     values: Mapping[Label, Mapping[str, Any]]
-    """By label, then by path; a path without a value keeps the scenario's own."""
+    """Values by label, then by path; without a value, a path keeps the scenario's own."""
 
     def points(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Yield the name of each point, for errors, and its values by path."""
+        """Yield name (for errors) and values by path of each point."""
         for label, row in self.values.items():
             yield f"{self.name}={label}", row
 
@@ -242,7 +242,8 @@ def read_axes(over: object) -> list[Axis]:
     Raises
     ------
     ScenarioError
-        If it is not such a mapping, a value does not fit, or a path overwrites an earlier one.
+        If it is not a mapping from paths, a value does not fit, or a path overwrites an earlier
+        one.
     """
     if not isinstance(over, Mapping):
         raise ScenarioError("over", over, "must be a mapping from paths to values")
@@ -272,7 +273,7 @@ def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
         columns = [_numbers([row.get(path) for row in rows]) for path in axis.paths]
         attributes = field_attributes(axis.paths)
         if columns != [labels]:
-            attributes.pop("units", None)  # labels have no unit, even if they are numbers
+            attributes.pop("units", None)  # labels have no unit, not even numbers
         by_name[axis.name] = (axis.name, np.array(labels), attributes)
         if len(axis.paths) > 1:
             for path, numbers in zip(axis.paths, columns, strict=True):
@@ -295,9 +296,9 @@ def field_attributes(paths: Sequence[str]) -> dict[str, str]:
 
 
 def short_names(paths: Sequence[str]) -> dict[str, str]:
-    """Name each path by its last part, or by the whole path if that name is taken.
+    """Name each path by its last part, or by the full path if that name is taken.
 
-    Where whole paths differ in nothing but the place of a ``[*]``, that is written as "all".
+    If full paths differ only in the position of a ``[*]``, it is written as "all".
 
     Examples
     --------
@@ -317,7 +318,7 @@ def short_names(paths: Sequence[str]) -> dict[str, str]:
 
 
 def _dimensions(axes: Sequence[tuple[str, ...]]) -> list[str]:
-    """Name the axes; the name of an axis of several paths joins their last parts."""
+    """Name the axes; an axis of several paths joins their last parts."""
     names = short_names([path for paths in axes for path in paths])
     joined = ["_".join(dict.fromkeys(map(_last, paths))) for paths in axes]
     taken = [*joined, *names.values(), *METRICS, *COLUMNS]

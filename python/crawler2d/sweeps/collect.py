@@ -1,4 +1,4 @@
-"""Rows of checked scenarios: read from a store, or simulated, here or by workers."""
+"""Get the rows of checked scenarios: from a store, or simulated here or by workers."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ __all__ = ["Batch", "Collector", "RowsInterrupted", "runs_of", "simulate_chunk"]
 def simulate_chunk(
     texts: Sequence[str], trials: Sequence[str], build: str
 ) -> tuple[str, list[tuple[str, dict[str, Any] | None]]]:
-    """Simulate a few valid scenarios on one thread, unless another build of the core shall.
+    """Simulate a few valid scenarios on one thread, if this is the requested build.
 
     Parameters
     ----------
     texts : sequence of str
         The scenarios, as JSON.
     trials : sequence of str
-        What to try at a stop.
+        Trials to make at a stop.
     build : str
-        The build of the core whose bits are wanted.
+        The requested build of the core.
 
     Returns
     -------
     build : str
-        That of this process; if it is another one, nothing was simulated.
+        The build of this process; if it differs, nothing was simulated.
     answers : list of (str, dict or None)
-        The identity of each scenario, and its result; None if it was interrupted.
+        Identity and result of each scenario; None if interrupted.
     """
     own = _build()
     if own != build:
@@ -66,18 +66,18 @@ def _build() -> str:
 
 # Runs per task of an executor: milliseconds to seconds of work, little to send.
 _CHUNK = 25
-# Tasks submitted at once: more than any executor of this size of work has workers.
+# Tasks submitted at once: more than the workers of any executor for such work.
 _OUT = 256
-# How often a run is submitted: at first with others, then alone. Dask makes four attempts of each.
+# Submissions of a run: first with others, then alone. Dask tries each four times.
 _ATTEMPTS = 3
-# As many runs in a row without an answer are the fault of the executor, not of the runs.
+# This many runs in a row without an answer are the fault of the executor, not of the runs.
 _GIVEN_UP = 100
 
 Take = Callable[[list[Row]], None]
 
 
 class RowsInterrupted(KeyboardInterrupt):
-    """Ctrl-C ended the simulations early; `rows` has a `RunUnfinished` for each that is missing."""
+    """Ctrl-C ended the simulations; `rows` has a `RunUnfinished` for each missing run."""
 
     def __init__(self, rows: list[Row]) -> None:
         super().__init__(rows)
@@ -89,18 +89,18 @@ class RowsInterrupted(KeyboardInterrupt):
 
 
 class Collector:
-    """Simulates scenarios, and keeps their rows in a store: one for a whole sweep or study.
+    """Simulates the scenarios of a sweep or study, and keeps their rows in a store.
 
     Parameters
     ----------
     trials : sequence of str
-        What to try at a stop.
+        Trials to make at a stop.
     store : str or path-like, optional
-        The file that keeps every run; it is locked until the end.
+        File for all runs; locked until the end.
     executor : Executor, optional
-        Where to simulate; None takes the threads of this process.
+        Executor of the simulations; None uses threads of this process.
     threads : int
-        How many of them.
+        Number of threads.
     """
 
     def __init__(
@@ -126,24 +126,24 @@ class Collector:
             self._store.close()
 
     def batch(self, checked: Sequence[Checked]) -> Batch:
-        """Make a batch of scenarios, with those rows that are in the store."""
+        """Make a batch of scenarios, with their rows in the store."""
         batch = Batch(checked)
         if self._store is not None:
             batch.take(self._store.read([each.identity for each in batch.missing]).values())
         return batch
 
     def rows(self, batch: Batch, report: Callable[[int], None]) -> list[Row]:
-        """Simulate what is missing in a batch, each scenario once, and return all rows.
+        """Simulate the missing scenarios of a batch, each once, and return all rows.
 
         Raises
         ------
         RowsInterrupted
             On Ctrl-C.
         StoreError
-            If the store cannot be written any longer; its `runs` have what was simulated.
+            If the store can no longer be written; `runs` of the error has the simulated runs.
         InternalError
-            If the executor takes no more tasks, comes to nothing with all of them, or has workers
-            of another build; what was finished is in the store.
+            If the executor accepts no more tasks, fails with all of them, or has workers of another
+            build; finished runs are in the store.
         """
         missing = batch.missing
         _core.warn(missing)
@@ -174,7 +174,7 @@ class Batch:
     Attributes
     ----------
     done : int
-        How many scenarios have a row.
+        Number of scenarios with a row.
     """
 
     def __init__(self, checked: Sequence[Checked]) -> None:
@@ -196,7 +196,7 @@ class Batch:
         return [cast("_core.PreparedScenario", self._checked[place]) for place in lacking]
 
     def take(self, rows: Iterable[Row]) -> int:
-        """Take finished rows; return how many scenarios they complete."""
+        """Add finished rows; return the number of scenarios that they complete."""
         before = self.done
         for row in rows:
             places = self._places[row.identity]
@@ -206,7 +206,7 @@ class Batch:
         return self.done - before
 
     def rows(self) -> list[Row]:
-        """Return a row for every scenario; one that is not finished has an error."""
+        """Return a row for every scenario; unfinished ones have an error."""
         unfinished = RunUnfinished("the batch was interrupted before this run had ended")
         return [
             Row.of_error(unfinished, each.identity, each.text)
@@ -217,7 +217,7 @@ class Batch:
 
 
 def runs_of(rows: Iterable[Row]) -> list[Run]:
-    """Convert rows to runs without history; those that break a rule are left out."""
+    """Convert rows to runs without history; skip those that break a rule."""
     return [_run(row) for row in rows if row.scenario]
 
 
@@ -233,14 +233,14 @@ def _run(row: Row) -> Run:
 
 
 def _is_reproducible(row: Row) -> bool:
-    """Whether a run would end in the same way again, unlike one that was out of memory."""
+    """Whether a run would end the same way again, unlike one that ran out of memory."""
     return row.error is None or isinstance(row.error, SimulationDiverged)
 
 
 def _simulate_here(
     missing: list[_core.PreparedScenario], trials: Sequence[str], threads: int, take: Take
 ) -> bool:
-    """Simulate the runs on threads of this process; returns whether Ctrl-C ended it."""
+    """Simulate the runs on threads of this process; return whether Ctrl-C ended it."""
 
     def take_results(finished: list[tuple[int, dict[str, Any]]]) -> None:
         take([_row(missing[index], result) for index, result in finished])
@@ -251,10 +251,10 @@ def _simulate_here(
 def _simulate_by_executor(
     executor: Executor, missing: Sequence[_core.PreparedScenario], trials: Sequence[str], take: Take
 ) -> bool:
-    """Submit the runs in chunks, and take the rows in any order; returns whether Ctrl-C ended it.
+    """Submit the runs in chunks, take rows in any order; return whether Ctrl-C ended it.
 
-    The runs of a task that came to nothing are submitted again, each alone, for one of them may be
-    what kills its workers. After some attempts it has an error for its result.
+    The runs of a failed task are submitted again, each alone, as one of them may kill its workers.
+    After some attempts, its result is an error.
     """
     build = _build()
     due = deque((missing[k : k + _CHUNK], 1) for k in range(0, len(missing), _CHUNK))
@@ -304,20 +304,20 @@ def _failed(why: object) -> InternalError:
 
 
 class _LostTask(Exception):
-    """A task came to nothing; the text says why."""
+    """A task failed; the text says why."""
 
 
 def _read_answer(
     future: Future[Any], runs: Sequence[_core.PreparedScenario], build: str
 ) -> list[Row]:
-    """Make rows of an answer, which must be one to these runs.
+    """Make rows from an answer, which must be for these runs.
 
     Raises
     ------
     _LostTask
-        If it is not, or there is none.
+        If it is for other runs, or there is none.
     InternalError
-        If it is that of another build, whose bits may differ.
+        If it comes from another build, whose bits may differ.
     """
     if future.cancelled():
         raise _LostTask("its executor cancelled it")
@@ -338,7 +338,7 @@ def _read_answer(
 
 
 def _read_row(run: _core.PreparedScenario, identity: str, result: dict[str, Any] | None) -> Row:
-    """Make the row of a run of what a worker sent."""
+    """Make the row of a run from a worker's answer."""
     if identity != run.identity:
         raise ValueError(f"it is of the run {str(identity)[:12]}, not {run.identity[:12]}")
     if result is None:

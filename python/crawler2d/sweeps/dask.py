@@ -1,4 +1,4 @@
-"""Dask's clusters as executors whose every task comes to an end."""
+"""Dask clusters as executors whose tasks always end."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["reliable"]
 
 
 def reliable(executor: Executor) -> Executor:
-    """Return what to use in place of `client.get_executor()` of Dask; any other as it is.
+    """Return a replacement for Dask's `client.get_executor()`; other executors unchanged.
 
-    Dask's own never answers for a task whose result was lost with its worker, or by a restart of
-    the cluster, unless computing it again succeeds: the error is raised where nobody listens.
+    Dask's own never completes a task whose result was lost with its worker or in a restart of the
+    cluster, unless recomputing it succeeds: the error is raised where nothing waits for it.
     """
     if type(executor).__module__ != "distributed.cfexecutor":
         return executor
@@ -21,13 +21,13 @@ def reliable(executor: Executor) -> Executor:
 
 
 class _Cluster(Executor):
-    """Submits to a client of Dask."""
+    """Submits to a Dask client."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
 
     def submit(self, call: Any, /, *args: Any, **options: Any) -> Future[Any]:
-        """Submit a task; one that is submitted again is computed again."""
+        """Submit a task; resubmitted tasks are computed again."""
         task = self._client.submit(call, *args, pure=False, **options)
         answer: Future[Any] = Future()
 
@@ -41,11 +41,11 @@ class _Cluster(Executor):
 
 
 async def _pass_on(task: Any, answer: Future[Any]) -> None:
-    """Pass on how a task ends, unless nobody waits for it any longer."""
+    """Forward the result of a task, unless nothing waits for it any longer."""
     with contextlib.suppress(InvalidStateError):
         try:
             answer.set_result(await task)
         except InvalidStateError:
             raise
-        except BaseException as error:  # whatever it is, the other thread waits
+        except BaseException as error:  # the other thread waits for any result
             answer.set_exception(error)

@@ -1,4 +1,4 @@
-"""The SQLite file of a store: one writer, a checksum in every row, atomic changes."""
+"""The SQLite file of a store: one writer, checksums of rows, atomic changes."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ __all__ = [
 COLUMNS = (
     "identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, checksum"
 )
-"""In the order of the values of `row_values`."""
+"""Columns in the order of `row_values`."""
 
 Kept = tuple[Row, str, tuple[str, ...]]
-"""A row, the build that wrote it, and its trials."""
+"""A row, its build and its trials."""
 
 _OUTCOMES = frozenset({*map(str, Outcome), *NO_RESULT})
-# What a run ends with every time, so that it is kept; nothing else is made of a name in a file.
+# Errors that recur every time, so they are kept; no other name in a file becomes an object.
 _ERRORS: dict[str, type[Crawler2dError]] = {"SimulationDiverged": SimulationDiverged}
-# What reading a text raises that is no such row.
+# Errors raised when reading a text that is not a row.
 _UNREADABLE = (AttributeError, LookupError, RecursionError, TypeError, ValueError)
 
 
@@ -73,30 +73,30 @@ def row_values(row: Row, build: str, trials: str) -> tuple[Any, ...]:
 
 def with_checksum(values: Sequence[Any]) -> tuple[Any, ...]:
     """Append their checksum to the values of a row."""
-    # JSON keeps apart where a value ends and of which type it is; what it does not know, such as
-    # the bytes of a damaged column, is in no sound row.
+    # JSON separates values and their types. It cannot write the bytes of a damaged column, which no
+    # intact row has.
     text = json.dumps(values, default=repr)
     return (*values, hashlib.sha256(text.encode()).hexdigest())
 
 
 class OtherBuild(ValueError):
-    """A row is as it was written, by another build, but this one cannot read it."""
+    """An intact row of another build that this one cannot read."""
 
 
 def read_checked(values: Sequence[Any]) -> Kept:
-    """Return the run in a row, its build and its trials.
+    """Return run, build and trials of a row.
 
     Raises
     ------
     OtherBuild
-        If it has outcomes or diagnoses of another build, which this one does not know.
+        If it has outcomes or diagnoses of another build that this one does not know.
     ValueError
-        If the row is not as it was written; it says why.
+        If the row is damaged; the message says how.
     """
     if with_checksum(values[:-1]) != tuple(values):
         raise ValueError("its checksum is another")
     identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, _ = values
-    # What is stored is the canonical text, so this holds for every build.
+    # The stored text is canonical, so this holds for every build.
     if hashlib.sha256(str(scenario).encode()).hexdigest() != identity:
         raise ValueError("its scenario does not hash to its identity")
     try:
@@ -142,16 +142,16 @@ else:
     import fcntl
 
 
-# Beyond the end of every file, and of what SQLite locks of it.
+# Beyond the end of every file, and beyond SQLite's own locks.
 _BYTE = 2**62
 
-# What this process has locked: the system's locks keep out other processes alone.
+# Locks of this process, as the system's locks only exclude other processes.
 _locked: set[tuple[int, int]] = set()
 _guard = threading.Lock()
 
 
 def _forget_locks() -> None:
-    """Begin anew in a fork: it has no lock of its parent, nor a thread that is taking one."""
+    """Start afresh in a fork, which inherits neither locks nor threads."""
     global _guard  # noqa: PLW0603 - of this module alone
     _guard = threading.Lock()
     _locked.clear()
@@ -162,28 +162,28 @@ if hasattr(os, "register_at_fork"):
 
 
 class Lock:
-    """Keeps every other writer out of a file, by whatever name it finds the file.
+    """Excludes other writers of a file, whatever name they use for it.
 
-    It ends with this process, however that ends. There is no lock file that could be removed.
-    Readers, and SQLite itself, are not affected.
+    The lock ends with this process, even if it is killed. There is no lock file to be removed.
+    Readers and SQLite itself are not affected.
 
     Parameters
     ----------
     file : Path
-        It is made, empty, if it does not exist.
+        The file; created empty if missing.
 
     Raises
     ------
     BlockingIOError
         If there is another writer.
     OSError
-        If the file cannot be made or written.
+        If the file cannot be created or written.
     """
 
     def __init__(self, file: Path) -> None:
         self._file = file
         with _guard:
-            # Not even opened: to close it again would undo what SQLite has locked in this process.
+            # Not even opened: closing it would release SQLite's locks in this process.
             if file.exists() and _key(file.stat()) in _locked:
                 raise BlockingIOError
             self._descriptor = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
@@ -199,34 +199,34 @@ class Lock:
             _locked.add(self._key)
 
     def keep(self) -> None:
-        """Lock the byte again; nothing happens if it is.
+        """Lock the byte again if necessary.
 
-        Where a lock belongs to the process, whatever unlocks or closes the file undoes it: SQLite
-        whenever it reads or writes without a log, another part of the program that copies it.
+        If locks belong to the process, anything that unlocks or closes the file releases them:
+        SQLite when it reads or writes without a log, or other code that copies the file.
 
         Raises
         ------
         BlockingIOError
-            If there is another writer by now.
+            If there is another writer now.
         """
         if sys.platform != "win32":
             try:
                 fcntl.lockf(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, _BYTE)
-            except PermissionError as error:  # so some systems call it
+            except PermissionError as error:  # raised on some systems
                 raise BlockingIOError from error
 
     def is_there(self) -> bool:
-        """Whether the file is still where it was."""
+        """Whether the file is still at its path."""
         try:
             return _key(self._file.stat()) == self._key
         except OSError:
             return False
 
     def close(self) -> None:
-        """Let others write."""
+        """Release the lock."""
         with _guard:
             if self._descriptor >= 0:
-                _locked.discard(self._key)  # a fork has forgotten it
+                _locked.discard(self._key)  # a fork has cleared it
                 os.close(self._descriptor)
                 self._descriptor = -1
 
@@ -252,9 +252,9 @@ _TABLE = """CREATE TABLE run (
     PRIMARY KEY (identity, build, trials)
 )"""
 INSERT = f"INSERT OR IGNORE INTO run ({COLUMNS}) VALUES (?{', ?' * COLUMNS.count(',')})"
-"""Adds the values of a row unless its key is there."""
+"""Inserts a row unless its key exists."""
 
-# [s] How long another program that reads or writes the file is waited for.
+# [s] Time to wait for another program that reads or writes the file.
 _PATIENCE = 10.0
 _TAKEN = (
     "is being written by another process or session: wait for it, or give this one a file of its"
@@ -265,7 +265,7 @@ Place = str | os.PathLike[str]
 
 
 def read_store_path(path: Place) -> Path:
-    """Check that something can be the path of a file."""
+    """Check that an argument can be the path of a file."""
     try:
         text = os.fspath(path)
         named = text not in ("", ":memory:") and b"\0" not in os.fsencode(text)
@@ -277,12 +277,12 @@ def read_store_path(path: Place) -> Path:
 
 
 def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
-    """Open a store, or make it, for one writer; the lock is to be closed last.
+    """Open or create a store for one writer; close the lock last.
 
     Raises
     ------
     StoreError
-        If it is no store, is damaged, cannot be written, or another process writes into it.
+        If it is not a store, is damaged or cannot be written, or another process writes to it.
     """
     with store_errors(path), contextlib.ExitStack() as stack:
         real = Path(os.path.realpath(path))
@@ -295,7 +295,7 @@ def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
                 " names: make a copy of it"
             )
         connection = stack.enter_context(contextlib.closing(_connect(real, "rw")))
-        # One transaction: whenever the process is killed, the file is empty or whole.
+        # One transaction: if the process is killed, the file is either empty or complete.
         connection.execute("BEGIN IMMEDIATE")
         if _is_blank(connection):
             connection.execute(f"PRAGMA application_id = {_APPLICATION}")
@@ -305,13 +305,13 @@ def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
         _check(connection, path)
         if version < _VERSION:
             _convert(connection, path)
-        # Written even if it is unchanged: a file that cannot be written fails before the first run.
+        # Written even if unchanged: a read-only file fails before the first run.
         connection.execute(f"PRAGMA user_version = {_VERSION}")
         connection.execute("COMMIT")
         connection.execute("PRAGMA journal_mode = WAL")
-        # What is committed outlives this process, though not a loss of power.
+        # Commits survive the end of this process, but not a power failure.
         connection.execute("PRAGMA synchronous = NORMAL")
-        # While SQLite has the log open it leaves the lock alone.
+        # While SQLite has the log open, it does not touch the lock.
         connection.execute("PRAGMA schema_version").fetchone()
         lock.keep()
         stack.pop_all()
@@ -319,12 +319,12 @@ def open_to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
 
 
 def open_to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
-    """Open a store as it is now, even while it is written, or in a read-only folder.
+    """Open the current state of a store, even while it is written, or in a read-only folder.
 
     Raises
     ------
     StoreError
-        If there is no such file, it is no store, or, if that is `checked`, damaged.
+        If the file is missing or not a store, or, if `checked`, damaged.
     """
     with store_errors(path):
         real = Path(os.path.realpath(path))
@@ -333,8 +333,8 @@ def open_to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
         try:
             return _snapshot(_connect(real, "rw"), path, checked)
         except sqlite3.OperationalError as error:
-            # SQLite reads a file with a log only in a folder that can be written. Without a log the
-            # file is whole, and where nobody can write it does not change while it is read.
+            # SQLite reads a file with a log only in a writable folder. Without a log the file is
+            # complete, and in a read-only folder it does not change while it is read.
             log = Path(f"{real}-wal")
             if _kind(error) not in {"CANTOPEN", "READONLY"}:
                 raise
@@ -347,7 +347,7 @@ def open_to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
 
 
 def find_damage(connection: sqlite3.Connection) -> list[str]:
-    """List damage that SQLite finds in the structure of the file: pages, index, empty values."""
+    """List damage that SQLite finds in the file's structure: pages, index, empty values."""
     try:
         texts = [text for (text,) in connection.execute("PRAGMA integrity_check")]
     except sqlite3.DatabaseError as error:
@@ -356,7 +356,7 @@ def find_damage(connection: sqlite3.Connection) -> list[str]:
 
 
 def read_row(path: Path, number: int, values: Sequence[Any]) -> Kept | None:
-    """Return what a row holds; None if another build wrote it and this one cannot read it.
+    """Return the content of a row; None if it is of another build and unreadable here.
 
     Raises
     ------
@@ -376,7 +376,7 @@ def read_row(path: Path, number: int, values: Sequence[Any]) -> Kept | None:
 
 @contextlib.contextmanager
 def store_errors(path: Path) -> Iterator[None]:
-    """Turn an error of SQLite, or of the system, into one that says what helps."""
+    """Convert an error of SQLite or the system into one that says how to fix it."""
     try:
         yield
     except StoreError:
@@ -385,7 +385,7 @@ def store_errors(path: Path) -> Iterator[None]:
         raise StoreError(f"{path} {_TAKEN}") from None
     except OSError as error:
         raise StoreError(f"{path} cannot be opened: {error.strerror}") from error
-    except UnicodeDecodeError as error:  # of SQLite's message, which cites a name from the file
+    except UnicodeDecodeError as error:  # from SQLite's message, which cites a name from the file
         raise StoreError(f"{path} is damaged ({error})") from error
     except sqlite3.Error as error:
         match _kind(error):
@@ -413,17 +413,17 @@ def _kind(error: sqlite3.Error) -> str:
 
 
 def _connect(real: Path, mode: str) -> sqlite3.Connection:
-    if real.stat().st_size == 1:  # which SQLite takes for an empty file, and overwrites
+    if real.stat().st_size == 1:  # SQLite would treat it as empty and overwrite it
         raise StoreError(f"{real} is no SQLite file, or is damaged (it has a single byte)")
     uri = f"{real.as_uri()}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, timeout=_PATIENCE, isolation_level=None)
-    # Damaged text is for the checksum to find.
+    # Let the checksum find damaged text.
     connection.text_factory = lambda text: text.decode(errors="backslashreplace")
     return connection
 
 
 def _snapshot(connection: sqlite3.Connection, path: Path, checked: bool) -> sqlite3.Connection:
-    """Begin to read what is in the file now."""
+    """Start reading the current content of the file."""
     with contextlib.ExitStack() as stack:
         stack.enter_context(contextlib.closing(connection))
         connection.execute("BEGIN")
@@ -441,7 +441,7 @@ def _snapshot(connection: sqlite3.Connection, path: Path, checked: bool) -> sqli
 
 
 def _is_blank(connection: sqlite3.Connection) -> bool:
-    """Whether nothing is in the file; one that lost its first page alone has others."""
+    """Whether the file is empty; one that lost only its first page has others."""
     (pages,) = connection.execute("PRAGMA page_count").fetchone()
     (tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
     (application,) = connection.execute("PRAGMA application_id").fetchone()
@@ -449,7 +449,7 @@ def _is_blank(connection: sqlite3.Connection) -> bool:
 
 
 def _version(connection: sqlite3.Connection, path: Path) -> int:
-    """Check that the file is a store; returns the version of its format."""
+    """Check that the file is a store; return the version of its format."""
     (application,) = connection.execute("PRAGMA application_id").fetchone()
     if application != _APPLICATION:
         raise StoreError(f"{path} is an SQLite file, but no store of crawler2d")
@@ -472,7 +472,7 @@ def _check(connection: sqlite3.Connection, path: Path) -> None:
 
 
 def _convert(connection: sqlite3.Connection, path: Path) -> None:
-    """Give the rows of version 1 their checksums."""
+    """Add checksums to the rows of version 1."""
     connection.execute("ALTER TABLE run RENAME TO former")
     connection.execute(_TABLE)
     former = connection.execute(

@@ -1,4 +1,4 @@
-"""A data set with a figure of its own. It needs xarray, and is imported on first use."""
+"""A data set with its own figure. Needs xarray, so it is imported on first use."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ __all__ = ["FigureDataset"]
 
 
 class _Plot(DatasetPlotAccessor):
-    """What `FigureDataset.plot` does when it is called; xarray's own plots are its methods."""
+    """The `plot` of `FigureDataset`; xarray's own plots are its methods."""
 
-    # xarray's own refuses to be called.
+    # xarray's own cannot be called.
     def __call__(self, ax: Axes | None = None, **options: Any) -> Axes:  # type: ignore[override]
         """Draw the figure of this kind of data set; see `FigureDataset`."""
         name = self._ds.attrs.get("figure", "")
@@ -31,15 +31,15 @@ class _Plot(DatasetPlotAccessor):
 
 
 class FigureDataset(xarray.Dataset):  # type: ignore[no-untyped-call] # xarray's subclass hook has no types
-    """What `rate` and the studies return: an `xarray.Dataset` whose `plot` draws its figure.
+    """The result of `rate` and studies: an `xarray.Dataset` whose `plot` draws its figure.
 
-    ``found.plot(ax=None)`` takes and returns one matplotlib Axes; None makes a figure. It works on
-    a part of the data set, too, such as ``found.sel(model="belt")``.
+    ``found.plot(ax=None)`` takes and returns one matplotlib Axes; None makes a figure. It also
+    works on parts of the data set, such as ``found.sel(model="belt")``.
     """
 
     __slots__ = ()
 
     @property
     def plot(self) -> _Plot:  # type: ignore[override] # an accessor of xarray's is no property
-        """Draw it; xarray's own plots are methods of this."""
+        """Draw the figure; xarray's own plots are methods of this."""
         return _Plot(self)

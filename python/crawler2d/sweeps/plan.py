@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["Checked", "Plan", "Planner", "World", "plan_runs"]
 
 Checked = _core.PreparedScenario | ScenarioError
-"""A scenario that can be run, or the rule that it breaks."""
+"""A valid scenario, or the error of the rule that it breaks."""
 
 _UNKNOWN = "unknown "
-"""Kind of the draws of the unknowns, which differ from those of the repeats."""
+"""Kind of the draws of unknowns, separate from those of repeats."""
 
 _SCHEDULED = {"drive.speed": "drive", "drive.gait.angle": "drive.gait"}
-"""Commands that a schedule replaces, and what has it."""
+"""Commands that a schedule overrides, and the object with the schedule."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +41,15 @@ class World:
     Attributes
     ----------
     labels : tuple of str
-        Cell and sample, for messages.
+        Labels of cell and sample, for messages.
     cell : Scenario
-        Without the sample.
+        The cell without the sample.
     checked : Checked
-        With it.
+        The cell with the sample.
     own : mapping of str to float
-        By path of a field, what the sample has there.
+        Values of the sample, by path of a field.
     sampled : mapping of str to float
-        By path of `unknown`.
+        Values of the sample, by path of `unknown`.
     sample : int, optional
         Number of the sample; None without unknowns.
     """
@@ -69,13 +69,13 @@ class Plan:
     Attributes
     ----------
     world : World
-        What they share.
+        The world of all of them.
     begin : int
         The first repeat.
     checked : list of Checked
-        One per repeat.
+        One scenario per repeat.
     drawn : mapping of str to ndarray, shape (repeats,)
-        By path of `vary`; empty if the world breaks a rule.
+        Drawn values by path of `vary`; empty if the world breaks a rule.
     """
 
     world: World
@@ -84,7 +84,7 @@ class Plan:
     drawn: Mapping[str, NDArray[np.float64]]
 
     def path(self, index: int) -> str:
-        """Return the path of one of its runs, for errors."""
+        """Return the path of a run, for errors."""
         return _cell_path([*self.world.labels, f"repeat={self.begin + index}"])
 
 
@@ -92,17 +92,17 @@ class Plan:
 class Planner:
     """Makes the scenarios of runs: equal draws for equal seed, path, sample and repeat.
 
-    All cells have the same draws, so that their runs can be compared in pairs; the repeats of two
-    samples have different draws, so that their runs are independent.
+    All cells share their draws, so their runs can be compared in pairs. Different samples have
+    different draws, so their runs are independent.
 
     Attributes
     ----------
     variation, unknowns : Variation
-        What is drawn for every repeat, and for every sample.
+        Distributions for every repeat and every sample.
     seed : int
-        Of the draws.
+        Seed of the draws.
     samples : int
-        Of the unknowns; without meaning if there are none.
+        Number of samples of the unknowns; ignored if there are none.
     """
 
     variation: Variation
@@ -121,12 +121,12 @@ class Planner:
         seed: int,
         samples: int,
     ) -> Planner:
-        """Read the arguments of that name; the paths `swept` are set otherwise.
+        """Read the arguments of these names; the sweep sets the paths `swept`.
 
         Raises
         ------
         ScenarioError
-            If one of them breaks a rule.
+            If an argument breaks a rule.
         """
         given = {} if unknown is None else unknown
         unknowns = Variation.read(scenario, given, swept, "unknown")
@@ -140,7 +140,7 @@ class Planner:
     def worlds(
         self, cell: Scenario, names: Sequence[str], like: _core.PreparedScenario | None = None
     ) -> list[World]:
-        """Set every sample of the unknowns in a cell; what `like` shares is not built again.
+        """Set every sample of the unknowns in a cell; reuse the parts shared with `like`.
 
         Raises
         ------
@@ -171,7 +171,7 @@ class Planner:
         Raises
         ------
         ScenarioError
-            If the cell lacks a path; a scenario that breaks a rule stands in the plan as its error.
+            If the cell lacks a path. Scenarios that break a rule appear in the plan as errors.
         """
         kind = "" if world.sample is None else f"sample {world.sample} "
         numbers = self.variation.numbers(self.seed, end, kind=kind, first=world.sample or 0)
@@ -187,14 +187,14 @@ class Planner:
     def draw(
         self, world: World, numbers: Mapping[str, NDArray[np.float64]], count: int
     ) -> tuple[list[Checked], dict[str, NDArray[np.float64]]]:
-        """Vary a world by some numbers from 0 to 1 for each path.
+        """Vary a world by numbers from 0 to 1 for each path.
 
-        Returns the scenarios and what was drawn, by path.
+        Return the scenarios and the drawn values, by path.
 
         Raises
         ------
         ScenarioError
-            If the cell lacks a path; a scenario that breaks a rule stands in the list as its error.
+            If the cell lacks a path. Scenarios that break a rule appear in the list as errors.
         """
         whole = world.checked
         if isinstance(whole, ScenarioError):
@@ -214,13 +214,13 @@ def plan_runs(
 ) -> list[Plan]:
     """Plan every run: cell by cell, the samples of a cell in order.
 
-    What a cell has in common with the one before it, the first with `like`, is not built again.
+    Each cell reuses parts shared with the previous one, the first those of `like`.
 
     Raises
     ------
     ScenarioError
-        If a cell lacks a path, or one has no effect in any cell; a scenario that breaks a rule
-        stands in its plan as its error.
+        If a cell lacks a path, or a path has no effect in any cell. Scenarios that break a rule
+        appear in their plan as errors.
     """
     plans: list[Plan] = []
     cells: list[Scenario] = []
@@ -246,12 +246,12 @@ def plan_runs(
 
 
 def _check_effect(cells: Sequence[Scenario], paths: Collection[str]) -> None:
-    """Refuse to sweep or draw a command that a schedule replaces from the start in every cell.
+    """Refuse to sweep or draw a command that a schedule overrides from the start in every cell.
 
     Raises
     ------
     ScenarioError
-        If there is one: all of its rows would be alike.
+        If there is one: all its rows would be equal.
     """
     for path, of in _SCHEDULED.items():
         schedules = [getattr(read_path(cell, of), "schedule", None) for cell in cells]
@@ -261,11 +261,11 @@ def _check_effect(cells: Sequence[Scenario], paths: Collection[str]) -> None:
 
 
 def _apply_draws(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> list[Checked]:
-    """Set what was drawn in a checked scenario; one that breaks a rule is an error."""
+    """Set drawn values in a checked scenario; return an error if it breaks a rule."""
     if not drawn.values or isinstance(whole, ScenarioError):
         return [whole] * count
     if any(excluded(cell, path) for path in drawn.values):
-        # The fields that exclude these are cleared first, whatever their values.
+        # Clear the fields that exclude these first.
         taken = cell.replace({path: float(v[0]) for path, v in drawn.values.items()})
         whole = _validate(taken, "", None)
         if isinstance(whole, ScenarioError):
@@ -280,9 +280,9 @@ def _drop_invalid(
     runs: list[Checked],
     optional: Collection[str],
 ) -> dict[str, NDArray[np.float64]]:
-    """Drop draws of optional paths that break a rule: those runs keep their own values.
+    """Drop draws of optional paths that break a rule; their runs keep the original values.
 
-    Returns the values by path; `runs` is changed.
+    Return the values by path; changes `runs`.
     """
     shown = {path: values.copy() for path, values in drawn.shown.items()}
     is_optional = np.array([path in optional for path in drawn.values], dtype=bool)
@@ -319,7 +319,7 @@ def _prefix(error: ScenarioError, place: str) -> ScenarioError:
 
 @contextlib.contextmanager
 def _prefixed(place: str) -> Iterator[None]:
-    """Prefix the path of an error that is raised inside."""
+    """Prefix the path of errors raised inside."""
     try:
         yield
     except ScenarioError as error:
@@ -327,7 +327,7 @@ def _prefixed(place: str) -> Iterator[None]:
 
 
 def _validate(scenario: Scenario, place: str, like: _core.PreparedScenario | None) -> Checked:
-    """Validate a scenario; warnings are left to the batch, which issues each once."""
+    """Validate a scenario without warnings: the batch issues each of them once."""
     try:
         return _core.PreparedScenario(scenario.to_json(), like)
     except ScenarioError as error:

@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 __all__ = ["BAND", "quantile_band", "rate", "rates_of"]
 
 _STOPPED = "stopped"
-"""Any outcome that is a stop."""
+"""Name for any outcome that is a stop."""
 
 _SAMPLE, _REPEAT = "sample", "repeat"
-"""The dimensions of the draws: of the unknowns, and from run to run."""
+"""Dimensions of the draws: samples of unknowns, and repeats."""
 
 _POSE = {"final_x": 1e-3, "final_y": 1e-3, "final_angle": math.radians(0.1)}
-"""[m], [rad] Final poses closer than this count as one."""
+"""[m], [rad] Final poses closer than this count as equal."""
 
 _LONG_NAMES = {
     "low": "lower bound",
@@ -48,7 +48,7 @@ BAND = {"band_low": 0.05, "band_median": 0.5, "band_high": 0.95}
 """[-] Quantiles of a band of rates."""
 
 _FEW = 4
-"""So few distinct poses of at least `_MANY` runs are warned of."""
+"""Warn if at least `_MANY` runs have this few distinct poses, or fewer."""
 _MANY = 10
 
 
@@ -62,46 +62,46 @@ def rate(
 ) -> FigureDataset:
     """Estimate the rate of an outcome in every cell, with Wilson's interval.
 
-    A rate is one over what varied from run to run; where `sweep` had unknowns, there is one for
-    each sample of them, and their spread is a band, which is not averaged into one rate unless
-    `dim` says so. Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are
-    the missing runs of a joined table.
+    A rate is a fraction of repeats, over what varied between them. If `sweep` had unknowns, there
+    is one rate per sample, and their spread is a band; they are averaged only if `dim` includes
+    samples. Runs without a result (`diverged`, `refused`, `failed`) and missing runs of a joined
+    table are not counted.
 
-    Runs that are counted together and share a draw, as the repeats of one sample do, or the runs of
-    one repeat in several cells, are correlated. They are a cluster: the interval is Wilson's for
+    Runs that are counted together and share a draw are correlated: the repeats of one sample, or
+    the runs of one repeat in several cells. They form a cluster, and the interval is Wilson's for
     the effective number of independent runs, see `sweeps.statistics.clustered`.
 
     Parameters
     ----------
     table : xarray.Dataset or iterable of str or None
-        The table that `sweep` returned; or outcomes, with None for a run without a result.
+        Result of `sweep`, or a list of outcomes, with None for a run without a result.
     outcome : str
         Name of an `Outcome`, or "stopped" for any stop (`Outcome.is_stop`).
     dim : str or iterable of str
         The dimension or dimensions of the table to count over.
     confidence_level : float
-        [-] Of the intervals, between 0 and 1. They are those of a number of runs that was fixed
-        beforehand.
+        [-] Confidence level of the intervals, between 0 and 1. They assume a number of runs fixed
+        in advance.
 
     Returns
     -------
     FigureDataset
         An `xarray.Dataset` whose `plot` draws it. Variables `rate`, `low`, `high` and `count`,
         without the dimension `dim`. Without runs the rate is NaN and the interval 0 to 1. A table
-        with final poses also gives `distinct`, how many of them differ by more than about 1 mm or
-        0.1 degree.
+        with final poses also gives `distinct`, the number of poses that differ by more than about 1
+        mm or 0.1 degree.
 
-        With unknowns, these have the dimension `sample`, and there are `band_low`, `band_median`
-        and `band_high` besides: 5 %, 50 % and 95 % of the rates of a cell over the samples. A
-        band includes the scatter of few repeats: each of its rates has its own interval.
+        With unknowns, these have the dimension `sample`; `band_low`, `band_median` and `band_high`
+        are the 5 %, 50 % and 95 % quantiles of a cell's rates over the samples. A band includes the
+        scatter from few repeats, which the interval of each rate shows.
 
-        The attributes `varied` and `unknown` name the populations; a rate without them says little.
-        `scenario` and those that begin with `build_` are the table's.
+        The attributes `varied` and `unknown` describe the populations, without which a rate says
+        little. `scenario` and `build_...` are copied from the table.
 
     Raises
     ------
     ScenarioError
-        If there is no such outcome or dimension; the message suggests the nearest name. If another
+        If the outcome or dimension is unknown (the message suggests the nearest name), or another
         dimension of the table has the name of one of the variables.
     ImportError
         If xarray is missing; the message names the extra to install.
@@ -109,9 +109,9 @@ def rate(
     Warns
     -----
     ScenarioWarning
-        If nothing was unknown, and in some cell at least ten runs ended in four or fewer distinct
-        poses: then what varied hardly moved the robot, and the rate says little of other robots or
-        floors.
+        If there were no unknowns, and in some cell at least ten runs ended in four or fewer
+        distinct poses: the variation hardly affected the robot, so the rate says little about other
+        robots or floors.
 
     Examples
     --------
@@ -150,9 +150,9 @@ def rates_of(
     outcomes = runs["outcome"]
     given = dict.fromkeys(dim) if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
     dims = [read_choice(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
-    with xr.set_options(keep_attrs=True):  # those of the coordinates
+    with xr.set_options(keep_attrs=True):  # attributes of the coordinates
         valid = outcomes.isin([str(each) for each in Outcome])
-        # Over no dimension at all, a sum leaves booleans.
+        # A sum over no dimension leaves booleans.
         counts = valid.sum(dims).astype(int)
         own, together = _clusters(outcomes, dims)
         per_cluster = [each.sum(together).astype(int) for each in (outcomes.isin(counted), valid)]
@@ -194,12 +194,12 @@ def rates_of(
 
 
 def _says_origin(attribute: str) -> bool:
-    """Whether an attribute of a table says what its runs came from: scenario and build."""
+    """Whether an attribute of a table states the origin of its runs: scenario or build."""
     return attribute == "scenario" or attribute.startswith("build_")
 
 
 def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Split dimensions into those of clusters and those within: runs of one draw are a cluster."""
+    """Split dimensions into those of clusters and those within; runs of one draw are a cluster."""
     drawn = [name for name in (_SAMPLE, _REPEAT) if name in outcomes.dims]
     if not drawn:
         return list(dims), []
@@ -208,8 +208,8 @@ def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str
 
 
 def quantile_band(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
-    """Return the band of rates over the samples of the unknowns, without that dimension."""
-    with warnings.catch_warnings():  # of runs without a result there is no band
+    """Return the band of rates over the samples of the unknowns."""
+    with warnings.catch_warnings():  # runs without a result have no band
         warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
         band = rates.quantile(list(BAND.values()), _SAMPLE, skipna=True)
     parts = {name: band.sel(quantile=part, drop=True) for name, part in BAND.items()}
@@ -232,7 +232,7 @@ def _warn_of_few(rates: xarray.Dataset) -> None:
 
 
 def _distinct(valid: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
-    """Count distinct poses, rounded to whole steps, of the runs with a result."""
+    """Count the distinct poses, rounded to whole steps, of runs with a result."""
     return len(set(zip(*(each[valid].tolist() for each in steps), strict=True)))
 
 

@@ -1,4 +1,4 @@
-"""Confidence intervals of a rate that hold however often one looks, and a rule for stopping."""
+"""Confidence intervals of a rate that stay valid when checked repeatedly, and a stopping rule."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from crawler2d.sweeps.statistics import Interval, read_counts, read_level
 
 __all__ = ["Until", "sequential"]
 
-# What is known of a rate p before the first run, as a beta distribution: 1/2 + 5 p successes and
-# 1/2 + 5 (1 - p) failures. The 5 that are like p narrow intervals of 50 to 300 runs, the two halves
-# those of rates near 0 and 1. Any two positive numbers are valid.
+# Prior for a rate p, as a beta distribution: 1/2 + 5 p successes and 1/2 + 5 (1 - p) failures. The
+# 5 runs like p narrow intervals of 50 to 300 runs, the two halves those of rates near 0 and 1. Any
+# two positive numbers are valid.
 _LIKE_P = 5.0
 _EITHER = 0.5
 _PRIOR = _LIKE_P + 2.0 * _EITHER
 _LGAMMA_PRIOR = lgamma(_PRIOR)
 
-# The most runs of a cell, as in a sweep.
+# Largest number of runs of a cell, as in a sweep.
 _MOST = 10**6
 
 
 @takes_keywords
 def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval:
-    r"""Estimate a rate with a confidence sequence: its interval holds however often one looks.
+    r"""Estimate a rate with a confidence sequence, which may be checked after every run.
 
-    Whatever the rate, the probability that its interval fails to hold it after *any* number of runs
-    is at most 1 - `confidence`. So one may look after every run, and stop whenever the interval
-    says enough. An interval for a number of runs fixed in advance, such as `wilson`, is narrower,
-    but does not allow that.
+    For any rate, the probability that the interval misses it after *any* number of runs is at most
+    1 - `confidence`. So you may check after every run, and stop as soon as the interval is narrow
+    enough. An interval for a number of runs fixed in advance, such as `wilson`, is narrower, but
+    does not allow that.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
     -------
     Interval
         Rate, lower and upper bound; without runs the rate is NaN and the interval 0 to 1. It
-        depends on these numbers alone, not on when one has looked.
+        depends only on these numbers, not on earlier checks.
 
     Raises
     ------
@@ -57,18 +57,18 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
     Notes
     -----
-    For each rate p, somebody bets on every run: after k successes in n runs that the next is one
-    with probability (k + 1/2 + 5 p) / (n + 6). If p is true, the product M of what was predicted
-    for the outcomes that came, each divided by its true probability, is a martingale of mean 1.
-    By Ville's inequality it ever reaches 1 / (1 - confidence) with a probability of at most
-    1 - confidence. The interval holds all p for which M is smaller. In closed form, with
-    a = 1/2 + 5 p, b = 1/2 + 5 (1 - p) and the beta function B,
+    For each rate p, a bettor predicts every run: after k successes in n runs, a success with
+    probability (k + 1/2 + 5 p) / (n + 6). If p is true, the product M of the predicted
+    probabilities of the actual outcomes, each divided by its true probability, is a martingale of
+    mean 1. By Ville's inequality it ever reaches 1 / (1 - confidence) with a probability of at most
+    1 - confidence. The interval contains all p for which M is smaller. In closed form, with a = 1/2
+    + 5 p, b = 1/2 + 5 (1 - p) and the beta function B,
 
     .. math:: M = B(a + k, b + n - k) / (B(a, b) p^k (1 - p)^{n - k})
 
     Its logarithm is convex in p, because log(a + i) - log(p) is, and so is log(b + i) - log(1 - p),
     for every i >= 0; and at k / n it is at most 0, because no mixture of rates makes outcomes more
-    likely than k / n does. So the set is an interval that holds k / n.
+    likely than k / n does. So the set is an interval that contains k / n.
 
     References
     ----------
@@ -99,19 +99,19 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Until(TakesKeywords):
-    """A stopping rule: simulate a cell until its rate, or its side of a threshold, is known.
+    """Stopping rule: simulate a cell until its rate, or its side of a threshold, is known.
 
-    It may be asked after every run, or after any number of them: the interval is `sequential`'s.
+    Uses the interval of `sequential`, so it may be checked after any number of runs.
 
     Parameters
     ----------
     width : float
-        Enough if the interval is at most this wide; above 0, up to 1. The default is reached in at
-        most 245 runs.
+        Stop when the interval is at most this wide; above 0, up to 1. The default needs at most 245
+        runs.
     threshold : float, optional
-        Enough, too, as soon as the interval lies wholly above or below this rate, between 0 and 1.
+        Also stop when the interval lies entirely above or below this rate, between 0 and 1.
     min_runs, max_runs : int
-        Fewest runs, 0 or more; most runs, at least `min_runs` and 1.
+        Smallest number of runs, 0 or more; largest number, at least `min_runs` and 1.
     confidence : float
         Confidence level of the interval, between 0 and 1.
 
@@ -153,7 +153,7 @@ class Until(TakesKeywords):
 
     @takes_keywords
     def is_done(self, successes: int, count: int) -> bool:
-        """Whether no more runs are needed, or none are left.
+        """Whether the rule is met, or `max_runs` is reached.
 
         Parameters
         ----------
@@ -166,13 +166,13 @@ class Until(TakesKeywords):
             If not ``0 <= successes <= count``.
         """
         interval = sequential(successes, count, self.confidence)
-        if count < max(self.min_runs, 1) or count >= self.max_runs:  # of no runs nothing is known
+        if count < max(self.min_runs, 1) or count >= self.max_runs:  # nothing is known without runs
             return count >= self.max_runs
         return interval.high - interval.low <= self.width or interval.side(self.threshold) != 0
 
     @takes_keywords
     def side(self, successes: int, count: int) -> int:
-        """Tell on which side of the threshold the rate certainly lies.
+        """Return the side of the threshold on which the rate lies, if certain.
 
         Parameters
         ----------
@@ -182,7 +182,7 @@ class Until(TakesKeywords):
         Returns
         -------
         int
-            -1 below the threshold, 1 above it, 0 if that is not certain or there is no threshold.
+            -1 below the threshold, 1 above it, 0 if uncertain or without a threshold.
 
         Raises
         ------
@@ -193,10 +193,10 @@ class Until(TakesKeywords):
 
 
 def _low(k: int, m: int, limit: float) -> float:
-    """Find the rate below that of k successes and m failures, k > 0, where log M is `limit`."""
+    """Find the rate below k / (k + m), for k > 0 successes and m failures, with log M = `limit`."""
     n = k + m
     start = (k + _EITHER) / (n + 1)
-    # About where a normal distribution has it, in log(p / (1 - p)).
+    # Initial guess from a normal distribution, in log(p / (1 - p)).
     spread = math.sqrt((2.0 * limit + log1p(n / _PRIOR)) / (n * start * (1.0 - start)))
     center = log(start / (1.0 - start))
     left = center - 1.1 * spread
@@ -204,9 +204,9 @@ def _low(k: int, m: int, limit: float) -> float:
     while excess < 0.0:
         left -= spread
         excess = _log_martingale(left, k, m) - limit
-    # Log M is convex in log(p / (1 - p)), too: the line through two points left of the root leads
-    # to one between them and the root, and so from there, faster and faster. The result is never
-    # beyond the root by more than rounding.
+    # Log M is convex in log(p / (1 - p)), too: the secant through two points left of the root gives
+    # a point between them and the root, and converges superlinearly. The result is never beyond the
+    # root by more than rounding.
     previous, left_of = left - 0.1 * spread, left
     previous_excess = _log_martingale(previous, k, m) - limit
     while excess > 0.0 and previous_excess > excess:
@@ -220,7 +220,7 @@ def _low(k: int, m: int, limit: float) -> float:
 
 
 def _log_martingale(logit: float, k: int, m: int) -> float:
-    """Compute log M of the rate with this log(p / (1 - p)), for k successes and m failures."""
+    """Compute log M for a rate given as log(p / (1 - p)), with k successes and m failures."""
     odds_against = exp(-logit)
     n = k + m
     a = _EITHER + _LIKE_P / (1.0 + odds_against)

@@ -1,4 +1,4 @@
-"""Confidence intervals of rates and differences, valid for few runs and rates of 0 and 1."""
+"""Confidence intervals of rates and differences, also for few runs and rates of 0 and 1."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ __all__ = [
     "wilson",
 ]
 
-# Resamples of a bootstrap; with this many, bounds vary by about 2 % of the interval's width.
+# Bootstrap resamples; with this many, bounds vary by about 2 % of the interval's width.
 _RESAMPLES = 2000
 _LOG_2 = math.log(2.0)
 _MOST = 10**9
-"""Largest number of runs: more than anyone makes."""
+"""Largest number of runs, far above any real one."""
 
 
 class Interval(NamedTuple):
@@ -41,7 +41,7 @@ class Interval(NamedTuple):
     high: float
 
     def side(self, threshold: float | None) -> int:
-        """Return -1 or 1 if it lies wholly below or above a threshold, else 0."""
+        """Return -1 or 1 if it lies entirely below or above a threshold, else 0."""
         if threshold is None:
             return 0
         return (self.low > threshold) - (self.high < threshold)
@@ -93,13 +93,14 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
     r"""Estimate a rate from clusters of correlated runs, such as those of one robot on one floor.
 
     The interval is Wilson's for the effective number of independent runs: the number of runs
-    divided by Kish's design effect. Clusters of one run each have exactly Wilson's interval; where
-    all runs agree, the correlation is unknown, and each cluster counts once.
+    divided by Kish's design effect. For clusters of one run each it is exactly Wilson's interval.
+    If all runs agree, the correlation is unknown, and each cluster counts once.
 
     Parameters
     ----------
     successes, counts : array_like, shape (clusters,)
-        Of each cluster: successful runs, and all runs. Clusters without runs are left out.
+        Number of successful runs and of all runs, for each cluster. Clusters without runs are
+        ignored.
     confidence : float
         Confidence level, between 0 and 1.
 
@@ -112,24 +113,24 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
     Raises
     ------
     ScenarioError
-        If the two differ in shape, not ``0 <= successes <= counts``, or `confidence` is not between
-        0 and 1.
+        If the two differ in shape or violate ``0 <= successes <= counts``, or `confidence` is not
+        between 0 and 1.
 
     Notes
     -----
     Of k clusters with :math:`m_i` runs, N in all, and a correlation :math:`\rho` of the runs within
     a cluster, the variance of the rate is that of N / D independent runs, with
-    :math:`D = 1 + (\sum m_i^2 / N - 1) \rho`. Its estimate is that of an analysis of variance,
-    between 0 and 1. From few clusters it is often too small, the more so where few of them hold the
-    rarer outcome; so it is averaged over these, whose number is e, and one more in which all runs
-    agree: :math:`(e \hat\rho + 1) / (e + 1)`.
+    :math:`D = 1 + (\sum m_i^2 / N - 1) \rho`. It is estimated by an analysis of variance, limited
+    to 0 to 1. With few clusters, especially few with the rarer outcome, the estimate is often too
+    small; so it is averaged over these e clusters and one more in which all runs agree: :math:`(e
+    \hat\rho + 1) / (e + 1)`.
 
-    The ideal is Wilson's interval for N / D with the true :math:`\rho`, which nobody knows. In
+    The ideal is Wilson's interval for N / D with the true :math:`\rho`, which is unknown. In
     simulated audits of 80 samples with 2 repeats, rates of 0.1, 0.5 and 0.9 and correlations of 0,
-    0.3 and 0.8, it holds the rate in 94 % or more, and is at most 1.05 times as wide as the ideal;
-    with 20 samples of 5 repeats in 94 % or more, at most 1.3 times as wide. With 20 repeats of each
-    of 20 it is up to 1.5 times as wide if the repeats are independent of each other: so few
-    clusters cannot show that they are.
+    0.3 and 0.8, this interval contains the rate in 94 % or more, and is at most 1.05 times as wide
+    as the ideal; with 20 samples of 5 repeats in 94 % or more, at most 1.3 times as wide. With 20
+    samples of 20 repeats it is up to 1.5 times as wide if the repeats are independent, which so few
+    clusters cannot show.
 
     References
     ----------
@@ -143,8 +144,8 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
 
     Examples
     --------
-    Ten of twenty robots that seize in every run are no more certain for four runs of each; were
-    the runs of a robot independent, they would be:
+    If ten of twenty robots seize in every run, four runs of each give no more certainty than one;
+    independent runs would:
 
     >>> rate, low, high = clustered([4] * 10 + [0] * 10, [4] * 20)
     >>> round(low, 3), round(high, 3), round(wilson(10, 20).low, 3)
@@ -284,7 +285,7 @@ def mcnemar(first: int, second: int) -> float:
     Raises
     ------
     ScenarioError
-        If they are not whole numbers from 0.
+        If they are not whole numbers >= 0.
 
     Examples
     --------
@@ -310,14 +311,14 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
     Parameters
     ----------
     values : array_like, shape (n,)
-        Independent values. With less than about 20, the interval is somewhat too narrow.
+        Independent values. With fewer than about 20, the interval is somewhat too narrow.
     confidence : float
         Confidence level, between 0 and 1.
 
     Returns
     -------
     Interval
-        Mean, lower and upper bound. With one value the bounds are infinite, because its spread is
+        Mean, lower and upper bound. With one value the bounds are infinite, as its spread is
         unknown; without values the mean is NaN, too.
 
     Raises
@@ -348,7 +349,7 @@ def _score(rate: float, count: float, z: float) -> Interval:
     center = rate + z**2 / (2.0 * count)
     spread = z * math.sqrt(rate * (1.0 - rate) / count + z**2 / (4.0 * count**2))
     scale = 1.0 + z**2 / count
-    # At the ends the bound is exactly the rate; rounding would move it.
+    # At rates of 0 and 1 the bound is exactly the rate, without rounding.
     low = 0.0 if rate == 0.0 else (center - spread) / scale
     high = 1.0 if rate == 1.0 else (center + spread) / scale
     return Interval(rate, low, high)
@@ -369,14 +370,14 @@ def _cluster_correlation(hits: NDArray[np.float64], runs: NDArray[np.float64]) -
 
 
 def _root(a: float, b: float, phi: float) -> float:
-    # sqrt(a^2 - 2 phi a b + b^2), written so that rounding cannot make it the root of a number < 0.
+    # sqrt(a^2 - 2 phi a b + b^2), written so that rounding cannot make the radicand negative.
     return math.sqrt((a - b) ** 2 + 2.0 * (1.0 - phi) * a * b)
 
 
 def _normal_quantile(confidence: float) -> float:
     from statistics import NormalDist  # noqa: PLC0415 - slow to import
 
-    # Of the lower tail: the upper one rounds to all below a confidence of 1.
+    # Use the lower tail: the upper one rounds to 1 for confidences just below 1.
     return -NormalDist().inv_cdf(0.5 * (1.0 - read_level(confidence)))
 
 
@@ -387,7 +388,7 @@ def read_counts(successes: int, count: int) -> tuple[int, int]:
 
 
 def read_level(confidence: float, name: str = "confidence") -> float:
-    """Check a confidence level; `name` is that of the argument."""
+    """Check a confidence level; `name` is the argument's."""
     level = real_number(confidence, name)
     if not 0.0 < level < 1.0:
         raise ScenarioError(name, confidence, "must be between 0 and 1")

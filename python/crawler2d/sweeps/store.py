@@ -32,30 +32,30 @@ from crawler2d.sweeps.database import (
 
 __all__ = ["Store", "check_store", "join_stores", "stored_rows"]
 
-# SQLite takes so many values in one query, in every version.
+# Number of values that SQLite accepts in one query, in every version.
 _AT_ONCE = 500
 
 
 class Store:
-    """An open store, of which this process is the only writer.
+    """An open store; this process is its only writer.
 
-    A row is found again by the identity of its scenario, the build of the core and the trials that
-    were asked for: what gives the same bits. Rows are never changed. Whatever kills the process,
-    the rows that `add` has returned from are there.
+    The key of a row is the identity of its scenario, the build of the core and the requested
+    trials, which together give the same bits. Rows are never changed. Once `add` has returned, its
+    rows are kept, even if the process is killed.
 
     Parameters
     ----------
     path : str or path-like
-        The file; it is made if it does not exist.
+        The file; created if missing.
     trials : collection of str
         Names of the trials of the rows that are read and added.
 
     Raises
     ------
     ScenarioError
-        If that cannot be the path of a file.
+        If it cannot be the path of a file.
     StoreError
-        If it is no store, is damaged, or another process writes into it.
+        If it is not a store, is damaged, or another process writes to it.
     """
 
     def __init__(self, path: Place, trials: Collection[str] = ()) -> None:
@@ -73,19 +73,19 @@ class Store:
         self.close()
 
     def close(self) -> None:
-        """End; everything that was added is in the file."""
+        """Close the file; everything that was added is in it."""
         with contextlib.suppress(sqlite3.Error):
             self._connection.close()
         self._lock.close()
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Add finished runs, all or none, unless they are there already.
+        """Add finished runs, all or none; existing ones are skipped.
 
         Raises
         ------
         StoreError
-            If the disk is full or the file cannot be written; earlier rows are kept. If the file
-            was removed: then none are.
+            If the disk is full or the file cannot be written: earlier rows are kept. If the file
+            was removed: none are kept.
         """
         with self._transaction() as connection:
             connection.executemany(
@@ -93,7 +93,7 @@ class Store:
             )
 
     def read(self, identities: Sequence[str]) -> dict[str, Row]:
-        """Read the rows that are there of some scenarios, by identity.
+        """Read the existing rows of some scenarios, by identity.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class Store:
         Raises
         ------
         StoreError
-            If the other one is damaged, or the two hold different results of a run.
+            If the other store is damaged, or the two have different results of a run.
         """
         added = 0
         with self._transaction() as connection:
@@ -157,7 +157,7 @@ class Store:
         finally:
             with contextlib.suppress(sqlite3.Error):
                 connection.execute("ROLLBACK")  # does nothing after COMMIT
-            # What SQLite writes into a file that was removed is gone when it is closed.
+            # What SQLite writes to a removed file is lost when the file is closed.
             if not self._lock.is_there():
                 raise StoreError(
                     f"{self.path} was removed, moved or replaced while it was written: its runs are"
@@ -166,12 +166,12 @@ class Store:
 
 
 def stored_rows(path: Place) -> Iterator[Kept]:
-    """Read every row of a store with its build and its trials, also while it is written.
+    """Read every row of a store with its build and trials, even while it is written.
 
     Raises
     ------
     StoreError
-        If there is no such file, it is no store, or damaged.
+        If the file is missing, not a store, or damaged.
     """
     place = read_store_path(path)
     for kept, (identity, build, *_) in _stored(place):
@@ -185,13 +185,13 @@ def stored_rows(path: Place) -> Iterator[Kept]:
 
 @takes_keywords
 def join_stores(into: Place, *others: Place) -> int:
-    """Copy the runs of other stores into one, unless it has them already.
+    """Copy the runs of other stores into one, except those that it already has.
 
     Parameters
     ----------
     into : str or path-like
-        The store that grows; it is made if it does not exist, and converted if an earlier version
-        of crawler2d wrote it.
+        The store to extend; created if missing, and converted if an earlier version of crawler2d
+        wrote it.
     *others : str or path-like
         The stores to read; they are not changed.
 
@@ -203,10 +203,10 @@ def join_stores(into: Place, *others: Place) -> int:
     Raises
     ------
     ScenarioError
-        If something cannot be the path of a file.
+        If an argument cannot be the path of a file.
     StoreError
-        If one of the files is no store or is damaged, `into` is written by another process, or two
-        hold different results of the same run; then nothing of that other one is added.
+        If a file is not a store or is damaged, another process writes to `into`, or two stores have
+        different results of the same run; nothing is added from the store that fails.
 
     Examples
     --------
@@ -242,7 +242,7 @@ class Damage:
     Attributes
     ----------
     row : int, optional
-        Number of the row, in the order of writing; None for the file as a whole.
+        Number of the row, in the order of writing; None for the whole file.
     message : str
         What is wrong.
     """
@@ -252,10 +252,10 @@ class Damage:
 
 
 def check_store(path: Place) -> tuple[Damage, ...]:
-    """Check a store: its structure, the checksum of every row, and whether it holds a run.
+    """Check a store: its structure, the checksum of every row, and that each row is a run.
 
-    Sweeps, `table` and `join_stores` refuse a damaged store, or a damaged row of it; this function
-    lists all damage. It changes nothing, and may be called while a sweep writes.
+    Sweeps, `table` and `join_stores` refuse damaged stores and rows; this function lists all
+    damage. It changes nothing, and may be called while a sweep writes.
 
     Parameters
     ----------
@@ -265,14 +265,14 @@ def check_store(path: Place) -> tuple[Damage, ...]:
     Returns
     -------
     tuple of Damage
-        Empty if it is sound.
+        Empty if the store is intact.
 
     Raises
     ------
     ScenarioError
-        If that cannot be the path of a file.
+        If it cannot be the path of a file.
     StoreError
-        If there is no such file, or it cannot be opened as a store.
+        If the file is missing or cannot be opened as a store.
 
     Examples
     --------

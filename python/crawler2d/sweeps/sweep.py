@@ -50,10 +50,10 @@ def sweep(
     progress: bool | Progress | None = True,
     on_error: OnError = "raise",
 ) -> xarray.Dataset:
-    """Simulate every combination of some values, each several times with small variations.
+    """Simulate every combination of values, each several times with small variations.
 
-    A repeat draws the same random numbers in every cell, so that cells can be compared in pairs.
-    The draws are written into the scenario of each run, so that every run can be replayed alone.
+    A repeat draws the same random numbers in every cell, so cells can be compared in pairs. The
+    scenario of each run contains its draws, so every run can be replayed alone.
 
     Parameters
     ----------
@@ -63,49 +63,46 @@ def sweep(
         Maps each dotted path to its values, in the order in which they are set:
         ``{"terrain.height": [0.05, 0.1]}``. A mapping of values gives them labels:
         ``{"robot.track": {"belt": BeltTrack()}}``; objects without labels are labelled by their
-        short text. A tuple of paths sweeps them together, and takes tuples of values. ``{}`` only
+        short text. A tuple of paths sweeps them together, with tuples of values. ``{}`` just
         repeats the scenario. Whole robots are swept as ``{"robot": {"name": robot}}``. To compare a
-        robot with and without flippers, sweep it so with `Robot.without_flippers`: setting
-        ``robot.flippers`` to None leaves their mass on the robot.
+        robot with and without flippers, sweep whole robots and use `Robot.without_flippers`:
+        setting ``robot.flippers`` to None leaves their mass on the robot.
     repeats : int
         Runs per cell, and per sample of the unknowns, 1 to 1,000,000.
     seed : int
         Seed of the draws, 0 to 2^64 - 1.
     vary : mapping of str to distribution, optional
-        What differs from run to run, by path: a rate is how often something happens over it. None
-        takes ``variability.of_start() | variability.of_contact()``, ``{}`` nothing at all.
-        `uniform` and, for whole numbers, `uniform_int` replace a value, `scaled` multiplies it,
-        `shifted` adds to it; a frozen distribution of SciPy replaces it. ``[*]`` in a path stands
-        for every element, which get the same draw: ``robot.belly[*][1]`` moves the belly up or
-        down.
+        Distributions of what varies from run to run, by path; rates are taken over these. None
+        takes ``variability.of_start() | variability.of_contact()``, ``{}`` nothing. `uniform` and,
+        for whole numbers, `uniform_int` replace a value, `scaled` multiplies it, `shifted` adds to
+        it; a frozen distribution of SciPy replaces it. ``[*]`` in a path means every element, all
+        with the same draw: ``robot.belly[*][1]`` moves the belly up or down.
     unknown : mapping of str to distribution, optional
-        What is the same in every run, but not known, in the same form: see `unknowns`. Each cell is
-        repeated for every sample of it, so that `rate` gives a band of rates.
+        Distributions of what is constant but not known, in the same form: see `unknowns`. Each cell
+        is repeated for every sample, so that `rate` gives a band of rates.
     samples : int
-        How many samples of the unknowns, 1 to 100,000.
+        Number of samples of the unknowns, 1 to 100,000.
     trials : {"auto", "all"} or sequence of str, optional
-        What to try in every run that ends in a stop; see `simulate`.
+        Trials to make in every run that ends in a stop; see `simulate`.
     store : str or path-like, optional
-        A file that keeps every run: those that it holds are not simulated again. It is made if it
-        does not exist; whatever ends the process, the same call goes on where it was. It serves
-        any number of sweeps.
+        File that keeps every run, created if missing: runs in it are not simulated again, so after
+        any interruption the same call continues. It can be shared by any number of sweeps.
     executor : concurrent.futures.Executor, optional
         Where to simulate instead: ``ProcessPoolExecutor()``, or ``client.get_executor()`` of Dask.
-        Its workers need the same build of crawler2d; each takes some runs at a time, on one
-        thread. Rows are the same as without. Runs of a worker that is lost are submitted again,
-        each alone; one that is lost three times is an `InternalError` of that run. There is no
-        time limit: a cluster knows better than a sweep whether a worker hangs, and after Ctrl-C
-        the same call goes on where it was.
+        Its workers need the same build of crawler2d; each takes some runs at a time, on one thread.
+        Rows do not depend on it. Runs of a lost worker are submitted again, each alone; a run that
+        is lost three times ends as an `InternalError`. There is no time limit: the cluster must
+        detect hanging workers, and after Ctrl-C the same call continues.
     wall_time : bool
-        Whether to add the computing time. It differs from run to run, so that tables with it cannot
-        be merged where they overlap.
+        Whether to add the computing time. It is not reproducible, so tables with it cannot be
+        merged if they overlap.
     threads : int, optional
-        See `simulate_many`; without meaning for an executor.
+        See `simulate_many`; ignored with an executor.
     progress : bool or callable
         See `simulate_many`.
     on_error : {"raise", "record"}
-        What to do about a run without a result: raise its error, before the first run if a scenario
-        breaks a rule; or record it in the table. A path that a variant lacks always raises.
+        What to do about a run without a result: raise its error (before the first run if a scenario
+        breaks a rule), or record it in the table. A path that a variant lacks always raises.
 
     Returns
     -------
@@ -114,24 +111,23 @@ def sweep(
         dimension is named after the last part of its path, or after the whole path with underscores
         if that name is taken by another path or a column of the table or of `rate`:
         ``robot.track.count`` is `robot_track_count`. The name for a tuple joins the last parts of
-        its paths, whose numbers are further coordinates.
-        Every column has every dimension.
+        its paths; numbers become additional coordinates. Every column has every dimension.
 
-        - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
-          memory, its workers were lost, or a fault of the program), and `error` says why;
-        - of a stop, else "", False, NaN or -1: `symptom`, `transient`, `mechanism`, `jammed` and
-          `belly_side` as in `Diagnosis`; where it is: `stop_x` [m], `stop_angle` [rad]; and where
-          ground is inside a track: `stop_edge`, `stop_side`, `stop_carrier`, `stop_bodies`, such as
+        - `outcome`; without a result `diverged`, `refused` (broken rule) or `failed` (out of
+          memory, lost workers, or a bug), and `error` says why;
+        - about a stop, else "", False, NaN or -1: `symptom`, `transient`, `mechanism`, `jammed` and
+          `belly_side` as in `Diagnosis`; its pose, `stop_x` [m] and `stop_angle` [rad]; and the
+          ground inside a track: `stop_edge`, `stop_side`, `stop_carrier`, `stop_bodies`, such as
           "1-2";
-        - for each trial of `trials`, and for the closed track of jammed robots: whether it was
-          made, whether it freed the robot and how it ended, as in `Trial`: `tried_torque_x2`,
+        - for each of `trials`, and for the closed track of jammed robots: whether it was made,
+          whether it freed the robot, and how it ended, as in `Trial`: `tried_torque_x2`,
           `freed_by_torque_x2` and `then_torque_x2`, and so on;
         - every metric of `Run.metrics`; with `wall_time`, the computing time [s] on one thread;
         - `scenario`, the JSON text of each run, and its `identity`;
-        - `drawn_...` and `unknown_...`, the value drawn for each path of `vary` and of `unknown`
-          (the first, if the path stands for several), and the `seed`.
+        - `drawn_...` and `unknown_...`, the value drawn for each path of `vary` and `unknown` (the
+          first, if the path has several elements), and the `seed`.
 
-        Its attributes have the scenario, and what `vary` and `unknown` were.
+        Its attributes contain the scenario, `vary` and `unknown`.
 
     Raises
     ------
@@ -142,12 +138,12 @@ def sweep(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     StoreError
-        If the file is no store, is damaged, is written by another process, or cannot grow. What it
-        holds is kept, and `runs` of the error has what was simulated since.
+        If the file is not a store, is damaged, is written by another process, or cannot grow. Its
+        content is kept, and `runs` of the error has the runs simulated since.
     InternalError
-        If the executor takes no more tasks, or one of its workers has another build of crawler2d,
-        which the message names; or if workers are lost each time that they simulate a run, which a
-        note names. What was finished is in the store.
+        If the executor accepts no more tasks; if a worker has another build of crawler2d, named by
+        the message; or if workers are lost whenever they simulate a run, named by a note. Finished
+        runs are in the store.
     BatchInterrupted
         On Ctrl-C; its `runs`, cell by cell, holds the finished runs and the other scenarios;
         `table` arranges them.
@@ -164,22 +160,22 @@ def sweep(
     By default the repeats draw:
 
     - `start.approach`: uniform over a quarter of the axle distance, which is the wheel spacing of a
-      line of five, about the scenario's own value, and never below 0;
+      line of five, around the scenario's value, and never below 0;
     - `start.track_phase`: uniform over one grouser pitch;
     - `drive.speed` and `terrain.friction`: the cell's own value times 0.98 to 1.02. The friction of
-      lanes is that of every lane, times the same.
+      every lane is multiplied by the same factor.
 
-    That is how the same robot meets the same obstacle again: a rate over it says nothing of robots
-    or floors that differ. Distances are those of `scenario`, the same for every cell. Approach and
-    phase are not drawn if they are swept. A draw that breaks a rule, such as a speed above the
-    drivetrain's maximum, is dropped: the run keeps the cell's own value.
+    These vary how the same robot meets the same obstacle, so their rates do not cover other robots
+    or floors. Distances are those of `scenario`, the same for every cell. Approach and phase are
+    not drawn if they are swept. A draw that breaks a rule, such as a speed above the drivetrain's
+    maximum, is dropped, and the run keeps the cell's value.
 
     The number drawn for a path depends only on seed, repeat (or sample) and path. Other paths, more
-    repeats or other cells do not change it, and equal runs have equal rows. So xarray can join the
+    repeats or other cells do not change it, and equal runs have equal rows. So xarray can join
     tables of one design: `xarray.merge` joins tables with other cells or more repeats;
     `xarray.concat` along `repeat` joins tables with another seed, where `seed` and `repeat`
-    together identify a draw. Runs that are in neither table are missing in the joined one, and
-    `rate` does not count them.
+    together identify a draw. Runs in neither table are missing in the joined one, and `rate` does
+    not count them.
 
     Examples
     --------
@@ -190,7 +186,7 @@ def sweep(
     >>> table.outcome.values.tolist()
     [['cleared', 'cleared'], ['stalled', 'stalled']]
 
-    Any run can be replayed alone, with its history.
+    Any run can be replayed alone, with its history:
 
     >>> text = table.scenario.sel(track="belt", repeat=1).item()
     >>> run = c2d.simulate(c2d.Scenario.from_json(text))
@@ -256,10 +252,10 @@ def compare(
     scenario : Scenario
         What all runs share.
     models : mapping of str to model, or sequence of models
-        At least two; in a sequence, their short texts become their labels. A model is either a
-        track, a robot or another part of a scenario, such as a `Solver`, which replaces the
-        scenario's own; or a mapping from dotted paths to values, as in `Scenario.replace`, where
-        ``{}`` leaves the scenario unchanged.
+        At least two; in a sequence, their short texts become labels. A model is either a track, a
+        robot or another part of a scenario, such as a `Solver`, which replaces the scenario's own;
+        or a mapping from dotted paths to values, as in `Scenario.replace`, where ``{}`` leaves the
+        scenario unchanged.
     repeats : int
         Runs per model, 1 to 1,000,000.
     seed, vary, store, executor, threads, progress
@@ -277,7 +273,7 @@ def compare(
           of `rate`;
         - `difference`, `difference_low`, `difference_high`: that rate minus the reference's,
           Newcombe's interval for paired data;
-        - `both`, `only_model`, `only_reference`, `neither`: how many pairs cleared in this way;
+        - `both`, `only_model`, `only_reference`, `neither`: the number of pairs that cleared so;
         - `p_value` of the hypothesis of equal rates, McNemar's exact test;
         - `time_to_clear_difference` [s] and `drive_work_difference` [J], `..._low`, `..._high`: the
           mean of model minus reference over the pairs that `both` cleared, bootstrap interval.
@@ -306,7 +302,7 @@ def compare(
     >>> found.difference.item(), found.only_reference.item(), found.p_value.item()
     (-1.0, 5, 0.0625)
 
-    One robot, with its centre of mass as it is and further back:
+    The same robot with its centre of mass unchanged and further back:
 
     >>> steep = base.replace({"terrain": c2d.terrains.ramp(0.6)})
     >>> robots = {"as it is": {}, "tail heavy": {"robot.center_of_mass[0]": -0.15}}
@@ -348,19 +344,19 @@ def compare(
 
 
 def variants(models: object, place: str = "models") -> dict[Label, Mapping[str, Any]]:
-    """Read an argument such as `models`: what each replaces, by path, by its label."""
+    """Read an argument such as `models`: the replaced values by label, then by path."""
     labels = read_labels(models, place)
     return {label: _fields(model, f"{place}[{label!r}]") for label, model in labels.items()}
 
 
 def axis_of(name: str, named: Mapping[Label, Mapping[str, Any]]) -> Axis:
-    """Return the axis of what `variants` read."""
+    """Return the axis for the result of `variants`."""
     paths = dict.fromkeys(path for fields in named.values() for path in fields)
     return Axis(name, tuple(paths), named)
 
 
 def _fields(model: object, place: str) -> Mapping[str, Any]:
-    """Return what a model replaces, by path."""
+    """Return the values that a model replaces, by path."""
     if isinstance(model, Mapping):
         return model
     if isinstance(model, Parameters) and model.default_path:

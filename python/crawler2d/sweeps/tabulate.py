@@ -1,4 +1,4 @@
-"""Tables of runs as xarray data sets: of a sweep by cell, or of a batch or store by run."""
+"""Tables of runs as xarray data sets: sweeps by cell, batches and stores by run."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ Column = tuple["NDArray[Any]", dict[str, str]]
 def row_columns(
     rows: Sequence[Row | None], *, trials: Sequence[str], with_times: bool
 ) -> dict[str, Column]:
-    """Write rows as columns by name; a run that was not made, None, leaves them empty.
+    """Write rows as columns by name; a missing run, None, leaves them empty.
 
-    Every value depends on its own run only, so that tables can be joined.
+    Every value depends only on its own run, so tables can be joined.
     """
     columns: dict[str, Column] = {}
     columns["outcome"] = (np.array(["" if row is None else row.outcome for row in rows], str), {})
@@ -65,7 +65,7 @@ def row_columns(
     if with_times:
         times = [math.nan if row is None else row.wall_time for row in rows]
         columns["wall_time"] = (np.array(times, float), {"units": "s"})
-    # Python strings: in a NumPy array of strings, each would take the space of the longest.
+    # Python strings, as each string in a NumPy array takes the space of the longest.
     texts = {
         "error": ["" if row is None else str(row.error or "") for row in rows],
         "identity": ["" if row is None else row.identity for row in rows],
@@ -85,7 +85,7 @@ def draw_columns(
 def dataset_of(
     columns: Mapping[str, Column], dims: Mapping[str, int], coordinates: Mapping[str, Any]
 ) -> xarray.Dataset:
-    """Give columns their dimensions, the last of which changes fastest."""
+    """Add dimensions to columns; the last one changes fastest."""
     xr = extra("xarray", "analysis")
     names, shape = list(dims), list(dims.values())
     variables = {
@@ -104,22 +104,21 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
     Parameters
     ----------
     runs : iterable of Run, str or path-like
-        What `simulate_many` returned, or the `runs` of a `BatchInterrupted`; or the path of a
-        store, also while a sweep writes into it.
+        Result of `simulate_many`, `runs` of a `BatchInterrupted`, or the path of a store, even
+        while a sweep writes to it.
 
     Returns
     -------
     xarray.Dataset
-        The dimension `run`, and the columns of `sweep`. A run that was not finished is `failed`,
-        and `error` says so. Of a store, `build` and `trials` say what computed a run, and what was
-        to be tried.
+        The dimension `run`, and the columns of `sweep`. An unfinished run is `failed`, and `error`
+        says so. For a store, `build` and `trials` are the build and requested trials of each run.
 
     Raises
     ------
     ScenarioError
-        If something is not a Run.
+        If an element is not a Run.
     StoreError
-        If the path is that of no store, or it is damaged.
+        If the path is not a store, or the store is damaged.
     ImportError
         If xarray is missing; the message names the extra to install.
 
@@ -166,20 +165,19 @@ OnError = Literal["raise", "record"]
 
 
 class Tabulation:
-    """A planned sweep, whose runs can be simulated in any order; see `sweep`.
+    """A planned sweep; its runs can be simulated in any order; see `sweep`.
 
     Parameters
     ----------
     scenario, axes, repeats, seed, vary, unknown, samples, trials, store, executor, wall_time
-        See `sweep`; axes are of scenarios.
+        See `sweep`; axes replace values of scenarios.
     threads
         See `sweep`.
 
     Attributes
     ----------
     checked : list of Checked
-        The scenario of every run, or the rule that it breaks: cell by cell, sample by sample,
-        repeat by repeat.
+        Scenario of every run, or its error: cell by cell, sample by sample, repeat by repeat.
     """
 
     def __init__(
@@ -236,13 +234,13 @@ class Tabulation:
             raise interrupt.as_batch(self._store) from None
         for index, row in zip(indices, rows, strict=True):
             self._rows[index] = row
-            # Equal scenarios share a row, and so its error.
+            # Equal scenarios share a row and its error.
             if row.error is not None and row.identity and not _notes(row.error):
                 plan, repeat = self._plans[index // self._repeats], index % self._repeats
                 row.error.add_note(f"in {plan.path(repeat)}")
 
     def take(self, rows: Sequence[Row]) -> None:
-        """Take rows of runs that were made otherwise, in the order of `checked`."""
+        """Take rows of runs simulated elsewhere, in the order of `checked`."""
         self._rows = list(rows)
 
     def raise_first(self) -> None:
@@ -250,7 +248,7 @@ class Tabulation:
         raise_first(None if row is None else row.error for row in self._rows)
 
     def table(self) -> xarray.Dataset:
-        """Arrange the runs in a table; those not made have the outcome ""."""
+        """Arrange the runs in a table; missing ones have the outcome ""."""
         columns = row_columns(self._rows, trials=self._tried, with_times=self._with_times)
         plans, repeats, planner = self._plans, self._repeats, self._planner
         missing = np.full(repeats, np.nan)

@@ -1,1 +1,1 @@
-"""What is not the same in every run, and what is not known: distributions by path of a field."""
+"""Distributions of what varies from run to run, and of what is unknown, by path of a field."""

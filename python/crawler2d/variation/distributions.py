@@ -1,4 +1,4 @@
-"""Distributions of one number, and ranges of fields by path with where each range comes from."""
+"""Distributions of one number, and ranges of fields by path with their sources."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ __all__ = [
     "uniform_int",
 ]
 
-# A float64 from 0 to 1 can distinguish this many whole numbers.
+# A float64 from 0 to 1 distinguishes this many whole numbers.
 _MOST = 2**53
 
 
 class Distribution(ABC):
-    """The values of a field, as a function of a number from 0 to 1."""
+    """Values of a field as a function of a number from 0 to 1."""
 
     __slots__ = ()
 
@@ -52,21 +52,21 @@ class Distribution(ABC):
 
     @property
     def is_relative(self) -> bool:
-        """Whether values vary about the field's own value, instead of replacing it."""
+        """Whether values vary around the field's own value instead of replacing it."""
         return False
 
     @abstractmethod
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
-        """Map numbers from 0 to 1 to values of a field, whose own value is `own`."""
+        """Map numbers from 0 to 1 to values of a field; `own` is its value in the scenario."""
 
     def resolve(self, scenario: Scenario) -> Distribution:  # noqa: ARG002 - others use it
-        """Replace what is given as a multiple of a length of the scenario."""
+        """Convert multiples of a length of the scenario to metres."""
         return self
 
 
 @dataclass(frozen=True, slots=True)
 class _Bounded(TakesKeywords, Distribution):
-    """Bounds in order, both of them finite."""
+    """Base of distributions with finite, ordered bounds."""
 
     low: float
     high: float
@@ -108,7 +108,7 @@ class Uniform(_Bounded):
 
 @dataclass(frozen=True, slots=True)
 class LogUniform(_Bounded):
-    """Any value from `low` to `high`, equally likely in every octave: known but for a factor.
+    """Any value from `low` to `high`, with a uniform logarithm: known up to a factor.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class LogUniform(_Bounded):
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
         logarithms = _between(math.log(self.low), math.log(self.high), numbers)
-        return np.clip(np.exp(logarithms), self.low, self.high)  # which rounding could pass
+        return np.clip(np.exp(logarithms), self.low, self.high)  # against rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +180,7 @@ class UniformInt(TakesKeywords, Distribution):
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
         steps = np.floor((self.high - self.low + 1) * numbers)
-        return self.low + np.minimum(steps, self.high - self.low)  # also at 1, the end of the range
+        return self.low + np.minimum(steps, self.high - self.low)  # at 1, the end of the range
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +224,7 @@ class Shifted(_Bounded):
     unit : str, optional
         Path of that length, such as ``robot.outline.axle_distance``.
     minimum : float, optional
-        Smallest value: a range that begins below it is moved up.
+        Smallest value: a range that starts below it is shifted up.
 
     Raises
     ------
@@ -253,14 +253,14 @@ class Shifted(_Bounded):
         return _between(low, low + (self.high - self.low), numbers)
 
     def resolve(self, scenario: Scenario) -> Shifted:
-        """Take the length that is the unit from the scenario."""
+        """Take the length used as unit from the scenario."""
         if self.unit is None:
             return self
         length = read_path(scenario, self.unit)
         return replace(self, low=self.low * length, high=self.high * length, unit=None)
 
     def __repr__(self) -> str:
-        """Write the call that makes it, without arguments that are None."""
+        """Write its constructor call, without arguments that are None."""
         fields = {"low": self.low, "high": self.high, "unit": self.unit, "minimum": self.minimum}
         arguments = [f"{name}={value!r}" for name, value in fields.items() if value is not None]
         return f"{type(self).__name__}({', '.join(arguments)})"
@@ -268,18 +268,18 @@ class Shifted(_Bounded):
 
 @dataclass(frozen=True, slots=True)
 class Levels(Distribution):
-    """The scenario's own value times one of some factors, which runs take in turn.
+    """The scenario's own value times one of several factors, which runs take in turn.
 
-    Every factor has the same number of runs, give or take one.
+    Every factor gets the same number of runs, within one.
 
     Parameters
     ----------
     factors : tuple of float
         [-] One or more.
     spread : float
-        [-] Each value varies by this fraction either way, uniformly.
+        [-] Each value varies uniformly by this fraction either way.
     along : str, optional
-        Path of another field of levels, whose draws are used here, too: slow runs last longer.
+        Path of another field with levels, which shares its draws: slow runs last longer.
 
     Examples
     --------
@@ -325,12 +325,12 @@ class SciPyDistribution(Distribution):
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values: the quantiles."""
         values = np.asarray(self.scipy.ppf(numbers), dtype=np.float64)
-        if self.is_whole:  # at 0 SciPy returns the number below the least one
+        if self.is_whole:  # at 0 SciPy returns one less than the smallest value
             values = np.maximum(values, self.scipy.support()[0])
         return values
 
     def __repr__(self) -> str:
-        """Write the call that makes it."""
+        """Write its constructor call."""
         keywords = [f"{name}={value!r}" for name, value in self.scipy.kwds.items()]
         return f"{self.scipy.dist.name}({', '.join([*map(repr, self.scipy.args), *keywords])})"
 
@@ -342,7 +342,7 @@ shifted = Shifted
 
 
 def read_distribution(given: object, path: str) -> Distribution:
-    """Take a distribution of this module, or a frozen one of SciPy.
+    """Read a distribution of this module or a frozen one of SciPy.
 
     Raises
     ------
@@ -366,25 +366,25 @@ def _check_order(bounds: _Bounded | UniformInt) -> None:
 
 
 def _between(low: float, high: float, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
-    # Rounding could exceed the upper bound.
+    # Against rounding beyond the upper bound.
     return np.minimum(low + (high - low) * numbers, high)
 
 
 class Ranges(Mapping[str, Distribution]):
-    """What varies, or is not known: a distribution for each path, and its source.
+    """What varies or is unknown: a distribution for each path, and its source.
 
     It can be passed as `vary` and `unknown`, like a plain mapping. ``|`` joins two, or one and a
-    plain mapping; where both have a path, the right one counts.
+    plain mapping; if both have a path, the right one wins.
 
     Parameters
     ----------
     distributions : mapping of str to distribution
-        By path.
+        Distributions by path.
     sources : mapping of str to str, optional
-        Where each range comes from, by path.
+        Source of each range, by path.
     optional : collection of str
-        Paths that are left out where they are swept, and where the scenario has none; a draw that
-        breaks a rule is dropped, and the run keeps its own value.
+        Paths that are ignored if they are swept or missing in the scenario; draws that break a rule
+        are dropped, and the run keeps its own value.
 
     Examples
     --------
@@ -410,13 +410,13 @@ class Ranges(Mapping[str, Distribution]):
     def with_sources(
         cls, ranges: Mapping[str, tuple[Distribution, str]], *, optional: bool = False
     ) -> Ranges:
-        """Make ranges of pairs of a distribution and its source; all paths may be optional."""
+        """Make ranges from pairs of distribution and source; all paths may be optional."""
         sources = {path: source for path, (_, source) in ranges.items()}
         distributions = {path: distribution for path, (distribution, _) in ranges.items()}
         return cls(distributions, sources, distributions if optional else ())
 
     def without(self, paths: Collection[str]) -> Ranges:
-        """Leave out some paths, of which it need not have all."""
+        """Leave out some paths, if present."""
         return Ranges(
             {path: distribution for path, distribution in self.items() if path not in paths},
             {path: source for path, source in self.sources.items() if path not in paths},
@@ -436,7 +436,7 @@ class Ranges(Mapping[str, Distribution]):
         return len(self._distributions)
 
     def __or__(self, other: object) -> Ranges:
-        """Join with another, which counts where both have a path."""
+        """Join with another, which wins if both have a path."""
         if not isinstance(other, Mapping):
             return NotImplemented
         right = other if isinstance(other, Ranges) else Ranges(other)
@@ -450,7 +450,7 @@ class Ranges(Mapping[str, Distribution]):
         return Ranges(other) | self if isinstance(other, Mapping) else NotImplemented
 
     def __repr__(self) -> str:
-        """Show a line for each path: its distribution, and where that comes from."""
+        """Show the distribution and source of each path."""
         lines = ["Ranges"]
         for path, distribution in self.items():
             lines.append(f"  {path}: {distribution}")

@@ -1,4 +1,4 @@
-"""Draws of the fields of a cell from their distributions, with random numbers all cells share."""
+"""Draw the fields of a cell from their distributions, with random numbers shared by all cells."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _FRICTION = "terrain.friction"
 def uniform_numbers(path: str, seed: int, count: int, *, kind: str = "") -> NDArray[np.float64]:
     """Draw numbers from 0 to 1 for a path, shape (count,).
 
-    Each depends only on kind, path, seed and its place, not on other paths or the count.
+    Each depends only on kind, path, seed and its index, not on other paths or the count.
     """
     numbers = np.random.default_rng((seed, *kind.encode(), *path.encode())).random(count)
     numbers.flags.writeable = False
@@ -49,9 +49,9 @@ class Draws:
     Attributes
     ----------
     values : mapping of str to ndarray, shape (n,)
-        By path of a field, one value per draw.
+        One value per draw, by path of a field.
     shown : mapping of str to ndarray, shape (n,)
-        By path as it was given; where it stands for several fields, the value of the first.
+        By path as given; for several fields, the value of the first.
     whole : mapping of str to bool
         Whether a field takes whole numbers.
     """
@@ -62,7 +62,7 @@ class Draws:
 
     @property
     def fields(self) -> list[tuple[str, bool]]:
-        """The fields as the core takes them."""
+        """The fields in the form that the core takes."""
         return [(json_pointer(path), self.whole[path]) for path in self.values]
 
     @property
@@ -73,12 +73,11 @@ class Draws:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """Distributions by path, ready to be drawn from."""
+    """Distributions by path, ready to draw from."""
 
     distributions: Mapping[str, Distribution]
     optional: Collection[str] = ()
-    """Paths that are left out where a cell lacks them, and whose draws are dropped if they break a
-    rule."""
+    """Paths ignored if a cell lacks them; draws of these that break a rule are dropped."""
     text: str = ""
     """The distributions as text, for the attributes of a table."""
 
@@ -91,18 +90,18 @@ class Variation:
         Parameters
         ----------
         scenario : Scenario
-            Its lengths are used.
+            The scenario with the lengths used as units.
         given : mapping of str to distribution
-            None takes the variability of start and contact.
+            Distributions by path; None takes the variability of start and contact.
         swept : collection of str
-            Paths that are swept, or drawn otherwise.
+            Paths that are swept or drawn elsewhere.
         name : str
             Name of the argument.
 
         Raises
         ------
         ScenarioError
-            If it is not a mapping from paths to distributions, or replaces what is swept.
+            If it is not a mapping from paths to distributions, or replaces a swept value.
         """
         if given is None:
             given = of_start() | of_contact()
@@ -132,10 +131,10 @@ class Variation:
     def numbers(
         self, seed: int, count: int, *, kind: str = "", first: int = 0
     ) -> dict[str, NDArray[np.float64]]:
-        """Draw the numbers from 0 to 1 of every path, which all cells share.
+        """Draw the numbers from 0 to 1 for every path, shared by all cells.
 
-        Each `kind` has numbers of its own: one for the samples, and one for the repeats of each
-        sample. Levels are taken in turn, beginning with the number `first`.
+        Each `kind` has its own numbers: one for the samples, and one for the repeats of each
+        sample. Levels are taken in turn, starting with number `first`.
         """
         numbers = {}
         for path, each in self.distributions.items():
@@ -155,16 +154,16 @@ class Variation:
         Parameters
         ----------
         cell : Scenario
-            Its own values are used.
+            The cell, with its own values.
         numbers : mapping of str to ndarray, shape (n,)
-            From 0 to 1, by path.
+            Numbers from 0 to 1, by path.
         own : mapping of str to float, optional
             Values to use instead of the cell's own.
 
         Raises
         ------
         ScenarioError
-            If the cell lacks a path, or has no number there to vary about, or takes whole numbers
+            If the cell lacks a path, has no number there to vary around, or takes whole numbers
             there and the distribution gives others.
         """
         values: dict[str, NDArray[np.float64]] = {}
@@ -175,7 +174,7 @@ class Variation:
                 continue
             for field in fields_at(cell, path):
                 if field != path and field in self.distributions:
-                    continue  # which has draws of its own
+                    continue  # drawn separately
                 nominal = read_path(cell, field)
                 if own is not None:
                     nominal = own.get(field, nominal)
@@ -187,7 +186,7 @@ class Variation:
                     if type(nominal) not in (int, float):
                         rule = "must be a number for a distribution to vary about"
                         raise ScenarioError(field, nominal, rule)
-                    nominal = float(nominal)  # a whole number may be too long for NumPy
+                    nominal = float(nominal)  # a whole number may be too large for NumPy
                 values[field] = distribution.values(numbers[path], nominal)
                 shown.setdefault(path, values[field])
         cleared = {other for field in values for other in excluded(cell, field)}
@@ -200,7 +199,7 @@ class Variation:
         return Draws(values, shown, whole)
 
 
-@functools.lru_cache(maxsize=256)  # asked for every sample; a path that is missing is slow to check
+@functools.lru_cache(maxsize=256)  # called for every sample; a missing path is slow to check
 def _has_path(cell: Scenario, path: str) -> bool:
     try:
         for field in fields_at(cell, path):
@@ -211,7 +210,7 @@ def _has_path(cell: Scenario, path: str) -> bool:
 
 
 def fields_at(cell: Scenario, path: str) -> list[str]:
-    """List the fields that a path stands for: the friction is that of all lanes and segments."""
+    """List the fields of a path: friction is that of all lanes and segments."""
     if path != _FRICTION:
         return expand_path(cell, path)
     lanes = ["terrain"]

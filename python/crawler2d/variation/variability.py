@@ -1,6 +1,6 @@
-"""Ranges of what varies between runs of one robot on one ground, for `vary` of a sweep.
+"""Ranges of what varies between runs of one robot on one ground, for `vary` of sweeps.
 
-A rate over them is how often the robot would succeed if it tried many times.
+A rate over them is the fraction of many attempts of the same robot that would succeed.
 
 >>> import crawler2d as c2d
 >>> c2d.variability.of_start() | c2d.variability.of_contact()
@@ -33,7 +33,7 @@ def of_start() -> Ranges:
     Returns
     -------
     Ranges
-        For `vary`. The lengths are those of the scenario of the sweep, the same for every cell.
+        For `vary`. The lengths are those of the sweep's scenario, the same for every cell.
 
     Examples
     --------
@@ -54,8 +54,8 @@ def of_contact() -> Ranges:
     Returns
     -------
     Ranges
-        For `vary`. The friction of the floor as a whole is another matter: it is the same in every
-        run, but seldom known; see `unknowns.of_ground`.
+        For `vary`. The mean friction of the floor is not included: it is constant but rarely known;
+        see `unknowns.of_ground`.
 
     Examples
     --------
@@ -70,12 +70,12 @@ def of_contact() -> Ranges:
 
 
 def of_field() -> Ranges:
-    """Vary the heights of a random step field: every run has a field of its own.
+    """Vary the heights of a random step field: every run gets its own field.
 
     Returns
     -------
     Ranges
-        For `vary`. Grounds without a seed stay as they are.
+        For `vary`. Terrains without a seed are not changed.
 
     Examples
     --------

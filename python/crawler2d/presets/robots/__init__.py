@@ -1,8 +1,8 @@
-"""Robots of the literature: every figure has its source or is marked as an estimate.
+"""Robots from the literature: every figure has a source or is marked as an estimate.
 
-A figure read from a file has file and line as its source, such as ``marv.sdf:521``; for a sum, the
-source says what was summed. The unchanged files are in ``tests/robots`` of the project, whose
-README says where each is from. Tests compare them with the presets.
+The source of a figure from a file is file and line, such as ``marv.sdf:521``; the source of a sum
+lists its terms. The unchanged files are in ``tests/robots`` of the project; its README gives their
+origin. Tests compare them with the presets.
 """
 
 from crawler2d.presets.robots.engineer import engineer

@@ -1,4 +1,4 @@
-"""Shared by the presets: check and apply what the user chooses."""
+"""Check and apply the choices of the user, for all presets."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def with_choices(
     track: Track | str | None,
     public: tuple[Track | None, Track | None],
 ) -> Robot:
-    """Set the track model of a robot without flippers, and mount the flippers asked for.
+    """Set the track model of a robot without flippers, and mount the requested flippers.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def with_choices(
     track : Track, "public" or None
         What the user asked for.
     public : tuple of (Track or None, Track or None)
-        Models of the robot's and of the flippers' tracks in the public simulation model; None takes
+        Models of the robot's and the flippers' tracks in the public simulation model; None takes
         the preset's.
 
     Returns
@@ -67,7 +67,7 @@ def with_choices(
 
 
 def is_rough(source: object) -> bool:
-    """Return whether mass and torques are those of the ROUGH data set, not of the SubT model.
+    """Return whether mass and torques are from the ROUGH data set, not the SubT model.
 
     Raises
     ------

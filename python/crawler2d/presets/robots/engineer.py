@@ -29,17 +29,18 @@ def engineer(
     Parameters
     ----------
     center_of_mass : array_like, shape (2,)
-        [m] Without the flippers, in the chassis frame. An estimate, and the one that the highest
-        step the robot can climb depends on most.
+        [m] Centre of mass without the flippers, in the chassis frame. An estimate, and the one with
+        the largest effect on the highest step that the robot can climb.
     belly_clearance : float
-        [m] From level ground to the belly. An estimate; it decides when the belly meets an edge.
+        [m] Distance from level ground to the belly. An estimate, which decides when the belly
+        touches an edge.
     flippers : Flippers, "built" or None
-        "built" takes the robot's own. None leaves them off but gives their mass to the chassis, so
-        that the robot weighs the same; `Robot.without_flippers` removes the mass, too.
+        "built" takes the robot's own. None removes them but adds their mass to the chassis;
+        `Robot.without_flippers` also removes the mass.
     track : Track or "public", optional
-        The model of the track; None takes `Robot`'s default. "public" has the wheels of the public
-        simulation model, but nothing else of it: three per side with gaps of 26 mm between them,
-        and one at the tip of each flipper.
+        The model of the track; None takes `Robot`'s default. "public" takes the wheels, but nothing
+        else, of the public simulation model: three per side with gaps of 26 mm between them, and
+        one at the tip of each flipper.
 
     Returns
     -------
@@ -98,11 +99,11 @@ def engineer(
 
     The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer".
     eng.xacro and the CAD meshes are from the package eng_description in GimpelZhang's
-    Robot_Engineer. The tests do not read the meshes, on which their figures were measured.
+    Robot_Engineer. Figures of the meshes were measured; the tests do not read them.
 
-    Nothing but the wheels is taken from that model: it has motors of 100 N m per wheel
+    Only the wheels are taken from that model, which has motors of 100 N m per wheel
     (eng.xacro:115), tracks 0.55 m apart (eng.xacro:144) and no manipulator. Its flippers have no
-    wheel at the root; the one here lies within the robot's front wheel and touches nothing.
+    wheel at the root; the one here lies inside the robot's front wheel and touches nothing.
 
     Examples
     --------

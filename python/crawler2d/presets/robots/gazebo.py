@@ -1,4 +1,4 @@
-"""Robots of Gazebo models: Absolem and MARV of the SubT challenge, and the example world's."""
+"""Robots from Gazebo models: Absolem and MARV of the SubT challenge, and the example world's."""
 
 from __future__ import annotations
 
@@ -73,16 +73,17 @@ def gz_tracked_vehicle(
     tracked_vehicle_simple.sdf is from gazebosim/gz-sim, examples/worlds, 93bbf3ed.
 
     The centre of mass of its flippers lies 80 mm from the pivot (tracked_vehicle_simple.sdf:300);
-    here their mass is spread evenly from pivot to tip. They pivot 0.95 mm above the axles, here on
-    them. The friction of its tracks is 0.7 along their length (tracked_vehicle_simple.sdf:121);
-    here friction belongs to the terrain.
+    here their mass is spread evenly from pivot to tip. Its flippers pivot 0.95 mm above the axles,
+    here on them. The friction of its tracks is 0.7 along their length
+    (tracked_vehicle_simple.sdf:121); here friction belongs to the terrain.
 
     Examples
     --------
     >>> gz_tracked_vehicle().mass
     28.26
     """
-    # Body and one track, from the file: mass, place relative to the axles' middle, pitch inertia.
+    # Body and one track, from the file: mass, position relative to the middle of the axles, pitch
+    # inertia.
     body, track_link = (13.14, (-0.122, 0.09945), 0.302044), (6.06, (0.0, -0.00445), 0.032554)
     links = (body, track_link, track_link)
     mass = sum(link[0] for link in links)
@@ -144,11 +145,11 @@ def absolem(
         "built" takes the robot's own; None leaves them and their mass off.
     track : Track or "public", optional
         The model of the track; None takes `Robot`'s default. "public" has the wheels of the public
-        simulation model: eight overlapping wheels per track, five per flipper. Its makers report
-        that ground gets stuck between two of them and stops the robot where tracks would go on.
+        simulation model: eight overlapping wheels per track, five per flipper. Its authors report
+        that ground gets stuck between two of them and stops the robot where tracks would continue.
     source : {"subt", "rough"}
-        Where mass and torques are from, which were published twice: the simulation model of the
-        SubT challenge, or the description of the ROUGH data set, which has 40 kg and rated torques.
+        Source of mass and torques: the simulation model of the SubT challenge, or the description
+        of the ROUGH data set, with 40 kg and rated torques.
 
     Returns
     -------
@@ -202,7 +203,7 @@ def absolem(
     absolem.sdf is model.sdf of submitted_models/ctu_cras_norlab_absolem_sensor_config_1 in
     osrf/subt, before its wheels were replaced by tracks (b626b6de^); absolem_specifications.md is
     specifications.md there. ROUGH is the table of platforms in README.md of ctu-vras/rough-dataset
-    (084cbea5), which the tests do not read. Rotors are the same with both sources: they are of the
+    (084cbea5), which the tests do not read. Rotors do not depend on `source`: they belong to the
     motors that ROUGH describes.
 
     Its foremost wheel sits 15 mm inboard of the others (absolem.sdf:1287), across the track; in
@@ -211,12 +212,11 @@ def absolem(
     (absolem.sdf:990) and the moment of inertia of a whole flipper (absolem.sdf:996); here the mass
     is spread evenly from pivot to tip. The friction of its wheels is 0.5 along their first
     direction, which is the axle, and 1 across it, along the track (absolem.sdf:1018, 1019, 1022):
-    on what grips less, the floor decides. Here friction belongs to the terrain.
+    on floors with less grip, the floor decides. Here friction belongs to the terrain.
 
     Examples
     --------
-    The jam that its makers report, between wheels of the front flippers, where the ground is
-    slippery:
+    The jam that its authors report, between wheels of the front flippers on slippery ground:
 
     >>> import crawler2d as c2d
     >>> step = c2d.terrains.step(0.10, friction=0.5)
@@ -281,13 +281,12 @@ def marv(
         "built" takes the robot's own. None leaves them and their mass off: the robot then stands on
         their roots.
     track : Track or "public", optional
-        What runs between the flippers' pivots. None takes two wheels, the roots of the flippers,
-        and belts with grousers round the arms. "public" has the wheels of the public simulation
+        The model between the flippers' pivots. None takes two wheels, the roots of the flippers,
+        and belts with grousers round the arms. "public" takes the wheels of the public simulation
         model, eight per flipper.
     source : {"subt", "rough"}
-        Where mass and torques are from, which were published twice: the simulation model of the
-        SubT challenge, from drawings, or the description of the ROUGH data set, which has 70 kg and
-        rated torques.
+        Source of mass and torques: the simulation model of the SubT challenge, based on drawings,
+        or the description of the ROUGH data set, with 70 kg and rated torques.
 
     Returns
     -------
@@ -340,10 +339,10 @@ def marv(
     before its wheels were replaced by tracks (b626b6de^); the tests do not read common.yaml, where
     the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm become four chords here, at
     most 1 mm inside. ROUGH is the table of platforms in README.md of ctu-vras/rough-dataset
-    (084cbea5), which the tests do not read either. Rotors are the same with both sources: they are
-    of the motors that ROUGH describes.
+    (084cbea5), which the tests do not read either. Rotors do not depend on `source`: they belong to
+    the motors that ROUGH describes.
 
-    There is no track between the roots, so no ground is inside one there. The package gives the
+    There is no track between the roots, so no ground can be inside one there. The package gives the
     robot's mass as 61 kg; the sum over all links is 60.36 kg.
 
     Examples

@@ -1,7 +1,7 @@
-"""Models of a small tracked robot to try things on: one robot, as SDF, URDF and MJCF.
+"""Sample models of a small tracked robot: the same robot as SDF, URDF and MJCF.
 
-Nothing of it is of a real robot. It has wheels in the place of tracks, as people do it, so that an
-audit has something to find.
+It is not a real robot. As in many models, wheels replace its tracks, so an audit has something to
+find.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _NAMES = ("rover.sdf", "rover.urdf", "rover.xml")
 
 
 def names() -> tuple[str, ...]:
-    """Return the names of all samples: the robot as SDF, URDF and MJCF.
+    """Return the names of all samples.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def names() -> tuple[str, ...]:
 
 
 def path(name: str = "rover.sdf") -> Path:
-    """Return where a sample is.
+    """Return the path of a sample.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def path(name: str = "rover.sdf") -> Path:
     Raises
     ------
     ScenarioError
-        If there is none of that name; the message suggests the nearest.
+        If there is no such sample; the message suggests the nearest name.
 
     Examples
     --------
