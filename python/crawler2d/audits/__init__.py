@@ -1,1 +1,1 @@
-"""Audits: what a model of a robot lacks, where it seizes, and what smallest change ends that."""
+"""Audits: mistakes in a model of a robot, where it seizes, and the smallest repair."""

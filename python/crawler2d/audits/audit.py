@@ -1,4 +1,4 @@
-"""Audit a model of a robot: what is wrong with it, where it seizes, and the smallest repair."""
+"""Audit a model of a robot: mistakes in it, where it seizes, and the smallest repair."""
 
 from __future__ import annotations
 
@@ -52,80 +52,80 @@ if TYPE_CHECKING:
 __all__ = ["Audit", "audit"]
 
 QUICK, SAMPLES, REPEATS = 36, 80, 1
-"""Samples of the unknowns in a quick audit and in a full one, and runs of each: of 80 robots that
-never seize at most 4.6 % do, of 80 of which 8 do so at least 5.2 %. A run of another robot is worth
-more than another run of the same."""
+"""Samples of the unknowns in a quick and a full audit, and runs per sample. If none of 80 robots
+seizes, the rate is at most 4.6 %; if 8 do, at least 5.2 %. Running another robot tells more than
+repeating the same one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Audit(AuditRecord):
-    """What an audit found; printing it shows the short form.
+    """Result of an audit; printing it shows the short form.
 
     Attributes
     ----------
     robot, reading : Robot, and Reading or None
-        What was audited, and what was read if it was a file.
+        The audited robot, and the reading if it came from a file.
     lint, pockets : tuple of Finding, tuple of Pocket
-        Probable mistakes in the model, and a check of its geometry.
+        Probable mistakes in the model, and the spaces between its wheels.
     belt : Belt
-        The robot on belts that it was compared with; its `reason` says which belts, and why.
+        The robot on belts, for comparison; `reason` explains the choice of belts.
     obstacles, verdicts : mapping of str to terrain, tuple of Verdict
-        What it drove over, and the result on each.
+        The obstacles, and the verdict on each.
     seizes : bool
         Whether it seizes on an obstacle that the belt clears.
     assumed : tuple of Assumption
         Whether seizures depend on rotors of the motors, or on restitution.
     repairs, repaired : tuple of Repair, and RepairSearch or None
-        Changes that prevent the seizures, and the whole search for them.
+        Changes that prevent the seizures, and the search for them.
     table : xarray.Dataset
         The runs behind the verdicts.
     vary, unknown, drive, call
-        What the rates are taken over, how the robot was driven, and the arguments.
+        Distributions behind the rates, the command, and the arguments.
     """
 
     @property
     def summary(self) -> str:
-        """The short form, as ``crawler2d audit`` prints it."""
+        """The short form, as printed by ``crawler2d audit``."""
         return text_of(self)
 
     @takes_keywords
     def patch(
         self, path: str | os.PathLike[str] | None = None, repair: Repair | None = None
     ) -> str:
-        """Write the file that was audited with a repair, by default the best.
+        """Write the audited file with a repair, by default the best.
 
-        Only wheels are changed in the file. All wheels of a carrier together keep their mass, and
-        torque and rotors of their motors; a new one is a copy of its neighbour, with all that
-        drives it. The result is read again, and refused if it is not the repaired robot. Settings
-        of plugins that may no longer be right for so many or such wheels are left as they are, with
-        a `ScenarioWarning` each; meshes that are only seen keep their size. With belts
-        the robot is written as a new file, as by `Robot.to_sdf` and `to_mjcf`. The first comment of
-        the file says what was changed, and with what result.
+        Only wheels are changed in the file. The wheels of a carrier keep their total mass, motor
+        torque and rotor inertia; a new wheel is a copy of its neighbour, including its drive. The
+        result is read again, and refused if it is not the repaired robot. Plugin settings that may
+        no longer fit the number or size of wheels are kept, with a `ScenarioWarning` each; visual
+        meshes keep their size. A robot on belts is written as a new file, as by `Robot.to_sdf` and
+        `to_mjcf`. The first comment of the file describes the change and its result.
 
         Parameters
         ----------
         path : path-like, optional
-            Where to write the file; meshes keep their relative names, so it belongs into the folder
-            of the file that was read. URDF holds no belts: for these an .sdf is written instead,
-            with a `ScenarioWarning`.
+            File to write. Meshes keep their relative paths, so it belongs in the folder of the
+            original file. URDF has no belts: for these an .sdf is written instead, with a
+            `ScenarioWarning`.
         repair : Repair, optional
-            One of `repairs`. None takes the wheels of the first that is confirmed, else of the one
-            that seizes least often if that is less often than the file does, else belts. If the
-            file does not seize, nothing is written.
+            One of `repairs`. None takes the first confirmed repair with wheels, else the one that
+            seizes least often, if less often than the file, else belts. If the file does not seize,
+            nothing is written.
 
         Returns
         -------
         str
-            What differs from the file that was read, as a unified diff; of a xacro file from what
-            it expands to. "" if nothing was written, or a new file.
+            Unified diff from the original file; for a xacro file, from its expansion. "" if nothing
+            was written, or a new file.
 
         Raises
         ------
         ScenarioError
-            If no file was audited, `repair` is none, or the wheels cannot be changed in the file,
-            such as meshes of another size, and no format holds the belts.
+            If no file was audited; if `repair` is not one of the audit's; or if the wheels cannot
+            be changed in the file, such as meshes of another size, and no format supports the
+            belts.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
         """
         if repair is not None and not isinstance(repair, Repair):
             raise ScenarioError("repair", repair, "must be one of the repairs of an audit")
@@ -156,16 +156,16 @@ class Audit(AuditRecord):
     ) -> str | Path:
         """Write one self-contained HTML page with all results.
 
-        For each obstacle on which the robot seized one run is simulated again, with the same draws
-        also with the repaired robot, or without a repair with the belt; if it seized nowhere, the
-        run that came closest. The page replays them side by side.
+        For each obstacle on which the robot seized, one run is simulated again, and with the same
+        draws the repaired robot, or without a repair the belt. If it seized nowhere, it is the run
+        that came closest. The page replays both side by side.
 
         Parameters
         ----------
         path : str or path-like, optional
-            Where to write the page; None returns its text.
+            File to write; None returns the text.
         threads : int, optional
-            For the runs that are replayed; see `simulate_many`.
+            Threads for the replayed runs; see `simulate_many`.
 
         Returns
         -------
@@ -214,56 +214,56 @@ def audit(
     progress: bool | Progress | None = True,
     **reading: Unpack[ReadKeywords],
 ) -> Audit:
-    """Find out whether a model of a robot seizes where a belt would not, and what prevents that.
+    """Find where a model of a robot seizes although a belt would not, and what prevents that.
 
-    The robot and the same robot on belts drive over the standard obstacles many times, with its
-    uncertain parameters resampled. The rules of lint, verdicts and repairs are in
-    ``docs/conventions.md``, "Audit".
+    The robot and the same robot on belts drive over standard obstacles many times, with resampled
+    uncertain parameters. The rules for lint, verdicts and repairs are in ``docs/conventions.md``,
+    "Audit".
 
     Parameters
     ----------
     robot : Robot, Reading or path
-        The robot, what was read of a model, or its file: SDF, URDF, xacro or MJCF.
+        A robot, a reading, or a model file: SDF, URDF, xacro or MJCF.
     obstacles : mapping of str to terrain, optional
-        What to drive over, by label, in place of the standard obstacles. They keep their friction.
+        Obstacles by label, instead of the standard ones. They keep their friction.
     vary : mapping of str to distribution, optional
-        What varies from run to run; see `sweep`. None takes start, contact and, of random step
-        fields, the field; a tenth, a third and all of the speed in turn; and heights, rises, radii
-        and widths of obstacles within 5 %.
+        What varies from run to run; see `sweep`. None takes start and contact; the seed of random
+        step fields; a tenth, a third and all of the speed in turn; and heights, rises, radii and
+        widths of obstacles within 5 %.
     unknown : mapping of str to distribution, optional
-        Uncertain parameters, in the same form. None takes narrow ranges for what a file states and
-        wide ones for estimates; for a preset or another robot those of `unknowns`; and the friction
-        of the floor. ``{}`` takes everything as known.
+        Uncertain parameters, in the same form. None takes the friction of the floor and, for a
+        file, narrow ranges for stated figures and wide ones for estimates; for other robots those
+        of `unknowns`. ``{}`` takes everything as known.
     samples : int, optional
-        Largest number of samples of the uncertain parameters, 1 to 100,000; an obstacle is left as
-        soon as its verdict is certain. Fewer than 35 cannot show that it does not seize. None takes
-        80, or 36 if it is to be `quick`.
+        Largest number of samples of the uncertain parameters, 1 to 100,000; runs over an obstacle
+        end as soon as its verdict is certain. Fewer than 35 cannot show that the robot does not
+        seize. None takes 80, or 36 if `quick`.
     repeats : int
-        Runs of each of them over every obstacle, 1 to 1,000,000.
+        Runs per sample and obstacle, 1 to 1,000,000.
     seed : int
         Seed of the draws, 0 to 2^64 - 1.
     repair : bool
-        Whether to search for repairs if it seizes.
+        Whether to search for repairs if the robot seizes.
     quick : bool
-        Whether to take fewer samples, to try no torque and friction where it stops, and to search
-        among round wheels alone if there are any.
+        Whether to take fewer samples, to skip the trials of torque and friction, and to search only
+        among round wheels if the robot has any.
     drive : Drive, optional
-        None drives at 0.2 sqrt(g L), with L the axle distance, or at the robot's largest speed if
-        that is less; flippers `Climb`, and are raised before the obstacle. `vary` takes shares of
-        its speed.
+        The command. None drives at 0.2 sqrt(g L), with L the axle distance, or at the robot's
+        largest speed if that is lower; flippers `Climb`, and are raised before the obstacle. `vary`
+        scales this speed.
     duration : float, optional
-        [s] Longest simulated time at that speed; at a third of it runs have 5/3 of that, at a tenth
-        4 times. None takes that in which the robot would drive fifteen times its own length.
+        [s] Longest simulated time at that speed; 5/3 of it at a third of the speed, and 4 times at
+        a tenth. None takes the time to drive fifteen times the robot's length.
     store : str or path-like, optional
-        A file that keeps every run: the same call continues where it was; see `sweep`.
+        File that keeps every run: after an interruption the same call continues; see `sweep`.
     executor, threads
         See `sweep`.
     progress : bool or callable
-        True prints to the standard error what is known before the first run, each verdict as soon
-        as it is certain, and the rest; a callable is given the number of finished runs and of all
+        True prints results to the standard error as they become certain: those before the first
+        run, each verdict, and the rest. A callable gets the numbers of finished runs and of all
         that may be needed.
     **reading
-        For a path: the keywords of `read_robot`, such as `engine` and `trusted`.
+        For a file: keywords of `read_robot`, such as `engine` and `trusted`.
 
     Returns
     -------
@@ -273,16 +273,16 @@ def audit(
     Raises
     ------
     ScenarioError
-        If the file cannot be read, or an argument or the robot breaks a rule; or the file has a
-        size that no tracked robot has, unless a `scale` is given.
+        If the file cannot be read, or an argument or the robot breaks a rule; or if the file has a
+        size that no tracked robot has, and `scale` is not given.
     BatchInterrupted
-        On Ctrl-C; a store keeps what was finished.
+        On Ctrl-C; a store keeps the finished runs.
     ImportError
-        If xarray is missing, or what the format of the file needs.
+        If xarray is missing, or a package for the format of the file.
 
     Examples
     --------
-    Four wheels that touch, on one step, with motors as a simulator has them:
+    Four wheels that touch, on one step, with the motors of a simulator:
 
     >>> import crawler2d as c2d
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
@@ -338,7 +338,7 @@ def audit(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ScenarioWarning)
         one = replace(runs, samples=1, repeats=1)
-        for name, ground in grounds.items():  # what one of them lacks is an error before any run
+        for name, ground in grounds.items():  # a missing path is an error before any run
             one.course({OWN: own}, name, ground)
         setup = AuditSetup(
             robot=own,
@@ -395,7 +395,7 @@ def _drive(
     write: Callable[[str], None],
     show: Progress | None,
 ) -> tuple[tuple[Verdict, ...], tuple[Assumption, ...], xarray.Dataset]:
-    """Drive over the obstacles one after another; write each verdict as soon as it is certain."""
+    """Drive over the obstacles in order; write each verdict as soon as it is certain."""
     xr = extra("xarray", "analysis")
     models = {OWN: setup.robot, BELT: setup.belt.robot}
     verdicts, tables = [], []

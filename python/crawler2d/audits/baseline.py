@@ -1,14 +1,15 @@
-"""A baseline: earlier audits of some files, so that a check fails only on what is new.
+"""A baseline: stored results of audits, so that a check fails only on new issues.
 
-A baseline keeps words, counts and intervals, not bits. A seizure is new
+A baseline stores verdicts, counts and intervals, not bits. A seizure is new
 
-- on an obstacle on which the robot did not seize, or that the baseline does not have;
-- or if the interval of its rate is above the one it had, over all speeds or at one of them.
+- on an obstacle on which the robot did not seize, or that is not in the baseline;
+- or if the interval of its rate is above the stored one, over all speeds or at one of them.
 
-Equal builds of crawler2d give equal runs. With another build a rate near a bound may change its
-word: then, unless the word was "does not seize", only the interval decides whether it is new.
+Equal builds of crawler2d give equal runs. With another build a verdict near a bound may change:
+unless it was "does not seize", then only the interval decides whether the seizure is new.
 
-Lint is new if no finding of its rule had the same words, numbers apart, at this severity or above.
+A finding of lint is new if none of its rule had the same text, apart from numbers, at this severity
+or above.
 """
 
 from __future__ import annotations
@@ -34,18 +35,18 @@ from crawler2d.reading.log import list_names
 __all__ = ["compare", "entry_of", "read_baseline", "write_baseline"]
 
 VERSION = 1
-"""Of the format of the file."""
+"""Version of the file format."""
 
 Plain = dict[str, Any]
 
-# Not those in names, such as left_wheel_3.
+# Numbers, except in names such as left_wheel_3.
 _NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
 _LINE = re.compile(r"(:\d+)(?=[:,; ]|$)")
 _LIST = re.compile(r"\[([^][{}]*)\]")
-_SAME = 1e-6  # [-] of a figure: files round
-_ENTRY = {"crawler2d", "build", "robot", "lint"}  # what is kept of every file
-_VERDICT = {"word", "seized"}  # what is compared of every verdict
-_MOST = 4  # fields that are listed one by one
+_SAME = 1e-6  # [-] relative, as files round figures
+_ENTRY = {"crawler2d", "build", "robot", "lint"}  # keys of an entry
+_VERDICT = {"word", "seized"}  # compared keys of a verdict
+_MOST = 4  # fields listed by name
 
 
 def read_baseline(path: Path) -> Plain:
@@ -54,9 +55,9 @@ def read_baseline(path: Path) -> Plain:
     Raises
     ------
     ScenarioError
-        If it is no baseline, or of another version of the format.
+        If it is not a baseline, or has another version of the format.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
     """
     try:
         kept = json.loads(path.read_text(encoding="utf-8"))
@@ -76,9 +77,9 @@ def read_baseline(path: Path) -> Plain:
 
 
 def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) -> None:
-    """Write what was found in some files; entries of other files are kept.
+    """Write the results for some files; entries of other files are kept.
 
-    Lint alone keeps the verdicts of before.
+    After lint alone, earlier verdicts are kept.
     """
     models: Plain = {} if before is None else dict(before["models"])
     for check in checks:
@@ -87,7 +88,7 @@ def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) ->
         name = _name(check.path, path)
         models[name] = {**models.get(name, {}), **entry_of(check)}
     text = json.dumps({"baseline": VERSION, "models": dict(sorted(models.items()))}, indent=1)
-    # A list in a line: then two versions of the file differ by a line for each thing that moved.
+    # One line per list, so a diff of two versions shows one line per change.
     text = _LIST.sub(
         lambda found: f"[{' '.join(map(str.strip, found[1].splitlines())).strip()}]", text
     )
@@ -113,21 +114,21 @@ def entry_of(check: Check) -> Plain:
 
 
 def compare(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]]:
-    """Compare what was found in a file with a baseline.
+    """Compare the results for a file with a baseline.
 
     Parameters
     ----------
     check : Check
-        Of the file.
+        Results for the file.
     baseline : dict
-        What `read_baseline` returned.
+        Result of `read_baseline`.
     path : Path
-        Of the baseline.
+        Path of the baseline.
 
     Returns
     -------
     Check and list of str
-        With the issues that are known, and what is new, gone or changed, in words.
+        The check with its known issues, and lines about what is new, gone or changed.
     """
     before: Plain | None = baseline["models"].get(_name(check.path, path))
     if check.found is None:
@@ -149,7 +150,7 @@ def compare(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]
 
 
 def _is_whole(kept: Plain) -> bool:
-    """Whether an entry has all that is compared: its robot, lint and verdicts."""
+    """Whether an entry has everything to compare: robot, lint and verdicts."""
     verdicts = kept.get("verdicts", {}).values()
     return (
         kept.keys() >= _ENTRY
@@ -161,17 +162,17 @@ def _is_whole(kept: Plain) -> bool:
 
 
 def _is_finding(kept: Sequence[object]) -> bool:
-    """Whether it is what is kept of a finding of lint: severity, rule and words."""
+    """Whether it is a stored finding of lint: severity, rule and text."""
     return len(kept) == 3 and all(isinstance(each, str) for each in kept) and kept[0] in SEVERITIES
 
 
 def _is_rate(kept: Sequence[object]) -> bool:
-    """Whether it is what is kept of a rate: how often, of how many, and the interval."""
+    """Whether it is a stored rate: count, total and interval."""
     return len(kept) == 4 and all(isinstance(each, (int, float)) for each in kept)
 
 
 def _name(path: Path, baseline: Path) -> str:
-    """Name a file from the folder of the baseline, wherever the command runs."""
+    """Return a file's path relative to the baseline, wherever the command runs."""
     return Path(os.path.relpath(path.resolve(), baseline.resolve().parent)).as_posix()
 
 
@@ -189,7 +190,7 @@ def _verdict(verdict: Verdict) -> Plain:
 
 
 def _counts(of: Proportion) -> list[float]:
-    """Return how often, of how many, and the interval."""
+    """Return count, total and interval."""
     hits = round(of.rate * of.runs) if of.runs else 0
     return [hits, of.runs, round(of.low, 4), round(of.high, 4)]
 
@@ -212,10 +213,10 @@ def _is_new(issue: Issue, path: Path, now: Plain, before: Plain) -> bool:
 
 
 def _matched(kept: Plain, obstacle: str, now: Plain) -> tuple[str | None, Plain]:
-    """Return the verdict that stands in the place of an obstacle of now, with its label.
+    """Return the stored verdict that corresponds to a current obstacle, with its label.
 
-    Obstacles are scaled to the robot, whose sizes may have changed: of those whose labels differ in
-    numbers alone, the lowest stands for the lowest, and so on.
+    Obstacles are scaled to the robot, whose size may have changed: those whose labels differ only
+    in numbers correspond in order of size.
     """
     place = _places(now)[obstacle]
     found = {each: label for label, each in _places(kept).items()}.get(place)
@@ -223,7 +224,7 @@ def _matched(kept: Plain, obstacle: str, now: Plain) -> tuple[str | None, Plain]
 
 
 def _places(kept: Plain) -> dict[str, tuple[str, int]]:
-    """Return the kind of each obstacle, and its rank by size among those of that kind."""
+    """Return the kind of each obstacle, and its rank by size within the kind."""
     kinds: dict[str, list[str]] = {}
     for label in kept.get("verdicts", {}):
         kinds.setdefault(_NUMBER.sub("#", label), []).append(label)
@@ -239,7 +240,7 @@ def _sizes(label: str) -> list[float]:
 
 
 def _lint(kept: Plain) -> dict[tuple[str, str], str]:
-    """Return the worst severity of all that lint found, by what it says."""
+    """Return the worst severity of each finding of lint, by its text."""
     worst: dict[tuple[str, str], str] = {}
     for severity, rule, message in sorted(kept["lint"], key=lambda each: SEVERITIES.index(each[0])):
         worst.setdefault(_key(rule, message), severity)
@@ -327,6 +328,6 @@ def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
 
 
 def _portable(message: str, path: Path) -> str:
-    """Remove lines from a text of lint, and name places from the root of the repository."""
+    """Remove line numbers from a text of lint, and make paths relative to the repository."""
     root = repository_of(path) or path.resolve().parent
     return _LINE.sub("", message.replace(f"{root}{os.sep}", "").replace(str(root), "."))

@@ -1,4 +1,4 @@
-"""Slots and pockets between wheels, and the same robot with other wheels that might have none."""
+"""Slots and pockets between wheels, and variants of the robot that may avoid seizures."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ __all__ = [
 ]
 
 CARRIERS = ("chassis", "flippers")
-"""What carries wheels."""
+"""Parts that carry wheels."""
 
-_HEIGHT = 3.0 / 16.0  # of the smallest radius: the Engineer's grousers
-_THICKNESS = 1.0 / 8.0  # of the distance of two grousers, likewise
+_HEIGHT = 3.0 / 16.0  # of the smallest radius, as the Engineer's grousers
+_THICKNESS = 1.0 / 8.0  # of the grouser pitch, likewise
 _GROUSERS = (12, 8, 16)
 _MORE = 8
-"""Most numbers of wheels to try, from one more to one more between every two."""
+"""Largest number of wheel counts to try, from one more to one more between every two."""
 
 Wheeled = LineOfWheels | CircumferentialWheels | HybridWheels
 
 _Variants = Callable[[Robot, str, Wheeled], Iterator[tuple[str, Track]]]
 
-_SAMPLES = 181  # points of the lower half of a wheel that are viewed from below
+_SAMPLES = 181  # points on the lower half of a wheel, seen from below
 _TOUCHING = 1e-9  # [m] Wheels nearer than this touch.
 
 Circle = tuple[float, float, float]
@@ -53,10 +53,10 @@ Circle = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pocket:
-    """The space between two neighbouring wheels, above the belt that would run under them.
+    """The space between two neighbouring wheels, above a belt under them.
 
-    It is a check of the geometry, not a verdict: whether ground stays in a pocket depends on the
-    whole robot, and robots have seized in pockets that these figures call harmless.
+    A check of the geometry, not a verdict: whether ground stays in a pocket depends on the whole
+    robot, and robots have seized in pockets that these figures call harmless.
 
     Parameters
     ----------
@@ -65,15 +65,14 @@ class Pocket:
     bodies : tuple of int
         Numbers of the rear and the front wheel, as in the contacts.
     width : float
-        [m] Of its mouth: along the belt, from where that leaves one wheel to where it meets the
-        next.
+        [m] Width of its mouth, along the belt, between the tangent points on both wheels.
     gap : float
-        [m] Least distance of the wheels: of a slot > 0, of a pocket 0.
+        [m] Smallest distance between the wheels: > 0 for a slot, 0 for a pocket.
     depth : float
-        [m] From the belt to its bottom; infinite for a slot.
+        [m] Distance from the belt to its bottom; infinite for a slot.
     friction : float
-        [-] Tangent of the angle at which the rear wheel meets an edge at the bottom: with less
-        friction this wheel alone does not roll over it, and the pocket holds it. Infinite for a
+        [-] Tangent of the angle at which the rear wheel touches an edge at the bottom: with less
+        friction this wheel alone cannot roll over the edge, and the pocket holds it. Infinite for a
         slot.
     """
 
@@ -86,7 +85,7 @@ class Pocket:
 
     @property
     def is_slot(self) -> bool:
-        """Whether an edge gets through between the wheels."""
+        """Whether an edge can pass between the wheels."""
         return self.gap > 0.0
 
 
@@ -97,14 +96,14 @@ class Candidate:
     Parameters
     ----------
     description : str
-        What is changed, in words.
+        The change, in words.
     kind : {"wheels", "gears", "belt"}
-        Other numbers, sizes or places of round wheels; gear wheels in their place; or belts.
+        Other numbers, sizes or positions of round wheels; gear wheels instead; or belts.
     robot : Robot
-        With the change.
+        The changed robot.
     change : int
-        Wheels and belts of one side that are new, gone, or of another size or shape; those that
-        only move do not count.
+        Number of wheels and belts of one side that are new, removed, or have another size or shape;
+        moved ones do not count.
     """
 
     description: str
@@ -114,7 +113,7 @@ class Candidate:
 
 
 class Wheel(NamedTuple):
-    """A wheel: number of its body, carrier, and centre and radius [m] in the chassis frame."""
+    """A wheel: body number, carrier, and centre and radius [m] in the chassis frame."""
 
     body: int
     carrier: str
@@ -137,21 +136,21 @@ def left_wheels(robot: Robot) -> list[Wheel]:
 
 
 def pocket_between(rear: Circle, front: Circle) -> tuple[float, float, float, float]:
-    """Measure the space between two wheels and their common tangent below.
+    """Measure the space between two wheels, above their common lower tangent.
 
     Parameters
     ----------
     rear, front : tuple of float, shape (3,)
-        [m] x, y and radius of each.
+        [m] x, y and radius of each wheel.
 
     Returns
     -------
     width, gap, depth, friction : float
-        As in `Pocket`.
+        See `Pocket`.
 
     Examples
     --------
-    Two equal wheels: the depth is ``r - sqrt(r^2 - p^2 / 4)``, the sine of the angle ``p / (2 r)``.
+    For equal wheels the depth is ``r - sqrt(r^2 - p^2 / 4)`` and the angle's sine ``p / (2 r)``.
 
     >>> width, gap, depth, friction = pocket_between((0.0, 0.0, 0.1), (0.12, 0.0, 0.1))
     >>> width, gap, round(depth, 6), round(friction, 6)
@@ -159,36 +158,36 @@ def pocket_between(rear: Circle, front: Circle) -> tuple[float, float, float, fl
     """
     (x, y, r), (u, v, s) = rear, front
     apart = math.hypot(u - x, v - y)
-    # In a frame whose x runs along the belt and whose y points into the pocket, with the belt at 0,
-    # the axles are at (0, r) and (width, s).
+    # In a frame with x along the belt, y into the pocket and the belt at y = 0, the axles are at
+    # (0, r) and (width, s).
     width = math.sqrt(max(apart**2 - (r - s) ** 2, 0.0))
     gap = apart - r - s
     if gap > _TOUCHING:
         return width, gap, math.inf, math.inf
-    # The lower of the two points that both circles share, or the one in which they touch.
+    # The lower intersection of both circles, or the point where they touch.
     along = (apart**2 + r**2 - s**2) / (2.0 * apart)
     aside = math.sqrt(max(r**2 - along**2, 0.0))
     cos, sin = width / apart, (s - r) / apart
     ahead, depth = along * cos + aside * sin, r + along * sin - aside * cos
-    below = r - depth  # of the bottom, under the axle of the rear wheel
+    below = r - depth  # bottom, below the axle of the rear wheel
     return width, 0.0, depth, ahead / below if below > 0.0 else math.inf
 
 
 def pockets(robot: Robot) -> tuple[Pocket, ...]:
-    """Measure the spaces between the wheels of one side, chassis and flippers together.
+    """Measure the spaces between the wheels of one side, including flippers.
 
-    Neighbours are next to each other as seen from below, with the flippers at their `angle`. Wheels
-    are measured to the tips of their grousers.
+    Neighbours are adjacent as seen from below, with the flippers at their `angle`. Wheels are
+    measured to the grouser tips.
 
     Parameters
     ----------
     robot : Robot
-        Any robot; one on belts has no wheels, and no pockets.
+        Any robot; one on belts has no pockets.
 
     Returns
     -------
     tuple of Pocket
-        From the rear to the front.
+        Pockets and slots from the rear to the front.
 
     Examples
     --------
@@ -219,7 +218,7 @@ def pockets(robot: Robot) -> tuple[Pocket, ...]:
 
 
 def _seen_from_below(circles: list[Circle]) -> list[tuple[int, float]]:
-    """Find which wheels are seen from below, and the mean x of what is seen of each."""
+    """Find the wheels visible from below, and the mean x of their visible parts."""
     found = []
     for index, (x, y, radius) in enumerate(circles):
         offsets = radius * np.sin(np.linspace(-0.5 * math.pi, 0.5 * math.pi, _SAMPLES)[1:-1])
@@ -228,7 +227,7 @@ def _seen_from_below(circles: list[Circle]) -> list[tuple[int, float]]:
         for other, (u, v, its_radius) in enumerate(circles):
             within = its_radius**2 - (x + offsets - u) ** 2
             bottom = v - np.sqrt(np.maximum(within, 0.0))
-            # Of two wheels in one place the first counts.
+            # Of two wheels at the same position the first counts.
             hides = bottom < heights + (_TOUCHING if other < index else -_TOUCHING)
             is_seen &= ~((within > 0.0) & hides) | (other == index)
         if is_seen.any():
@@ -242,14 +241,14 @@ def candidates_of(robot: Robot, carriers: Collection[str]) -> list[Candidate]:
     Parameters
     ----------
     robot : Robot
-        As it is.
+        The robot without changes.
     carriers : collection of str
-        Which of `CARRIERS` seize; only their wheels are changed.
+        Those of `CARRIERS` that seize; only their wheels are changed.
 
     Returns
     -------
     list of Candidate
-        Wheels and gears, the least changed first. Empty if no wheels carry it there.
+        Wheels and gears, the smallest change first. Empty if these carriers have no wheels.
 
     Examples
     --------
@@ -272,7 +271,7 @@ def wheel_count(robot: Robot) -> int:
 
 
 def _fits(robot: Robot) -> bool:
-    """Whether a robot keeps every rule, as one with wheels that are too many may not."""
+    """Whether a robot keeps every rule; too many wheels may not."""
     try:
         robot.wheels()
     except ScenarioError:
@@ -283,7 +282,7 @@ def _fits(robot: Robot) -> bool:
 def _of_kind(
     robot: Robot, carriers: Collection[str], kind: str, variants: _Variants
 ) -> Iterator[Candidate]:
-    """Change every carrier by its first variant, then every one by its second, and so on."""
+    """Change all carriers to their first variant, then all to their second, and so on."""
     tracks = {each: _track_of(robot, each) for each in CARRIERS if each in carriers}
     options = [
         [(f"{carrier}: {what}", carrier, new) for what, new in variants(robot, carrier, track)]
@@ -309,7 +308,7 @@ def _track_of(robot: Robot, carrier: str) -> Wheeled | None:
 
 
 def _with(robot: Robot, carrier: str, track: Track) -> Robot:
-    """Put other wheels on a carrier; those of the other stay."""
+    """Put other wheels on one carrier; keep the others."""
     arms = robot.flippers
     if carrier == "flippers":
         assert arms is not None
@@ -324,12 +323,12 @@ def _more_wheels(
     carrier: str,  # noqa: ARG001 - gear wheels depend on it
     track: Wheeled,
 ) -> Iterator[tuple[str, Track]]:
-    """Yield other numbers, sizes and places of the wheels of a carrier."""
+    """Yield other numbers, sizes and positions of a carrier's wheels."""
     if isinstance(track, HybridWheels):
         yield from _between(track)
         return
     count = track.count
-    # One between every two has twice as many but one, two between every two three times but two.
+    # One between every two gives 2 n - 1 wheels, two between every two 3 n - 2.
     more = np.linspace(count + 1, 2 * count - 1, min(_MORE, count - 1)).round().astype(int).tolist()
     others = [count + 1, count - 1, *more, 3 * count - 2]
     least = 2 if isinstance(track, LineOfWheels) else 3
@@ -347,9 +346,9 @@ def _more_wheels(
 
 
 def _between(track: HybridWheels) -> Iterator[tuple[str, Track]]:
-    """Yield placed wheels with one more in the deepest pocket, and with one in every pocket.
+    """Yield placed wheels with one more in the deepest pocket, and one more in every pocket.
 
-    Wheels are named by their numbers in the order given, as the bodies of the chassis are.
+    Wheels are named by their body numbers, in the order given.
     """
     if len(track.placements) < 2:
         return
@@ -368,13 +367,13 @@ def _between(track: HybridWheels) -> Iterator[tuple[str, Track]]:
 
 
 def _holding_friction(rear: Circle, front: Circle) -> float:
-    """[-] Below which two wheels hold an edge, see `Pocket`; 0 if one is inside the other."""
+    """[-] Friction below which two wheels hold an edge; 0 if one is inside the other."""
     is_inside = math.dist(rear[:2], front[:2]) <= abs(rear[2] - front[2])
     return 0.0 if is_inside else pocket_between(rear, front)[-1]
 
 
 def _gears(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[str, Track]]:
-    """Yield gear wheels in the place of round ones, with grousers of the Engineer's proportions."""
+    """Yield gear wheels instead of round ones, with grousers of the Engineer's proportions."""
     if not isinstance(track.wheel, RoundWheel):
         return
     table = robot.wheels()
@@ -392,7 +391,7 @@ def _gears(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[str, Tr
 
 
 def _change(before: Robot, after: Robot) -> int:
-    """Count the wheels of one side that are new, gone, or of another size or shape."""
+    """Count the wheels of one side that are new, removed, or have another size or shape."""
     changed = 0
     for carrier in CARRIERS:
         old, new = _track_of(before, carrier), _track_of(after, carrier)

@@ -1,4 +1,4 @@
-"""What is wrong with a model, as JUnit XML and SARIF for other programs."""
+"""Issues of a model as JUnit XML and SARIF for other programs."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ __all__ = [
 ]
 
 SEIZES = "seizes"
-"""The rule that an obstacle breaks on which a robot seizes."""
+"""Rule broken by an obstacle on which the robot seizes."""
 
 _UNREAD = "unread"
-"""The rule that a file breaks which cannot be read, or whose robot cannot be simulated."""
+"""Rule broken by a file that cannot be read, or whose robot cannot be simulated."""
 
 _RULES = {
     SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.",
@@ -57,20 +57,20 @@ XML = ElementTree.Element
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Issue:
-    """One thing that is wrong.
+    """One issue.
 
     Parameters
     ----------
     rule : str
         "seizes", or a rule of lint.
     severity : {"error", "warning", "note"}
-        As of lint; a seizure is an error.
+        Severity as in lint; a seizure is an error.
     text : str
         A sentence.
     lines : tuple of int
-        Where in the file; empty if that is not known, or its lines are those of another text.
+        Lines of the file; empty if unknown, or if they refer to another text.
     obstacle : str
-        On which it seizes; "" for lint.
+        Obstacle on which the robot seizes; "" for lint.
     """
 
     rule: str
@@ -82,18 +82,18 @@ class Issue:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Check:
-    """What was found in one file, and what of it fails.
+    """Results for one file, and which of them fail.
 
     Parameters
     ----------
     path : Path
         The file.
     found : AuditRecord or LintResult, optional
-        What was found; None for a file that cannot be read.
+        Result; None for a file that cannot be read.
     issues : tuple of Issue
         Seizures, then lint.
     known : frozenset of Issue, optional
-        Those that a baseline has, too; None without one.
+        Issues that are in the baseline; None without one.
     """
 
     path: Path
@@ -102,7 +102,7 @@ class Check:
     known: frozenset[Issue] | None = None
 
     def fails(self, issue: Issue) -> bool:
-        """Whether an issue fails: an error, or with a baseline a new error or warning."""
+        """Whether an issue fails: errors, or with a baseline new errors and warnings."""
         if self.known is None:
             return issue.severity == "error"
         return issue not in self.known and issue.severity != "note"
@@ -114,18 +114,18 @@ class Check:
 
 
 def repository_of(path: Path) -> Path | None:
-    """Return the root of the repository that a file lies in."""
+    """Return the root of the repository of a file."""
     return next((up for up in path.resolve().parents if (up / ".git").exists()), None)
 
 
 def check_of(path: Path, found: AuditRecord | LintResult) -> Check:
-    """List what is wrong with a model, with no baseline."""
+    """List the issues of a model, without a baseline."""
     issues = (*_seizures(found), *(_issue(each, found.reading) for each in found.lint))
     return Check(path=path, found=found, issues=issues)
 
 
 def unreadable(path: Path, error: Crawler2dError) -> Check:
-    """Return the check of a file that has no audit: only the error, at its line if it has one."""
+    """Return the check of a file without an audit: only the error, at its line if known."""
     lines = _lines_in(path.name, error.path) if isinstance(error, ScenarioError) else ()
     issue = Issue(rule=_UNREAD, severity="error", text=str(error), lines=lines)
     return Check(path=path, found=None, issues=(issue,))
@@ -154,13 +154,13 @@ def _issue(finding: Finding, reading: Reading | None) -> Issue:
 
 
 def _lines_in(file: str, where: str) -> tuple[int, ...]:
-    """Read the lines of a file from a text such as "cart.sdf:3, 7"."""
+    """Read line numbers from a text such as "cart.sdf:3, 7"."""
     place = re.match(re.escape(file) + r":(\d+(?:, \d+)*)", where)
     return tuple(map(int, place[1].split(", "))) if place else ()
 
 
 def _lines_of(names: list[str], reading: Reading | None) -> tuple[int, ...]:
-    """Return the lines of wheels, in the order of their names."""
+    """Return the lines of wheels in the order of their names."""
     if reading is None or not _has_own_lines(reading):
         return ()
     at = dict(zip(reading.wheels["name"].tolist(), reading.wheels["line"].tolist(), strict=True))
@@ -168,16 +168,16 @@ def _lines_of(names: list[str], reading: Reading | None) -> tuple[int, ...]:
 
 
 def _has_own_lines(reading: Reading) -> bool:
-    """Whether lines are those of the file itself, and not of what it expands to."""
+    """Whether lines refer to the file itself, not to its expansion."""
     return reading.tree.file == reading.path.name
 
 
 def junit_of(checks: Sequence[Check]) -> str:
-    """Write a test suite for each file: a test case for each obstacle, and for each broken rule.
+    """Write a test suite for each file, with a test case per obstacle and per broken rule.
 
     An obstacle fails if the robot seizes on it, a rule if it is broken with an error; other
-    findings are in the ``system-out`` of the case. With a baseline only what is new fails, and what
-    is known is skipped.
+    findings are in the ``system-out`` of the case. With a baseline only new issues fail, and known
+    ones are skipped.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def _suite(check: Check) -> XML:
 
 
 def _case(check: Check, name: str, issues: Iterable[Issue], out: str) -> XML:
-    """Return a test case, which fails or is skipped if one of its issues is severe."""
+    """Return a test case; it fails or is skipped if one of its issues is severe."""
     case = _element("testcase", name=name, classname=check.path.as_posix())
     severe = [issue for issue in issues if issue.severity != "note"]
     failing = [issue for issue in severe if check.fails(issue)]
@@ -234,7 +234,7 @@ def _case(check: Check, name: str, issues: Iterable[Issue], out: str) -> XML:
 
 
 def _with_line(issue: Issue, name: str) -> str:
-    """Write an issue after file and line, as compilers do."""
+    """Write file, line and issue, as compilers do."""
     line = f":{issue.lines[0]}" if issue.lines else ""
     return f"{name}{line}: {issue.text}"
 
@@ -244,7 +244,7 @@ def _set_counts(element: XML, *names: str) -> None:
     counts = {
         "tests": len(cases),
         "failures": len(list(element.iter("failure"))),
-        "errors": 0,  # a file that cannot be read is a failure, too
+        "errors": 0,  # an unreadable file is also a failure
         "skipped": len(list(element.iter("skipped"))),
     }
     for name in names:
@@ -258,16 +258,16 @@ def _element(tag: str, text: str | None = None, **attributes: str) -> XML:
 
 
 def _legal(text: str) -> str:
-    """Replace what XML cannot hold, as names of files may have it."""
+    """Replace characters that XML cannot hold; file names may have them."""
     return _NOT_IN_XML.sub("\ufffd", text)
 
 
 def sarif_of(checks: Sequence[Check]) -> str:
-    """Write all issues of some files as one run.
+    """Write all issues of some files as one SARIF run.
 
-    Files are named as in their repository, or, outside of any, in the folder that is current. A
-    seizure is at the line of the first wheel between which it is jammed, with the other one as a
-    related place; lint at its first line. What a xacro file expands to has no lines of the file.
+    Paths are relative to the repository or, outside of one, to the current folder. A seizure is at
+    the line of the first of the two wheels, with the other one as a related location; lint is at
+    its first line. The expansion of a xacro file has no lines of the file.
 
     Parameters
     ----------
@@ -312,7 +312,7 @@ def _result(issue: Issue, check: Check) -> dict[str, Any]:
 
 
 def _location(path: Path, line: int) -> dict[str, Any]:
-    """Name a file by its path from the root of its repository, which is what scanners resolve."""
+    """Return a file's path from the root of its repository, which scanners resolve."""
     whole = path.resolve()
     root = repository_of(path) or Path.cwd()
     file = {"uri": whole.as_uri()}

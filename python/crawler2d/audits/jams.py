@@ -1,4 +1,4 @@
-"""Which repairs can be held at all where a robot seized: computed before any run."""
+"""Find, before any run, which repairs can jam at all where a robot seized."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["free_of_jams"]
 
 _DEPTH = 1e-3
-"""[m] Ground that is less deep inside the track holds no wheels that would not hold a belt."""
+"""[m] Ground less deep inside the track also holds a belt."""
 
 _MOST = 10.0
 """[-] Largest friction of a floor."""
@@ -24,24 +24,24 @@ _MOST = 10.0
 def free_of_jams(
     candidates: Sequence[Mapping[str, Any]], scenarios: Sequence[Scenario]
 ) -> list[int]:
-    """Find the candidates that can jam in none of some scenarios, on three contacts.
+    """Find the candidates that cannot jam on three contacts in any of some scenarios.
 
     Parameters
     ----------
     candidates : sequence of mapping of str to object
-        What each replaces in a scenario.
+        Values that each replaces in a scenario.
     scenarios : sequence of Scenario
-        Runs in which the robot seized. Those whose jams cannot be computed are left out, such as
-        with grounds that differ between the tracks.
+        Runs in which the robot seized. Those whose jams cannot be computed are skipped, such as
+        different ground under the two tracks.
 
     Returns
     -------
     list of int
-        Their places; empty if nothing can be computed.
+        Their indices; empty if nothing can be computed.
 
     Examples
     --------
-    Five wheels cannot jam on a step of 75 mm, four can:
+    Five wheels cannot jam on a step of 75 mm, but four can:
 
     >>> import crawler2d as c2d
     >>> robot = c2d.robots.engineer(flippers=None)
@@ -70,6 +70,6 @@ def free_of_jams(
 
 
 def _holds(jams: Mapping[str, Any], friction: float) -> bool:
-    """Whether one of these jams is in a pocket, and carried at a friction."""
+    """Whether one of these jams is in a pocket and holds at a friction."""
     inside = jams["depth"] > _DEPTH
     return bool((inside & (jams["low"] <= friction) & (friction <= jams["high"])).any())

@@ -1,4 +1,4 @@
-"""Lint: probable mistakes in a model of a robot, by a table of rules; a finding for each break."""
+"""Lint: find probable mistakes in a model of a robot by a table of rules."""
 
 from __future__ import annotations
 
@@ -23,33 +23,33 @@ from crawler2d.reading.wheels import farthest, subtrees
 __all__ = ["RULES", "SEVERITIES", "Finding", "lint"]
 
 SEVERITIES = ("error", "warning", "note")
-"""From another robot than intended, through what is probably a mistake, to mere information."""
+"""Severities: not the intended robot, probably a mistake, information."""
 
 _SHORTEST, _LONGEST = 0.1, 3.0
-"""[m] Tracked robots that climb obstacles lie between; files in centimetres or inches do not."""
+"""[m] Range of tracked robots that climb obstacles; files in centimetres or inches are outside."""
 
 _LIGHTEST, _HEAVIEST = 30.0, 8000.0
-"""[kg/m^3] Mass by the space between the tracks: hollow robots have 100 to 1000, steel 7850."""
+"""[kg/m^3] Mass per bounding volume: hollow robots have 100 to 1000, steel 7850."""
 
 _STRONGEST = 5.0
-"""[-] Tractive effort by weight: no floor takes more than the friction times the weight."""
+"""[-] Tractive effort per weight: no floor takes more than friction times weight."""
 
 _GRAVITY = 9.81
 
 _STICKIEST = 2.0
-"""[-] Rubber tracks on concrete have up to 1; more is meant to stop sliding, not measured."""
+"""[-] Rubber tracks on concrete have up to 1; higher values are not measured but stop sliding."""
 
 _OFF_AXLE = 0.1
-"""[-] Fraction of its radius by which the centre of mass of a wheel may lie off its axle."""
+"""[-] Largest distance of a wheel's centre of mass from its axle, as a fraction of its radius."""
 
 _SAME = 1e-6
-"""[m] Last digit of the files: sides that differ by less are equal."""
+"""[m] Last digit of files: sides that differ by less are equal."""
 
 _SLACK = 1.05
-"""[-] Files round inertias: a body may be that much larger than its shapes."""
+"""[-] Tolerance for rounded inertias: a body may be this much larger than its shapes."""
 
 _MATTERS = 0.01
-"""[-] Fraction of the robot's mass: links below it move nothing."""
+"""[-] Fraction of the robot's mass below which a link has no effect."""
 
 _ON_SELF = re.compile(r"<self_collide>\s*(1|true)\s*<", re.IGNORECASE)
 _LINK = re.compile(r"<link\s+name\s*=\s*[\"']([^\"']*)[\"'].*?</link>", re.DOTALL)
@@ -65,12 +65,12 @@ class Finding:
     rule : str
         Name of the rule, as in ``docs/conventions.md``.
     severity : {"error", "warning", "note"}
-        An error makes the model another robot than intended, a warning is probably a mistake, a
-        note informs.
+        An error: the model is not the intended robot; a warning: probably a mistake; a note:
+        information.
     message : str
-        What was found, with its figures.
+        The finding, with its figures.
     where : str
-        File and lines; "" for a robot that was not read from a file.
+        File and lines; "" for a robot without a file.
     """
 
     rule: str
@@ -80,7 +80,7 @@ class Finding:
 
 
 class _Break(NamedTuple):
-    """What breaks a rule, and where; the severity is that of the rule unless it is given."""
+    """What breaks a rule, and where; by default with the severity of the rule."""
 
     message: str
     where: str = ""
@@ -89,20 +89,20 @@ class _Break(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What a robot or a model file should be like, and what finds where it is not.
+    """A rule about robots or model files, with the functions that find violations.
 
     Parameters
     ----------
     name : str
-        As in ``docs/conventions.md``, which says when it fires.
+        Name as in ``docs/conventions.md``, which says when it fires.
     severity : str
-        Of a break that has none of its own.
+        Severity of a violation without its own.
     text : str
-        What a model that keeps the rule is like.
+        The rule as a sentence.
     robot, file : callable, optional
-        Find the breaks of a robot, and those that only a file shows.
+        Find violations of a robot, and those that only a file shows.
     stated : tuple of str
-        Where a file may say what `robot` finds: the first of these that it states.
+        Figures that may locate the violation in the file: the first one that it states.
     """
 
     name: str
@@ -113,7 +113,7 @@ class Rule:
     stated: tuple[str, ...] = ()
 
     def findings(self, robot: Robot, reading: Reading | None) -> Iterator[Finding]:
-        """Yield the breaks of this rule."""
+        """Yield the violations of this rule."""
         sources = {} if reading is None else reading.sources
         where = next((sources[path] for path in self.stated if path in sources), "")
         for each in self.robot(robot) if self.robot else ():
@@ -130,14 +130,14 @@ class Rule:
 def lint(
     robot: Robot, reading: Reading | None = None, warnings: Iterable[str] = ()
 ) -> tuple[Finding, ...]:
-    """Find probable mistakes in a robot, and in the file that it was read from.
+    """Find probable mistakes in a robot and its model file.
 
     Parameters
     ----------
     robot : Robot
         The robot.
     reading : Reading, optional
-        Where it was read from.
+        The reading of its file.
     warnings : iterable of str
         Warnings of the simulator; see `Scenario.validate`.
 
@@ -184,14 +184,14 @@ def _mass(robot: Robot) -> Iterator[_Break]:
 
 
 def _length_and_height(robot: Robot) -> tuple[float, float]:
-    """[m, m] Measure the chassis with its tracks, flippers not counted."""
+    """[m, m] Measure the chassis with its tracks, without flippers."""
     outline = robot.outline
     length = outline.axle_distance + outline.front_radius + outline.rear_radius
     return length, 2.0 * max(outline.front_radius, outline.rear_radius)
 
 
 def _gyration_of_robot(robot: Robot) -> Iterator[_Break]:
-    """Compare the radius of gyration with the farthest that any part can be from the middle."""
+    """Compare the radius of gyration with the distance of the farthest part from the middle."""
     length, height = _length_and_height(robot)
     arms = reach_of(robot.flippers, robot.track)
     tallest = np.abs(belly_corners(robot.belly)[:, 1]).max(initial=0.5 * height)
@@ -217,7 +217,7 @@ def _torque(robot: Robot) -> Iterator[_Break]:
 
 
 def _bare_stretches(robot: Robot) -> Iterator[_Break]:
-    """Find stretches that no wheel and no belt carries."""
+    """Find stretches without a wheel or belt."""
     track = robot.track
     if isinstance(track, LineOfWheels) and not track.as_track:
         bare = robot.outline.axle_distance - robot.outline.front_radius - robot.outline.rear_radius
@@ -261,7 +261,7 @@ def _solid_links(reading: Reading) -> list[Link]:
 
 
 def _of_links(reading: Reading, links: list[Link], message: str) -> Iterator[_Break]:
-    """Report links together, the heaviest first, and apart from them those that move nothing."""
+    """Report links together, the heaviest first, and separately those without effect."""
     order = sorted(links, key=lambda link: -link.mass)
     least = _MATTERS * reading.robot.mass
     heavy = [link for link in order if link.mass >= least]
@@ -283,7 +283,7 @@ def _breaks_triangle(link: Link) -> bool:
 
 
 def _too_spread(reading: Reading) -> list[Link]:
-    """List links with a radius of gyration larger than how far their shapes reach."""
+    """List links with a radius of gyration larger than the reach of their shapes."""
     whole = size_of(reading.tree)
     found = []
     for link in _solid_links(reading):
@@ -302,14 +302,14 @@ def _is_ball(link: Link) -> bool:
 
 
 def _wheel_links(reading: Reading) -> list[tuple[Link, Joint]]:
-    """List the links of all wheels with the joints that they turn on; drums have none."""
+    """List the links of all wheels with their joints; drums have none."""
     joints = reading.tree.joints
-    names = set(reading.wheels["name"].tolist())  # that of a drum has its shape, too
+    names = set(reading.wheels["name"].tolist())  # the name of a drum includes its shape
     return [(link, joints[link.name]) for link in reading.tree.links if link.name in names]
 
 
 def _touching_links(reading: Reading) -> Iterator[Link]:
-    """Yield the links of all wheels, with what is fixed to them, and of all drums."""
+    """Yield the links of all wheels, with links fixed to them, and of all drums."""
     names, hanging = set(reading.wheels["name"].tolist()), subtrees(reading.tree)
     turning = {each for name in names & hanging.keys() for each in hanging[name]}
     for link in reading.tree.links:
@@ -318,7 +318,7 @@ def _touching_links(reading: Reading) -> Iterator[Link]:
 
 
 def _friction(reading: Reading) -> Iterator[_Break]:
-    """Take the coefficients as they are written: an engine may combine them to less."""
+    """Check the stated coefficients, which an engine may combine to less."""
     found = [
         (coefficient, at)
         for link in _touching_links(reading)
@@ -354,7 +354,7 @@ def _no_effort_limit(reading: Reading) -> Iterator[_Break]:
 
 
 def _no_motor(reading: Reading) -> Iterator[_Break]:
-    """Find wheels for which the file names no motor: something outside must turn them."""
+    """Find wheels without a motor in the file: something external must turn them."""
     wheels = [joint for _, joint in _wheel_links(reading)]
     idle = [joint for joint in wheels if joint.name not in reading.tree.driven]
     if idle:
@@ -367,7 +367,7 @@ def _no_motor(reading: Reading) -> Iterator[_Break]:
 
 
 def _massless(reading: Reading) -> Iterator[_Break]:
-    """Find wheels that weigh nothing, with all that is fixed to them."""
+    """Find wheels without mass, including everything fixed to them."""
     tree = reading.tree
     carried = {joint.parent for joint in tree.joints.values() if joint.kind == "fixed"}
     found = [
@@ -383,7 +383,7 @@ def _massless(reading: Reading) -> Iterator[_Break]:
 
 
 def _balance(reading: Reading) -> Iterator[_Break]:
-    """Find wheels that are out of balance: what turns with them is swung round the axle."""
+    """Find unbalanced wheels."""
     table = reading.wheels
     radii = dict(zip(table["name"].tolist(), table["radius"].tolist(), strict=True))
     off = [
@@ -405,7 +405,7 @@ def _sides(reading: Reading) -> Iterator[_Break]:
     """Compare left and right, wheel by wheel in the order of the table."""
     table = reading.wheels
     left, right = (table["side"] == side for side in ("left", "right"))
-    if left.sum() != right.sum():  # double wheels: the reader has paired them
+    if left.sum() != right.sum():  # double wheels, paired by the reader
         return
     off = {
         name: np.abs(table[name][left] - table[name][right])
@@ -427,7 +427,7 @@ def _sides(reading: Reading) -> Iterator[_Break]:
 
 
 def _overlaps(reading: Reading) -> Iterator[_Break]:
-    """Find wheels of one side that lie inside each other, and whether an engine lets them touch."""
+    """Find overlapping wheels of one side, and whether an engine lets them collide."""
     places: list[Where] = []
     depths: list[float] = []
     names: set[str] = set()
@@ -455,7 +455,7 @@ def _overlaps(reading: Reading) -> Iterator[_Break]:
 
 
 def _effect_of_overlap(reading: Reading, names: set[str]) -> tuple[str, str]:
-    """Say whether wheels of a model that overlap would collide with each other."""
+    """Say whether overlapping wheels of a model would collide with each other."""
     if reading.tree.format.startswith("SDF"):
         links = {match[1] for match in _LINK.finditer(reading.text) if _ON_SELF.search(match[0])}
         if _ON_SELF.search(_LINK.sub("", reading.text)) or links & names:
@@ -478,21 +478,21 @@ RULES = (
     Rule(
         "size",
         "error",
-        "The robot is as long as tracked robots are.",
+        "The length of the robot is typical of tracked robots.",
         robot=_size,
         stated=("robot.outline.axle_distance", "robot.outline.discs"),
     ),
     Rule(
         "mass",
         "warning",
-        "The robot is neither as light as a balloon nor as heavy as steel.",
+        "The density of the robot is plausible.",
         robot=_mass,
         stated=("robot.mass",),
     ),
     Rule(
         "inertia",
         "error",
-        "Bodies have moments of inertia that a body of their size can have.",
+        "Moments of inertia are possible for bodies of their size.",
         robot=_gyration_of_robot,
         file=_impossible_inertia,
         stated=("robot.moment_of_inertia",),
@@ -501,20 +501,20 @@ RULES = (
     Rule(
         "placeholder",
         "warning",
-        "Three equal moments of inertia belong to balls and cubes.",
+        "Only balls and cubes have three equal moments of inertia.",
         file=_placeholder,
     ),
     Rule(
         "no track",
         "error",
-        "A round shape stands wherever a track should be.",
+        "Round shapes cover the whole length of a track.",
         robot=_bare_stretches,
         stated=("robot.track",),
     ),
     Rule(
         "effort",
         "warning",
-        "Motors have a limit of effort, and the tracks push with no more than floors take.",
+        "Motors have an effort limit, and tracks push with no more than floors can take.",
         robot=_torque,
         file=_no_effort_limit,
         stated=("robot.drivetrain.max_torque",),
@@ -523,7 +523,7 @@ RULES = (
     Rule(
         "friction",
         "warning",
-        "Wheels and tracks have a friction that surfaces have.",
+        "The friction of wheels and tracks is realistic.",
         file=_friction,
     ),
     Rule("balance", "warning", "The centre of mass of a wheel is on its axle.", file=_balance),
@@ -531,4 +531,4 @@ RULES = (
     Rule("overlap", "note", "Wheels of one side do not push each other apart.", file=_overlaps),
     Rule("other", "warning", "Reader and simulator have no other warnings.", file=_warnings),
 )
-"""Every rule, in the order in which they are asked."""
+"""All rules, in the order of checking."""

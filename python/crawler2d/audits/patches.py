@@ -1,4 +1,4 @@
-"""The audited file with a repair: what was changed, with a label that says the result."""
+"""Write a repair into the audited file, with a label that states the result."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ __all__ = ["Change", "best_change", "change_of", "diffs_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A changed model file, or a new one in its place.
+    """A changed model file, or a new one instead.
 
     Parameters
     ----------
     text : str
-        All of it.
+        The whole text.
     label : str
-        The change and its result; it is the first comment of the text, too.
+        The change and its result; also the first comment of the text.
     diff : str
-        What differs from the file that was read; "" for a new one.
+        Unified diff from the original file; "" for a new one.
     summary : str
-        How much differs.
+        Size of the change.
     left : tuple of str
-        Settings of plugins that remain to be set by hand.
+        Plugin settings to be adjusted by hand.
     suffix : str
-        Of a file of another format; "" if it is the same.
+        Suffix for another format; "" for the same one.
     """
 
     text: str
@@ -49,21 +49,21 @@ class Change:
     suffix: str = ""
 
     def write(self, path: Path) -> Path:
-        """Write it, with its own suffix if it has one; return the path."""
+        """Write the file, with `suffix` if it is set; return the path."""
         path = path.with_suffix(self.suffix) if self.suffix else path
         return write_text(path, self.text)
 
 
 def best_change(audit: AuditRecord) -> Change | None:
-    """Change the file by the best repair; None if it does not seize.
+    """Apply the best repair to the file; None if the robot does not seize.
 
-    That is the first confirmed one with wheels, else one with wheels that seizes less often than
-    the file, else belts.
+    The best is the first confirmed one with wheels, else one with wheels that seizes less often
+    than the file, else belts.
 
     Raises
     ------
     ScenarioError
-        If no file was read, or none of these can be written.
+        If there is no file, or none of these can be written.
     """
     _check(audit)
     if not audit.seizes:
@@ -91,12 +91,12 @@ def best_change(audit: AuditRecord) -> Change | None:
 
 
 def change_of(audit: AuditRecord, repair: Repair) -> Change:
-    """Put a repair into the file that was audited.
+    """Apply a repair to the audited file.
 
     Raises
     ------
     ScenarioError
-        If no file was read, or its text has wheels in a form that cannot be changed in place.
+        If there is no file, or its wheels are in a form that cannot be changed in place.
     """
     _check(audit)
     if repair.kind == "belt":
@@ -111,7 +111,7 @@ def change_of(audit: AuditRecord, repair: Repair) -> Change:
 
 
 def diffs_of(audit: AuditRecord) -> dict[str, str]:
-    """Say by `Repair.description` what each repair by wheels changes in the file, or why not."""
+    """Return the diff, or why there is none, of each repair by wheels, by `Repair.description`."""
     found = {}
     for repair in audit.repairs if audit.reading is not None else ():
         if repair.kind != "belt":
@@ -130,7 +130,7 @@ def _check(audit: AuditRecord) -> None:
 
 
 def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change:
-    """Write a new file of the robot, on belts that a plugin of the simulator moves."""
+    """Write a new file of the robot on belts moved by a plugin of the simulator."""
     read = audit.reading
     assert read is not None
     if repair is None:
@@ -152,11 +152,11 @@ def _on_belts(audit: AuditRecord, robot: Robot, repair: Repair | None) -> Change
 
 
 def _after(audit: AuditRecord, repair: Repair) -> float:
-    """[-] Return how often a repair seizes in fresh runs, over the obstacles that seized."""
+    """[-] Return the rate at which a repair seizes in fresh runs over the obstacles that seized."""
     names = [each.obstacle for each in audit.verdicts if each.result == "seizes"]
     return float(np.nanmean([repair.seized[name].rate for name in names]))
 
 
 def _before(audit: AuditRecord) -> float:
-    """[-] Return how often the robot as it is seizes there."""
+    """[-] Return the rate at which the unchanged robot seizes there."""
     return float(np.mean([v.seized.rate for v in audit.verdicts if v.result == "seizes"]))

@@ -1,4 +1,4 @@
-"""What an audit was asked for and what it found, as data."""
+"""Arguments and results of an audit, as data."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 READING = ("engine", "forward", "model", "mesh", "missing", "ground_friction", "tolerance", "scale")
-"""Keywords of `read_robot` that take one value, and so do the options of the command."""
+"""Keywords of `read_robot`, and options of the command, that take one value."""
 
 _ALIKE = ("samples", "repeats", "seed", "store", "threads", "quick", "trusted", "html", "patch")
 
@@ -47,26 +47,26 @@ OPTIONS = {
     **{f"{name}s": f"--{name}" for name in ("track", "package", "argument")},
     "path": "FILE",
 }
-"""How the command spells the keywords of `audit`, and of what it writes."""
+"""Spelling of the keywords of `audit` in the command, and of its outputs."""
 
 _FOLLOWS = {"packages": "NAME=FOLDER", "arguments": "NAME=VALUE"}
 
 
 def bodies_per_side(robot: Robot) -> int:
-    """Count the bodies of one side, flippers included: the number of the first on the right."""
+    """Count the bodies of one side, including flippers: the number of the first on the right."""
     with ignore_warnings():
-        # At rest: what is usual may be faster than it is.
+        # At rest, as the usual speed may exceed the robot's.
         bodies = bodies_of(Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json())
     return int(((bodies["body"] >= 0) & (bodies["kind"] != BodyKind.BELLY)).sum())
 
 
 def names_of(robot: Robot, reading: Reading | None) -> dict[int, str]:
-    """Return the name in the file of each wheel, by the number of its body.
+    """Return the name of each wheel in the file, by body number.
 
-    Those on the right are numbered after all on the left, as where each track has its own ground.
-    Where both have the same, a number is that of a pair, which has the name of its left wheel.
-    Where a carrier has another number of wheels than the file, as one that stands on the roots of
-    its flippers, its bodies have no names; without a file none has.
+    Wheels on the right are numbered after all on the left, as for ground that differs between the
+    tracks. On common ground, a number means a pair, with the name of its left wheel. If a carrier
+    and the file differ in the number of wheels, as for a robot standing on the roots of its
+    flippers, its bodies have no names; without a file there are none.
     """
     if reading is None:
         return {}
@@ -89,16 +89,16 @@ def names_of(robot: Robot, reading: Reading | None) -> dict[int, str]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Call:
-    """What an audit was asked for; the fields are arguments of `audit`.
+    """The arguments of an audit, see `audit`.
 
     Parameters
     ----------
     samples, repeats, seed, repair, quick
         See `audit`.
     own : tuple of str
-        Names of the other arguments that were given.
+        Names of the other given arguments.
     reading : mapping
-        How the file was read: the keywords of `read_robot` that differ from their defaults.
+        Keywords of `read_robot` that differ from their defaults.
     """
 
     samples: int
@@ -111,7 +111,7 @@ class Call:
 
 
 def command_of(call: Call, file: str) -> str | None:
-    """Write the command that repeats the audit of a file; None if no command does.
+    """Write the command that repeats the audit of a file; None if there is none.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def command_of(call: Call, file: str) -> str | None:
     """
     if call.own:
         return None
-    # With its folder, a name cannot be taken for an option.
+    # With its folder, a name cannot be mistaken for an option.
     words = ["crawler2d", "audit", f"./{file}" if file.startswith("-") else file]
     words += ["--samples", str(call.samples), "--repeats", str(call.repeats)]
     words += ["--seed", str(call.seed)]
@@ -143,7 +143,7 @@ def command_of(call: Call, file: str) -> str | None:
 
 
 def as_options(error: str) -> str:
-    """Write the keywords in an error as options of the command.
+    """Replace keywords in an error by options of the command.
 
     Examples
     --------
@@ -170,28 +170,28 @@ def as_options(error: str) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class AuditSetup:
-    """What an audit knows before the first run.
+    """What is known before the first run of an audit.
 
     Parameters
     ----------
     robot : Robot
-        What was audited.
+        The audited robot.
     reading : Reading, optional
-        What was read, if it was a file.
+        The reading, if it came from a file.
     lint : tuple of Finding
         Probable mistakes in the model, errors first.
     pockets : tuple of Pocket
-        The spaces between its wheels: a check of the geometry, not a verdict.
+        Spaces between its wheels: a check of the geometry, not a verdict.
     belt : Belt
-        The robot on belts for comparison, and the reason for the kind of belt.
+        The robot on belts, for comparison, and the reason for the kind of belt.
     obstacles : mapping of str to terrain
-        What it drives over, in this order: those first where it is likely to seize.
+        Obstacles in driving order: first those on which seizures are likely.
     vary, unknown : mapping of str to distribution
-        What differs from run to run, and what is unknown.
+        What varies from run to run, and what is unknown.
     drive : Drive
-        How it is driven.
+        The command.
     call : Call
-        What was asked for.
+        The arguments.
     """
 
     robot: Robot
@@ -208,22 +208,22 @@ class AuditSetup:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class AuditRecord(AuditSetup):
-    """What an audit found, as data.
+    """The results of an audit, as data.
 
     Parameters
     ----------
     verdicts : tuple of Verdict
-        One for each obstacle, in their order.
+        One for each obstacle, in order.
     assumed : tuple of Assumption
-        How often each seizure occurs under other assumptions; none if `unknown` was given.
+        Rate of each seizure under other assumptions; empty if `unknown` was given.
     repaired : RepairSearch, optional
-        What the search for repairs found; None if there was none.
+        Result of the search for repairs; None without a search.
     table : xarray.Dataset
         The runs behind the verdicts, as from `sweep`: dimensions `model` ("model", "belt"),
-        `terrain`, `sample` and `repeat`. Without unknowns the repeats stand in `sample`. The
+        `terrain`, `sample` and `repeat`. Without unknowns the repeats are in `sample`. The
         coordinate `speed` [m/s] is that of each run, without its scatter. Runs that no verdict
-        needed were not made, and have the outcome "". Its attributes `vary` and `unknown` name
-        what the rates are rates over.
+        needed are missing, with the outcome "". The attributes `vary` and `unknown` describe the
+        population of the rates.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -233,12 +233,12 @@ class AuditRecord(AuditSetup):
 
     @property
     def seizes(self) -> bool:
-        """Whether it seizes, by `Verdict.result`, on an obstacle that the belt clears."""
+        """Whether the robot seizes, by `Verdict.result`, on an obstacle that the belt clears."""
         return any(each.result == "seizes" for each in self.verdicts)
 
     @property
     def repairs(self) -> tuple[Repair, ...]:
-        """The best of each kind that was tried: the confirmed ones first, then the least changed.
+        """The best of each kind tried: confirmed ones first, then the smallest change first.
 
         `Repair.confirmed` says whether fresh runs confirm it; empty without a search.
         """

@@ -1,4 +1,4 @@
-"""Repairs: the smallest changes that end the seizures, searched, and confirmed on fresh draws."""
+"""Repairs: search the smallest changes that end the seizures, and confirm them on fresh draws."""
 
 from __future__ import annotations
 
@@ -37,46 +37,46 @@ if TYPE_CHECKING:
 __all__ = ["LEVEL", "Repair", "RepairSearch", "assess", "search_repairs"]
 
 _ROUNDS, _QUICK = (3, 6, 12, 24), (1, 3, 6, 12)
-"""Runs of each remaining candidate after each round, and those of a quick search."""
+"""Runs of each remaining candidate after each round, in a full and a quick search."""
 _LEAST = 2
 """Candidates that remain until the end."""
 
 LEVEL = "level ground"
-"""Where the cost of driving is measured."""
+"""Ground on which computing time is measured."""
 
 _OF_LEVEL = ("terrain.friction", "terrain.length")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Repair:
-    """A change that was tried on fresh draws, and what it costs.
+    """A change tested on fresh draws, and its cost.
 
     Parameters
     ----------
     description : str
-        What changes, in words.
+        The change, in words.
     kind : {"wheels", "gears", "belt"}
-        Other round wheels, gear wheels, or belts that a plugin moves.
+        Other round wheels, gear wheels, or belts moved by a plugin.
     robot : Robot
-        With the change; all else is as it was.
+        The robot with this change only.
     change : int
-        Wheels and belts of one side that are new, gone, or of another size or shape.
+        Number of wheels and belts of one side that are new, removed, or have another size or shape.
     wheels : int
-        Wheels of one side, flippers included.
+        Wheels of one side, including flippers.
     confirmed : bool
-        Whether it clears, on every obstacle that seized, 95 % or more of those fresh runs that the
-        belt clears with the same draws, and seizes in more than 5 % of the runs on none of all
-        obstacles but those on which the belt failed, too; nor is the lower bound of that rate above
-        5 % at any of the speeds. All of these runs were made then.
+        Whether all fresh runs were made, and (1) on every obstacle that seized it clears at least
+        95 % of the runs that the belt clears with the same draws, and (2) on all obstacles, except
+        those on which the belt failed, too, it seizes in at most 5 % of the runs, and at no speed
+        is the lower bound of that rate above 5 %.
     cleared, seized : mapping of str to Proportion
-        In fresh runs, by obstacle.
+        Rates in fresh runs, by obstacle.
     seized_at : mapping of str to mapping of float to Proportion
-        In fresh runs, by obstacle and speed [m/s].
+        Rate of seizing in fresh runs, by obstacle and speed [m/s].
     cleared_given_belt : mapping of str to Proportion
-        Of the fresh runs that the belt clears, by obstacle that seized.
+        Rate of clearing among the fresh runs that the belt clears, by obstacle that seized.
     speed : float
-        [-] Simulated time by computing time on level ground, each of the fastest run, relative to
-        the robot as it is: above 1 it is simulated faster. It is that of this simulator.
+        [-] Simulated time per computing time on level ground, each from the fastest run, relative
+        to the unchanged robot: above 1 is faster. It holds for this simulator.
     """
 
     description: str
@@ -93,17 +93,17 @@ class Repair:
 
 
 class RepairSearch(NamedTuple):
-    """What a search for repairs found.
+    """Result of a search for repairs.
 
     Parameters
     ----------
     repairs : tuple of Repair
-        The best of each kind, those that are confirmed first, the least changed first.
+        The best of each kind: confirmed ones first, then the smallest change first.
     tried : int
         Candidates that were simulated.
     table : xarray.Dataset
         The fresh runs: the models "model" and the repairs by `Repair.description`, the obstacles
-        and "level ground". Those that were not made have the outcome "".
+        and "level ground". Missing runs have the outcome "".
     """
 
     repairs: tuple[Repair, ...]
@@ -124,27 +124,27 @@ def search_repairs(
 ) -> RepairSearch:
     """Search for changes that end the seizures of a robot.
 
-    Of round wheels and of gear wheels the best is chosen in the runs in which the robot seized; see
-    `_best_of`. Then these and the belt drive with draws that no run before had, over all
-    obstacles but those on which the belt fails, too. One that can no longer be confirmed stops
-    after the next look.
+    The best candidates with round and with gear wheels are selected in runs in which the robot
+    seized; see `_best_of`. Then these and the belt drive with fresh draws over all obstacles except
+    those on which the belt fails, too. A candidate that can no longer be confirmed stops at the
+    next check.
 
     Parameters
     ----------
     robot : Robot
-        As it is.
+        The unchanged robot.
     belt : Belt
-        The same on belts.
+        The same robot on belts.
     grounds : mapping of str to terrain
         All obstacles.
     verdicts : sequence of Verdict
-        What was found on them.
+        Verdicts on them.
     table : xarray.Dataset
-        The runs behind these.
+        The runs behind the verdicts.
     runs : Runs
-        How runs are made.
+        Settings of the runs.
     is_quick : bool
-        Whether gear wheels, which take longest, are tried only where there are no round ones.
+        Whether to try gear wheels, the slowest, only if there are no round ones.
     show : Progress, optional
         Counts the runs.
     """
@@ -192,25 +192,25 @@ def _best_of(
     threads: int | None,
     show: Progress | None,
 ) -> Candidate:
-    """Choose among candidates by halving, in runs in which the robot seized and the belt cleared.
+    """Choose among candidates by successive halving, in runs that only the belt cleared.
 
-    If there are some that can jam in none of the first of them, by computation, only these are
-    driven. All drive three of them, from as many obstacles as there are; the better half drives
-    three more, half of these six more, and the last two up to 24. A stop costs more to simulate
-    than all else, and most candidates that stop do so at once. Of those that clear 95 % the least
-    changed is chosen, else the one that clears most. The winner was also lucky: only fresh runs
-    can confirm it.
+    The runs are those in which the robot seized and the belt cleared. If the computation finds
+    candidates that cannot jam in the first of them, only these are driven. All drive three runs,
+    from as many obstacles as possible; the better half drives three more, half of these six more,
+    and the last two up to 24. Stops are the most expensive runs, and most candidates that stop do
+    so at once. Among those that clear 95 % the smallest change is chosen, else the one that clears
+    most. The winner was also lucky: only fresh runs can confirm it.
 
     Parameters
     ----------
     space : sequence of Candidate
-        All of them, the least changed first.
+        All candidates, the smallest change first.
     table : xarray.Dataset
         The runs behind the verdicts.
     obstacles : sequence of str
-        Those that seize, the worst first.
+        Obstacles that seize, the worst first.
     is_quick : bool
-        Whether half of these runs, and one in the first round, are enough.
+        Whether to make half of these runs, and one in the first round.
     threads : int, optional
         See `simulate_many`.
     show : Progress, optional
@@ -239,7 +239,7 @@ def _best_of(
 
 
 def _seized(table: xarray.Dataset, obstacles: Sequence[str]) -> list[Scenario]:
-    """Return runs that seized where the belt cleared: one of each obstacle, then the next."""
+    """Return runs that seized where the belt cleared, one per obstacle in turn."""
     texts = []
     for obstacle in obstacles:
         own, belt = (ObstacleRuns(table, model, obstacle) for model in (OWN, BELT))
@@ -249,7 +249,7 @@ def _seized(table: xarray.Dataset, obstacles: Sequence[str]) -> list[Scenario]:
 
 
 def _fields(candidate: Candidate) -> dict[str, Any]:
-    """Return what a candidate replaces in a robot whose other figures were drawn."""
+    """Return the values that a candidate replaces in a robot with drawn figures."""
     robot = candidate.robot
     fields: dict[str, Any] = {"robot.track": robot.track}
     if robot.flippers is not None:
@@ -266,7 +266,7 @@ def _drive(
     runs: Runs,
     show: Progress | None,
 ) -> xarray.Dataset:
-    """Drive candidates over obstacles with fresh draws, until they fail or all runs are made."""
+    """Drive candidates with fresh draws until they fail or all runs are made."""
     xr = extra("xarray", "analysis")
     courses = {
         name: runs.course(models, name, ground, is_confirming=True) for name, ground in over.items()
@@ -283,7 +283,7 @@ def _drive(
         left = [name for name in left if name == reference or name not in failed]
         if set(left) <= {OWN, *failed}:
             break
-    # Stops that rattle cost most, so what driving costs is measured where nothing stops.
+    # Rattling stops cost most, so computing time is measured where nothing stops.
     ground = Flat(length=5.0 * models[OWN].outline.axle_distance)
     on_level = replace(runs, vary=_on_level(runs.vary), unknown=_on_level(runs.unknown))
     level = on_level.course(models, LEVEL, ground, is_confirming=True)
@@ -294,17 +294,17 @@ def _drive(
 
 
 def _on_level(draws: Mapping[str, Any]) -> Ranges:
-    """Leave out draws of what obstacles have and level ground has not, such as a height."""
+    """Drop draws of fields that level ground lacks, such as a height."""
     lacking = [each for each in draws if each.startswith("terrain.") and each not in _OF_LEVEL]
     left = (Ranges({}) | draws).without(lacking)
-    # Without any unknown, samples would be repeats.
+    # Without unknowns, samples would be repeats.
     return Ranges({"terrain.friction": scaled(1.0, 1.0)}) if draws and not left else left
 
 
 def _fails(
     tables: Mapping[str, xarray.Dataset], model: str, reference: str, seizing: Sequence[str]
 ) -> bool:
-    """Whether no runs to come can confirm a candidate."""
+    """Whether the remaining runs cannot confirm a candidate."""
     for name, table in tables.items():
         own, belt = (ObstacleRuns(table, each, name) for each in (model, reference))
         lost, size = own.has_result & ~own.cleared & belt.cleared, own.ends.size
@@ -322,7 +322,7 @@ def assess(
     seizing: Sequence[str],
     belt: str,
 ) -> Repair:
-    """Assess a candidate by its fresh runs, next to those of the belt."""
+    """Assess a candidate by its fresh runs and those of the belt."""
     runs = {name: ObstacleRuns(table, chosen.description, name) for name in grounds}
     seized = {name: own.proportion(own.seized) for name, own in runs.items()}
     seized_at = {name: own.by_speed(own.seized) for name, own in runs.items()}
@@ -331,7 +331,7 @@ def assess(
         for name in seizing
     }
     rates = [*seized.values(), *(each for at in seized_at.values() for each in at.values())]
-    # So that fewer runs confirm no more: the rate itself counts, too, where it is over all speeds.
+    # The rate over all speeds must also be low, so that fewer runs do not confirm more easily.
     seizes = any(each.low > SEIZES for each in rates)
     seizes |= any(each.rate > SEIZES for each in seized.values())
     clears = all(each.rate >= CLEARS for each in cleared_given_belt.values())
@@ -352,9 +352,9 @@ def assess(
 
 
 def _speed(table: xarray.Dataset, model: str) -> float:
-    """[-] Return simulated time by computing time on level ground, of the fastest run.
+    """[-] Return simulated time per computing time on level ground, from the fastest run.
 
-    Whatever else the machine does makes the others slower, by a factor of four and more.
+    Other load on the machine slows runs by a factor of four and more.
     """
     own = table.sel(model=model, terrain=LEVEL)
     return float(np.nanmax(own["time"].values / own["wall_time"].values))

@@ -1,4 +1,4 @@
-"""The runs behind an audit, of the model and of the same robot on belts, and their progress."""
+"""The runs of an audit, of the model and the same robot on belts, and their progress."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ __all__ = [
 ]
 
 TRIED = ("torque x 2", "friction x 2")
-"""What is tried at every stop, besides the closed track of jammed robots."""
+"""Trials at every stop, in addition to the closed track of jammed robots."""
 
 _GRAVITY = 9.81
 
@@ -60,15 +60,15 @@ _FRESH = 2**63  # added to a seed
 
 
 class LivePrinter:
-    """Prints the parts of an audit when they are ready, and on a terminal counts runs below.
+    """Prints the parts of an audit as they become ready; on a terminal also counts runs.
 
     Parameters
     ----------
     out : text stream or None
-        Where the parts go, if anywhere: Python has None for an output that was closed before it
-        began. Runs are counted on the standard error, if that is a terminal.
+        Output for the parts; None if it was closed before Python started. Runs are counted on the
+        standard error, if that is a terminal.
     spell : callable
-        How the parts are spelt.
+        Converts the text of parts.
     """
 
     def __init__(self, out: TextIO | None, spell: Callable[[str], str] = str) -> None:
@@ -77,13 +77,13 @@ class LivePrinter:
 
     def print(self, text: str) -> None:
         """Print a part."""
-        if self._out is None:  # which print takes for the standard output
+        if self._out is None:  # print would use the standard output
             return
         self._write("\r\x1b[K")
         try:
             print(self._spell(text), file=self._out, flush=True)
         except OSError:
-            if self._out is not sys.stderr:  # which shows progress alone, and is not worth the runs
+            if self._out is not sys.stderr:  # it only shows progress: do not lose the runs
                 raise
 
     def __call__(self, done: int, total: int) -> None:
@@ -98,21 +98,21 @@ class LivePrinter:
 
 
 class RunCounter:
-    """Counts the runs of an audit over all of its batches.
+    """Counts the runs of an audit over all batches.
 
     Parameters
     ----------
     show : Progress, optional
-        Given the number of finished runs, and of all that may be needed.
+        Called with the numbers of finished runs and of all that may be needed.
     total : int
-        That number.
+        Number of all runs that may be needed.
     """
 
     def __init__(self, show: Progress | None, total: int) -> None:
         self._show, self._total, self._done = show, total, 0
 
     def next_batch(self) -> Progress | None:
-        """Return what counts the next batch."""
+        """Return the counter of the next batch."""
         before = self._done
 
         def show(done: int, _: int) -> None:
@@ -125,12 +125,12 @@ class RunCounter:
 
 
 def read_progress(progress: object) -> tuple[Callable[[str], None], Progress | None]:
-    """Read the argument `progress` of `audit`: what prints the parts, and what counts the runs.
+    """Read the argument `progress` of `audit`: return printer of parts and counter of runs.
 
     Raises
     ------
     ScenarioError
-        If it is neither True, False, None nor a callable.
+        If it is not True, False, None or a callable.
     """
     if progress is True:
         progress = LivePrinter(sys.stderr)
@@ -149,9 +149,9 @@ class Belt(NamedTuple):
     Parameters
     ----------
     robot : Robot
-        The same robot, on belts.
+        The robot on belts.
     reason : str
-        Which belts, and why.
+        The kind of belt, and why.
     """
 
     robot: Robot
@@ -159,10 +159,10 @@ class Belt(NamedTuple):
 
 
 def belt_of(robot: Robot) -> Belt:
-    """Put belts in the place of a robot's tracks.
+    """Replace a robot's tracks by belts.
 
-    They follow the outlines of chassis and flippers, `BeltTrack`, wherever these are the model's
-    own. Where wheels are placed one by one, or stand for no track, no outline shows where a belt
+    The belts follow the outlines of chassis and flippers, `BeltTrack`, if these fit the model. If
+    wheels are placed one by one, or do not model a track, the outline does not show where a belt
     would run; then it is taut round the model's own wheels, `ClosedTrack`.
 
     Parameters
@@ -205,12 +205,12 @@ def belt_of(robot: Robot) -> Belt:
 def scenario_of(
     robot: Robot, ground: Terrain, drive: Drive | None, duration: float | None
 ) -> Scenario:
-    """Return what all runs of an audit share.
+    """Return the scenario that all runs of an audit share.
 
     Unless `drive` is given, the robot drives at 0.2 sqrt(g L), with L its axle distance (0.4 m/s
-    for 0.41 m), so that large and small ones meet their obstacles alike, or at its largest speed if
-    that is less; flippers `Climb`. It has the time in which it would drive fifteen times its
-    length, flippers not counted, and begins a fifth of its axle distance before the obstacle.
+    for 0.41 m), so that large and small robots are dynamically similar, or at its largest speed if
+    that is lower; flippers `Climb`. The duration is the time to drive fifteen times its length,
+    without flippers, and it starts a fifth of its axle distance before the obstacle.
     """
     outline = robot.outline
     if drive is None:
@@ -241,7 +241,7 @@ def round_speeds(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def raise_flippers(robot: Robot, drive: Drive) -> Robot:
-    """Raise the flippers of a robot that climbs, as its driver does before the obstacle."""
+    """Raise the flippers of a climbing robot, as its driver does before the obstacle."""
     if robot.flippers is None or not isinstance(drive.gait, Climb):
         return robot
     return replace(robot, flippers=replace(robot.flippers, angle=drive.gait.reach_angle))
@@ -249,7 +249,7 @@ def raise_flippers(robot: Robot, drive: Drive) -> Robot:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Runs:
-    """How the runs of an audit are made; the fields are arguments of `audit`."""
+    """Settings of the runs of an audit; the fields are arguments of `audit`."""
 
     scenario: Scenario
     vary: Mapping[str, Any]
@@ -270,9 +270,9 @@ class Runs:
         *,
         is_confirming: bool = False,
     ) -> Course:
-        """Plan the runs of some robots over one obstacle.
+        """Plan the runs of several robots over one obstacle.
 
-        A confirmation has half of the samples, once each, and draws that nothing else has had.
+        A confirmation has half the samples, one run each, with fresh draws.
         """
         samples, repeats, seed = self.samples, self.repeats, self.seed
         if is_confirming:
@@ -283,7 +283,7 @@ class Runs:
             for label, robot in robots.items()
         }
         for model in models.values():
-            # A broken rule is an error here; a run that only its draws break is recorded.
+            # A broken rule is an error here; a run invalid only by its draws is recorded.
             self.scenario.replace({**model, "terrain": ground}).validate()
         planned = Tabulation(
             self.scenario,
@@ -309,18 +309,18 @@ class Runs:
 
 
 class Course:
-    """The runs of some robots over one obstacle, of which more and more are made.
+    """The runs of several robots over one obstacle, made step by step.
 
     Parameters
     ----------
     planned : Tabulation
-        All of them.
+        All runs.
     robots : sequence of str
         Names of the robots.
     samples : int
-        Of each robot, at most.
+        Largest number for each robot.
     speeds : ndarray
-        [m/s] The levels that runs take in turn, without their scatter.
+        [m/s] Levels that runs take in turn, without scatter.
     """
 
     def __init__(
@@ -335,7 +335,7 @@ class Course:
         self._made = dict.fromkeys(robots, 0)
 
     def drive(self, robot: str, samples: int, progress: Progress | None = None) -> None:
-        """Make the runs of a robot up to a number of samples."""
+        """Make the runs of one robot up to a number of samples."""
         each = len(self._planned.checked) // len(self._made) // self.samples
         begin = list(self._made).index(robot) * self.samples
         places = range((begin + self._made[robot]) * each, (begin + samples) * each)
@@ -343,10 +343,10 @@ class Course:
         self._made[robot] = samples
 
     def table(self) -> xarray.Dataset:
-        """Return what was made: by `model`, `terrain`, `sample`, `repeat`.
+        """Return the finished runs by `model`, `terrain`, `sample`, `repeat`.
 
-        Without unknowns the repeats stand in `sample`. The coordinate `speed` [m/s] tells the
-        levels of the speed apart. A run that was not made has the outcome "".
+        Without unknowns the repeats are in `sample`. The coordinate `speed` [m/s] is the level of
+        the speed. A missing run has the outcome "".
         """
         table = self._planned.table()
         if "sample" not in table.dims:

@@ -1,4 +1,4 @@
-"""Runs until a verdict is certain, and again under other assumptions on motors and impacts."""
+"""Run until a verdict is certain, and repeat under other assumptions on motors and impacts."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ __all__ = [
 ]
 
 _LOOK = 9
-"""Samples between two looks: as many at each of the three speeds."""
+"""Samples between two checks: equally many at each of the three speeds."""
 
 _SAMPLES = 18
-"""As many at each of the three speeds: of a seizure that holds in a sixth of them, the lower bound
-is above the 5 % from which it is one."""
+"""Samples for an assumption, equally many at each of the three speeds: if a sixth of them seize,
+the lower bound is above 5 %, the limit of a seizure."""
 
 _ROTOR = "rotor_inertia"
 
 
 def look_counts(samples: int) -> Iterator[int]:
-    """Count the samples that are made at each look.
+    """Count the samples at each check.
 
     Examples
     --------
@@ -61,21 +61,21 @@ def look_counts(samples: int) -> Iterator[int]:
 def verdict_on(course: Course, obstacle: str, count: RunCounter) -> tuple[Verdict, xarray.Dataset]:
     """Drive over an obstacle until the verdict on it is certain, or all samples are made.
 
-    The belt drives the same samples, as soon as the robot seizes or clears less than 95 % of them.
+    The belt drives the same samples as soon as the robot seizes or clears less than 95 % of them.
 
     Parameters
     ----------
     course : Course
-        Of the models "model" and "belt".
+        Course of the models "model" and "belt".
     obstacle : str
         Its label.
     count : RunCounter
-        Of the runs.
+        Counter of the runs.
 
     Returns
     -------
     Verdict, xarray.Dataset
-        And the runs behind it.
+        The verdict and the runs behind it.
     """
     for target in look_counts(course.samples):
         course.drive(OWN, target, count.next_batch())
@@ -91,18 +91,17 @@ def verdict_on(course: Course, obstacle: str, count: RunCounter) -> tuple[Verdic
 
 
 def order_by_risk(grounds: Mapping[str, Terrain], pockets: Sequence[Pocket]) -> list[str]:
-    """Order obstacles: first those with sharp edges, and of these the ones that reach deepest.
+    """Order obstacles: sharp edges first, and of these the deepest first.
 
-    An edge seizes in a pocket that it fills. What is rounded, blunt or open below seldom does;
-    beyond the depth of the deepest pocket, more height makes no difference. Equals keep their
-    order.
+    An edge seizes in a pocket that it fills. Rounded or blunt edges and gaps rarely seize, and
+    height beyond the depth of the deepest pocket makes no difference. Ties keep their order.
 
     Parameters
     ----------
     grounds : mapping of str to terrain
         The obstacles.
     pockets : sequence of Pocket
-        Of the robot; with slots every height may get in.
+        Pockets of the robot; with slots, edges of any height can enter.
 
     Examples
     --------
@@ -127,18 +126,18 @@ def order_by_risk(grounds: Mapping[str, Terrain], pockets: Sequence[Pocket]) -> 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assumption:
-    """How often a robot that seizes on an obstacle does so under another assumption.
+    """Rate of a seizure under another assumption.
 
     Parameters
     ----------
     obstacle : str
         Its label.
     assumption : {"rotor", "restitution"}
-        What is drawn besides the unknowns: rotors of motors, or restitution.
+        What is drawn in addition to the unknowns: motor rotors, or restitution.
     drawn : Ranges
-        From which ranges.
+        Ranges of the draws.
     seized, made : int
-        How many runs seized, of how many with a result: the first of those behind the verdict.
+        Number of seized runs, and of runs with a result, among the first runs of the verdict.
     """
 
     obstacle: str
@@ -149,15 +148,15 @@ class Assumption:
 
     @property
     def holds(self) -> bool:
-        """Whether the lower bound of the rate of seizing is above 5 %, as the verdict says."""
+        """Whether the robot still seizes: the lower bound of the rate is above 5 %."""
         return wilson(self.seized, self.made).low > SEIZES
 
 
 def assumptions_of(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges]:
-    """Return what verdicts may depend on, and is not drawn in all runs anyway.
+    """Return assumptions that verdicts may depend on and that are not drawn anyway.
 
-    Rotors are those of a real drive, of which a file for a simulator says nothing; with them
-    motors hold their speed. Chains have no restitution.
+    Rotors are those of a real drive, which files for simulators do not state; with them motors hold
+    their speed. Chains have no restitution.
 
     Examples
     --------
@@ -179,20 +178,20 @@ def check_assumptions(
     at: tuple[str, Terrain],
     count: RunCounter,
 ) -> tuple[Assumption, ...]:
-    """Drive over an obstacle on which the robot seizes, under one assumption after another.
+    """Drive over an obstacle that seizes, under each assumption in turn.
 
     Parameters
     ----------
     assumed : mapping of str to Ranges
-        As from `assumptions_of`.
+        Result of `assumptions_of`.
     runs : Runs
-        Those of the verdict; what they draw is drawn here, too.
+        Settings of the verdict's runs, with the same draws.
     robot : Robot
         The robot.
     at : tuple of str, Terrain
-        The label of the obstacle, and the obstacle.
+        Label and obstacle.
     count : RunCounter
-        Of the runs.
+        Counter of the runs.
     """
     obstacle, ground = at
     found = []
@@ -201,7 +200,7 @@ def check_assumptions(
         others = replace(runs, unknown=unknown, repeats=1, trials=())
         driven = robot
         if name == "rotor":
-            # Real drives hold their speed: a servo's gain is a simulator's setting.
+            # Real drives hold their speed; servo gains are settings of simulators.
             driven = replace(robot, drivetrain=replace(robot.drivetrain, controller=None))
         course = others.course({OWN: driven}, obstacle, ground)
         course.drive(OWN, min(_SAMPLES, course.samples), count.next_batch())

@@ -1,4 +1,4 @@
-"""What is audited: a robot or model file, its unknowns, and standard obstacles for its size."""
+"""The subject of an audit: a robot or model file, its unknowns, and standard obstacles."""
 
 from __future__ import annotations
 
@@ -45,31 +45,31 @@ __all__ = [
 ]
 
 FLOORS = (0.5, 1.0)
-"""[-] Range of the coefficient of the floor's own surface, if no floor is given."""
+"""[-] Range of the floor's own coefficient, if no floor is given."""
 
 _MOST_FROM_FLOORS = 0.05
-"""[-] Floors that change the friction by less than this fraction do not determine it."""
+"""[-] Smallest relative effect of the floor on the friction that counts."""
 
 _ROUNDED = 0.1
-"""[-] Relative error of a friction or a torque that a file states."""
+"""[-] Relative error of a friction or torque stated by a file."""
 
 SPEEDS = (0.1, 1.0 / 3.0, 1.0)
-"""[-] Fractions of the speed of an audit: what a fast robot jumps over, a slow one may not."""
+"""[-] Fractions of the speed of an audit: a slow robot may stop where a fast one jumps."""
 
 _TIMES = tuple((1.0 / part + 2.0) / 3.0 for part in SPEEDS)
-"""[-] Factors of the longest time: at the slowest speed enough to drive six lengths of the robot.
-They grow less than the speed falls, because runs that rattle until the end cost most."""
+"""[-] Factors of the duration: at the slowest speed enough for six lengths of the robot. They grow
+less than the speed falls, as runs that rattle until the end cost most."""
 
 _SIZE = 0.05
 """[-] Relative error of the size of an obstacle."""
 
 _STEPS = (0.5, 0.8, 1.1)  # radii
-_HIGH = 1.5  # radii: too high for a belt without flippers whose centre of mass is not low
+_HIGH = 1.5  # radii: too high for a belt without flippers, unless its centre of mass is low
 _KNIVES = (0.4, 0.8)
 
 
 class ReadKeywords(TypedDict, total=False):
-    """The keywords of `read_robot`, for the audit of a file."""
+    """Keywords of `read_robot`, for the audit of a file."""
 
     engine: Engine | None
     forward: Literal["+x", "-x", "+y", "-y"] | None
@@ -86,16 +86,16 @@ class ReadKeywords(TypedDict, total=False):
 
 
 class Subject(NamedTuple):
-    """What is audited.
+    """The subject of an audit.
 
     Parameters
     ----------
     robot : Robot
         The robot.
     reading : Reading, optional
-        What was read, if it is of a file.
+        The reading, if it comes from a file.
     floors : mapping of float to float, optional
-        [-] The friction with the floor of each of `FLOORS`; None if that of the floor is given.
+        [-] Friction on each of `FLOORS`; None if the floor is given.
     """
 
     robot: Robot
@@ -104,7 +104,7 @@ class Subject(NamedTuple):
 
 
 def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
-    """Return the standard obstacles of a robot, by what they are.
+    """Return the standard obstacles of a robot, by description.
 
     Every length is a multiple of R, the height of the front axle above the lowest point of the
     outline, which is the radius of equal ends, or of L, the axle distance:
@@ -116,25 +116,25 @@ def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
     - ridges, 0.8 R high with an edge of 60 degrees and 0.5 R with one of 120;
     - three stairs of 0.8 R on 2 R, a slope of 22 degrees, which a friction of 0.5 still holds;
     - a gap of 0.3 L, which a belt bridges with its centre of mass anywhere in the middle third;
-    - a random step field, eight posts of 1.5 R long with four levels of 0.25 R, of which every run
-      has its own.
+    - a random step field, eight posts of 1.5 R long with four levels of 0.25 R, different in every
+      run.
 
-    The highest are about as high as a closed track of these proportions climbs (a rigid belt with
-    its centre of mass in the middle, at axle height, climbs 1.3 to 1.7 R), so that where wheels
-    stop, a belt has a chance. The clearance of the belly sets none of them: the lower run of a belt
-    covers the belly, and over a thin obstacle the belt carries the robot.
+    The highest are near the limit of a closed track of these proportions (a rigid belt with its
+    centre of mass in the middle, at axle height, climbs 1.3 to 1.7 R), so that a belt has a chance
+    where wheels stop. None depends on the ground clearance: the lower run of a belt covers the
+    belly, and carries the robot over a thin obstacle.
 
     Parameters
     ----------
     robot : Robot
         The robot.
     friction : float
-        [-] Of all of them.
+        [-] Friction of all obstacles.
 
     Returns
     -------
     dict of str to terrain
-        By what it is, with its measures in mm.
+        Terrains by kind and size in mm.
 
     Examples
     --------
@@ -170,7 +170,7 @@ def read_obstacles(obstacles: object) -> dict[str, Terrain]:
     Raises
     ------
     ScenarioError
-        If it is no mapping, or empty, or a label is none or has a meaning of its own.
+        If it is not a mapping or is empty, or a label is not a string or is reserved.
     """
     if not isinstance(obstacles, Mapping) or not obstacles:
         raise ScenarioError("obstacles", obstacles, "must be a mapping from labels to terrains")
@@ -186,9 +186,9 @@ def read_obstacles(obstacles: object) -> dict[str, Terrain]:
 
 
 def _front_axle_height(outline: TrackOutline) -> float:
-    """[m] Return how high an edge is that meets the front end at its axle: belts climb about that.
+    """[m] Return the height of an edge level with the front axle, about what belts climb.
 
-    The radius of the front end says less: an idler that is raised is small.
+    The radius of the front end is less useful: a raised idler is small.
     """
     _, (_, y, _) = outline.ends
     return y - min(y - radius for _, y, radius in outline.discs)
@@ -199,11 +199,11 @@ def _mm(length: float) -> str:
 
 
 def vary_of(drive: Drive | None = None) -> Ranges:
-    """Return what differs from run to run by default.
+    """Return the default variation from run to run.
 
-    Start, contact and step field; the height, rise, radius or width of the obstacle; and the speed,
-    a tenth, a third and all of it in turn, with the longer time the slower, unless a schedule says
-    how fast to drive.
+    Start, contact and step field; height, rise, radius or width of the obstacle; and a tenth, a
+    third and all of the speed in turn, with longer durations at lower speeds, unless a schedule
+    sets the speed.
     """
     sizes = [f"terrain.{name}" for name in ("height", "rise", "radius", "width")]
     source = "whether a robot gets over must not depend on a millimetre"
@@ -229,9 +229,9 @@ def unknown_of(subject: Subject, *, with_friction: bool) -> Ranges:
     Parameters
     ----------
     subject : Subject
-        A preset, whose ranges rest on its sources; any other robot; or what was read of a file.
+        A preset, with ranges from its sources; any other robot; or the reading of a file.
     with_friction : bool
-        Whether the floor is unknown, too: terrains of the user keep their own friction.
+        Whether the floor is also unknown; terrains of the user keep their own friction.
     """
     if subject.reading is not None:
         return unknown_of_file(subject.reading, subject.floors, with_friction=with_friction)
@@ -242,12 +242,12 @@ def unknown_of(subject: Subject, *, with_friction: bool) -> Ranges:
 def unknown_of_file(
     reading: Reading, floors: Mapping[float, float] | None, *, with_friction: bool = True
 ) -> Ranges:
-    """Return the unknowns of a robot that was read from a file.
+    """Return the unknowns of a robot from a file.
 
-    What the file states has a narrow range: a tenth of torque and friction, 2 % of the axle
-    distance for the centre of mass, a twentieth of the radius for the belly. An estimate has a wide
-    one, that of `unknowns.of_robot` for robots that are no presets. A model of a robot says nothing
-    of the floor: unless it is given, its own coefficient is between 0.5 and 1, and the rule of the
+    Figures stated by the file have a narrow range: a tenth of torque and friction, 2 % of the axle
+    distance for the centre of mass, a twentieth of the radius for the belly. Estimates have a wide
+    one, that of `unknowns.of_robot` for robots that are not presets. A model of a robot does not
+    describe the floor: unless given, its own coefficient is between 0.5 and 1, and the rule of the
     engine combines it with that of the tracks.
 
     Parameters
@@ -255,7 +255,7 @@ def unknown_of_file(
     reading : Reading
         What was read.
     floors : mapping of float to float, optional
-        The friction with the floor of each of `FLOORS`; None: that of the floor is given.
+        Friction on each of `FLOORS`; None if the floor is given.
     with_friction : bool
         See `unknown_of`.
     """
@@ -289,12 +289,12 @@ def unknown_of_file(
 
 
 def subject_of(robot: object, how: ReadKeywords) -> Subject:
-    """Take a robot or a reading, or read a file; warnings of the reader are left to the lint.
+    """Take a robot or a reading, or read a file; lint reports warnings of the reader.
 
     Raises
     ------
     ScenarioError
-        If it is none of them, a keyword is given without a file, or the file cannot be read.
+        If it is none of these, a keyword is given without a file, or the file cannot be read.
     """
     if isinstance(robot, (Robot, Reading)):
         for name, value in how.items():
@@ -316,12 +316,12 @@ def _read(path: object, how: ReadKeywords) -> Reading:
 
 
 def check_size(read: Reading) -> None:
-    """Refuse a file in other units than metres, which would be the audit of another robot.
+    """Refuse a file that is probably not in metres.
 
     Raises
     ------
     ScenarioError
-        If the robot has a size that no tracked robot has, and was read without a `scale`.
+        If the robot has a size that no tracked robot has, and no `scale` was given.
     """
     found = next((each for each in lint(read.robot) if each.rule == "size"), None)
     if found is None or "scale" in read.how.given:

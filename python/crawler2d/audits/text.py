@@ -1,4 +1,4 @@
-"""An audit as text for its command, and as plain data for JSON."""
+"""An audit as text for the command, and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _WIDTH = 100
 
 
 _WIDEST = ("runs", "100 % (95-100)", "100 % (95-100)", "belt clears", "left terrain", "")
-"""Cells of the columns after the first, so that rows may be written before all are known."""
+"""Widest cells after the first column, so rows can be written as they become known."""
 
 
 def text_of(audit: AuditRecord) -> str:
@@ -49,18 +49,18 @@ def text_of(audit: AuditRecord) -> str:
 
 
 def head_of(audit: AuditSetup) -> str:
-    """Write what is known before the first run, and the head of the table of verdicts."""
+    """Write what is known before the first run, and the table head of the verdicts."""
     parts = (_robot(audit), lint_of(audit.lint), _pockets(audit.pockets), _verdicts(audit))
     return "\n\n".join("\n".join(part) for part in parts)
 
 
 def row_of(audit: AuditSetup, verdict: Verdict) -> str:
-    """Write a verdict as a row of their table."""
+    """Write a verdict as a table row."""
     return _row(audit, words.verdict_row(verdict))
 
 
 def rest_of(audit: AuditRecord) -> str:
-    """Write what stands below the verdicts: jams, conclusion and repairs."""
+    """Write the part after the verdicts: jams, conclusion and repairs."""
     parts = ["\n".join(_jams(audit)), "\n".join(_conclusion(audit))]
     return "\n\n".join(filter(None, parts))
 
@@ -84,7 +84,7 @@ def _robot(audit: AuditSetup) -> Iterator[str]:
 
 
 def lint_of(lint: Sequence[Finding], title: str = "Lint") -> Iterator[str]:
-    """Write what lint found, line by line."""
+    """Write the findings of lint, line by line."""
     yield title if lint else "Lint: nothing found"
     for each in lint:
         where = f" [{each.where}]" if each.where else ""
@@ -163,7 +163,7 @@ def _wrap(text: str, indent: int = 2) -> list[str]:
 
 
 def plain_of(found: AuditRecord | LintResult) -> dict[str, Any]:
-    """Return lint, pockets, verdicts and repairs; what is infinite or unknown is None."""
+    """Return lint, pockets, verdicts and repairs; infinite or unknown values are None."""
     read = found.reading
     of_model = {
         "robot": found.robot,
@@ -215,20 +215,20 @@ def _fields(value: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class LintResult:
-    """What lint found without runs; the fields are those of `Audit`.
+    """Result of lint without runs; the fields are those of `Audit`.
 
     Parameters
     ----------
     robot : Robot
-        What was checked.
+        The checked robot.
     reading : Reading, optional
-        What was read, if it was a file.
+        The reading, if it came from a file.
     lint : tuple of Finding
         Probable mistakes in the model, errors first.
     pockets : tuple of Pocket
-        The spaces between its wheels: a check of the geometry, not a verdict.
+        Spaces between its wheels: a check of the geometry, not a verdict.
     verdicts : tuple of Verdict
-        None: nothing was simulated.
+        Empty: nothing was simulated.
     """
 
     robot: Robot
@@ -239,7 +239,7 @@ class LintResult:
 
     @property
     def summary(self) -> str:
-        """The short form, as ``python -m crawler2d audit --lint`` prints it."""
+        """The short form, as printed by ``python -m crawler2d audit --lint``."""
         title = self.robot.description if self.reading is None else self.reading.description
         parts = ([title], lint_of(self.lint), _pockets(self.pockets))
         return "\n\n".join("\n".join(part) for part in parts)
@@ -252,16 +252,16 @@ class LintResult:
 def lint_only(
     robot: Robot | Reading | str | os.PathLike[str], **reading: Unpack[ReadKeywords]
 ) -> LintResult:
-    """Look for probable mistakes in a model, and measure its pockets, without a run.
+    """Look for probable mistakes in a model and measure its pockets, without runs.
 
-    It cannot find what only the simulator warnings.
+    It cannot find problems that only the simulator reports.
 
     Parameters
     ----------
     robot : Robot, Reading or path
-        As for `audit`.
+        See `audit`.
     **reading
-        For a path: the keywords of `read_robot`.
+        For a file: keywords of `read_robot`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What an audit says of each obstacle, by one written rule, from proportions of the runs on it."""
+"""The verdict on each obstacle, by fixed rules, from the runs over it."""
 
 from __future__ import annotations
 
@@ -37,33 +37,33 @@ __all__ = [
 ]
 
 OWN, BELT = "model", "belt"
-"""Names of the two in the table."""
+"""Names of both robots in the table."""
 
 SEIZES, _SELDOM, CLEARS, _QUARTER = 0.05, 0.10, 0.95, 0.25
 
 _RESULTS = tuple(str(each) for each in Outcome)
-"""Outcomes of runs that have a result."""
+"""Outcomes of runs with a result."""
 
 _TRIED = ("closed track", "closed track, clear of the ground", *TRIED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proportion:
-    """How often something happened over one obstacle; by default in no runs.
+    """Rate of an event over one obstacle; by default without runs.
 
     Parameters
     ----------
     rate : float
-        [-] Of all runs with a result; NaN without one.
+        [-] Fraction of the runs with a result; NaN without any.
     low, high : float
-        [-] 95 % interval of that, with the samples of the unknowns as its clusters: see
-        `sweeps.statistics.clustered`; of fewer runs than were planned, see `proportion_of`. Without
+        [-] 95 % interval of the rate, with samples of the unknowns as clusters: see
+        `sweeps.statistics.clustered`; with fewer runs than planned, see `proportion_of`. Without
         unknowns every repeat counts.
     band_low, band_median, band_high : float
-        [-] Of the rates of single samples, each a robot on a floor, 5, 50 and 95 %; without
-        unknowns all are the rate.
+        [-] 5, 50 and 95 % quantiles of the rates of single samples, each a robot on a floor; equal
+        to the rate without unknowns.
     runs, samples : int
-        Runs with a result, and samples that have some.
+        Number of runs with a result, and of samples with any.
     """
 
     rate: float = math.nan
@@ -79,19 +79,19 @@ class Proportion:
 def proportion_of(
     happened: NDArray[np.bool_], counted: NDArray[np.bool_], *, is_stopped: bool = False
 ) -> Proportion:
-    """Count how often something happened.
+    """Return the rate of an event.
 
     Parameters
     ----------
     happened, counted : ndarray of bool, shape (samples, repeats)
-        Whether it happened in a run, and whether the run has a result.
+        Whether the event happened in a run, and whether the run has a result.
     is_stopped : bool
-        Whether these results decided that no more runs were made: then the interval is that of
-        `sweeps.sequential`, which holds however often one looks.
+        Whether these results ended the runs early: then the interval is that of
+        `sweeps.sequential`, which stays valid for repeated checks.
 
     Examples
     --------
-    Twenty robots in four runs each; five seize in every run, one in half of them:
+    Twenty robots with four runs each; five seize in every run, one in half of them:
 
     >>> happened = np.zeros((20, 4), dtype=bool)
     >>> happened[:5], happened[5, :2] = True, True
@@ -127,18 +127,18 @@ class ObstacleRuns:
     Parameters
     ----------
     table : xarray.Dataset
-        The runs of an audit: by `model`, `terrain`, `sample` and `repeat`.
+        The runs of an audit, by `model`, `terrain`, `sample` and `repeat`.
     model, obstacle : str
-        Which of them.
+        Selected model and obstacle.
 
     Attributes
     ----------
     ends : ndarray of str
-        Their outcomes; "" of runs that were not made.
+        Outcomes; "" for missing runs.
     cleared, seized, has_result : ndarray of bool
-        Whether a run ended so, and whether it has a result.
+        Whether each run cleared, seized and has a result.
     speeds : ndarray
-        [m/s] How fast each drives, without its scatter.
+        [m/s] Speed of each run, without its scatter.
     """
 
     def __init__(self, table: xarray.Dataset, model: str, obstacle: str) -> None:
@@ -162,21 +162,21 @@ class ObstacleRuns:
     def proportion(
         self, happened: NDArray[np.bool_], among: NDArray[np.bool_] | None = None
     ) -> Proportion:
-        """Count how often something happened in the runs with a result, or in some of them."""
+        """Return the rate of an event in the runs with a result, or in some of them."""
         counted = self.has_result if among is None else self.has_result & among
         return proportion_of(happened, counted, is_stopped=bool((self.ends == "").any()))
 
     def by_speed(self, happened: NDArray[np.bool_]) -> dict[float, Proportion]:
-        """Count how often something happened at each speed [m/s], the slowest first."""
+        """Return the rate of an event at each speed [m/s], the slowest first."""
         return {
             speed: self.proportion(happened, self.speeds == speed)
             for speed in np.unique(self.speeds).tolist()
         }
 
     def least_rate(self, happened: NDArray[np.bool_]) -> float:
-        """[-] Return the lower bound of a rate if it happens in no run that was not made yet.
+        """[-] Return the lower bound of a rate if the event happens in none of the missing runs.
 
-        At all speeds together or at one of them, whichever is higher; with one repeat each.
+        The larger one of those at all speeds together and at each speed; with one repeat each.
         """
         among = [np.ones_like(happened), *(self.speeds == v for v in np.unique(self.speeds))]
         return max(wilson(int((happened & own).sum()), int(own.sum())).low for own in among)
@@ -184,14 +184,14 @@ class ObstacleRuns:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialCount:
-    """What a trial came to, over all seized runs.
+    """Result of a trial over all seized runs.
 
     Parameters
     ----------
     trial : str
-        As in `Run.trials`.
+        Name of the trial, see `Run.trials`.
     freed, made : int
-        How many runs it freed, of how many.
+        Number of freed runs, and of runs with this trial.
     """
 
     trial: str
@@ -201,37 +201,37 @@ class TrialCount:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What the runs over one obstacle say.
+    """Verdict on one obstacle.
 
     Parameters
     ----------
     obstacle : str
         Its label.
     result : {"seizes", "belt fails, too", "does not seize", "not certain"}
-        By the rule in ``docs/conventions.md``, "Audit".
+        Result by the rules in ``docs/conventions.md``, "Audit".
     cleared, seized : Proportion
-        Of the model's runs.
+        Rates of the model.
     belt_cleared, belt_seized : Proportion
-        Of those of the same robot on belts, which do not drive where the robot clears 95 % or more
-        and never seizes.
+        Rates of the same robot on belts; no runs where the robot clears 95 % or more and never
+        seizes.
     outcome, belt_outcome : str
-        How most runs ended; "" without any.
+        Commonest outcome; "" without runs.
     where : str
-        Between which wheels most seized runs are jammed, such as "8-9"; "" without any.
+        The wheels between which most seized runs are jammed, such as "8-9"; "" without any.
     carrier : str
-        Of these wheels: "chassis", "front flipper", "rear flipper"; "" without any.
+        Carrier of these wheels: "chassis", "front flipper", "rear flipper"; "" without any.
     jam_counts : tuple of int, shape (2,)
-        Number of seized runs that are jammed between these wheels, and of all seized runs.
+        Number of seized runs jammed between these wheels, and of all seized runs.
     seized_alone_count : int
         Number of seized runs in which the belt, with the same draws, clears.
     seized_alone : Proportion
-        How often the model seizes while the belt, with the same draws, clears.
+        Rate at which the model seizes while the belt, with the same draws, clears.
     freed : tuple of TrialCount
-        What trials came to in the seized runs.
+        Results of trials in the seized runs.
     friction : tuple of float, shape (2,)
-        [-] Between which frictions of the drawn floors the runs seized; NaN without any.
+        [-] Range of the drawn friction in the seized runs; NaN without any.
     seized_at : mapping of float to Proportion
-        How often it seizes at each speed [m/s].
+        Rate of seizing at each speed [m/s].
     """
 
     obstacle: str
@@ -253,7 +253,7 @@ class Verdict:
 
     @property
     def clears_less(self) -> bool:
-        """Whether it clears less often than the belt for certain: their intervals are apart."""
+        """Whether it certainly clears less often than the belt: the intervals do not overlap."""
         return self.cleared.high < self.belt_cleared.low
 
 
@@ -300,21 +300,22 @@ def result_of(
     """Find the result of a verdict.
 
     "seizes": the lower bound of the rate of seizing, at all speeds together or at one of them, is
-    above 5 %, and the belt clears in 95 % of its runs or more; or, where it clears in fewer, as on
-    floors that may be slippery, the lower bound of the rate of seizing while the belt clears with
-    the same draws is. "belt fails, too": the belt clears in fewer, and so does the model. "does not
-    seize": the upper bound of the rate of seizing is below 10 %. "not certain": anything else.
+    above 5 %, and the belt clears in 95 % of its runs or more; or, if the belt clears in fewer,
+    such as on slippery floors, the lower bound of the rate of seizing while the belt clears with
+    the same draws is above 5 %. "belt fails, too": the belt clears in fewer, and so does the model.
+    "does not seize": the upper bound of the rate of seizing is below 10 %. "not certain": anything
+    else.
 
     Parameters
     ----------
     cleared : Proportion
-        How often the model clears.
+        Rate at which the model clears.
     seized : sequence of Proportion
-        How often it seizes: at all speeds together, then at each.
+        Rate at which it seizes: at all speeds together, then at each.
     belt : Proportion
-        How often the belt clears.
+        Rate at which the belt clears.
     alone : sequence of Proportion
-        How often the model seizes while the belt clears, likewise.
+        Rate at which the model seizes while the belt clears, likewise.
     """
     counted = [*alone, *(seized if belt.rate >= CLEARS else ())]
     if any(each.low > SEIZES for each in counted):
@@ -330,7 +331,7 @@ def _commonest(runs: ObstacleRuns) -> str:
 
 
 def _commonest_jam(runs: ObstacleRuns) -> tuple[str, str, tuple[int, int]]:
-    """Find between which wheels of which carrier most seized runs are jammed, and how many."""
+    """Find the wheels and carrier at which most seized runs are jammed, and count them."""
     if not runs.seized.any():
         return "", "", (0, 0)
     columns = (runs.column(name)[runs.seized].tolist() for name in ("stop_bodies", "stop_carrier"))
@@ -342,7 +343,7 @@ def _commonest_jam(runs: ObstacleRuns) -> tuple[str, str, tuple[int, int]]:
 def _trial_counts(runs: ObstacleRuns) -> Iterator[TrialCount]:
     for trial in _TRIED:
         name = short_name(trial)
-        if f"tried_{name}" in runs:  # a quick audit tries less
+        if f"tried_{name}" in runs:  # a quick audit makes fewer trials
             made = runs.column(f"tried_{name}") & runs.seized
             freed = runs.column(f"freed_by_{name}") & made
             if made.any():
@@ -357,20 +358,20 @@ def _friction(runs: ObstacleRuns) -> tuple[float, float]:
 
 
 def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
-    """Whether a verdict on a part of the runs needs no more of them.
+    """Whether a verdict on part of the runs needs no more runs.
 
-    "seizes" needs none, once so many runs have seized while the belt cleared that it is this word
-    whatever the others come to: so it is wrong no more often than that of all runs. "belt fails,
-    too" stays, once a quarter of the samples is made and none of them seized while the belt
-    cleared, if both have failed so often that neither can reach 95 % of all. Repeats of one robot
-    may be alike: with them, all runs are made.
+    "seizes" is final once so many runs have seized while the belt cleared that the remaining runs
+    cannot change it; so it is wrong no more often than after all runs. "belt fails, too" is final
+    once a quarter of the samples is made, none of them seized while the belt cleared, and both have
+    failed so often that neither can reach 95 % of all runs. Repeats of one robot may be equal, so
+    with repeats all runs are made.
 
     Parameters
     ----------
     table : xarray.Dataset
-        With the models "model" and "belt", and the outcome "" of runs that were not made.
+        Runs of the models "model" and "belt"; missing runs have the outcome "".
     verdict : Verdict
-        On what was made.
+        Verdict on the finished runs.
     """
     if table.sizes["repeat"] > 1:
         return False
@@ -387,7 +388,7 @@ def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
 
 
 def least_samples() -> int:
-    """Return the fewest samples that can show that a model does not seize: none of them does.
+    """Return the smallest number of samples that can show that a model does not seize.
 
     Examples
     --------

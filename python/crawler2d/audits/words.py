@@ -1,4 +1,4 @@
-"""The words of an audit, for terminal, page and reports: sentences, rows and figures."""
+"""Text of an audit for terminal, page and reports: sentences, rows and figures."""
 
 from __future__ import annotations
 
@@ -65,10 +65,10 @@ __all__ = [
 
 VERDICT_HEAD = ("obstacle", "runs", "clears", "seizes", "belt clears", "most often", "verdict")
 NOT_DRIVEN = "-"
-"""In place of a rate: the belt did not drive, because the robot clears the obstacle."""
+"""Shown instead of a rate if the belt did not drive because the robot clears the obstacle."""
 
 _UPRIGHT = 100.0
-"""[-] Friction above which a wall is upright but for rounding: no surface has it."""
+"""[-] Friction, beyond any surface, above which a wall is vertical up to rounding."""
 
 JAM_HEAD = ("obstacle", "between wheels", "runs", "slow to fast", "friction", "freed there by")
 
@@ -76,12 +76,12 @@ _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set
 
 
 def subject(audit: AuditSetup) -> str:
-    """Say what was audited."""
+    """Describe the audited robot."""
     return audit.robot.description if audit.reading is None else audit.reading.description
 
 
 def robot_sentence(audit: AuditSetup) -> str:
-    """Say how heavy and how large the robot is, and where its centre of mass is."""
+    """Describe mass, size and centre of mass of the robot."""
     robot = audit.robot
     outline = robot.outline
     x, y = robot.center_of_mass
@@ -93,7 +93,7 @@ def robot_sentence(audit: AuditSetup) -> str:
 
 
 def population(audit: AuditSetup) -> str:
-    """Say over how many runs the rates are rates, and how fast it drove."""
+    """Describe the number of runs behind the rates, and their speeds."""
     samples, repeats = audit.call.samples, audit.call.repeats
     each = "1 run" if repeats == 1 else f"{repeats} runs"
     many = f"{samples} {_what_differs(audit)}, {each} each" if audit.unknown else each
@@ -108,7 +108,7 @@ def population(audit: AuditSetup) -> str:
 
 
 def _what_differs(audit: AuditSetup) -> str:
-    """Name what differs from sample to sample: robots, floors, or both."""
+    """Name what differs between samples: robots, floors, or both."""
     on_floors = {path.startswith("terrain.") for path in audit.unknown}
     if on_floors == {True}:
         return "samples of the floor"
@@ -116,7 +116,7 @@ def _what_differs(audit: AuditSetup) -> str:
 
 
 def _speeds_and_sizes(levels: NDArray[np.float64], audit: AuditSetup) -> str:
-    """Say at which speeds [m/s] runs drove, and over which sizes of the obstacles."""
+    """Describe speeds [m/s] and obstacle sizes of the runs."""
     *slow, fast = (f"{speed:g}" for speed in np.unique(round_speeds(levels)).tolist())
     speeds = f"{', '.join(slow)} and {fast} m/s in turn" if slow else f"{fast} m/s"
     drawn = audit.vary.get("drive.speed")
@@ -132,14 +132,14 @@ def _speeds_and_sizes(levels: NDArray[np.float64], audit: AuditSetup) -> str:
 
 
 def missing_results(audit: AuditRecord) -> str:
-    """Say how many runs have no result; "" if all have one."""
+    """Count runs without a result; "" if all have one."""
     count = int(np.isin(audit.table["outcome"].values, NO_RESULT).sum())
     text = f"{count} of {run_count(audit.table)} runs have no result: see `error` in the table"
     return text if count else ""
 
 
 def verdict_row(each: Verdict) -> tuple[str, ...]:
-    """Write a verdict, as `VERDICT_HEAD` says."""
+    """Write a verdict with the columns `VERDICT_HEAD`."""
     return (
         each.obstacle,
         str(each.cleared.runs),
@@ -152,12 +152,12 @@ def verdict_row(each: Verdict) -> tuple[str, ...]:
 
 
 def run_count(table: xarray.Dataset) -> int:
-    """Count the runs of a table that were made."""
+    """Count the finished runs of a table."""
     return int((table["outcome"] != "").sum())
 
 
 def jam_row(each: Verdict) -> tuple[str, ...]:
-    """Say where it is jammed, and what frees it, as `JAM_HEAD` says."""
+    """Describe where it jams and what frees it, with the columns `JAM_HEAD`."""
     at = "" if math.isnan(each.friction[0]) else span(each.friction, ".2f").replace(" to ", "-")
     freed = [
         f"{_SHORT.get(trial.trial, trial.trial)}: {trial.freed}"
@@ -170,7 +170,7 @@ def jam_row(each: Verdict) -> tuple[str, ...]:
 
 
 def wheel_names(audit: AuditRecord) -> str:
-    """Say what the file calls the wheels between which it is jammed; "" if there are none."""
+    """Return the file's names of the wheels of a jam; "" if there are none."""
     names = names_of(audit.robot, audit.reading)
     bodies = {int(body) for each in audit.verdicts if each.where for body in each.where.split("-")}
     count = bodies_per_side(audit.robot)
@@ -183,7 +183,7 @@ def wheel_names(audit: AuditRecord) -> str:
 
 
 def reservation(audit: AuditSetup) -> str:
-    """Warn that the verdict is about another robot than intended; "" without an error of lint."""
+    """Warn that the model is probably not the intended robot; "" without an error of lint."""
     rules = list(dict.fromkeys(each.rule for each in audit.lint if each.severity == "error"))
     if not rules:
         return ""
@@ -195,7 +195,7 @@ def reservation(audit: AuditSetup) -> str:
 
 
 def conclusion(audit: AuditRecord) -> list[str]:
-    """Say in sentences whether the verdict is void, where it seizes, and what is not certain."""
+    """Write the conclusion: whether it is void, where the robot seizes, and what is not certain."""
     sentences = [reservation(audit)] if reservation(audit) else []
     seized = [each for each in audit.verdicts if each.result == "seizes"]
     others = [
@@ -241,7 +241,7 @@ def conclusion(audit: AuditRecord) -> list[str]:
 
 
 def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
-    """Say how often the robot seizes under each assumption, and which verdicts depend on it."""
+    """Describe the seizures under each assumption, and which verdicts depend on it."""
     heads = {
         "rotor": "With a real drive, which holds its speed and has rotor inertia",
         "restitution": "With bouncing contacts",
@@ -260,7 +260,7 @@ def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
 
 
 def _path_text(path: str) -> str:
-    """Write what a path is in words.
+    """Write a path in words.
 
     Examples
     --------
@@ -273,7 +273,7 @@ def _path_text(path: str) -> str:
 
 
 def _has_wheels_for_tracks(robot: Robot) -> bool:
-    """Whether wheels stand where a track would run, on the chassis or on flippers."""
+    """Whether wheels replace a track, on the chassis or on flippers."""
     arms = robot.flippers
     tracks = [robot.track, *([] if arms is None else [arms.track or robot.track])]
     return any(
@@ -282,7 +282,7 @@ def _has_wheels_for_tracks(robot: Robot) -> bool:
 
 
 def _seizing(verdict: Verdict) -> str:
-    """Name an obstacle that seizes; where the belt clears less than 95 %, with how it compares."""
+    """Name an obstacle that seizes; if the belt clears less than 95 %, with the comparison."""
     if verdict.belt_cleared.rate >= CLEARS:
         return verdict.obstacle
     of_all = f"{verdict.seized_alone_count} of {verdict.jam_counts[1]} seized runs"
@@ -291,7 +291,7 @@ def _seizing(verdict: Verdict) -> str:
 
 
 def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
-    """Say in a sentence that it seizes on an obstacle, where, and what the belt does there."""
+    """Describe a seizure on an obstacle, and the belt there, in a sentence."""
     called = f" ({', '.join(names)})" if names else ""
     return (
         f"seizes on {verdict.obstacle} in {rate(verdict.seized)} of the runs, most often between"
@@ -302,7 +302,7 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
 
 
 def search_sentence(search: RepairSearch, audit: AuditSetup) -> str:
-    """Say what the search for repairs found, and in which runs."""
+    """Describe the result of the search for repairs, and its runs."""
     runs = f"in new runs {_speeds_and_sizes(search.table['speed'].values, audit)}"
     if any(each.confirmed for each in search.repairs):
         return f"the best of {search.tried} candidates, {runs}"
@@ -310,10 +310,10 @@ def search_sentence(search: RepairSearch, audit: AuditSetup) -> str:
 
 
 def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:
-    """Return how often a repair clears at worst where the belt does, seizes at worst, and where.
+    """Return the worst rates of a repair: clearing where the belt does, seizing, and where.
 
-    Worst of all is that there is nothing to compare with: the belt clears none of the fresh runs.
-    It seizes at worst over all speeds, or at one of them.
+    No comparison is the worst case: the belt clears none of the fresh runs. The worst rate of
+    seizing is over all speeds or at one of them.
     """
     cleared = min(repair.cleared_given_belt.values(), key=lambda each: (each.runs > 0, each.rate))
     rates = list(repair.seized.items())
@@ -325,7 +325,7 @@ def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:
 
 
 def repair_sentence(repair: Repair) -> str:
-    """Say what a repair changes, and with what result."""
+    """Describe a repair and its result."""
     _, seized, name = worst_rates(repair)
     where = f", on {name}" if name else ""
     return (
@@ -336,7 +336,7 @@ def repair_sentence(repair: Repair) -> str:
 
 
 def comparison(repair: Repair) -> str:
-    """Say how a repair compares with the belt where the robot seized, if the belt clears there."""
+    """Compare a repair with the belt where the robot seized, if the belt clears there."""
     cleared, _, _ = worst_rates(repair)
     if cleared.runs:
         return f"clears at worst {rate(cleared)} of the runs that the belt clears where it seized"
@@ -345,7 +345,7 @@ def comparison(repair: Repair) -> str:
 
 
 def wheels_per_side(repair: Repair) -> str:
-    """Say how many wheels carry a side, or that a belt does."""
+    """Describe the wheels of a side, or its belt."""
     return f"{repair.wheels} wheels a side" if repair.wheels else "belt"
 
 
@@ -370,17 +370,17 @@ def range_of(path: str, distribution: Distribution) -> str:
             of = str(distribution.unit or "").rpartition(".")[2].replace("_", " ")
             unit = f" of the {of}" if of else own
             return f"{distribution.low:+g} to {distribution.high:+g}{unit}"
-    return str(read_distribution(distribution, path))  # one of SciPy has no text of its own
+    return str(read_distribution(distribution, path))  # SciPy's have no text of their own
 
 
 def unit_after(path: str) -> str:
-    """Return the unit of a field with a space before it; "" if it has none."""
+    """Return the unit of a field, after a space; "" if it has none."""
     unit = unit_of(path)
     return "" if unit in (None, "1") else f" {unit}"
 
 
 def holding_friction(frictions: Sequence[float]) -> str:
-    """Say at which frictions pockets hold by their walls alone.
+    """Describe the friction at which pockets hold by their walls alone.
 
     Examples
     --------
@@ -400,7 +400,7 @@ def _side(length: float, positive: str, negative: str) -> str:
 
 
 def span(values: Sequence[float], digits: str) -> str:
-    """Write the least and the largest of some numbers."""
+    """Write the smallest and the largest number."""
     low, high = (format(bound, digits) for bound in (min(values), max(values)))
     return low if low == high else f"{low} to {high}"
 

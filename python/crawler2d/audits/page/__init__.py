@@ -1,4 +1,4 @@
-"""From an audit to one self-contained HTML page, with the runs that it replays."""
+"""Write an audit as one self-contained HTML page that replays runs."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ _HERE = "crawler2d.audits.page"
 
 
 class Replay(NamedTuple):
-    """A run in the table of an audit, and how the robot, and perhaps the other one, drive it.
+    """A run in the table of an audit, driven by the robot and perhaps another one.
 
     Parameters
     ----------
     verdict : Verdict
-        On its obstacle.
+        Verdict on its obstacle.
     sample, repeat : int
-        Which one.
+        Its indices in the table.
     runs : list of Run
-        Of the robot, and of the repaired robot or the belt if that is another robot.
+        Run of the robot, and of the repaired robot or the belt if that differs.
     other : str
-        What the other robot is.
+        Description of the other robot.
     """
 
     verdict: Verdict
@@ -61,7 +61,7 @@ class Replay(NamedTuple):
     other: str = "the belt"
 
     def value(self, audit: AuditRecord, name: str) -> Any:
-        """Return what the table has of this run."""
+        """Return the row of this run."""
         runs = ObstacleRuns(audit.table, OWN, self.verdict.obstacle)
         return runs.column(name)[self.sample, self.repeat]
 
@@ -69,9 +69,9 @@ class Replay(NamedTuple):
 def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[Replay]:
     """Simulate one run again for each obstacle on which the robot seized, the worst first.
 
-    Of the runs that are jammed where most are, and of these, if there are any, of those that the
-    belt clears with the same draws, it is the first of the fastest, which is the shortest. If the
-    robot seized nowhere, it is the run that came closest to a seizure.
+    It is one of the runs with the commonest jam; if possible one that the belt clears with the same
+    draws; and the first at the highest speed, which is the shortest. If the robot seized nowhere,
+    it is the run that came closest to a seizure.
     """
     seized = [each for each in audit.verdicts if each.where]
     worst_first = sorted(seized, key=lambda each: (each.result != "seizes", -each.seized.rate))
@@ -87,7 +87,7 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
             threads=threads,
             sample_interval=INTERVAL,
             trials=TRIED,
-            on_error="record",  # with these draws the other robot may break a rule
+            on_error="record",  # the other robot may break a rule with these draws
         )
     each_run = iter(runs)
     for replay, pair in zip(replays, scenarios, strict=True):
@@ -96,7 +96,7 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
 
 
 def _scenarios(audit: AuditRecord, replay: Replay) -> list[Scenario]:
-    """Return the run of the robot, and that of the other one, which need not have driven it."""
+    """Return the run of the robot, and that of the other one if there is one."""
     own = Scenario.from_json(str(replay.value(audit, "scenario")))
     repair = sections.best_repair(audit)
     if repair is None and audit.belt.robot == audit.robot:
@@ -126,7 +126,7 @@ def _seizure(audit: AuditRecord, verdict: Verdict) -> Replay:
 def _closest(audit: AuditRecord) -> list[Replay]:
     """Choose the run that came closest to a seizure, if any has a result.
 
-    It fails where the belt clears, if any does, and of those it took the longest for its speed.
+    If possible one that fails where the belt clears; of these, the longest for its speed.
     """
     found = []
     for verdict in audit.verdicts if "time" in audit.table else ():
@@ -140,7 +140,7 @@ def _closest(audit: AuditRecord) -> list[Replay]:
 
 
 def _replay_section(audit: AuditRecord, each: Replay, number: int) -> str:
-    """Write the place of the pictures, what stopped the robot, and what was drawn."""
+    """Write the figures, the reason of the stop, and the draws."""
     figures = "".join(map(pair_figure, ("the model", each.other), each.runs))
     return (
         f'<div class="runs" id="replay-{number}"{" hidden" if number else ""}>'
@@ -149,7 +149,7 @@ def _replay_section(audit: AuditRecord, each: Replay, number: int) -> str:
 
 
 def _diagnosis(audit: AuditRecord, each: Replay) -> str:
-    """Say why the robot stopped; what was tried there and drawn for the run is folded."""
+    """Describe why the robot stopped; trials and draws are folded."""
     run, *others = each.runs
     why, _, tried = run.reason.partition(". Tried: ")
     jammed, seized = each.verdict.jam_counts
@@ -170,12 +170,12 @@ def _diagnosis(audit: AuditRecord, each: Replay) -> str:
 
 
 def _drawn(audit: AuditRecord, replay: Replay) -> list[str]:
-    """List what was drawn for a run: its unknowns, and what differs from run to run."""
+    """List the draws of a run: unknowns and variation."""
     found = []
     for name, variable in audit.table.data_vars.items():
         if str(name).startswith(("unknown_", "drawn_")):
             path, value = str(variable.attrs["path"]), float(replay.value(audit, str(name)))
-            if not math.isnan(value):  # this obstacle has no such field
+            if not math.isnan(value):  # not a field of this obstacle
                 number = f"{value:.0f}" if value.is_integer() else f"{value:.4g}"
                 found.append(f"{sections.field_name(path)} {number}{words.unit_after(path)}")
     return found

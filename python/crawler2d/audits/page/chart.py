@@ -1,4 +1,4 @@
-"""The chart of an audit: at which heights of a step and frictions the model can jam at all."""
+"""The chart of an audit: step heights and frictions at which the model can jam."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _ABOUT = (
 
 
 def chart_section(robot: Robot, others: Sequence[tuple[str, Robot]] = ()) -> str:
-    """Draw the chart of a robot, and those of other ones with their names."""
+    """Draw the charts of a robot and of other named ones."""
     figures, missing = "", ""
     for name, each in (("the model", robot), *others):
         try:
@@ -81,7 +81,7 @@ def _class(region: JamRegion) -> str:
 
 
 def _ticks(most: float) -> Iterator[tuple[tuple[float, float], str, str]]:
-    """Place the numbers along both axes, and their names."""
+    """Place numbers and names of both axes."""
     step = 0.02 if most < 0.2 else 0.1
     middle = 'text-anchor="middle"'
     for k in range(1, int(most / step + 1e-9) + 1):

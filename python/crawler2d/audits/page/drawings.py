@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_pockets", "draw_robot"]
 
-_LARGEST, _SMALLEST = 13.0, 5.0  # [px] of numbers; smaller ones cannot be read and are left out
-_LETTER = 0.7  # of the size: how wide a letter is
-_TOGETHER = 1e-6  # [m] Wheels nearer than this are in one place.
+_LARGEST, _SMALLEST = 13.0, 5.0  # [px] height of numbers; smaller ones are unreadable and left out
+_LETTER = 0.7  # width of a letter by its height
+_TOGETHER = 1e-6  # [m] Wheels closer than this coincide.
 
 _WIDTH = 230.0  # [px] of the widest
-_ROUND = 0.04  # of the widest, round each
+_ROUND = 0.04  # margin by the largest width
 _CHORDS = 24
-_DIGITS = 5  # [m] Pockets that are equal to a hundredth of a millimetre are drawn once.
+_DIGITS = 5  # [m] Pockets equal to 0.01 mm are drawn once.
 
 _SCREEN = (
     "A screen of the geometry, not a verdict: whether ground stays in a pocket depends on the whole"
@@ -52,15 +52,15 @@ def draw_robot(
 ) -> str:
     """Draw a robot in the frame of its chassis over collision shapes, as one SVG element.
 
-    `title` is for those who cannot see it, `width` and `height` [px] are the most that it may have.
+    `title` is the text for screen readers; `width` and `height` [px] are limits.
     """
-    with ignore_warnings():  # showing an object must not warn
-        # At rest: what is usual may be faster than it is.
+    with ignore_warnings():  # a display must not warn
+        # At rest, as the usual speed may exceed the robot's.
         scene = Scene.of_robot(Scenario(robot, Flat(), drive=Drive(speed=0.0)).to_json())
     seen = [each.outline for each in shapes if len(each.outline) > 2]
     extent = extent_of(*scene.outlines(0), *seen, margin=MARGIN)
     sheet = Sheet(extent, width, height)
-    # The two sides of a robot are alike.
+    # Both sides of a robot are equal.
     different = {each.round(6).tobytes(): each for each in seen}
     for outline in different.values():
         sheet.line(outline, 'class="collision"')
@@ -70,7 +70,7 @@ def draw_robot(
 
 
 def _number(sheet: Sheet, robot: Robot) -> None:
-    """Write their numbers on the wheels of the left side; several in one place together."""
+    """Write the numbers of the left wheels on them; coinciding wheels share a label."""
     places: dict[tuple[float, float], tuple[float, list[int]]] = {}
     for body, _, x, y, radius in left_wheels(robot):
         near = (each for each in places if math.dist(each, (x, y)) < _TOGETHER)
@@ -88,7 +88,7 @@ def _number(sheet: Sheet, robot: Robot) -> None:
 
 
 def draw_pockets(robot: Robot, pockets: Sequence[Pocket]) -> str:
-    """Draw every pocket that differs from the others, with the wheels that it is between."""
+    """Draw each different pocket, with the wheels on either side."""
     if not pockets:
         return "<p>None: there are no neighbouring wheels.</p>"
     radii = {wheel.body: wheel.radius for wheel in left_wheels(robot)}
@@ -135,7 +135,7 @@ def _measures(group: list[Pocket]) -> str:
 
 
 def _bottom(pocket: Pocket, rear: float, front: float) -> tuple[float, float]:
-    """[m] Where the wheels are nearest, or cross: from where the belt leaves the rear wheel."""
+    """[m] Closest or common point of the wheels, from the belt's tangent point on the rear one."""
     if not pocket.is_slot:
         return math.sqrt(max(rear**2 - (rear - pocket.depth) ** 2, 0.0)), pocket.depth
     apart = math.hypot(pocket.width, front - rear)
@@ -144,7 +144,7 @@ def _bottom(pocket: Pocket, rear: float, front: float) -> tuple[float, float]:
 
 
 def _open(pocket: Pocket, rear: float, front: float) -> NDArray[np.float64]:
-    """[m] The outline of what is open: along the rear wheel up, along the front wheel down."""
+    """[m] Outline of the open space: up along the rear wheel, down along the front wheel."""
     x, y = _bottom(pocket, rear, front)
     up = _arc((0.0, rear), rear, math.atan2(x, rear - y))
     down = _arc((pocket.width, front), front, math.atan2(x - pocket.width, front - y))
@@ -152,7 +152,7 @@ def _open(pocket: Pocket, rear: float, front: float) -> NDArray[np.float64]:
 
 
 def _arc(center: tuple[float, float], radius: float, to: float) -> NDArray[np.float64]:
-    """[m] Points of a wheel from its lowest to an angle [rad] from there, above 0 to the front."""
+    """[m] Points of a wheel from its lowest one to an angle [rad] from there, > 0 to the front."""
     angles = np.linspace(0.0, to, _CHORDS)
     return np.asarray(center) + radius * np.column_stack([np.sin(angles), -np.cos(angles)])
 

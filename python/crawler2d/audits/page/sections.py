@@ -1,4 +1,4 @@
-"""Sections of the page of an audit: what it found, and tables of figures."""
+"""Sections of the page of an audit: results and tables of figures."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _STATED = (
     "drivetrain.max_torque",
     "drivetrain.rotor_inertia",
 )
-"""Fields that are listed of a robot that was not read from a file."""
+"""Fields listed for a robot without a file."""
 
 _NAMES = {
     "robot.center_of_mass": "centre of mass",
@@ -66,7 +66,7 @@ _NAMES = {
 }
 
 _LONG = re.compile(r"\d+\.\d{4,}")
-"""Numbers with more digits than are worth reading."""
+"""Numbers with too many digits to read."""
 
 _JAMS = (
     "the last columns are about the runs that seized: between which wheels most of them jammed, and"
@@ -77,7 +77,7 @@ _JAMS = (
 
 
 def answer_section(audit: AuditRecord) -> str:
-    """Say in a sentence or two where the robot seizes, and what ends that."""
+    """Describe in a sentence or two where the robot seizes, and what prevents it."""
     every, repair = audit.verdicts, best_repair(audit)
     certain = [each for each in every if each.result == "seizes"]
     seized = certain or [each for each in every if each.where]
@@ -108,19 +108,19 @@ def answer_section(audit: AuditRecord) -> str:
 
 
 def best_repair(audit: AuditRecord) -> Repair | None:
-    """Choose the repair to show: wheels, which can be put into a file, before belts."""
+    """Choose the repair to show: wheels, which a file can hold, before belts."""
     return min(
         audit.repairs, key=lambda each: (not each.confirmed, each.kind == "belt"), default=None
     )
 
 
 def change(audit: AuditRecord, repair: Repair) -> str:
-    """Say what a repair changes; the reason for the kind of belt is given elsewhere."""
+    """Describe a repair, without the reason for the kind of belt."""
     return repair.description.removesuffix(f" ({audit.belt.reason})")
 
 
 def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
-    """Write the verdicts, each with where it jams, what frees it, and a link to its replay."""
+    """Write the verdicts, each with its jam, what frees it, and a link to its replay."""
     jams = any(each.where for each in audit.verdicts)
     head = (*words.VERDICT_HEAD, *(words.JAM_HEAD[1:] if jams else ()))
     rows = []
@@ -147,7 +147,7 @@ def _class(word: str) -> str:
 
 
 def lint_section(audit: AuditRecord) -> str:
-    """List what lint found: errors, and the rest folded."""
+    """List the findings of lint: errors, and the rest folded."""
     if not audit.lint:
         return "<p>Nothing found.</p>"
     errors = [each for each in audit.lint if each.severity == "error"]
@@ -168,7 +168,7 @@ def _findings(found: Sequence[Finding]) -> str:
 
 
 def repair_section(audit: AuditRecord, diffs: Mapping[str, str]) -> str:
-    """Write the result of each repair, the robot with it, and its text of `diffs`, by `what`."""
+    """Write the result, robot and diff of each repair."""
     found = audit.repaired
     if found is None:
         none = "No" if audit.seizes else "Nothing seizes, so no"
@@ -216,7 +216,7 @@ def _picture(repair: Repair, diff: str | None) -> str:
 
 
 def robot_section(audit: AuditRecord) -> str:
-    """Draw the robot over the shapes of its file; its figures are folded."""
+    """Draw the robot over the shapes of its file, with folded figures."""
     read = audit.reading
     shapes = () if read is None else read.silhouettes
     drawn = (
@@ -260,7 +260,7 @@ def _wheel_table(audit: AuditRecord) -> str:
 
 
 def _figure_table(audit: AuditRecord) -> str:
-    """Write every figure with its source, or of a robot without a file those that matter."""
+    """Write every figure with its source; for a robot without a file, the main figures."""
     read, robot = audit.reading, audit.robot
     if read is None:
         paths = [f"robot.{path}" for path in _STATED if _has(robot, path)]
@@ -311,7 +311,7 @@ def _value(robot: Robot, path: str) -> str:
 
 
 def _range_table(ranges: Mapping[str, Any], label: str) -> str:
-    """Write from which ranges something was drawn, and where these come from."""
+    """Write ranges and their sources."""
     sources = ranges.sources if isinstance(ranges, Ranges) else {}
     rows = [
         (field_name(path), words.range_of(path, each), sources.get(path, ""))
@@ -321,7 +321,7 @@ def _range_table(ranges: Mapping[str, Any], label: str) -> str:
 
 
 def method_section(audit: AuditRecord) -> str:
-    """Write how the audit was made, and what differed from run to run."""
+    """Write the method of the audit, and its variation."""
     measures = [
         (name, _LONG.sub(lambda found: f"{float(found[0]):.4g}", str(each)))
         for name, each in audit.obstacles.items()
@@ -349,7 +349,7 @@ def _method(audit: AuditRecord) -> Iterator[tuple[str, str]]:
 
 
 def command(audit: AuditRecord) -> str:
-    """Write the command that repeats the audit, or else the call."""
+    """Write the command or call that repeats the audit."""
     call, read = audit.call, audit.reading
     command = None if read is None else command_of(call, str(read.path))
     if command is not None:
@@ -364,28 +364,27 @@ def command(audit: AuditRecord) -> str:
 
 
 def field_name(path: str) -> str:
-    """Say in words which field of a scenario a path is."""
+    """Name the field of a path in words."""
     if path in _NAMES:
         return _NAMES[path]
     return path.removeprefix("robot.").replace(".", ": ").replace("_", " ")
 
 
 def fold(head: str, inside: str) -> str:
-    """Fold something away below a line of text."""
+    """Fold content below a line of text."""
     return f"<details><summary>{escape(head)}</summary>{inside}</details>"
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> str:
-    """Fold a table away below its name; cells are text."""
+    """Fold a table below its name; cells are text."""
     cells = [[escape(cell) for cell in row] for row in rows]
     return fold(label, _grid(head, cells, label=label) if rows else "<p>None.</p>")
 
 
 def _grid(head: Sequence[str], rows: Iterable[Sequence[str]], *, label: str, look: str = "") -> str:
-    """Write a table whose first column names its rows; one that is too wide scrolls by itself.
+    """Write a table whose first column names its rows; wide ones scroll.
 
-    The titles are text and the cells HTML; `label` says what it is, `look` is a class for the style
-    sheet.
+    Titles are text, cells HTML; `label` describes it, `look` is a CSS class.
     """
     titles = "".join(f'<th scope="col">{escape(title)}</th>' for title in head)
     body = "".join(
