@@ -15,7 +15,7 @@ print(c2d.read_robot(file).description)
 step = {"step": c2d.terrains.step(0.05, friction=0.6)}
 audit = c2d.audit(file, step, quick=True, progress=False)
 for verdict in audit.verdicts:
-    print(verdict.result, "between wheels", verdict.where)
+    print(verdict.result, "between wheels", verdict.jam_wheels)
 for repair in audit.repairs:
     print(repair.description, "- confirmed" if repair.confirmed else "- not confirmed")
 

@@ -24,14 +24,14 @@ def test_chains_have_no_restitution_to_draw() -> None:
     assert dict(c2d.unknowns.of_restitution(robot)) == {}
 
 
-@pytest.mark.parametrize(("seized", "holds"), [(0, False), (2, False), (3, True), (18, True)])
+@pytest.mark.parametrize(("seized", "seizes"), [(0, False), (2, False), (3, True), (18, True)])
 def test_a_seizure_holds_if_the_lower_bound_of_its_rate_is_above_5_percent(
-    seized: int, *, holds: bool
+    seized: int, *, seizes: bool
 ) -> None:
     found = Assumption(
-        obstacle="step", assumption="rotor", drawn=Ranges({}), seized=seized, made=18
+        obstacle="step", assumption="rotor", drawn=Ranges({}), seized=seized, runs=18
     )
-    assert found.holds == holds
+    assert found.seizes == seizes
 
 
 def test_each_seizure_is_driven_again_under_each_assumption_and_reported() -> None:
@@ -40,7 +40,7 @@ def test_each_seizure_is_driven_again_under_each_assumption_and_reported() -> No
     found = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)
     assert found.seizes
     (blows,) = found.assumed
-    assert (blows.obstacle, blows.assumption, blows.made) == ("step of 75 mm", "restitution", 18)
+    assert (blows.obstacle, blows.assumption, blows.runs) == ("step of 75 mm", "restitution", 18)
     assert blows.seized <= 18
     assert any("With bouncing contacts (restitution 0 to 1)" in each for each in conclusion(found))
     again = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)

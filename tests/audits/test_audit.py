@@ -36,7 +36,7 @@ def test_touching_wheels_seize_on_a_step_that_the_belt_clears(found: c2d.Audit) 
         "cleared",
     )
     assert (verdict.seized.rate, verdict.belt_cleared.rate) == (1.0, 1.0)
-    assert (verdict.where, verdict.carrier) == ("1-2", "chassis")
+    assert (verdict.jam_wheels, verdict.carrier) == ("1-2", "chassis")
     assert found.belt.reason == "BeltTrack, along the outline"
 
 
@@ -442,7 +442,7 @@ def test_wheels_on_the_right_have_the_names_of_the_file_where_each_track_has_its
     assert names[first] == "right_track_wheel8"
     assert names.keys() <= {*range(first), *right}
     audit: Any = SimpleNamespace(
-        robot=robot, reading=absolem, verdicts=[SimpleNamespace(where=f"1-{first + 1}")]
+        robot=robot, reading=absolem, verdicts=[SimpleNamespace(jam_wheels=f"1-{first + 1}")]
     )
     assert words.wheel_names(audit) == (
         "in the file, on the left, wheel 1 is left_track_wheel7;"

@@ -260,8 +260,8 @@ def test_verdicts_are_those_of_the_audit(of_file: c2d.Audit, file_page: Page) ->
     for row, each in zip(rows, of_file.verdicts, strict=True):
         assert tuple(row[: len(words.VERDICT_HEAD)]) == words.verdict_row(each)
     shown = [text for found, text in file_page.all("a")]
-    assert shown == [each.obstacle for each in of_file.verdicts if each.where]
-    assert rows[0][len(words.VERDICT_HEAD)] == f"{of_file.verdicts[0].where} of the chassis"
+    assert shown == [each.obstacle for each in of_file.verdicts if each.jam_wheels]
+    assert rows[0][len(words.VERDICT_HEAD)] == f"{of_file.verdicts[0].jam_wheels} of the chassis"
     seizes = words.VERDICT_HEAD.index("seizes")
     assert f"{100 * of_file.verdicts[0].seized.rate:.0f} %" in rows[0][seizes]
 

@@ -136,8 +136,8 @@ def test_a_verdict_pairs_seized_runs_with_those_of_the_belt() -> None:
 
 def test_a_verdict_has_the_commonest_jam_and_the_trials() -> None:
     found = verdict(ends(seized=20, cleared=20), CLEARED)
-    assert (found.where, found.carrier, found.jam_counts) == ("1-2", "chassis", (40, 40))
-    freed = {each.trial: (each.freed, each.made) for each in found.freed}
+    assert (found.jam_wheels, found.carrier, found.jam_counts) == ("1-2", "chassis", (40, 40))
+    freed = {each.trial: (each.freed, each.runs) for each in found.freed}
     assert freed == {
         "closed track": (40, 40),
         "torque x 2": (0, 40),
@@ -203,7 +203,7 @@ def test_a_repair_that_seizes_in_more_than_5_percent_of_the_runs_is_not_confirme
 
 def test_without_a_seizure_a_verdict_has_no_place() -> None:
     found = verdict(CLEARED, CLEARED)
-    assert (found.where, found.carrier, found.jam_counts, found.freed) == ("", "", (0, 0), ())
+    assert (found.jam_wheels, found.carrier, found.jam_counts, found.freed) == ("", "", (0, 0), ())
     assert np.isnan(found.friction).all()
 
 

@@ -184,7 +184,7 @@ class Audit(AuditRecord):
         >>> step = {"step": c2d.terrains.step(0.1)}
         >>> found = c2d.audit(robot, step, unknown={}, repeats=4, repair=False, progress=False)
         >>> page = found.to_html()
-        >>> page.startswith("<!doctype html>"), found.verdicts[0].where in page
+        >>> page.startswith("<!doctype html>"), found.verdicts[0].jam_wheels in page
         (True, True)
         """
         # Imported only when used.
@@ -289,7 +289,7 @@ def audit(
     >>> robot = robot.without_rotors()
     >>> step = {"step of 75 mm": c2d.terrains.step(0.075)}
     >>> found = audit(robot, step, unknown={}, repeats=20, quick=True, progress=False)
-    >>> found.seizes, found.verdicts[0].where, found.verdicts[0].jam_counts
+    >>> found.seizes, found.verdicts[0].jam_wheels, found.verdicts[0].jam_counts
     (True, '1-2', (9, 9))
     >>> found.repairs[0].description, found.repairs[0].confirmed
     ('chassis: 5 wheels in place of 4', True)

@@ -178,8 +178,8 @@ def _name(path: Path, baseline: Path) -> str:
 
 def _verdict(verdict: Verdict) -> Plain:
     kept: Plain = {"word": verdict.result}
-    if verdict.where:
-        kept["where"] = f"{verdict.where} of the {verdict.carrier}"
+    if verdict.jam_wheels:
+        kept["where"] = f"{verdict.jam_wheels} of the {verdict.carrier}"
     rates = [verdict.seized, *verdict.seized_at.values()]
     return {
         **kept,

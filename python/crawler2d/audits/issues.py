@@ -136,7 +136,7 @@ def _seizures(found: AuditRecord | LintResult) -> Iterator[Issue]:
     names = names_of(found.robot, read)
     for verdict in found.verdicts:
         if verdict.result == SEIZES:
-            bodies = [int(body) for body in verdict.where.split("-") if body]
+            bodies = [int(body) for body in verdict.jam_wheels.split("-") if body]
             wheels = [names[body] for body in bodies if body in names]
             yield Issue(
                 rule=SEIZES,

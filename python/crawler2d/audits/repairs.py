@@ -99,15 +99,15 @@ class RepairSearch(NamedTuple):
     ----------
     repairs : tuple of Repair
         The best of each kind: confirmed ones first, then the smallest change first.
-    tried : int
-        Candidates that were simulated.
+    candidate_count : int
+        Number of simulated candidates.
     table : xarray.Dataset
         The fresh runs: the models "model" and the repairs by `Repair.description`, the obstacles
         and "level ground". Missing runs have the outcome "".
     """
 
     repairs: tuple[Repair, ...]
-    tried: int
+    candidate_count: int
     table: xarray.Dataset
 
 
@@ -178,7 +178,7 @@ def search_repairs(
     found = [assess(fresh, each, list(over), names, reference) for each in chosen]
     return RepairSearch(
         repairs=tuple(sorted(found, key=lambda each: (not each.confirmed, each.change))),
-        tried=sum(map(len, spaces)) + (belt.robot != robot),
+        candidate_count=sum(map(len, spaces)) + (belt.robot != robot),
         table=fresh,
     )
 

@@ -136,7 +136,7 @@ class Assumption:
         What is drawn in addition to the unknowns: motor rotors, or restitution.
     drawn : Ranges
         Ranges of the draws.
-    seized, made : int
+    seized, runs : int
         Number of seized runs, and of runs with a result, among the first runs of the verdict.
     """
 
@@ -144,12 +144,12 @@ class Assumption:
     assumption: str
     drawn: Ranges
     seized: int
-    made: int
+    runs: int
 
     @property
-    def holds(self) -> bool:
+    def seizes(self) -> bool:
         """Whether the robot still seizes: the lower bound of the rate is above 5 %."""
-        return wilson(self.seized, self.made).low > SEIZES
+        return wilson(self.seized, self.runs).low > SEIZES
 
 
 def assumptions_of(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges]:
@@ -211,7 +211,7 @@ def check_assumptions(
                 assumption=name,
                 drawn=ranges,
                 seized=int(results.seized.sum()),
-                made=int(results.has_result.sum()),
+                runs=int(results.has_result.sum()),
             )
         )
     return tuple(found)

@@ -128,7 +128,7 @@ def _row(audit: AuditSetup, cells: Sequence[str]) -> str:
 
 def _jams(audit: AuditRecord) -> Iterator[str]:
     yield from _wrap(words.missing_results(audit))
-    jammed = [each for each in audit.verdicts if each.where]
+    jammed = [each for each in audit.verdicts if each.jam_wheels]
     if jammed:
         yield "  where it jams, how often at each speed, and how many a change frees there:"
         yield from _columns([words.JAM_HEAD, *map(words.jam_row, jammed)])
@@ -187,7 +187,7 @@ def _of_runs(audit: AuditRecord) -> dict[str, Any]:
         "belt": audit.belt.reason,
         "obstacles": audit.obstacles,
         "verdicts": audit.verdicts,
-        "assumed": [{**_fields(each), "holds": each.holds} for each in audit.assumed],
+        "assumed": [{**_fields(each), "seizes": each.seizes} for each in audit.assumed],
         "repairs": audit.repairs,
         "seizes": audit.seizes,
     }

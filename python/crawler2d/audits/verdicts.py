@@ -190,13 +190,13 @@ class TrialCount:
     ----------
     trial : str
         Name of the trial, see `Run.trials`.
-    freed, made : int
+    freed, runs : int
         Number of freed runs, and of runs with this trial.
     """
 
     trial: str
     freed: int
-    made: int
+    runs: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -216,7 +216,7 @@ class Verdict:
         seizes.
     outcome, belt_outcome : str
         Commonest outcome; "" without runs.
-    where : str
+    jam_wheels : str
         The wheels between which most seized runs are jammed, such as "8-9"; "" without any.
     carrier : str
         Carrier of these wheels: "chassis", "front flipper", "rear flipper"; "" without any.
@@ -242,7 +242,7 @@ class Verdict:
     belt_seized: Proportion
     outcome: str
     belt_outcome: str
-    where: str
+    jam_wheels: str
     carrier: str
     jam_counts: tuple[int, int]
     seized_alone_count: int
@@ -268,7 +268,7 @@ def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
     belt_cleared = belt.proportion(belt.cleared)
     alone = own.seized & belt.cleared
     seized_alone = own.proportion(alone)
-    where, carrier, jam_counts = _commonest_jam(own)
+    jam_wheels, carrier, jam_counts = _commonest_jam(own)
     return Verdict(
         obstacle=obstacle,
         result=result_of(
@@ -283,7 +283,7 @@ def verdict_of(table: xarray.Dataset, obstacle: str) -> Verdict:
         belt_seized=belt.proportion(belt.seized),
         outcome=_commonest(own),
         belt_outcome=_commonest(belt),
-        where=where,
+        jam_wheels=jam_wheels,
         carrier=carrier,
         jam_counts=jam_counts,
         seized_alone_count=int(alone.sum()),
@@ -347,7 +347,7 @@ def _trial_counts(runs: ObstacleRuns) -> Iterator[TrialCount]:
             made = runs.column(f"tried_{name}") & runs.seized
             freed = runs.column(f"freed_by_{name}") & made
             if made.any():
-                yield TrialCount(trial=trial, freed=int(freed.sum()), made=int(made.sum()))
+                yield TrialCount(trial=trial, freed=int(freed.sum()), runs=int(made.sum()))
 
 
 def _friction(runs: ObstacleRuns) -> tuple[float, float]:

@@ -164,7 +164,7 @@ def jam_row(each: Verdict) -> tuple[str, ...]:
         for trial in each.freed
         if trial.freed
     ]
-    place = f"{each.where} of the {each.carrier}"
+    place = f"{each.jam_wheels} of the {each.carrier}"
     speeds = "/".join(f"{100 * rate.rate:.0f}" for rate in each.seized_at.values()) + " %"
     return each.obstacle, place, "/".join(map(str, each.jam_counts)), speeds, at, ", ".join(freed)
 
@@ -172,7 +172,12 @@ def jam_row(each: Verdict) -> tuple[str, ...]:
 def wheel_names(audit: AuditRecord) -> str:
     """Return the file's names of the wheels of a jam; "" if there are none."""
     names = names_of(audit.robot, audit.reading)
-    bodies = {int(body) for each in audit.verdicts if each.where for body in each.where.split("-")}
+    bodies = {
+        int(body)
+        for each in audit.verdicts
+        if each.jam_wheels
+        for body in each.jam_wheels.split("-")
+    }
     count = bodies_per_side(audit.robot)
     left: list[str] = []
     right: list[str] = []
@@ -249,8 +254,8 @@ def _under_assumptions(assumed: Sequence[Assumption]) -> Iterator[str]:
     for name, head in heads.items():
         own = [each for each in assumed if each.assumption == name]
         if own:
-            runs = ", ".join(f"{each.obstacle} in {each.seized} of {each.made}" for each in own)
-            loose = [each.obstacle for each in own if not each.holds]
+            runs = ", ".join(f"{each.obstacle} in {each.seized} of {each.runs}" for each in own)
+            loose = [each.obstacle for each in own if not each.seizes]
             verdicts = f"the verdict{'s' * (len(loose) > 1)} on {', '.join(loose)}"
             effect = f"{verdicts} may depend" if loose else "no verdict depends"
             drawn = ", ".join(
@@ -295,7 +300,7 @@ def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
     called = f" ({', '.join(names)})" if names else ""
     return (
         f"seizes on {verdict.obstacle} in {rate(verdict.seized)} of the runs, most often between"
-        f" wheels {verdict.where} of the {verdict.carrier}{called}; the belt clears"
+        f" wheels {verdict.jam_wheels} of the {verdict.carrier}{called}; the belt clears"
         f" {verdict.seized_alone_count} of {verdict.jam_counts[1]} seized runs, and"
         f" {percent(verdict.belt_cleared.rate)} of all"
     )
@@ -305,8 +310,8 @@ def search_sentence(search: RepairSearch, audit: AuditSetup) -> str:
     """Describe the result of the search for repairs, and its runs."""
     runs = f"in new runs {_speeds_and_sizes(search.table['speed'].values, audit)}"
     if any(each.confirmed for each in search.repairs):
-        return f"the best of {search.tried} candidates, {runs}"
-    return f"none of {search.tried} candidates was confirmed {runs}"
+        return f"the best of {search.candidate_count} candidates, {runs}"
+    return f"none of {search.candidate_count} candidates was confirmed {runs}"
 
 
 def worst_rates(repair: Repair) -> tuple[Proportion, Proportion, str]:

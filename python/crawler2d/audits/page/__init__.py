@@ -73,7 +73,7 @@ def simulate_replays(audit: AuditRecord, *, threads: int | None = None) -> list[
     draws; and the first at the highest speed, which is the shortest. If the robot seized nowhere,
     it is the run that came closest to a seizure.
     """
-    seized = [each for each in audit.verdicts if each.where]
+    seized = [each for each in audit.verdicts if each.jam_wheels]
     worst_first = sorted(seized, key=lambda each: (each.result != "seizes", -each.seized.rate))
     replays = [_seizure(audit, each) for each in worst_first] or _closest(audit)
     repair = sections.best_repair(audit)
@@ -114,7 +114,7 @@ def _scenarios(audit: AuditRecord, replay: Replay) -> list[Scenario]:
 def _seizure(audit: AuditRecord, verdict: Verdict) -> Replay:
     """Choose the run that represents the seizures on an obstacle."""
     own, belt = (ObstacleRuns(audit.table, model, verdict.obstacle) for model in (OWN, BELT))
-    there = own.seized & (own.column("stop_bodies") == verdict.where)
+    there = own.seized & (own.column("stop_bodies") == verdict.jam_wheels)
     there &= own.column("stop_carrier") == verdict.carrier
     alone = there & belt.cleared
     chosen = alone if alone.any() else there

@@ -80,7 +80,7 @@ def answer_section(audit: AuditRecord) -> str:
     """Describe in a sentence or two where the robot seizes, and what prevents it."""
     every, repair = audit.verdicts, best_repair(audit)
     certain = [each for each in every if each.result == "seizes"]
-    seized = certain or [each for each in every if each.where]
+    seized = certain or [each for each in every if each.jam_wheels]
     if not seized:
         unsure = sum(each.result == "not certain" for each in every)
         but = f"; {unsure} of them need more runs to be certain" if unsure else ""
@@ -92,7 +92,7 @@ def answer_section(audit: AuditRecord) -> str:
     if not certain:
         runs = f"in runs over {len(seized)} of {len(every)} obstacles"
         claim = f"By the rule it seizes nowhere, but {runs}"
-    wheels = " and ".join(worst.where.split("-"))
+    wheels = " and ".join(worst.jam_wheels.split("-"))
     text = (
         f'<strong class="{"bad" if certain else "warning"}">{claim}</strong>'
         f"{', most often on' if len(seized) > 1 else ':'} {escape(worst.obstacle)}"
@@ -121,7 +121,7 @@ def change(audit: AuditRecord, repair: Repair) -> str:
 
 def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
     """Write the verdicts, each with its jam, what frees it, and a link to its replay."""
-    jams = any(each.where for each in audit.verdicts)
+    jams = any(each.jam_wheels for each in audit.verdicts)
     head = (*words.VERDICT_HEAD, *(words.JAM_HEAD[1:] if jams else ()))
     rows = []
     for each in audit.verdicts:
@@ -130,7 +130,7 @@ def verdict_section(audit: AuditRecord, replays: Mapping[str, int]) -> str:
             name = f'<a href="#replay-{replays[each.obstacle]}">{name}</a>'
         cells[-1] = f'<strong class="{_class(each.result)}">{cells[-1]}</strong>'
         if jams:
-            jam = words.jam_row(each)[1:] if each.where else ("",) * len(words.JAM_HEAD[1:])
+            jam = words.jam_row(each)[1:] if each.jam_wheels else ("",) * len(words.JAM_HEAD[1:])
             cells += map(escape, jam)
         rows.append((name, *cells))
     notes = [each for each in words.conclusion(audit) if each != words.reservation(audit)]
