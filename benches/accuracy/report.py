@@ -127,7 +127,7 @@ def _settings(study: Study) -> str:
                 "setting": name,
                 "mean difference (95 %)": _interval(found),
                 "mean size": f"{size.rate:.3f}",
-                "by chance": f"{chance:.3f}",
+                "expected by chance": f"{chance:.3f}",
                 f"cells beyond {CELL_BOUND}": str(beyond),
                 "path error, median [mm]": _path(own, name),
                 "cost, median [ms/s]": _short(1e3 * cost),

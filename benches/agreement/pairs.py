@@ -215,13 +215,15 @@ def _row(name: str, pairs: list[Pair]) -> dict[str, str]:
     return {
         "model": name,
         "robots": str(len(pairs)),
-        "same: gets over or not": _rate(alike, len(pairs)),
+        "same result": _rate(alike, len(pairs)),
         "same outcome": _rate(named, len(pairs)),
         "both stop": str(len(stops)),
         "within 1 mm": str(near),
-        "apart [mm]: median, 90th": quantiles([1e3 * pair["apart"] for pair in stops]),
-        "turned [mrad]: median, 90th": quantiles([1e3 * abs(pair["turn"]) for pair in stops]),
-        "no equilibrium: own, rapier": ", ".join(map(str, unheld)),
+        "distance of stops [mm]: median, 90th": quantiles([1e3 * pair["apart"] for pair in stops]),
+        "rotation of stops [mrad]: median, 90th": quantiles(
+            [1e3 * abs(pair["turn"]) for pair in stops]
+        ),
+        "no equilibrium: crawler2d, rapier": ", ".join(map(str, unheld)),
     }
 
 

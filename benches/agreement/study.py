@@ -121,12 +121,12 @@ def _study_row(name: str, cells: list[dict[str, Any]]) -> dict[str, str]:
     return {
         "model": name,
         "runs": str(len(runs)),
-        "same: gets over or not": str(sum(own == other for own, other in gets)),
+        "same result": str(sum(own == other for own, other in gets)),
         "same outcome": str(sum(own == other for own, other, _ in runs)),
-        "get over: own, rapier": f"{sum(o for o, _ in gets)}, {sum(o for _, o in gets)}",
+        "clears: crawler2d, rapier": f"{sum(o for o, _ in gets)}, {sum(o for _, o in gets)}",
         "difference of rates [%]": _gap([(other, own) for own, other in gets]),
         "both stop": str(len(stops)),
-        "apart [mm]: median, 90th": quantiles(stops),
+        "distance of stops [mm]: median, 90th": quantiles(stops),
     }
 
 

@@ -142,7 +142,7 @@ def _engines(
         agree = [same_outcome(found), same_outcome(stops), same_outcome(clears)]
         rows.append([name, what, *agree, f"{far} of {len(tried)}"])
     head = ["column", "engine", "same outcome", "predicted to stop", "predicted to clear"]
-    return markdown_table([*head, "cells apart"], rows)
+    return markdown_table([*head, "cells that differ"], rows)
 
 
 def _models(cells: Sequence[Cell], predicted: Runs, results: Results) -> str:
@@ -246,7 +246,13 @@ def _convergence(found: dict[str, Any]) -> str:
             cost = np.median([run["cost"] for runs in cells.values() for run in runs])
             median = f"{np.median(away):.2f}" if away else ""
             rows.append([name, setting, _rates(cells.values()), median, f"{1e3 * cost:.3g}"])
-    head = ["engine", "setting", "runs that clear, by cell", "stops apart [mm]", "ms a second"]
+    head = [
+        "engine",
+        "setting",
+        "runs that clear, by cell",
+        "distance of stops [mm]",
+        "ms per second",
+    ]
     return markdown_table(head, rows)
 
 
@@ -260,7 +266,7 @@ def _costs(found: dict[str, Any]) -> str:
         [name, *(f"{1e3 * costs[model]:.3g}" if model in costs else "" for model in MODELS_TIMED)]
         for name, costs in found.items()
     ]
-    return markdown_table(["ms a simulated second", *MODELS_TIMED], rows)
+    return markdown_table(["ms per simulated second", *MODELS_TIMED], rows)
 
 
 def _speeds(found: dict[str, Any]) -> str:

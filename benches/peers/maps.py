@@ -139,11 +139,11 @@ def render(found: dict[str, Any]) -> dict[str, str]:
     outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
     loops = table(
         {
-            "pymunk's setting": row["setting"],
-            "ms a run": f"{1e3 * row['wall']:.1f}",
-            "s simulated a run": f"{row['simulated']:.2f}",
-            "as the finest": f"{row['as_finest']} of {found['looped']}",
-            "as crawler2d": f"{row['as_ours']} of {found['looped']}",
+            "pymunk setting": row["setting"],
+            "ms per run": f"{1e3 * row['wall']:.1f}",
+            "simulated s per run": f"{row['simulated']:.2f}",
+            "same as the finest": f"{row['as_finest']} of {found['looped']}",
+            "same as crawler2d": f"{row['as_ours']} of {found['looped']}",
         }
         for row in found["loops"]
     )
@@ -153,7 +153,7 @@ One `sweep` on one thread made a map of {columns} heights of a step by {rows} fr
 {found["runs"] / found["wall"]:.0f} runs a second: {found["runs"]:,} runs in {found["wall"]:.1f} s.
 The cheapest loop over pymunk that clears or not as its finest setting in
 {100.0 * found["agrees"]:g} % of {found["looped"]} of these runs is {cheapest["setting"]}:
-{1e3 * cheapest["wall"]:.1f} ms a run, **{cheapest["wall"] / own:.1f} times** crawler2d's
+{1e3 * cheapest["wall"]:.1f} ms per run, **{cheapest["wall"] / own:.1f} times** crawler2d's
 {1e3 * own:.1f} ms for the same runs.
 
 {loops}

@@ -216,7 +216,7 @@ def _equal_gaps(rows: Rows) -> str:
             "crawler2d": f"{millimetres(row['gap'])} mm"
             f"<br>{1e3 * row['per_second']['crawler2d']:.1f} ms",
             "pymunk, 0.2 mm": _equal_gap_cell(row, "allowed"),
-            "pymunk, as crawler2d": _equal_gap_cell(row, "own"),
+            "pymunk, same as crawler2d": _equal_gap_cell(row, "own"),
         }
         for row in rows
     )

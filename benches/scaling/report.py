@@ -72,7 +72,7 @@ def _exponents(drawn: Sequence[Curve], panels: tuple[str, str]) -> str:
     """Write the ends and the exponents of the curves, both panels side by side."""
     found = {(curve.panel, curve.name): curve for curve in drawn}
     rows = table(
-        {"curve": name, **{panel: _ends(found.get((panel, name))) for panel in panels}}
+        {"model": name, **{panel: _ends(found.get((panel, name))) for panel in panels}}
         for name in dict.fromkeys(curve.name for curve in drawn)
     )
     return f"{_CELLS}\n\n{rows}"
@@ -130,7 +130,7 @@ def _accuracies(rows: Sequence[dict[str, Any]]) -> str:
         {
             "accuracy [um]": f"{accuracy * 1e6:g}",
             **{
-                f"{curve.panel}, ms a simulated second": _short(curve.per_second[i] * 1e3)
+                f"{curve.panel}, ms per simulated second": _short(curve.per_second[i] * 1e3)
                 for curve in drawn
             },
             **{f"{curve.panel}, mm off": own[i] for curve, own in zip(drawn, off, strict=True)},

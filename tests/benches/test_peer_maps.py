@@ -98,7 +98,7 @@ def test_the_report_takes_the_cheapest_setting_that_agrees_with_the_finest() -> 
     text = " ".join(" ".join(parts.values()).split())
     assert "100 runs a second" in text
     assert "3.0 % of the time" in text
-    assert "99 % of 50 of these runs is fine: 50.0 ms a run, **2.5 times** crawler2d's" in text
+    assert "99 % of 50 of these runs is fine: 50.0 ms per run, **2.5 times** crawler2d's" in text
     assert "crawler2d's 20.0 ms for the same runs" in text
 
 
