@@ -1,1 +1,1 @@
-"""What everything else builds on: arrays, tables, units, optional packages."""
+"""Foundations: arrays, tables, units, optional packages."""

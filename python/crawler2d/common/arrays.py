@@ -33,10 +33,10 @@ __all__ = [
 
 
 def freeze_array(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a view of an array that is read-only and cannot be made writeable again.
+    """Return a permanently read-only view of an array.
 
     NumPy lets a view be made writeable again if its base array, or the owner of the memory, is
-    writeable. The owner of the core's memory never is; memory of any other owner is copied.
+    writeable. Memory of the core never is; memory of other owners is copied.
     """
     bases = [array]
     while isinstance(bases[-1].base, np.ndarray):
@@ -49,7 +49,7 @@ def freeze_array(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _owned_by_core(owner: object) -> bool:
-    """Whether the memory belongs to the core, where no Python code can reach it."""
+    """Whether the memory belongs to the core, out of reach of Python code."""
     if owner is None:
         return False
     try:
@@ -60,7 +60,7 @@ def _owned_by_core(owner: object) -> bool:
 
 
 def _unknown(name: object, known: Iterable[str]) -> KeyError:
-    """Make the error for a name that is not there, with the nearest that is."""
+    """Make the error for an unknown name, with the nearest known one."""
     return KeyError(f"{name}{suggestion(name, known)}" if isinstance(name, str) else name)
 
 
@@ -79,7 +79,7 @@ class Metrics(dict[str, float]):
     __slots__ = ()
 
     def __missing__(self, name: str) -> float:
-        """Look up the former name of a metric, with a warning, or suggest the nearest name."""
+        """Look up a former name of a metric, with a warning, or suggest the nearest name."""
         now = RENAMED_METRICS.get(name)
         if now is None or now not in self:
             raise _unknown(name, self)
@@ -88,7 +88,7 @@ class Metrics(dict[str, float]):
         )
         return self[now]
 
-    if not TYPE_CHECKING:  # the types are those of any dict
+    if not TYPE_CHECKING:  # same types as dict
 
         def get(self, name: str, default: Any = None, /) -> Any:
             """Look up a metric, also by a former name."""
@@ -96,32 +96,32 @@ class Metrics(dict[str, float]):
             return self[name] if known else default
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
-        """Raise, and say why."""
+        """Raise a TypeError that explains why."""
         raise TypeError("metrics are read-only; change a copy, dict(metrics)")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse
 
     def __reduce__(self) -> tuple[type[Metrics], tuple[dict[str, float]]]:
-        """Pickle and copy all of them at once, because single ones cannot be set."""
+        """Pickle and copy all items at once, as single ones cannot be set."""
         return Metrics, (dict(self),)
 
 
 _ROWS = {None: "a number", 2: "a point (x, y)", 3: "a circle (x, y, radius)"}
 
-# float64 holds every whole number up to here exactly.
+# float64 represents every whole number up to here exactly.
 _EXACT = 2**53
 
 
 def read_scalar(value: Any, *, whole: bool) -> Any:
-    """Convert a NumPy scalar or a 0-d array to the Python number it holds.
+    """Convert a NumPy scalar or 0-d array to a Python number.
 
     Parameters
     ----------
     value : object
-        Anything; what is not a number is returned unchanged, for the validator to reject.
+        Anything; non-numbers are returned unchanged, for the validator to reject.
     whole : bool
-        Whether the field takes whole numbers; if not, they become floats, as when JSON is read.
+        Whether the field takes whole numbers; otherwise they become floats, as on reading JSON.
 
     Returns
     -------
@@ -149,7 +149,7 @@ def real_number(value: Any, path: str) -> float:
     Raises
     ------
     ScenarioError
-        If it is not a number; a bool or a string is not.
+        If it is not a number (bools and strings are not).
     """
     number = read_scalar(value, whole=False)
     if type(number) is not float:
@@ -177,7 +177,7 @@ def read_range(value: Any, path: str) -> tuple[float, float]:
     Raises
     ------
     ScenarioError
-        If it is something else.
+        If it is anything else.
     """
     rule = "must be two numbers, the lower first"
     if not isinstance(value, (tuple, list)) or len(value) != 2:
@@ -194,7 +194,7 @@ def read_instants(value: Any, path: str) -> NDArray[np.float64]:
     Raises
     ------
     ScenarioError
-        If it is something else.
+        If it is anything else.
     """
     instants = np.atleast_1d(np.asarray(value))
     is_real = instants.dtype.kind in "iuf" and instants.ndim == 1 and instants.size > 0
@@ -204,7 +204,7 @@ def read_instants(value: Any, path: str) -> NDArray[np.float64]:
 
 
 def read_bool(value: object, path: str) -> bool:
-    """Accept True or False only, nothing that is merely truthy.
+    """Accept only True and False, not other truthy or falsy values.
 
     Raises
     ------
@@ -228,8 +228,8 @@ def read_rows(value: Any, path: str, *, rows: bool, columns: int | None) -> Any:
     rows : bool
         True for a list of rows; False for one row.
     columns : int, optional
-        Numbers per row: 2 for a point (x, y), 3 for a circle (x, y, radius); None for numbers that
-        are no rows.
+        Numbers per row: 2 for a point (x, y), 3 for a circle (x, y, radius); None for plain
+        numbers.
 
     Returns
     -------
@@ -288,13 +288,13 @@ def _row_error(value: Any, path: str, columns: int | None) -> ScenarioError:
 
 
 def _summary(value: Any, array: np.ndarray[Any, Any]) -> object:
-    """Describe an array by type and shape, to keep messages short; keep anything else."""
+    """Describe an array by type and shape, to keep messages short; return others unchanged."""
     if isinstance(value, np.ndarray):
         return f"{array.dtype} array of shape {array.shape}"
     return value
 
 
-# Rows of a table that a notebook shows.
+# Rows of a table shown by a notebook.
 _SHOWN = 10
 
 # Columns that hold a tuple of whole numbers in each row.
@@ -308,7 +308,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
     ----------
     columns : mapping of str to array_like, or callable
         The columns in order; a list becomes an array of strings, or of objects if it holds tuples.
-        A callable returns them when they are first used.
+        A callable returns them on first use.
 
     Examples
     --------
@@ -316,7 +316,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
     >>> len(table), list(table), table["x"].tolist()
     (2, ['x', 'kind'], [0.0, 0.5])
 
-    pyarrow, polars and DuckDB take it as it is:
+    pyarrow, polars and DuckDB accept it directly:
 
     >>> import pyarrow
     >>> pyarrow.table(table).schema.names
@@ -325,7 +325,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     __slots__ = ("_frozen", "_source")
 
-    # As with arrays, comparing columns has no single answer: a table equals only itself.
+    # Comparing columns gives arrays, so a table equals only itself.
     __eq__ = object.__eq__
     __hash__ = object.__hash__
 
@@ -359,7 +359,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
         return len(self) > 0
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
-        """Pickle the columns; they are read-only again in the copy."""
+        """Pickle the columns; they stay read-only in the copy."""
         return Table, (self._columns,)
 
     def __repr__(self) -> str:
@@ -381,10 +381,9 @@ class Table(Mapping[str, "NDArray[Any]"]):
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Export to packages that read Arrow; columns of numbers are not copied.
 
-        ``polars.from_dataframe(table)``, ``pyarrow.table(table)``, and SQL of DuckDB on the name of
-        a variable that holds it. A tuple becomes a list of whole numbers, an outline a list of
-        points. ``polars.DataFrame(table)`` takes the columns one by one instead, and has objects
-        for these.
+        Use ``polars.from_dataframe(table)``, ``pyarrow.table(table)``, or DuckDB's SQL with the
+        name of the table's variable. A tuple becomes a list of whole numbers, an outline a list of
+        points. ``polars.DataFrame(table)`` takes single columns instead, with these as objects.
 
         Raises
         ------
@@ -428,7 +427,7 @@ def _column(values: Any) -> NDArray[Any]:
 
 
 def _arrow_column(arrow: Any, name: str, column: NDArray[Any]) -> Any:
-    """Convert a column to Arrow; of a column without rows only the name tells its type."""
+    """Convert a column to Arrow; without rows, its name gives the type."""
     if name in _TUPLES:
         return arrow.array(column, arrow.list_(arrow.int64()))
     if name == "outline":

@@ -1,4 +1,4 @@
-"""The bodies of a robot: kinds, outlines and poses; the discs of its tracks, and its belly."""
+"""Bodies of a robot: kinds, outlines and poses; discs of its tracks; its belly."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Disc = tuple[float, float, float]
 
 
 def end_discs(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
-    """Find the rearmost and the foremost disc; of two that reach equally far the higher one.
+    """Find the rearmost and the foremost disc; the higher one if two reach equally far.
 
     Examples
     --------
@@ -44,14 +44,14 @@ def end_discs(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
     ((-0.2, 0.0, 0.06), (0.3, 0.1, 0.04))
     """
     if is_centered_pair(discs):
-        return discs[0], discs[1]  # also where one would enclose the other, which is refused
+        return discs[0], discs[1]  # even if one encloses the other, which is refused later
     rear = max(discs, key=lambda disc: (disc[2] - disc[0], disc[1]))
     front = max(discs, key=lambda disc: (disc[2] + disc[0], disc[1]))
     return rear, front
 
 
 def two_discs(axle_distance: float, rear: float, front: float) -> tuple[Disc, Disc]:
-    """Place two discs of these radii [m] with the chassis frame midway between them."""
+    """Place two discs of given radii [m] with the chassis frame midway between them."""
     half = 0.5 * axle_distance
     return (-half, 0.0, rear), (half, 0.0, front)
 
@@ -67,7 +67,7 @@ def discs_in(outline: Mapping[str, Any]) -> Sequence[Disc]:
 
 
 def is_centered_pair(discs: Sequence[Disc]) -> bool:
-    """Whether these are two discs as `two_discs` places them, given by distance and radii alone."""
+    """Whether two discs are placed as by `two_discs`, so distance and radii define them."""
     if len(discs) != 2:
         return False
     (rear, rear_y, _), (front, front_y, _) = discs
@@ -82,7 +82,7 @@ BELLY_HEIGHTS = "robot.belly[*][1]"
 
 
 def belly_polygons(belly: Any) -> list[NDArray[np.float64]]:
-    """[m] List the convex polygons of a belly, of a robot or in JSON: none if that is None."""
+    """[m] List the convex polygons of a belly, from a robot or JSON; empty for None."""
     return [] if belly is None else [np.array(belly, dtype=np.float64)]
 
 
@@ -100,7 +100,7 @@ def belly_corners(belly: Any) -> NDArray[np.float64]:
 
 
 POSE_COLUMNS = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
-"""Columns of a run from which the poses of all bodies are computed."""
+"""Columns of a run that determine the poses of all bodies."""
 
 
 class BodyKind(IntEnum):
@@ -117,9 +117,9 @@ class BodyKind(IntEnum):
     SKID = 2
     BELLY = 3
     GROUSER = 4
-    """On a belt or on a shoe."""
+    """A grouser of a belt or shoe."""
     SHOE = 5
-    """The plate of a shoe, or all of a tapering shoe."""
+    """The plate of a shoe, or a whole tapering shoe."""
     GUIDE = 6
     """The rail that a chain of shoes slides on."""
     SPROCKET = 7
@@ -130,19 +130,19 @@ class BodyKind(IntEnum):
 
     @property
     def is_in_chain(self) -> bool:
-        """Whether shoes run round it."""
+        """Whether shoes run around it."""
         return self >= BodyKind.GUIDE
 
 
 class Lane(IntEnum):
-    """Which part of the robot a stretch of ground is under: `lane` of all tables."""
+    """The part of the robot above a stretch of ground: `lane` of all tables."""
 
     BOTH = 0
     """Under both tracks."""
     LEFT = 1
     RIGHT = 2
     MIDDLE = 3
-    """Under the belly, where that has ground of its own."""
+    """Under the belly, if it has separate ground."""
 
 
 def bodies_of(text: str) -> Table:
@@ -162,7 +162,7 @@ def body_poses(text: str, trace: Mapping[str, Any]) -> dict[str, NDArray[np.floa
     text : str
         The scenario in JSON.
     trace : mapping of str to ndarray
-        Columns of the run, at least those that `POSE_COLUMNS` names.
+        Columns of the run, at least those in `POSE_COLUMNS`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What the compiled core is, as runs, stores and reports of faults name it."""
+"""Version and build of the compiled core, for runs, stores and bug reports."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ __all__ = ["build_info"]
 def build_info() -> dict[str, str | int]:
     """Return version and build of the compiled core.
 
-    Runs keep it as `Run.build`, and tables of sweeps as the attributes ``build_...``.
+    Runs store it as `Run.build`, and tables of sweeps as attributes ``build_...``.
 
     Returns
     -------
     dict of str to str or int
-        A new one at each call:
+        A new dict at each call:
 
         ==========  ===============================================================================
         key         meaning
         ==========  ===============================================================================
-        `version`   of crawler2d
+        `version`   version of crawler2d
         `profile`   "release", or "debug" if it was built without optimisation and is slow
-        `engine`    the physics engine that it holds besides its own, with its version
-        `target`    processor and system for which it was built, such as "x86_64-linux"
+        `engine`    the physics engine included for comparison, with its version
+        `target`    processor and system of the build, such as "x86_64-linux"
         `schema`    version of scenario files, a whole number
-        `build_id`  digest of its source code, by which stores tell cores apart
+        `build_id`  digest of the source code, by which stores distinguish cores
         ==========  ===============================================================================
 
     Examples

@@ -1,4 +1,4 @@
-"""Ctrl-C before the command `crawler2d` has begun: while Python still imports the package."""
+"""Handle Ctrl-C of the command `crawler2d` while Python still imports the package."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ __all__ = ["end_in_one_line", "is_command", "raise_again"]
 
 
 def is_command(arguments: list[str], original: list[str]) -> bool:
-    """Tell whether this process is the command, not a program that imports the package.
+    """Whether this process is the command, not a program that imports the package.
 
     Parameters
     ----------
     arguments, original : list of str
-        What Python has in `sys.argv`, which for ``python -m`` it completes later, and in
-        `sys.orig_argv`.
+        `sys.argv`, which Python completes later for ``python -m``, and `sys.orig_argv`.
 
     Examples
     --------
@@ -33,13 +32,13 @@ def is_command(arguments: list[str], original: list[str]) -> bool:
 
 
 def end_in_one_line() -> None:
-    """Let Ctrl-C end the process in one line, with its usual status, until `raise_again`.
+    """Let Ctrl-C end the process with one line and the usual status, until `raise_again`.
 
-    Of an exception Python would show the traceback; in some places of an import it loses them.
+    For an exception Python would print a traceback, or lose it within some imports.
     """
     import signal  # noqa: PLC0415 - which only the command needs
 
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else Ctrl-C is ignored
         signal.signal(signal.SIGINT, _end)
 
 
@@ -52,7 +51,7 @@ def raise_again() -> None:
 
 
 def _end(number: int, _: object) -> None:
-    # A terminal shows ^C where the line would begin.
+    # A terminal shows ^C at the beginning of the line.
     begin = "\n" if os.isatty(2) else ""
     os.write(2, f"{begin}crawler2d: interrupted\n".encode())
-    os._exit(128 + number)  # nothing has been begun that would have to be ended
+    os._exit(128 + number)  # there is nothing to clean up yet

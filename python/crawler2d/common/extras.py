@@ -1,4 +1,4 @@
-"""Optional packages: imported on first use; if one is missing, the error names its extra."""
+"""Import optional packages on first use; the error for a missing one names its extra."""
 
 from __future__ import annotations
 
@@ -45,24 +45,24 @@ def extra(module: str, name: str) -> Any:
 
 
 def _leave_out_broken(module: str) -> None:
-    """Hide a package that another one would use, if it is there but cannot be imported.
+    """Hide a package that another one would use, if its import fails.
 
-    xarray knows only that dask may be missing. With /proc hidden dask fails, as it counts cores.
+    xarray expects only a missing dask, but dask fails with /proc hidden, as it counts cores.
     """
     try:
         with _without_interrupt():
             importlib.import_module(module)
     except ImportError:
         return
-    except Exception:  # whatever it is, what uses it can do without
-        sys.modules[module] = None  # type: ignore[assignment] # then importing it is an ImportError
+    except Exception:  # whatever the cause, users of the package can do without
+        sys.modules[module] = None  # type: ignore[assignment] # makes its import an ImportError
 
 
 @contextlib.contextmanager
 def _without_interrupt() -> Iterator[None]:
-    """Delay Ctrl-C until the import is done: what is half imported often cannot be imported again.
+    """Delay Ctrl-C until the import is done: an interrupted import often cannot be repeated.
 
-    Removing the half from `sys.modules` does not help: pandas and matplotlib still fail.
+    Removing the partial modules from `sys.modules` does not help pandas and matplotlib.
     """
     handler = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):

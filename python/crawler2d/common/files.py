@@ -1,4 +1,4 @@
-"""Files that appear once they are complete."""
+"""Write files that appear only when complete."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ __all__ = ["part_of", "write_text", "written_whole"]
 
 @contextlib.contextmanager
 def part_of(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Name a file that takes the place of another one when it is complete.
+    """Return a temporary path that replaces a file when complete.
 
     Parameters
     ----------
     path : str or path-like
-        Its place. Until the end, and after a failure, what was there is still there.
+        The final path. Its old content stays until the end, and after a failure.
 
     Yields
     ------
     Path
-        Beside that place, with the same suffix, for programs that choose a format by it. Nothing
-        is there yet.
+        A new path in the same folder, with the same suffix, as some programs choose the format by
+        it.
 
     Raises
     ------
     OSError
-        If it cannot be written, or something other than a file is in its place.
+        If it cannot be written, or the path exists and is not a file.
     """
-    place = Path(os.path.realpath(path))  # a link stays one
+    place = Path(os.path.realpath(path))  # links stay links
     if place.exists() and not place.is_file():
         number = errno.EISDIR if place.is_dir() else errno.EINVAL
         raise OSError(number, os.strerror(number), os.fspath(path))
@@ -45,7 +45,7 @@ def part_of(path: str | os.PathLike[str]) -> Iterator[Path]:
     except OSError as error:
         if error.errno is None or error.filename not in (None, str(part)):
             raise
-        # Writing names no file, and the name of the part would tell a user nothing.
+        # Errors from writing name no file, and the temporary name would not help a user.
         raise OSError(error.errno, error.strerror, os.fspath(path)) from None
     finally:
         part.unlink(missing_ok=True)
@@ -53,16 +53,16 @@ def part_of(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def written_whole(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
-    """Open a file for bytes that takes the place of another one when it is complete.
+    """Open a binary file that replaces another one when complete.
 
-    See `part_of` for the parameter and the errors.
+    See `part_of` for parameter and errors.
     """
     with part_of(path) as part, part.open("wb") as file:
         yield file
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
-    """Write a text as UTF-8, whole or not at all; errors are those of `part_of`."""
+    """Write text as UTF-8, completely or not at all; raises the errors of `part_of`."""
     with written_whole(path) as file:
         file.write(text.encode())
     return Path(path)

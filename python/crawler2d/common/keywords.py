@@ -1,4 +1,4 @@
-"""Refusal of unknown keywords, with a suggestion of the nearest, and of arguments without one."""
+"""Refuse unknown keywords, with the nearest known one, and superfluous positional arguments."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ _BEYOND_A_SIDE_VIEW = (
     *("soil", "sand", "mud", "sinkage", "cohesion", "suspension"),
     *("stl", "mesh", "heightmap", "pid", "kp", "ki", "kd", "controller"),
 )
-"""What users look for and a side view does not have; see README, "Limits"."""
+"""Features that users look for and a side view lacks; see README, "Limits"."""
 
 _LIMITS = (
     " (crawler2d is a side view; README, Limits, lists what it leaves out, such as roll, yaw,"
     " turning, soil, suspension, meshes of the ground and controllers)"
 )
 _MISSPELT, _ALIKE = 0.8, 0.6
-"""Similarity by `difflib`: of a name with a letter missing, and of one that shares half."""
+"""Similarity by `difflib`: for a missing letter, and for half of the letters in common."""
 _MOST = 3
 """Names in one hint."""
 
 
 def limits_hint(name: str) -> str:
-    """Point to the limits, if a name asks for what a side view does not have; else empty."""
+    """Point to the limits if a name asks for a feature that a side view lacks, else ""."""
     parts = name.lower().split("_")
     return _LIMITS if any(part in _BEYOND_A_SIDE_VIEW for part in parts) else ""
 
 
 def suggestion(name: str, names: Iterable[str], paths: Iterable[str] = ()) -> str:
-    """Suggest the known name that was probably meant; empty if none is similar.
+    """Suggest the known name that was probably meant; "" if none is similar.
 
     Parameters
     ----------
     name : str
         The unknown name.
     names, paths : iterable of str
-        Known names: in the same object, and elsewhere, by path.
+        Known names in the same object, and paths elsewhere.
 
     Examples
     --------
@@ -106,14 +106,14 @@ def refuse_unknown(
     given : mapping of str to object
         The keywords with their values.
     known : sequence of str
-        The keywords that it takes.
+        Known keywords.
     paths : iterable of str
-        Other names that may be meant.
+        Other names that may have been meant.
 
     Raises
     ------
     ArgumentError
-        For the first of them.
+        For the first unknown keyword.
     """
     for name, value in given.items():
         if name not in known:
@@ -123,9 +123,9 @@ def refuse_unknown(
 
 
 def _refuse_nameless(called: str, given: Sequence[object], function: FunctionType) -> None:
-    """Refuse an argument without a keyword where one is needed, with the keywords that there are.
+    """Refuse a positional argument that must be a keyword, and list the keywords.
 
-    What takes no further keywords either is left to Python's own error.
+    Without further keywords, Python's own error applies.
     """
     code = function.__code__
     most = code.co_argcount
@@ -138,7 +138,7 @@ def _refuse_nameless(called: str, given: Sequence[object], function: FunctionTyp
 
 
 def takes_keywords(function: Callable[P, R]) -> Callable[P, R]:
-    """Let a function refuse unknown keywords with the nearest known name."""
+    """Make a function refuse unknown keywords with the nearest known name."""
     known = _keyword_names(cast("FunctionType", function))
     if known is None:
         return function
@@ -150,7 +150,7 @@ def takes_keywords(function: Callable[P, R]) -> Callable[P, R]:
         refuse_nameless(name, args, inner)
         return function(*args, **keywords)
 
-    # With the globals of the function: by them doctest finds the module of the examples.
+    # Keep the function's globals, by which doctest finds the module of the examples.
     wrapper = FunctionType(call.__code__, function.__globals__, name, None, call.__closure__)
     return functools.update_wrapper(wrapper, function)
 
@@ -171,7 +171,7 @@ class TakesKeywords:
 
 
 def _keyword_names(function: FunctionType) -> tuple[str, ...] | None:
-    """List the parameters that can be given by keyword; None if it takes any."""
+    """List the parameters that can be keywords; None if any keyword is accepted."""
     code = function.__code__
     named = code.co_argcount + code.co_kwonlyargcount
     names = code.co_varnames[code.co_posonlyargcount : named]

@@ -1,4 +1,4 @@
-"""Units of the fields that a sweep can vary and of the metrics of a run."""
+"""Units of the fields of a scenario and of the metrics of a run."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ METRICS = {name: unit for name, unit, _ in _core.metrics()}
 """Unit of every metric of a run."""
 
 RENAMED_METRICS = _core.renamed_metrics()
-"""Former names of metrics, with those that they have now."""
+"""Map former names of metrics to current ones."""
 
 
 def table_of_metrics() -> str:

@@ -1,1 +1,1 @@
-"""Robot and ground as outlines: in figures, as SVG and in notebooks; from plain data alone."""
+"""Outlines of robot and ground in figures, SVG and notebooks, from plain data."""

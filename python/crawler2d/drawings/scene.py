@@ -1,4 +1,4 @@
-"""What is drawn of a robot on its ground, in figures, SVG and pages: outlines, poses, looks."""
+"""The drawing of a robot on its ground: outlines, poses and looks."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ class Look(Enum):
 
     BELLY = "belly"
     INSIDE = "inside"
-    """A wheel inside a belt or a chain, which nothing touches."""
+    """A wheel inside a belt or chain, without contacts."""
     GUIDE = "guide"
-    """What shoes slide on, hidden by them."""
+    """The guide of shoes, hidden by them."""
     CHAIN_WHEEL = "chain wheel"
-    """What shoes run round, hidden by them but for the teeth of the sprocket."""
+    """A wheel that shoes run around, hidden by them except for the sprocket's teeth."""
     HULL = "hull"
     """A belt with its grousers, or a skid."""
     WHEEL = "wheel"
@@ -144,7 +144,7 @@ class Circuit:
 
 @dataclass(frozen=True, slots=True)
 class Carrier:
-    """What carries a track: the chassis, or the flippers at one end.
+    """A carrier of a track: the chassis, or the flippers at one end.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ class Carrier:
     circles : ndarray, shape (k, 3)
         [m] Centres and radii of the circles that the envelope runs round, in its own frame.
     closed : bool
-        Whether nothing gets inside: it carries a belt, skids or a chain.
+        Whether ground cannot get inside: it carries a belt, skids or a chain.
     envelope, root_envelope : ndarray, shape (k, 2)
         [m] Taut belts round the circumscribed circles and round the root circles.
     inner : ndarray, shape (k, 2)
@@ -178,14 +178,14 @@ class Carrier:
 
 
 class Scene:
-    """Everything that is drawn of a robot and its ground, as the core provides it.
+    """Everything to draw of a robot and its ground, as provided by the core.
 
     Parameters
     ----------
     text : str
         The scenario in JSON.
     columns : mapping of str to ndarray
-        Where the robot is at n samples: the columns of a run that `POSE_COLUMNS` names.
+        The robot's state at n samples: the columns of a run in `POSE_COLUMNS`.
 
     Attributes
     ----------
@@ -206,7 +206,7 @@ class Scene:
     carriers : list of Carrier
         The chassis, then the front flippers, then the rear ones.
     looks : dict of int to Look
-        The bodies that may be seen, of the near track, in the order of drawing.
+        Visible bodies of the near track, in drawing order.
     """
 
     def __init__(self, text: str, columns: Mapping[str, NDArray[np.float64]]) -> None:
@@ -235,12 +235,12 @@ class Scene:
 
     @classmethod
     def at_start(cls, text: str) -> Scene:
-        """Stand the robot of a scenario in JSON where it is at time 0, the only sample."""
+        """Make the scene of a scenario in JSON at time 0, its only sample."""
         return cls(text, _first_sample(text))
 
     @classmethod
     def of_robot(cls, text: str) -> Scene:
-        """Do so in the frame of its chassis, for a drawing of the robot alone."""
+        """Make the same in the chassis frame, for a drawing of the robot alone."""
         columns = _first_sample(text)
         frame = np.column_stack([columns["position"], columns["chassis_angle"]])
         shoes = relative(columns["shoe_poses"][0], frame)[None]
@@ -283,12 +283,12 @@ class Scene:
         return place(close_line(self.bodies["outline"][body]), self.poses[sample, body])
 
     def outlines(self, sample: int) -> list[NDArray[np.float64]]:
-        """[m] The closed outlines of all bodies that are seen at a sample."""
+        """[m] The closed outlines of all visible bodies at a sample."""
         return [self.outline(body, sample) for body in self.seen]
 
     @property
     def seen(self) -> dict[int, Look]:
-        """The looks of the bodies that are seen: all but the wheels inside belts."""
+        """Looks of the visible bodies: all except wheels inside belts."""
         return {body: look for body, look in self.looks.items() if look != Look.INSIDE}
 
     def carrier_of(self, body: int) -> int:
@@ -297,7 +297,7 @@ class Scene:
         return names.index(self.bodies["carrier"][body])
 
     def surfaces(self, left: float, right: float) -> list[NDArray[np.float64]]:
-        """[m] The surfaces of the lanes between two places, the farthest from the viewer first."""
+        """[m] Surfaces of the lanes between two positions, the farthest from the viewer first."""
         found = []
         for _, profile in self.lanes:
             inner = profile[(profile[:, 0] > left) & (profile[:, 0] < right)]
@@ -324,11 +324,11 @@ class Scene:
         return left, right, min(lowest, low) - _MARGIN, max(highest, high)
 
     def robot_extent(self) -> Extent:
-        """[m] What is seen of the robot at the first sample."""
+        """[m] Extent of the robot at the first sample."""
         return extent_of(*self.outlines(0))
 
     def course(self) -> Extent:
-        """[m] The robot, and the ground that it has to cross to be past the goal, with room."""
+        """[m] Extent of the robot and the ground up to the goal, with a margin."""
         left, right, bottom, top = self.robot_extent()
         length = right - left
         left, right = min(left, self.goal - length), max(right, self.goal + length)
@@ -340,7 +340,7 @@ class Scene:
 
 
 def _first_sample(text: str) -> dict[str, NDArray[np.float64]]:
-    """Find where the robot of a scenario in JSON stands at time 0."""
+    """Compute the pose of a scenario's robot at time 0."""
     start = json.dumps({**json.loads(text), "duration": 0.0})
     trace = _core.simulate(start, 1.0, "full", [])["trace"]
     return {name: trace[name] for name in POSE_COLUMNS}

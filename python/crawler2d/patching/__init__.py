@@ -1,1 +1,1 @@
-"""A model file with other wheels: the text as its author wrote it, changed only where they are."""
+"""Change the wheels in the text of a model file, and nothing else."""

@@ -29,12 +29,13 @@ _SIDES = ("left", "right")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motor:
-    """Factors of what the motor of a wheel does at its circumference.
+    """Factors of a wheel's motor, at the circumference of the wheel.
 
     Parameters
     ----------
     force, gain, rotor : float
-        [-] Of its largest force, of the gain of its servo, and of the mass of its rotor there.
+        [-] Factors of its largest force, the gain of its servo, and the equivalent mass of its
+        rotor.
     """
 
     force: float = 1.0
@@ -49,22 +50,22 @@ class Change:
     Parameters
     ----------
     joint : Joint
-        On which it turns.
+        Joint of the wheel.
     links : tuple of str
-        The links that turn with it, its own first.
+        Links that turn with it, its own first.
     action : {"changed", "added", "removed"}
-        An added one is a changed copy of this one.
+        An added wheel is a changed copy of this one.
     shift : ndarray, shape (3,)
         [m] Its displacement, in the frame of the model.
     size : float
         [-] Factor of its radius.
     round_size : float
-        [-] Factor of the radius of its round shapes: of gear wheels that of the root circle.
+        [-] Factor of the radius of its round shapes; for gear wheels, of the root circle.
     mass : float
-        [-] Factor of its mass: that of all wheels of a carrier together stays the same.
+        [-] Factor of its mass; the total over a carrier's wheels stays the same.
     motor : Motor
-        Factors of its motor at the same radius: all of a side together, those on flippers included,
-        stay the same, also where not all wheels have one.
+        Factors of its motor at the same radius; the totals of a side, including flippers, stay the
+        same, even if not all wheels have motors.
     grousers : tuple of Shape
         Boxes, in the frame of the model.
     """
@@ -86,7 +87,7 @@ class Change:
 
     @property
     def is_none(self) -> bool:
-        """Whether its wheel stays as it is."""
+        """Whether its wheel stays unchanged."""
         same = (
             self.size == self.mass == 1.0
             and self.motor == Motor()
@@ -96,7 +97,7 @@ class Change:
         return self.action == "changed" and same
 
     def grousers_on(self, wheel: Pose) -> Iterator[tuple[Shape, Pose]]:
-        """Yield the grousers, with their poses in the frame of the wheel's link as it has moved."""
+        """Yield the grousers, with their poses in the frame of the moved wheel's link."""
         moved = Pose(place=wheel.place + self.shift, turn=wheel.turn)
         return ((shape, shape.pose.seen_from(moved)) for shape in self.grousers)
 
@@ -122,11 +123,12 @@ class Change:
 
 
 def changes_of(reading: Reading, robot: Robot) -> list[Change]:
-    """Plan how the wheels of a file become those of another robot.
+    """Plan the changes from the wheels of a file to those of another robot.
 
-    Wheels that match one of the other robot stay. Of the others on a carrier, each becomes the next
-    one that is not taken; the rest is removed, and missing ones are copied from the closest. As all
-    wheels of a side share its torque, more or fewer on one carrier change the motors on the others.
+    Wheels that match one of the other robot stay. The others on a carrier become, in order, the
+    wheels still missing; surplus ones are removed, and missing ones are copied from the closest. As
+    all wheels of a side share its torque, a different number on one carrier changes the motors on
+    the others.
 
     Parameters
     ----------
@@ -138,12 +140,13 @@ def changes_of(reading: Reading, robot: Robot) -> list[Change]:
     Returns
     -------
     list of Change
-        One for each wheel of the file that does not stay as it is, and for each that is added.
+        One for each changed, removed or added wheel.
 
     Raises
     ------
     ScenarioError
-        If the other robot has other carriers, belts, or wheels where the file has none.
+        If the other robot has different carriers, belts, or wheels on a carrier without any in the
+        file.
     """
     old, new = _carriers(reading.robot), _carriers(robot)
     if [each.end for each in old] != [each.end for each in new]:
@@ -189,7 +192,7 @@ def _is_same_carrier(was: Carrier, now: Carrier) -> bool:
 
 
 def _has_wheels(reading: Reading, carrier: Carrier) -> bool:
-    """Whether it has wheels in the file: a chassis without any stands on those of its flippers."""
+    """Whether it has wheels in the file; a chassis without any stands on its flippers' wheels."""
     return carrier.surface == "wheels" and bool(
         (reading.wheels["carrier"] == _name_of(carrier)).any()
     )
@@ -209,7 +212,7 @@ def _has_same_outline(first: Wheel, second: Wheel) -> bool:
 
 
 def _share(of_wheels: list[float], stay: list[int]) -> float:
-    """[-] Return by which factor those that stay, each with its copies, have the total of all."""
+    """[-] Return the factor that gives the remaining ones, with their copies, the total of all."""
     kept = sum(of_wheels[each] for each in stay)
     factor = sum(of_wheels) / kept if kept > 0.0 else 1.0
     return factor if abs(factor - 1.0) > _SAME else 1.0
@@ -258,7 +261,7 @@ class _CarrierChange:
                 raise ScenarioError(f"tracks of the {self.name}", carrier.surface, rule)
 
     def actions(self) -> Iterator[tuple[int, int | None, str]]:
-        """Yield the wheel of the file, the one that it becomes, and the action."""
+        """Yield the wheel of the file, its replacement, and the action."""
         old, new = list(range(len(self.was.wheels))), list(range(len(self.now.wheels)))
         pairs = []
         for each in list(new):
@@ -282,7 +285,7 @@ class _CarrierChange:
         return int(np.argmin([math.dist(wheel.center, center) for wheel in self.was.wheels]))
 
     def on_side(self, side: str, motors: Mapping[str, Motor]) -> Iterator[Change]:
-        """Yield the changes on a side, where motors have these factors, by their joints."""
+        """Yield the changes on a side, given the factors of motors by joint."""
         joints, links = self.joints(side), self.reading.tree.by_name
         masses = [
             sum(links[name].mass for joint in group for name in self.hanging[joint.child])
@@ -338,7 +341,7 @@ class _CarrierChange:
         return joints
 
     def grousers(self, joint: Joint, outline: Array, center: Array) -> tuple[Shape, ...]:
-        """Return the grousers of a gear wheel, as wide as the wheel of the file that it is on."""
+        """Return the grousers of a gear wheel, as wide as its wheel in the file."""
         frame, links = self.reading.frame, self.reading.tree.by_name
         shapes = [shape for name in self.hanging[joint.child] for shape in links[name].shapes]
         largest = max(shapes, key=lambda shape: shape.radius)

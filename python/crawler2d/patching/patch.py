@@ -39,14 +39,14 @@ _EDITORS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
 }
 
 _SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
-"""Settings of plugins that drive wheels by their speed."""
+"""Plugin settings with the radius of driven wheels."""
 
 _COUNTS = ("num_wheel_pairs", "wheel_torque", "max_wheel_torque")
-"""Settings of plugins that hold for a certain number of wheels, and are not changed."""
+"""Plugin settings that depend on the number of wheels, and are not changed."""
 
-_MARK = "\0"  # that no file has, between a name and a line
-_ALIKE = 1e-3  # [-] Sizes of wheels for which one setting of a plugin stands differ by less.
-_MASS = 1e-4  # of the whole: far above what rounding leaves
+_MARK = "\0"  # between a name and a line; not in any file
+_ALIKE = 1e-3  # [-] Largest difference of wheel sizes with one plugin setting.
+_MASS = 1e-4  # of the whole: far above rounding
 _MOTORS = 0.01  # [-] of torques, rotors and gains
 _CENTER = 0.01  # of the axle distance: the masses of unequal wheels are redistributed
 
@@ -58,12 +58,12 @@ class Patch:
     Parameters
     ----------
     text : str
-        All of it.
+        The whole text.
     diff : str
         The differences from the file that was read, as a unified diff.
     summary : str
-        The numbers of added, removed and changed wheels and of lines that differ, and the settings
-        of plugins that may depend on wheels and are unchanged.
+        Numbers of added, removed and changed wheels and of changed lines, and plugin settings that
+        may depend on wheels but are unchanged.
     left : tuple of str
         These settings, each with its line in the file that was read.
     """
@@ -89,19 +89,21 @@ def patch_file(reading: Reading, robot: Robot, label: str = "") -> Patch:
     Returns
     -------
     Patch
-        Its robot, read with the keywords of `reading`, has the wheels of `robot`.
+        The file; read with the keywords of `reading`, it has the wheels of `robot`.
 
     Raises
     ------
     ScenarioError
-        If the robots differ in more than wheels, or the text has them in a form that cannot be
-        changed in place, such as meshes.
+        If the robots differ in more than wheels, or the wheels are in a form that cannot be changed
+        in place, such as meshes.
     """
     if "\ufffd" in reading.text:
         raise ScenarioError(reading.path.name, "another encoding", "must be UTF-8, to be changed")
     changes = changes_of(reading, robot)
     if not changes:
-        raise ScenarioError("robot.track", robot.track, "must have other wheels than the file")
+        raise ScenarioError(
+            "robot.track", robot.track, "must have wheels that differ from the file's"
+        )
     document = Document(reading.text)
     unlike = _edit(document, changes, reading)
     text = add_label(document.text, label) if label else document.text
@@ -122,7 +124,7 @@ def add_label(text: str, label: str) -> str:
     >>> add_label("<?xml version='1.0'?>\n<robot/>", "five -- not four, on a---b")
     "<?xml version='1.0'?>\n<!-- five - - not four, on a- - -b -->\n<robot/>"
     """
-    # A mark of the byte order, which editors of Windows write, must stay the first character.
+    # A byte order mark, as written by Windows editors, must stay the first character.
     begin = re.match(r"\ufeff?(?:\s*<\?xml.*?\?>\s*)?", text, re.DOTALL)
     end = begin.end() if begin else 0
     line = "\r\n" if "\r\n" in text else "\n"
@@ -130,11 +132,11 @@ def add_label(text: str, label: str) -> str:
 
 
 def _edit(document: Document, changes: list[Change], reading: Reading) -> list[Span]:
-    """Make all changes in a text; return settings of plugins that hold for several sizes now."""
+    """Make all changes in a text; return plugin settings that now cover several sizes."""
     tree = reading.tree
     change_wheel = _EDITORS[tree.format.split()[0]]
     scope = document.root
-    if scope.tag == "sdf":  # its model, of perhaps several
+    if scope.tag == "sdf":  # its model, perhaps one of several
         models = (each for each in scope.within() if each.tag == "model" and each.name == tree.name)
         scope = next(models)
         for change in changes:
@@ -166,7 +168,7 @@ def _edit(document: Document, changes: list[Change], reading: Reading) -> list[S
 
 
 def _new_names(names: set[str], taken: set[str]) -> dict[str, str]:
-    """Choose names for a copy, none of which is taken."""
+    """Choose unused names for a copy."""
     for count in itertools.count(1):
         suffix = "_added" if count == 1 else f"_added_{count}"
         new = {name: f"{name}{suffix}" for name in sorted(names)}
@@ -191,10 +193,9 @@ def _factors(changes: list[Change], joints: Iterable[str]) -> dict[str, set[floa
 def _change_plugins(
     document: Document, scope: Span, factors: Mapping[str, set[float]]
 ) -> list[Span]:
-    """Change the radius with which a plugin converts a speed to that of wheels.
+    """Change the radius by which a plugin converts a speed to that of wheels.
 
-    A radius of wheels that become unlike is right for some of them at most. It stays, and is
-    returned.
+    If wheels get different radii, one setting cannot fit all of them: it is kept and returned.
     """
     unlike = []
     for plugin in scope.within():
@@ -219,7 +220,7 @@ def _check(reading: Reading, robot: Robot, text: str) -> None:
         path = path.with_suffix("") if path.stem.endswith(".urdf") else path.with_suffix(".urdf")
     try:
         again, _ = read_text(text.encode(), path, replace(reading.how, scale=None))
-    except ScenarioError as error:  # of a text that its author has not seen
+    except ScenarioError as error:  # about a text that the author has not seen
         _fail(error.path, error.value, error.rule)
     got, asked = again.robot.wheels(), robot.wheels()
     if len(got) != len(asked) or (got["carrier"] != asked["carrier"]).any():
@@ -242,7 +243,7 @@ def _check(reading: Reading, robot: Robot, text: str) -> None:
 
 
 def _check_motors(before: Robot, after: Robot) -> None:
-    """Refuse wheels that push with another force together, or with other rotors or gains."""
+    """Refuse wheels with another total force, or other rotors or gains."""
     radius, own = after.outline.rear_radius, before.outline.rear_radius
     names = {"max_torque": 1, "rotor_inertia": 2, "controller.gain": 2}
     for name, power in names.items():
@@ -269,7 +270,7 @@ def _fail(what: str, value: object, rule: str) -> NoReturn:
 
 def _diff(old: str, new: str, name: str) -> list[str]:
     """List the lines of a unified diff of two texts of a file."""
-    # Lines that stand in every link are told apart, so that no wheel is taken for another.
+    # Mark lines that occur in every link, so that wheels are not confused.
     before, after = (_marked(text.splitlines(keepends=True)) for text in (old, new))
     marked = difflib.unified_diff(before, after, name, f"{name} (other wheels)")
     lines = [line[0] + line.partition(_MARK)[2] if _MARK in line else line for line in marked]
@@ -281,7 +282,7 @@ def _diff(old: str, new: str, name: str) -> list[str]:
 
 
 def _join_ends(lines: list[str], start: int) -> None:
-    """Join equal lines at the end of what goes and of what comes there: only their marks differ."""
+    """Join equal lines at the ends of removed and added blocks: only their marks differ."""
     middle = _end_of_run(lines, start, "-")
     end = _end_of_run(lines, middle, "+")
     gone, new = lines[start:middle], lines[middle:end]
@@ -300,7 +301,7 @@ def _end_of_run(lines: list[str], start: int, sign: str) -> int:
 
 
 def _marked(lines: list[str]) -> list[str]:
-    """Put the last name above or in a line before it."""
+    """Prefix each line with the last name in or above it."""
     name, marked = "", []
     for line in lines:
         named = re.search(r"""\b(?:name|reference)\s*=\s*["']([^"']*)""", line)
@@ -312,18 +313,18 @@ def _marked(lines: list[str]) -> list[str]:
 def _left(
     changes: list[Change], root: Span, text: str, unlike: Collection[Span] = ()
 ) -> tuple[str, ...]:
-    """List settings of plugins and keyframes that may be wrong for more, fewer or unlike wheels.
+    """List plugin settings and keyframes that may be wrong for more, fewer or different wheels.
 
     Parameters
     ----------
     changes : list of Change
-        Those of the wheels.
+        Changes of the wheels.
     root : Span
         The text that was read.
     text : str
         That text.
     unlike : collection of Span
-        Sizes in it that stand for wheels of several sizes now.
+        Its size settings that now cover several sizes.
     """
     counts = _counts(changes)
     other = [change for change in changes if change.action != "changed"]
@@ -352,7 +353,7 @@ def _left(
 
 
 def _lists(setting: Span, names: set[str]) -> bool:
-    """Whether one of these names is in the text of a setting, beside others."""
+    """Whether a setting's text contains one of these names among others."""
     is_one = setting.children or setting.text in names
     return not is_one and not names.isdisjoint(re.split(r"""[\s,;'"()[\]]+""", setting.text))
 
@@ -363,7 +364,7 @@ def _counts(changes: list[Change]) -> Counter[str]:
 
 
 def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> str:
-    """Describe the changes of the wheels, and what is left to be set by hand."""
+    """Describe the changes of the wheels, and settings to be adjusted by hand."""
     counts = _counts(changes)
     parts = [f"{counts[each]} {each}" for each in ("added", "removed", "changed") if counts[each]]
     marks = Counter(line[0] for line in diff[2:])

@@ -1,1 +1,1 @@
-"""Pictures of a run: figures, and a page that replays it."""
+"""Figures of runs and studies, and pages that replay runs."""

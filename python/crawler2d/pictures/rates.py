@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 _SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
-"""Factor and unit in which people read a quantity."""
+"""Display unit of a quantity, and its factor."""
 
 LOOKS = {
     "cleared": (GREEN, ""),
@@ -79,7 +79,7 @@ _HATCH, _DOTS = "////", ".."
 """Marks of what is not certain, and of what was not simulated."""
 
 _RIM = 2.5
-"""[point] Width of the line round where most runs have the outcome of a map."""
+"""[point] Width of the line round areas where most runs have the outcome of a map."""
 
 _BELOW = 46.0 / 72.0
 """[inch] From the axes to the legend, past ticks and label."""
@@ -100,7 +100,7 @@ _DOWN = 0.26
 
 
 def readable(values: xarray.DataArray) -> tuple[float, str]:
-    """Return the factor to the unit in which people read an array, and its name with that unit."""
+    """Return the factor to the display unit of an array, and its name with that unit."""
     given = values.attrs.get("units", "")
     factor, unit = _SCALES.get(given, (1.0, given))
     name = str(values.attrs.get("long_name", values.name))
@@ -108,7 +108,7 @@ def readable(values: xarray.DataArray) -> tuple[float, str]:
 
 
 def populations(attributes: Mapping[str, Any], *, banded: bool, what: str = "rates") -> str:
-    """Say in a title over what the rates are taken."""
+    """Describe in a title the population of the rates."""
     varied = _field_names(attributes.get("vary", attributes.get("varied", "")))
     text = f"{what} over {varied}" if varied else f"{what} of equal runs"
     unknown = _field_names(attributes.get("unknown", ""))
@@ -128,7 +128,7 @@ def _field_names(text: str) -> str:
 
 
 def plot_outcomes(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw a bar for each ground and model: how its runs ended, and its rate."""
+    """Draw a bar of outcomes for each ground and model, with its rate."""
     dims = ("terrain", "model")
     data = data.expand_dims([dim for dim in dims if dim not in data["rate"].dims])
     ended = sorted((str(name) for name in data if str(name).startswith("ended_")), key=_rank)
@@ -179,7 +179,7 @@ def _rank(name: str) -> int:
 
 
 def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw how most runs of every cell end: hatched if not certain, dotted if not simulated."""
+    """Draw the commonest end of every cell: hatched if uncertain, dotted if not simulated."""
     data = one_model(data)
     ending = data["ending"]
     if ending.ndim != 2 or min(ending.shape) < 2:
@@ -225,7 +225,7 @@ def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
 def _draw_rim(
     ax: Axes, at: tuple[NDArray[np.float64], NDArray[np.float64]], inside: NDArray[np.bool_]
 ) -> None:
-    """Draw the line round the cells that have an outcome, for those who see its colour badly."""
+    """Draw a line round the cells with an outcome, for readers who cannot see its colour."""
     x, y = (_edges(each) for each in at)
     padded = np.pad(inside, 1)
     sides = [
@@ -248,7 +248,7 @@ def _edges(middles: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _certainty(data: xarray.Dataset, *, banded: bool) -> str:
-    """Say how many runs stand behind a cell, and how well its rate is known."""
+    """Describe the number of runs behind a cell, and the width of its interval."""
     counts = data["count"].to_numpy()
     counts = counts[counts > 0]
     if not counts.size:
@@ -304,7 +304,7 @@ def one_model(data: xarray.Dataset) -> xarray.Dataset:
     Raises
     ------
     ScenarioError
-        If it has several.
+        If it has several models.
     """
     if data.sizes.get("model", 1) > 1:
         models = ", ".join(map(str, data["model"].to_numpy()))
@@ -314,26 +314,26 @@ def one_model(data: xarray.Dataset) -> xarray.Dataset:
 
 
 def with_dims(data: xarray.Dataset, *dims: str) -> xarray.Dataset:
-    """Give a part of a data set at one value of a dimension that dimension back, of length one."""
+    """Restore a selected dimension of a data set, with length one."""
     return data.expand_dims([dim for dim in dims if dim in data.coords and dim not in data.dims])
 
 
 def plot_measured(data: xarray.Dataset, ax: Axes | None, *, of: str | None = None) -> Axes:
-    """Draw a row for each model: the median, how far the repeats lie apart, and the evidence.
+    """Draw a row for each model: median, range of the repeats, and evidence.
 
     Parameters
     ----------
     data : Dataset
-        What a study measured.
+        Measures of a study.
     ax : Axes or None
         Where to draw.
     of : str, optional
-        Which measure; None takes the study's own.
+        Name of the measure; None takes the study's own.
 
     Raises
     ------
     ScenarioError
-        If there is no such measure.
+        If the measure is unknown.
     """
     name = data.attrs["measure"] if of is None else of
     if f"{name}_each" not in data:
@@ -370,7 +370,7 @@ def plot_measured(data: xarray.Dataset, ax: Axes | None, *, of: str | None = Non
 def _draw(
     ax: Axes, data: xarray.Dataset, name: str, factor: float, style: tuple[str, str, str]
 ) -> None:
-    """Draw medians and how far the repeats, or the samples of the unknowns, lie apart."""
+    """Draw medians and the range of the repeats, or the band over the unknowns."""
     color, marker, label = style
     banded = f"{name}_band_low" in data
     keys = [f"{name}_band_{part}" for part in ("median", "low", "high")]
@@ -398,7 +398,7 @@ def _draw_evidence(ax: Axes, data: xarray.Dataset, name: str, factor: float) -> 
 
 
 def _notes(own: xarray.Dataset, name: str) -> list[str]:
-    """Say what limits a model, why there is no figure, how its runs ended, or how it drove."""
+    """Write a note: limit of a model, reason for a missing figure, outcome, or motion."""
     if "moved" in own:
         ways = own["moved"].to_numpy()[own["motion"].to_numpy() == "driving"]
         return [f"drove {way:.2f} m" for way in ways]
@@ -412,7 +412,7 @@ def _notes(own: xarray.Dataset, name: str) -> list[str]:
 
 
 def _tally(before: str, words: xarray.DataArray) -> str:
-    """Write a word, or the words of all samples with how many have each."""
+    """Write a word, or the words of all samples with their counts."""
     counts = Counter(str(word).replace("_", " ") for word in np.atleast_1d(words.to_numpy()))
     if len(counts) == 1:
         return before + next(iter(counts))
@@ -434,7 +434,7 @@ def _set_scale(ax: Axes, data: xarray.Dataset, name: str) -> None:
 
 
 def _title(data: xarray.Dataset, *, banded: bool) -> str:
-    """Say what was varied, and what the lines are."""
+    """Describe the population and the lines."""
     attributes: dict[str, Any] = data.attrs
     repeats = attributes["repeats"]
     if attributes["figure"] == "real_time_factor":

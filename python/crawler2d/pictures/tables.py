@@ -1,4 +1,4 @@
-"""Figures of rates, searches and sensitivities: what `FigureDataset.plot` draws."""
+"""Figures of rates, searches and sensitivities, for `FigureDataset.plot`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _GAP = 2.0
 """[-] Candidates that would fit between one cost and the next."""
 
 _LABELS = 16
-"""So many costs have room at the axis."""
+"""Number of costs that fit on the axis."""
 
 _ROW, _REST = 0.6, 1.6
 """[inch] Height of an unknown, and of what is above and below all of them."""
@@ -50,7 +50,7 @@ _ASIDE = 3.5, 6.0
 """[point] From one line's interval to the next one's at the same place, and the same of bands."""
 
 _LINES = 6
-"""So many lines can be told apart; where there are more, a map is drawn if it can be."""
+"""Number of distinguishable lines; more are drawn as a map if possible."""
 
 _LARGEST, _LEAST = 8.0, 3.5
 """[point] Size of the first line's markers; those of later lines are smaller, down to the least."""
@@ -90,7 +90,7 @@ def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
             text = f"{role}: {name}, no fresh run has a result"
         ax.vlines(x, lower[k], upper[k], color=color, linewidth=2.5)
         ax.plot(x, again[k], marker, color=color, markersize=7.0, label=text, zorder=3)
-    # Those of one cost stand side by side in a strip that has the cost's name.
+    # Candidates of one cost are side by side in a strip labelled with the cost.
     for left, right in _strips(at, costs)[::2]:
         ax.axvspan(left, right, color=BLACK, alpha=0.05, linewidth=0.0, zorder=0)
     several = data["terrain"].size > 1
@@ -110,7 +110,7 @@ def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
 
 
 def _lowest(data: xarray.Dataset, *names: str) -> list[NDArray[np.float64]]:
-    """Take a rate and its bounds on the terrain where each candidate's rate is lowest."""
+    """Take each candidate's rate and bounds on its worst terrain."""
     columns = [data[name].to_numpy().reshape(data["candidate"].size, -1) for name in names]
     at = np.where(np.isnan(columns[0]), np.inf, columns[0]).argmin(axis=1)[:, None]
     return [np.take_along_axis(each, at, axis=1)[:, 0] for each in columns]
@@ -238,7 +238,7 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
 
 
 def _parts(row: xarray.Dataset) -> list[tuple[float, float]]:
-    """List the parts of a range where most runs have the outcome: halfway to a value where not."""
+    """List the parts of a range where most runs have the outcome, half way to other values."""
     known = row["tried"].notnull().to_numpy()
     values, often = row["tried"].to_numpy()[known], row["tried_rate"].to_numpy()[known] >= 0.5
     edges = np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1]), values[-1:]])
@@ -261,13 +261,13 @@ def _spoken(name: str) -> str:
 
 
 def _readable(row: xarray.Dataset) -> tuple[float, str]:
-    """Return the factor to the unit in which people read an unknown, and the unit."""
+    """Return the factor to the display unit of an unknown, and the unit."""
     factor, text = readable(row["own"].assign_attrs(units=row["unit"].item(), long_name=""))
     return factor, text.strip(" []")
 
 
 def _between(low: float, high: float) -> str:
-    """Write a bracket with as many digits as its ends differ in."""
+    """Write a bracket with enough digits to distinguish its ends."""
     digits = max(0, -int(np.floor(np.log10(high - low))))
     return f"{low:.{digits}f} to {high:.{digits}f}"
 
@@ -292,12 +292,12 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
     """Draw rates over the last dimension of numbers, one line for each of the others.
 
     Bars are intervals; thick ones are the bands of the rates over the unknowns. Those of several
-    lines stand side by side about the value that was tried, which has a tick. Many lines over two
-    dimensions of numbers are a map instead.
+    lines are side by side around the value tried, which has a tick. Many lines over two dimensions
+    of numbers become a map.
     """
     banded = "band_low" in data
     numbers = _numbers(data["band_median" if banded else "rate"])
-    data = data.sortby(numbers)  # they may have been tried in any order
+    data = data.sortby(numbers)  # values may be in any order
     rates = data["rate"]
     shown = data["band_median"] if banded else rates
     along = numbers[-1]
@@ -312,7 +312,7 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
         own = shown.sel(place).to_numpy()
         low, high = ("band_low", "band_high") if banded else ("low", "high")
         lower, upper = (data[name].sel(place).to_numpy() for name in (low, high))
-        known = np.isfinite(own)  # not every value is tried with every model
+        known = np.isfinite(own)  # models may have different values
         look = look_of(index)
         # Where lines meet, the later ones show those below: dashes over lines, small over large.
         size = max(_LARGEST - index, _LEAST)
@@ -340,7 +340,7 @@ def _numbers(shown: xarray.DataArray) -> list[str]:
 
 
 def _plot_rate_map(data: xarray.Dataset, dims: Sequence[str], ax: Axes | None) -> Axes:
-    """Draw rates over two dimensions of numbers: hatched where it is not certain which is more."""
+    """Draw rates over two dimensions of numbers, hatched where the majority is uncertain."""
     banded = "band_low" in data
     names = ("band_median", "band_low", "band_high") if banded else ("rate", "low", "high")
     rates, low, high = (data[name].transpose(*dims).to_numpy() for name in names)
@@ -418,4 +418,4 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "odometry": plot_measured,
     "real_time_factor": plot_measured,
 }
-"""By the attribute `figure` of a data set."""
+"""Figures by the attribute `figure` of a data set."""

@@ -1,1 +1,1 @@
-"""From a robot to a model file in three dimensions, in the words of each format."""
+"""Write robots as three-dimensional model files in SDF, URDF and MJCF."""

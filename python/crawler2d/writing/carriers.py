@@ -67,7 +67,7 @@ class Across:
 
     @property
     def flippers(self) -> float:
-        """[m] Lateral position of the left flippers: outside, against the track."""
+        """[m] Lateral position of the left flippers, directly outside the track."""
         return 0.5 * (self.gauge + self.track_width + self.flipper_width)
 
 
@@ -82,7 +82,7 @@ class Part:
     center : ndarray, shape (2,)
         [m] Its centre of mass.
     inertia : float
-        [kg m^2] About that.
+        [kg m^2] Moment of inertia about the centre of mass.
     """
 
     mass: float
@@ -101,13 +101,13 @@ class Wheel:
     center : ndarray, shape (2,)
         [m] Its axle in the chassis frame.
     radius : float
-        [m] Of its circumscribed circle.
+        [m] Radius of its circumscribed circle.
     mass : float
-        [kg] Of a uniform wheel with its outline and moment of inertia.
+        [kg] Mass of a uniform wheel with its outline and moment of inertia.
     inertia : float
-        [kg m^2] About its axle.
+        [kg m^2] Moment of inertia about its axle.
     outline : ndarray, shape (n, 2), optional
-        [m] Of a gear wheel about its axle, turned as it starts; None: it is round.
+        [m] Outline of a gear wheel about its axle, at its initial angle; None if round.
     """
 
     body: int
@@ -118,7 +118,7 @@ class Wheel:
     outline: Array | None
 
     def part(self, *, is_hoop: bool) -> Part:
-        """Return its mass: as a uniform wheel, or the least that has its moment of inertia."""
+        """Return its mass: uniform, or the smallest with its moment of inertia."""
         mass = self.inertia / self.radius**2 if is_hoop else self.mass
         return Part(mass=mass, center=self.center, inertia=self.inertia)
 
@@ -180,7 +180,7 @@ class Format:
 
 
 def across_of(gauge: float, track_width: float | None, chassis_width: float | None) -> Across:
-    """Return the widths that are given, and estimates for the others.
+    """Return the given widths, and estimates for the others.
 
     Raises
     ------
@@ -209,7 +209,7 @@ def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
 
     The moment about y is that of the part. The others are estimates: the squares of x and of z
     share it as in a uniform box of this length and height, and the mass is spread evenly over the
-    width. So a body with these three moments exists, whatever the sizes.
+    width. So a body with these three moments exists for any size.
     """
     along = part.inertia * length**2 / (length**2 + height**2)
     across = part.mass * width**2 / 12.0
@@ -260,10 +260,10 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
 
 
 def remainder(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Part | None, bool]:
-    """Return what is left of a whole without parts and wheels, and whether these are hoops.
+    """Return the whole minus parts and wheels, and whether the wheels are hoops.
 
-    A wheel of a given moment of inertia is lightest as a hoop. It is one only where uniform wheels
-    would leave too little.
+    For a given moment of inertia a wheel is lightest as a hoop. Hoops are used only if uniform
+    wheels would leave too little.
     """
     wheels = list(wheels)
     for is_hoop in (False, True):
@@ -296,8 +296,8 @@ def refuse_unsupported(robot: dict[str, Any], carriers: Iterable[Carrier], targe
     Raises
     ------
     ScenarioError
-        If the track, or that of the flippers, is one that no model file represents, or a belt where
-        surfaces do not move; or if the name cannot be written.
+        If the track of chassis or flippers is of a kind that no model file represents, or a belt in
+        a format without moving surfaces; or if the name cannot be written.
     """
     for carrier in carriers:
         if carrier.surface == "wheels" or (carrier.surface == "belt" and target.moves_surfaces):
@@ -330,12 +330,12 @@ def refuse_tapering(robot: dict[str, Any], end: str, target: Format) -> NoReturn
 
 
 def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
-    """Return a wheel with its exact outline, if it is a gear wheel."""
+    """Return a wheel, with its exact outline if it is a gear wheel."""
     body = int(np.flatnonzero(scene.bodies["body"] == row["body"])[0])
     outline = None
-    # The core gives the radius of what is a disc.
+    # The core gives radii for discs.
     if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
-        # A flipper that is raised has turned the wheels on it, the farther ones more.
+        # A raised flipper has turned the wheels on it, the farther ones more.
         turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
         outline = place(scene.bodies["outline"][body], turned)
     return Wheel(
@@ -368,7 +368,7 @@ def _loop(polygon: Array) -> Part:
 
 
 def _rest(whole: Part, parts: Iterable[Part]) -> Part | None:
-    """Return what is left of a whole without its parts; None if no body can be that.
+    """Return the whole minus its parts; None if no body can have the result.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""An XML text that is edited in place, and its elements with their byte offsets."""
+"""An XML text edited in place, and its elements with byte offsets."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ class Span:
     tag : str
         Its name.
     attributes : dict of str to str
-        As XML has them, without quotes and entities.
+        Attributes, without quotes and entities.
     parent : Span or None
         The element that contains it.
     start, end : int
-        Of all of it.
+        Range of the whole element.
     inner, outer : int
-        Where its content begins and ends; both are `end` if its tag closes itself.
+        Range of its content; both are `end` if the tag is self-closing.
     values : dict of str to (int, int)
-        Of each attribute's value, without the quotes.
+        Range of each attribute's value, without the quotes.
     children : list of Span
-        In their order.
+        Children in order.
     text : str
         Its own text, without surrounding space.
     """
@@ -59,7 +59,7 @@ class Span:
 
     @property
     def is_closed(self) -> bool:
-        """Whether its tag closes itself: it has no content."""
+        """Whether its tag is self-closing, without content."""
         return self.inner == self.end
 
     def within(self) -> Iterator[Span]:
@@ -141,7 +141,7 @@ class Document:
             self._change(span.inner, span.outer, new)
 
     def add_to(self, span: Span, shift: Sequence[float], attribute: str = "") -> None:
-        """Add lengths [m] to the first numbers of a text or an attribute, to the micrometre.
+        """Add lengths [m] to the first numbers of a text or attribute, rounded to a micrometre.
 
         Missing numbers count as 0.
         """
@@ -160,7 +160,8 @@ class Document:
     ) -> None:
         """Multiply the first numbers of a text or an attribute, if there is one, to 12 digits.
 
-        Exact ones keep every bit: moments of inertia that just obey their inequality still do.
+        Exact ones keep every bit, so moments of inertia on the limit of their inequality stay
+        valid.
         """
         if span is None or set(factors) == {1.0}:
             return
@@ -196,7 +197,7 @@ class Document:
             self._change(span.outer, span.outer, text)
 
     def _open(self, span: Span, content: str) -> None:
-        """Give content to an element whose tag closes itself."""
+        """Give content to a self-closing element."""
         opening = self.source(span)[:-2].rstrip()
         self._change(span.start, span.end, f"{opening}>{content}</{span.tag}>")
 

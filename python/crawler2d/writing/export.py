@@ -50,7 +50,7 @@ _WRITERS: dict[Name, tuple[Format, Callable[[Model, Pose], XML]]] = {
     "mjcf": (MJCF, lambda model, stand: mjcf_of(model.tree, stand)),
 }
 
-# Two bodies side by side: room to drift without falling off the obstacle.
+# Twice the robot's width: room to drift without falling off the obstacle.
 _WIDTH = 2.0  # gauges and track widths
 
 _FLAT = 1e-9  # [m] Heights that differ by less are equal.
@@ -69,7 +69,7 @@ _PLANE = 100.0  # [m] Visible size of an endless plane.
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
-    """A robot in three dimensions, in no format yet.
+    """A three-dimensional robot, independent of a format.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ class Model:
     across : Across
         Widths and lateral places.
     limits : Limits
-        The limits of all motors together.
+        Total limits of the motors.
     comment : str
-        The origin of a file of it, and what in it is not from the robot.
+        Comment for a file: its origin, and values that are not from the robot.
     """
 
     tree: Tree
@@ -90,7 +90,7 @@ class Model:
 
 
 class ModelText(str):
-    """The text of a model file: a string of which a console shows only a short form.
+    """The text of a model file: a string that consoles show in a short form.
 
     Examples
     --------
@@ -141,7 +141,7 @@ class Ground:
     Parameters
     ----------
     level : float
-        [m] Height of a plane: that of the lowest ground, or less.
+        [m] Height of a plane at or below the lowest ground.
     friction : float
         [-] Of the plane.
     pieces : tuple of Piece
@@ -249,7 +249,7 @@ def _build_model(
 
 
 def _left_out(robot: dict[str, Any], tree: Tree, target: Format) -> list[str]:
-    """Return what the file cannot represent of the motors, such as torque and rotors of belts."""
+    """List properties of the motors that the file cannot represent, such as torque of belts."""
     wheels = [joint for joint in tree.joints.values() if joint.is_unlimited]
     motors = [joint for joint in wheels if joint.parent == CHASSIS]
     has_motors = target.has_rotors and bool(motors)
@@ -281,7 +281,7 @@ def _save(root: XML, comment: str, path: str | os.PathLike[str] | None) -> Model
 
 
 def _refuse_segments(terrain: dict[str, Any]) -> None:
-    """Refuse segments of unlike friction: a piece of the ground has one for all of its faces."""
+    """Refuse segments of different friction: a piece of ground has one for all faces."""
     lanes = {f"terrain.{side}": terrain.get(side) for side in ("left", "right", "middle")}
     for path, lane in {"terrain": terrain, **lanes}.items():
         frictions = (lane or {}).get("segment_friction") or ()
