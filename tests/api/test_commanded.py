@@ -112,7 +112,7 @@ def test_a_stop_under_commands_is_explained_but_not_repeated() -> None:
     assert run.diagnosis is not None
     assert "friction x 2" in [trial.name for trial in run.diagnosis.trials]
     for repeat in (run.branch, run.trials, run.escape_force, run.cross_check):
-        with pytest.raises(c2d.ScenarioError, match="nor of a Simulation"):
+        with pytest.raises(c2d.ScenarioError, match="or a run of a Simulation"):
             repeat()
 
 

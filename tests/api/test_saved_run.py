@@ -119,7 +119,7 @@ def test_a_branch_is_loaded_with_its_parent(stopped: c2d.Run, tmp_path: Path) ->
     again = reloaded(branch, tmp_path)
     assert again.parent == branch.parent
     assert same(content(again), content(branch))
-    with pytest.raises(c2d.ScenarioError, match="must not be a branch itself"):
+    with pytest.raises(c2d.ScenarioError, match="must not be a branch or a run"):
         again.branch()
 
 

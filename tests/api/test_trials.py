@@ -269,4 +269,4 @@ def test_trials_end_for_a_robot_that_is_commanded_to_stop(seized: c2d.Run) -> No
 def test_a_named_trial_with_a_change_is_refused(seized: c2d.Run, change: Any) -> None:
     error = refused(lambda: seized.what_if("torque x 2", **change))
     assert error.path == next(iter(change))
-    assert error.rule == "must be left out where a trial is named"
+    assert error.rule == "must not be given together with the name of a trial"

@@ -522,7 +522,7 @@ def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
     (tmp_path / "cart.urdf").unlink()
     few: Any = {"samples": 1, "repeats": 1, "duration": 0.1, "repair": False, **QUIET}
     assert c2d.audit(reading, **few).reading is reading
-    with pytest.raises(c2d.ScenarioError, match="engine must be left out, because no file is read"):
+    with pytest.raises(c2d.ScenarioError, match="engine must not be given without a file"):
         c2d.audit(reading, engine="gz")
 
 

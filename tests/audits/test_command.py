@@ -142,13 +142,13 @@ def test_an_unwritable_file_is_refused_before_the_audit(
 @pytest.mark.parametrize(
     ("options", "rule"),
     [
-        ("--html any.sdf", "--html must be another file than the one that is read"),
-        ("--junit ./any.sdf", "--junit must be another file than the one that is read"),
-        ("--junit a --sarif a", "--sarif must be another file than that of --junit"),
-        ("--patch a --html a", "--html must be another file than that of --patch"),
-        ("--update-baseline --baseline a --html a", "--baseline must be another file than that of"),
-        ("--baseline a --junit a", "--junit must be another file than the one that is read"),
-        ("--store a --html a", "--html must be another file than the store"),
+        ("--html any.sdf", "--html must differ from the input file"),
+        ("--junit ./any.sdf", "--junit must differ from the input file"),
+        ("--junit a --sarif a", "--sarif must differ from --junit"),
+        ("--patch a --html a", "--html must differ from --patch"),
+        ("--update-baseline --baseline a --html a", "--baseline must differ from --"),
+        ("--baseline a --junit a", "--junit must differ from the input file"),
+        ("--store a --html a", "--html must differ from the store"),
     ],
 )
 def test_no_file_takes_the_place_of_another_one(
@@ -174,7 +174,7 @@ def test_a_page_without_a_place_is_refused_before_the_audit_where_out_is_no_fold
     (made / "out").write_text("")
     status, out, err = run(capsys, "any.sdf")
     assert (status, out) == (2, "")
-    assert err.startswith("crawler2d audit: --html must be given: out is no folder")
+    assert err.startswith("crawler2d audit: --html must be given: out is not a writable folder")
     assert run(capsys, "any.sdf", "--no-html")[0] == 1
 
 

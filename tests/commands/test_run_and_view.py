@@ -170,19 +170,19 @@ def write_bad_files(folder: Path) -> None:
         ("run empty.json", "as Scenario.to_json writes it, got empty.json; it is empty"),
         ("run cut.json", "scenario must be JSON (EOF while parsing a value at line 1"),
         ("run lines.json", "scenario must be JSON (EOF while parsing a value"),
-        ("run latin.json", "got latin.json; it is no text in UTF-8"),
+        ("run latin.json", "got latin.json; it is not UTF-8 text"),
         ("run negative.json", "robot.mass must be >= 1e-12 kg and <= 1e12 kg, got -"),
         ("run unknown.json", "gravity must be given"),
         ("run model.json", "if it is a model file: crawler2d audit model.json"),
         ("run whole.npz", "if it is a saved run: crawler2d view whole.npz"),
         ("run clears.json --html no/a.html", "--html must be a file in a folder that exists"),
         ("run clears.json --save folder.json", "--save must be a file in a folder that exists"),
-        ("run clears.json --save clears.json", "--save must be another file than the one that is"),
+        ("run clears.json --save clears.json", "--save must differ from the input file"),
         ("run clears.json --save run.txt", "--save must end in .npz, the format of saved runs"),
         ("run other.json", "scenario must be what Scenario.to_json writes, with the keys schema"),
-        ("run clears.json --html ./clears.json", "--html must be another file than the one that"),
-        ("run clears.json --html a --save ../{}/a", "--save must be another file than that of --"),
-        ("view whole.npz --out whole.npz", "--out must be another file than the one that is read"),
+        ("run clears.json --html ./clears.json", "--html must differ from the input file"),
+        ("run clears.json --html a --save ../{}/a", "--save must differ from --"),
+        ("view whole.npz --out whole.npz", "--out must differ from the input file"),
         ("run clears.json --htlm a.html", "unknown option --htlm (did you mean --html?)"),
         ("run", "the following arguments are required: FILE"),
         ("view missing.npz", "FILE must be a file that can be read (No such file or directory)"),
@@ -213,7 +213,7 @@ def test_a_page_without_a_place_is_refused_before_the_run_where_out_is_no_folder
     monkeypatch.setattr("crawler2d.commands.view.simulate", lambda _: 1 / 0)
     status, out, err = ran("view", "clears.json")
     assert (status, out) == (2, "")
-    assert err.startswith("crawler2d view: --out must be given, got None: out is no folder")
+    assert err.startswith("crawler2d view: --out must be given, got None: out is not a writable")
 
 
 @pytest.mark.usefixtures("folder")

@@ -375,7 +375,7 @@ def test_public_models_change_their_wheels() -> None:
 
 def test_wheels_that_cannot_be_changed_are_refused_by_name(tmp_path: Path) -> None:
     reading = quietly(FILES / "cart.urdf")
-    with refusing(SAID, "must have other wheels than the file"):
+    with refusing(SAID, "must have wheels that differ from the file's"):
         patch_file(reading, reading.robot)
     belted = replace(reading.robot.drivetrain, torque_sharing="track")
     with refusing(SAID, "tracks of the chassis must be wheels"):

@@ -130,11 +130,11 @@ def test_expressions_just_below_a_limit_are_evaluated(text: str) -> None:
 
 
 def test_numbers_that_are_not_real_and_calls_of_no_function_are_errors() -> None:
-    with pytest.raises(ValueError, match=r"^-2.5 \*\* 0.5 is no real number$"):
+    with pytest.raises(ValueError, match=r"^-2.5 \*\* 0.5 is not a real number$"):
         evaluate("x ** 0.5", known())
-    with pytest.raises(TypeError, match=r"^n is no function$"):
+    with pytest.raises(TypeError, match=r"^n is not a function$"):
         evaluate("n(1)", known())
-    with pytest.raises(TypeError, match=r"^l\[0\] is no function$"):
+    with pytest.raises(TypeError, match=r"^l\[0\] is not a function$"):
         evaluate("l[0]()", known())
 
 

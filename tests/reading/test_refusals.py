@@ -353,4 +353,4 @@ def test_joints_of_missing_links_are_left_out_or_refused_on_request(tmp_path: Pa
 
 def test_a_misspelt_parent_is_named_with_the_nearest_link(tmp_path: Path) -> None:
     text = urdf(WHEELS).replace('<parent link="hull"/>', '<parent link="hul"/>', 1)
-    refused(tmp_path, text, "of which the closest is hull, got hul; missing=", missing="refuse")
+    refused(tmp_path, text, r"got hul \(did you mean hull\?\); missing=", missing="refuse")

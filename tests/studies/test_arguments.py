@@ -72,7 +72,7 @@ def test_a_path_that_is_no_text_is_refused_by_the_name_of_its_argument(given: An
         ("x", lambda: c2d.studies.jam_chart(base, x=given, values=[0.1])),
     ]
     for name, study in cases:
-        with pytest.raises(c2d.ScenarioError, match="must be the path of a number") as caught:
+        with pytest.raises(c2d.ScenarioError, match="must be the path of a real number") as caught:
             study()
         assert caught.value.path == name
 

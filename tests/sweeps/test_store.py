@@ -113,7 +113,7 @@ def _rows_of(path: Path) -> Any:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"no database at all, but long enough to be read as one" * 20, "is no SQLite file"),
+        (b"no database at all, but long enough to be read as one" * 20, "is not an SQLite file"),
         ("CREATE TABLE mine (x)", "no store"),
         ("CREATE VIEW mine AS SELECT 1", "no store"),
         ("PRAGMA application_id = 7", "no store"),
@@ -169,7 +169,7 @@ def test_a_run_with_a_diagnosis_of_another_build_is_no_damage(tmp_path: Path) ->
     for store in (path, other, former):
         _, missing = counted(BASE, {}, repeats=2, store=store)
         assert missing == 1
-        with pytest.raises(c2d.StoreError, match="is of the build 0, whose outcomes or diagnoses"):
+        with pytest.raises(c2d.StoreError, match="is from the build 0, with outcomes or diagnoses"):
             c2d.table(store)
 
 

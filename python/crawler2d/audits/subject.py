@@ -178,7 +178,7 @@ def read_obstacles(obstacles: object) -> dict[str, Terrain]:
         if not isinstance(label, str):
             raise ScenarioError("obstacles", label, "must have strings as labels")
         if label == LEVEL:
-            rule = "must have other labels than that of the ground on which repairs are timed"
+            rule = "must not be the label of the ground on which repairs are timed"
             raise ScenarioError("obstacles", label, rule)
         if not isinstance(ground, Terrain):
             raise ScenarioError(f"obstacles[{label!r}]", ground, "must be a terrain")
@@ -298,7 +298,7 @@ def subject_of(robot: object, how: ReadKeywords) -> Subject:
     """
     if isinstance(robot, (Robot, Reading)):
         for name, value in how.items():
-            raise ScenarioError(name, value, "must be left out, because no file is read")
+            raise ScenarioError(name, value, "must not be given without a file")
     if isinstance(robot, Robot):
         return Subject(robot)
     read = robot if isinstance(robot, Reading) else _read(robot, how)

@@ -1,1 +1,1 @@
-"""The commands of the package: each file has the options of one, and what it does with them."""
+"""The commands of the package: each file has the options and the function of one."""

@@ -1,6 +1,6 @@
-"""Audit every model file in a folder of repositories, and write one page about all of them.
+"""Audit every model file in a folder of repositories, and write one page.
 
-The page is rewritten after each robot, so Ctrl-C keeps what is done.
+The page is rewritten after each robot, so Ctrl-C keeps finished audits.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _SAMPLES = 40
 
 _KINDS = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".mjcf")
 _LARGEST = 4_000_000  # [bytes] as for any model file
-_MOST = 5000  # model files: all are kept in memory
+_MOST = 5000  # model files, all kept in memory
 _ROOTS = re.compile(rb"<\s*(sdf|robot|mujoco)[\s>]")
 _NAMED = re.compile(rb"""(?:filename|file)\s*=\s*["']([^"']+\.(?:xacro|urdf|xml|sdf))["']""")
 _MACROS = re.compile(rb"<xacro:macro\b.*?</xacro:macro>|<!--.*?-->", re.DOTALL)
@@ -42,16 +42,16 @@ _LINKS = re.compile(rb"<(?:link|worldbody|model|xacro:(?!property|arg|macro)\w+)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """A model file: what was read and found, or why it was not read.
+    """A model file with its results, or the reason why it was not read.
 
     Parameters
     ----------
     path : Path
-        From the folder of the atlas.
+        Path relative to the folder of the atlas.
     reading : Reading, optional
-        What was read.
+        Reading of the file.
     audit : Audit, optional
-        What was found.
+        Audit of the robot.
     refusal : str
         Why the file was not read or not audited; "" if it was.
     """
@@ -76,7 +76,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the atlas of a folder; returns the exit status."""
+    """Write the atlas of a folder; return the exit status."""
     folder: Path = options.folder
     if not folder.is_dir():
         raise ScenarioError("FOLDER", str(folder), "must be a folder")
@@ -103,25 +103,25 @@ def run(options: argparse.Namespace) -> int:
 
 
 def main_files(folder: Path) -> Iterator[Path]:
-    """Yield the model files of a folder that no other one includes and that hold more than macros.
+    """Yield the model files of a folder that no other file includes and that are not only macros.
 
-    What a scene of MJCF includes is a model: it is read by itself, and the scene is not.
-    Those that cannot be read are the last: whoever reads them is told why.
+    A file included by an MJCF scene is a model and is read instead of the scene. Unreadable files
+    come last; reading them gives the reason.
 
     Parameters
     ----------
     folder : Path
-        Of repositories; hidden folders and links are passed over.
+        Folder of repositories; hidden folders and links are skipped.
 
     Yields
     ------
     Path
-        From the folder, in order.
+        Path relative to the folder, sorted.
 
     Raises
     ------
     ScenarioError
-        If there are too many.
+        If there are too many files.
     """
     found: dict[Path, bytes] = {}
     unread: list[Path] = []
@@ -154,12 +154,12 @@ def main_files(folder: Path) -> Iterator[Path]:
 
 
 def _repository(path: Path) -> str:
-    """Name the repository of a file; files beside all repositories have one, too."""
+    """Name the repository of a file; files outside of repositories also get one."""
     return path.parts[0] if len(path.parts) > 1 else ""
 
 
 def _is_mjcf(data: bytes) -> bool:
-    """Whether a file is MJCF, which is read without its includes: a scene is no robot."""
+    """Whether a file is MJCF; of a scene, the included files are the robots."""
     root = _ROOTS.search(data)
     return root is not None and root[1] == b"mujoco"
 
@@ -167,7 +167,7 @@ def _is_mjcf(data: bytes) -> bool:
 def _entry(folder: Path, path: Path, *, samples: int, threads: int | None) -> Entry:
     """Read and audit a file with default options."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ScenarioWarning)  # warnings are in the reading
+        warnings.simplefilter("ignore", ScenarioWarning)  # the reading has the warnings
         try:
             reading = read_robot(folder / path)
         except (Crawler2dError, ImportError, OSError) as error:
@@ -194,11 +194,11 @@ def atlas_page(folder: Path, entries: Sequence[Entry], *, samples: int = _SAMPLE
     Parameters
     ----------
     folder : Path
-        Of the repositories.
+        Folder of the repositories.
     entries : sequence of Entry
-        Their model files.
+        Model files.
     samples : int
-        Of each audit.
+        Number of samples of each audit.
     """
     sections = []
     for name in dict.fromkeys(entry.path.parts[0] for entry in entries):
@@ -227,7 +227,7 @@ def _conclusion(entries: Sequence[Entry]) -> str:
     ]
     return (
         f"Of {len(entries)} model files {len(read)} were read; {len(seizing)} robots seize where a"
-        f" belt clears, for {len(repaired)} of which a repair was confirmed."
+        f" belt clears; a repair was confirmed for {len(repaired)} of them."
     )
 
 
@@ -243,7 +243,7 @@ def _refused(entries: Sequence[Entry]) -> str:
 def _card(entry: Entry) -> str:
     name = f"<h3>{escape(entry.path.as_posix())}</h3>"
     reading, found = entry.reading, entry.audit
-    assert reading is not None  # others are listed
+    assert reading is not None  # others are only listed
     drawing = draw_robot(reading.robot, "side view", reading.silhouettes, width=300, height=200)
     parts = [drawing, name, f"<p>{escape(reading.description)}</p>"]
     if found is None:
@@ -265,7 +265,7 @@ def _card(entry: Entry) -> str:
 
 
 def licence_of(repository: Path) -> str:
-    """Say under which licence a repository is, as its files do.
+    """Describe the licence of a repository, as stated by its files.
 
     Parameters
     ----------
@@ -287,7 +287,7 @@ def licence_of(repository: Path) -> str:
 
 
 def _beginning(path: Path) -> str:
-    """Read the beginning of a text; nothing of one that cannot be read."""
+    """Read the beginning of a text; "" if it cannot be read."""
     try:
         with path.open(encoding="utf-8", errors="replace") as file:
             return file.read(100_000)

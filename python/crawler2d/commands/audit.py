@@ -1,7 +1,7 @@
 """Audit a model file: its mistakes, where the robot seizes, and the smallest change that helps.
 
-Results are printed as they become known: lint and pockets at once, then the verdicts, beginning
-where the robot is likely to seize. At the end it writes a page with replays of the seizures.
+Results are printed as they become known: lint and pockets first, then the verdicts, starting where
+a seizure is likely. At the end it writes a page with replays of the seizures.
 
 Exit status: 1 if the robot seizes where a belt clears (with --lint: if lint has errors; with
 --baseline: if anything is new), 2 if a file or an option is invalid, else 0; 130 after Ctrl-C.
@@ -41,10 +41,10 @@ from crawler2d.reading.meshes import MeshRule
 __all__ = ["add_arguments", "run"]
 
 _Results = Sequence[tuple[Path, Audit | LintResult | Crawler2dError]]
-"""Each file with what was found in it, or why it has no audit."""
+"""Each file with its result, or the error instead."""
 
 _OF_ONE_FILE = (ScenarioError, SimulationDiverged, InternalError)
-"""Errors that end the audit of one file alone; the other files are still audited."""
+"""Errors that end the audit of one file; other files are still audited."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -174,8 +174,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Audit each file; returns the exit status."""
-    # With --json nothing else may be on the standard output.
+    """Audit each file; return the exit status."""
+    # With --json nothing else may go to the standard output.
     out = sys.stderr if options.json else sys.stdout
     live = LivePrinter(out, as_options)  # warnings give the same advice as errors
     try:
@@ -190,7 +190,7 @@ def run(options: argparse.Namespace) -> int:
             except _OF_ONE_FILE as error:
                 if len(options.file) == 1 and options.junit is None and options.sarif is None:
                     raise
-                found.append((file, error))  # the reports have it, and the other files theirs
+                found.append((file, error))  # reports show it, and other files are audited
                 _print_error(error, file)
         count = _report(found, options, baseline, out)
     except KeyboardInterrupt as interrupt:
@@ -203,7 +203,7 @@ def run(options: argparse.Namespace) -> int:
         raise
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
         if isinstance(error, OSError) and not isinstance(error, StoreError) and not error.filename:
-            raise  # of the output, whose reader has seen enough or whose disk is full
+            raise  # an output error: the reader closed the pipe, or the disk is full
         _print_error(error)
         return 2
     if any(isinstance(each, Crawler2dError) for _, each in found):
@@ -214,7 +214,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print_error(error: Exception, file: Path | None = None) -> None:
-    """Print an error and its notes; if it names no file itself, that of the audit."""
+    """Print an error and its notes, with the file of the audit unless it names one."""
     is_named = file is None or isinstance(error, ScenarioError)
     said = str(error) if is_named else f"{file}: {error}"
     texts = map(as_options, (said, *getattr(error, "__notes__", ())))
@@ -222,12 +222,12 @@ def _print_error(error: Exception, file: Path | None = None) -> None:
 
 
 def _check_options(options: argparse.Namespace) -> None:
-    """Refuse options that exclude each other, and files that could not be written after the runs.
+    """Refuse options that exclude each other, and output files that cannot be written.
 
     Raises
     ------
     ScenarioError
-        If there are some.
+        If there are any.
     """
     ones = {"--html": options.html, "--json": options.json, "--patch": options.patch}
     given = [name for name, value in ones.items() if value]
@@ -248,12 +248,12 @@ def _check_options(options: argparse.Namespace) -> None:
     if not (options.lint or options.no_html or options.html):
         check_out("--html")
     check_places(places, read=read)
-    # A change may take the place of the file that it changes.
+    # A changed file may replace the original.
     check_places({"--patch": options.patch, **places}, kept=options.store)
 
 
 def _read_baseline(options: argparse.Namespace) -> dict[str, Any] | None:
-    """Read the baseline that is asked for; None if there is none yet and one is to be written."""
+    """Read the requested baseline; None if it does not exist and will be written."""
     path: Path | None = options.baseline
     if path is None or (options.update_baseline and not path.exists()):
         return None
@@ -264,7 +264,7 @@ def _read_baseline(options: argparse.Namespace) -> dict[str, Any] | None:
 
 
 def _audit_file(file: Path, options: argparse.Namespace, live: LivePrinter) -> Audit | LintResult:
-    """Audit a file, or only lint it, and show what was found."""
+    """Audit a file, or only lint it, and show the results."""
     if file.is_dir():
         rule = "must be a file, not a folder (crawler2d atlas audits every model in a folder)"
         raise ScenarioError("FILE", str(file), rule)
@@ -291,7 +291,7 @@ def _audit_file(file: Path, options: argparse.Namespace, live: LivePrinter) -> A
 
 
 def _write_audit(found: Audit, file: Path, options: argparse.Namespace, live: LivePrinter) -> None:
-    """Write the page of an audit, and the file with a repair if that is asked for."""
+    """Write the page of an audit and, if requested, the repaired file."""
     if options.json:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
     if not options.no_html:
@@ -315,7 +315,7 @@ def _write_audit(found: Audit, file: Path, options: argparse.Namespace, live: Li
 
 
 def _short(file: Path, files: list[Path]) -> str:
-    """Name a file without its suffix, and if several files share that name, with its folders."""
+    """Return a file's name without suffix; with its folders if the name is not unique."""
     if [other.stem for other in files].count(file.stem) == 1:
         return file.stem
     return "-".join(part for part in file.parts if part not in (file.anchor, "..", "."))
@@ -324,7 +324,7 @@ def _short(file: Path, files: list[Path]) -> str:
 def _report(
     found: _Results, options: argparse.Namespace, baseline: dict[str, Any] | None, out: TextIO
 ) -> int:
-    """Write the reports that are asked for, print what is new, and count the issues that fail."""
+    """Write the requested reports, print new issues, and count the issues that fail."""
     checks = [
         unreadable(path, each) if isinstance(each, Crawler2dError) else check_of(path, each)
         for path, each in found

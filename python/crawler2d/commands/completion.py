@@ -22,11 +22,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the completion of a shell; returns the exit status."""
+    """Print the completion script of a shell; return the exit status."""
     shtab = extra("shtab", "cli")
     for action in _actions(options.parser):
         if action.type is Path:
-            action.complete = shtab.FILE  # type: ignore[attr-defined] # so shtab finds it
+            action.complete = shtab.FILE  # type: ignore[attr-defined] # read by shtab
     print(shtab.complete(options.parser, options.shell))
     return 0
 

@@ -1,6 +1,6 @@
 """Write a page with a robot that seizes on wheels and clears the same step on a belt.
 
-It has both replays side by side, why the robot stopped, and what to do next.
+The page has both replays side by side, the diagnosis, and next steps.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["add_arguments", "run"]
 _HERE = "crawler2d.commands"
 _NAMES = ("on four wheels", "on a belt")
 _HEIGHT = 0.075
-"""[m] Of the step."""
+"""[m] Height of the step."""
 _NEXT = (
     ("Does your own model seize, and what would fix it?", "crawler2d audit MODEL.sdf"),
     ("What happens in a scenario of your own?", "crawler2d run SCENARIO.json --html run.html"),
@@ -47,7 +47,7 @@ _NEXT = (
         'c2d.simulate(wheels, c2d.terrains.step(0.075)).to_html("run.html")',
     ),
 )
-"""Questions, and what answers them."""
+"""Questions, and commands that answer them."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the page; returns the exit status."""
+    """Write the page; return the exit status."""
     if options.out.parent == OUT:
         OUT.mkdir(parents=True, exist_ok=True)
     check_place("--out", options.out)
@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def demo_runs() -> tuple[Run, Run]:
-    """Simulate the robot of the README at its step: on four wheels that touch, and on a belt."""
+    """Simulate the README's robot at its step: on four touching wheels, and on a belt."""
     robot, step = engineer(flippers=None).without_rotors(), terrains.step(_HEIGHT)
     wheels = robot.with_track(LineOfWheels(4, wheel_radius=0.0608))
     return (

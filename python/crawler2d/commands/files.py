@@ -1,4 +1,4 @@
-"""What commands share: they read scenarios, check where they will write, and show pages."""
+"""Shared by commands: read scenarios, check output paths, and show pages."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ __all__ = [
 ]
 
 OUT = Path("out")
-"""Folder of the pages whose place is not given."""
+"""Default folder of pages."""
 
 STANDARD_INPUT = Path("-")
 
@@ -40,7 +40,7 @@ def read_data(path: Path) -> bytes:
     Raises
     ------
     ScenarioError
-        If it cannot be read.
+        If the file cannot be read.
     """
     if path == STANDARD_INPUT:
         return sys.stdin.buffer.read()
@@ -52,7 +52,7 @@ def read_data(path: Path) -> bytes:
 
 
 def read_scenario(path: Path) -> Scenario:
-    """Read a scenario file; errors are those of `read_data` and `scenario_of`."""
+    """Read a scenario file; raises the errors of `read_data` and `scenario_of`."""
     return scenario_of(read_data(path), path)
 
 
@@ -62,7 +62,7 @@ def scenario_of(data: bytes, path: Path) -> Scenario:
     Raises
     ------
     ScenarioError
-        If it is no scenario, or the scenario breaks a rule.
+        If it is not a scenario, or breaks a rule.
     """
     rule, start = "must be a scenario as JSON, as Scenario.to_json writes it", data.lstrip()[:2]
     other = ""
@@ -75,19 +75,19 @@ def scenario_of(data: bytes, path: Path) -> Scenario:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        other = other or "; it is no text in UTF-8"
+        other = other or "; it is not UTF-8 text"
     if other:
         raise ScenarioError("FILE", str(path), f"{rule}{other}")
     return Scenario.from_json(text)
 
 
 def check_place(option: str, path: Path | None) -> None:
-    """Refuse a place that could not be written after the work; None asks for no file.
+    """Refuse an output path that cannot be written; None means no file.
 
     Raises
     ------
     ScenarioError
-        If it is no file in a folder that exists.
+        If it is not a file in an existing folder.
     """
     if path is None:
         return
@@ -100,23 +100,23 @@ def check_place(option: str, path: Path | None) -> None:
 def check_places(
     places: Mapping[str, Path | None], *, read: Sequence[Path] = (), kept: Path | None = None
 ) -> None:
-    """Refuse places as `check_place` does, and those where one file would take another's place.
+    """Refuse output paths as `check_place` does, and paths that would overwrite another file.
 
     Parameters
     ----------
     places : mapping of str to Path or None
-        By option; None asks for no file.
+        Paths by option; None means no file.
     read : sequence of Path
-        Files that are read.
+        Input files.
     kept : Path, optional
         A store.
 
     Raises
     ------
     ScenarioError
-        If there are some.
+        If a path is refused.
     """
-    taken = {os.path.realpath(path): "the one that is read" for path in read}
+    taken = {os.path.realpath(path): "the input file" for path in read}
     if kept is not None:
         taken[os.path.realpath(kept)] = "the store"
     for option, path in places.items():
@@ -124,27 +124,27 @@ def check_places(
         if path is not None:
             place = os.path.realpath(path)
             if place in taken:
-                raise ScenarioError(option, str(path), f"must be another file than {taken[place]}")
-            taken[place] = f"that of {option}"
+                raise ScenarioError(option, str(path), f"must differ from {taken[place]}")
+            taken[place] = option
 
 
 def check_out(option: str) -> None:
-    """Refuse the folder of pages without a place, if it could not be written after the work.
+    """Refuse the default folder of pages if it cannot be written.
 
     Raises
     ------
     ScenarioError
-        If so; `option` names the place of the page.
+        If so; `option` is the one that sets the page's path.
     """
     folder = OUT if OUT.exists() else OUT.absolute().parent
     if not folder.is_dir() or not os.access(folder, os.W_OK):
-        rule = f"must be given: {OUT} is no folder that can be written"
+        rule = f"must be given: {OUT} is not a writable folder"
         raise ScenarioError(option, None, rule)
 
 
 @contextmanager
 def keeping(written: list[Path]) -> Iterator[None]:
-    """Let Ctrl-C say which of the files that were asked for is there."""
+    """Add a note to Ctrl-C that lists the complete files."""
     try:
         yield
     except KeyboardInterrupt as interrupt:
@@ -154,6 +154,6 @@ def keeping(written: list[Path]) -> Iterator[None]:
 
 
 def show_page(path: Path) -> None:
-    """Open a page in the browser of the system, or say that there is none."""
+    """Open a page in the system's browser, or report that there is none."""
     if not webbrowser.open(path.resolve().as_uri()):
         print(f"no browser was found: open {path} yourself", file=sys.stderr)

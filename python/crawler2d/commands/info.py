@@ -21,7 +21,7 @@ __all__ = ["add_arguments", "run"]
 
 _VARIABLES = ("CRAWLER2D_THREADS", "CRAWLER2D_MEMORY")
 _NEEDED = re.compile(r"""([\w.-]+).*;.*extra *== *['"]([\w.-]+)['"]""")
-"""A package of an extra, as the metadata of an installed package list them."""
+"""A package of an extra, as listed in the metadata of an installed package."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,14 +30,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what is installed; returns the exit status."""
+    """Print what is installed; return the exit status."""
     found = installed()
     print(json.dumps(found, indent=2) if options.json else _text_of(found))
     return 0
 
 
 def installed() -> dict[str, Any]:
-    """Collect versions, places, threads and optional packages as plain data."""
+    """Collect versions, paths, threads and optional packages as plain data."""
     build = _core.build_info()
     return {
         "crawler2d": {"version": build["version"], "path": str(Path(__file__).parents[1])},
@@ -52,7 +52,7 @@ def installed() -> dict[str, Any]:
 
 
 def _extras() -> dict[str, dict[str, dict[str, str] | None]] | None:
-    """List the packages of each extra; None for one that is missing, and for all if not known."""
+    """List the packages of each extra; None for missing ones, and for unknown extras."""
     try:
         needed = importlib.metadata.requires("crawler2d") or []
     except importlib.metadata.PackageNotFoundError:

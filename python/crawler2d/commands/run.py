@@ -1,6 +1,6 @@
-"""Simulate a scenario file, and print how the run ended and why.
+"""Simulate a scenario file and print how and why the run ended.
 
-It prints the outcome, the diagnosis if the robot stopped, and the main results with units.
+Prints the outcome, the diagnosis if the robot stopped, and the main results with units.
 
 Exit status: 0 if the robot cleared the obstacle, 1 if the run ended otherwise, 2 if the file or an
 option is invalid or the run has no result, 130 after Ctrl-C.
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Simulate a scenario file; returns the exit status."""
+    """Simulate a scenario file; return the exit status."""
     check_places({"--html": options.html, "--save": options.save}, read=[options.file])
     if options.save is not None:
         check_suffix(options.save, "--save")
@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
                 written.append(finished.save(options.save))
             if options.html is not None:
                 written.append(finished.to_html(options.html))
-        finally:  # a file that cannot be written must not lose what a run of hours has found
+        finally:  # print results of a long run even if a file cannot be written
             if options.json:
                 print(json.dumps(_plain(finished), indent=2, allow_nan=False))
             else:
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def summary(run: Run) -> str:
-    """Write how a run ended, why, and its main figures, as lines."""
+    """Write outcome, reason and main figures of a run, as lines."""
     lines = [run.title]
     if run.reason:
         lines += ["", textwrap.fill(run.reason, _WIDTH)]
@@ -78,7 +78,7 @@ def summary(run: Run) -> str:
 
 
 def _plain(run: Run) -> dict[str, Any]:
-    """Collect what is known of a run as plain data; what is not finite is None."""
+    """Collect the results of a run as plain data, with None for non-finite numbers."""
     metrics = {
         name: {"value": value if math.isfinite(value) else None, "unit": METRICS[name]}
         for name, value in run.metrics.items()

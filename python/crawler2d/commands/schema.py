@@ -1,6 +1,6 @@
 """Print the JSON Schema (draft 2020-12) of scenario files, for editors and checks.
 
-It has the fields, types and ranges of this version of crawler2d. Rules that involve several fields
+It contains the fields, types and ranges of this version of crawler2d. Rules about several fields
 are only checked when a file is read.
 """
 
@@ -15,12 +15,12 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``crawler2d schema``: there are none."""
+    """Add no options."""
     del parser
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the schema; returns the exit status."""
+    """Print the schema; return the exit status."""
     del options
     print(json.dumps(scenario_schema(), indent=2))
     return 0

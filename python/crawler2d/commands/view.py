@@ -1,4 +1,4 @@
-"""Write a page that replays a saved run, or a scenario.
+"""Write a page that replays a saved run or a scenario.
 
 A scenario is simulated first. The page is a single file that opens in any browser.
 """
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the page of a run; returns the exit status."""
+    """Write the page of a run; return the exit status."""
     check_places({"--out": options.out}, read=[options.file])
     if options.out is None:
         check_out("--out")

@@ -366,7 +366,7 @@ def read_number_path(parameters: Parameters, path: str, name: str) -> str:
     """Refuse the path of anything but a real number; `name` is the argument's."""
     number = read_path(parameters, path) if isinstance(path, str) else None
     if type(number) not in (int, float) or is_whole(parameters, path):
-        raise ScenarioError(name, path, "must be the path of a number that may have decimals")
+        raise ScenarioError(name, path, "must be the path of a real number")
     return path
 
 

@@ -126,14 +126,14 @@ class HasHeights(Parameters, path="terrain"):
         """[m] Points of a lane from left to right, shape (n, 2)."""
         side = Lane.BOTH if lane is None else _LANES[read_choice(lane, "lane", list(_LANES))]
         if gauge is None and self._turn != 0.0:
-            rule = "must be given, for the tracks meet a turned barrier one by one: Robot.gauge"
+            rule = "must be given (Robot.gauge): each track meets a turned barrier at another x"
             raise ScenarioError("gauge", None, rule)
         robot = _GRAIN if gauge is None else replace(_GRAIN, gauge=gauge)
         still: Any = {"drive": Drive(speed=0.0), "solver": Solver(time_step=1e-5)}
         text = ScenarioBase(robot, self, start=Start(approach=0.0), **still).to_json()
         lanes = dict(_core.geometry(text)["lanes"])
         if side is Lane.BOTH and side not in lanes:
-            rule = f"must be one of {', '.join(_LANES)}, for the tracks are on different ground"
+            rule = f"must be one of {', '.join(_LANES)}, as the tracks are on different ground"
             raise ScenarioError("lane", None, rule)
         profile: NDArray[np.float64] = lanes[side if side in lanes else Lane.BOTH]
         return profile

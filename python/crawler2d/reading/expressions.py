@@ -244,7 +244,7 @@ class _Evaluation:
         with self.deeper():
             function = self.resolve(node)
         if type(function) in _PLAIN:
-            raise TypeError(f"{self.written(node)} is no function")
+            raise TypeError(f"{self.written(node)} is not a function")
         if not callable(function):
             _refuse_object(function)
         values = self.checked([self.value(argument) for argument in arguments])
@@ -311,7 +311,7 @@ def _power(base: Any, exponent: Any) -> Any:
         _check_bits(base.bit_length() * abs(exponent))
     power = base**exponent
     if isinstance(power, complex):
-        raise ValueError(f"{base} ** {exponent} is no real number")
+        raise ValueError(f"{base} ** {exponent} is not a real number")
     return power
 
 

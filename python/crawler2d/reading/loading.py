@@ -1,4 +1,4 @@
-"""From the bytes of a model file to its tree: options, xacro, unit of length, format, inertias."""
+"""Load a model file into a tree: options, xacro, unit of length, format, inertias."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _SLIDE = ("lower", "upper", "velocity")
 
 TOLERANCE = 0.001
-"""[m] By how much sides may differ: public models are symmetric to their last digit, CAD exports to
-0.1 mm."""
+"""[m] Default tolerance between the sides: public models are symmetric to their last digit, CAD
+exports to 0.1 mm."""
 
-_LISTED = 5  # names of links
-_LIGHT = 0.01  # [-] Lighter links, relative to the robot, are light.
-_MATTERS = 0.01  # [-] False moments of inertia get a warning from this effect on that of the robot.
+_LISTED = 5  # names of links, at most
+_LIGHT = 0.01  # [-] Links below this fraction of the robot's mass are light.
+_MATTERS = 0.01  # [-] Effect of wrong moments of inertia on the robot's that gets a warning.
 _MOST_SHAPES = 3000  # collisions; the public models have at most 67
 
 
@@ -62,23 +62,23 @@ class ReadOptions:
     Parameters
     ----------
     engine : str or None
-        The engine whose laws combine friction and drive motors.
+        The engine whose rules for friction and motors apply.
     forward : str or None
-        Direction of the model that is forward.
+        Forward direction of the model.
     model : str or None
         Name of the model in a world.
     mesh, missing : str
         What to do with meshes, and with missing files and macros.
     tracks : collection of str
-        Links whose surface something outside the file moves.
+        Links with surfaces that move by means outside the file.
     ground_friction : float or None
         [-] Coefficient of the ground's own surface.
     tolerance : float
-        [m] By how much the two sides may differ in side view.
+        [m] Largest difference between the two sides in side view.
     scale : float or None
-        [-] By which every length of the file is multiplied.
+        [-] Factor of every length in the file.
     trusted : bool
-        Whether xacro may evaluate expressions of any kind.
+        Whether xacro may evaluate any expression.
     packages : mapping of str to path
         Folders of packages.
     arguments : mapping of str to str
@@ -87,7 +87,7 @@ class ReadOptions:
     Raises
     ------
     ScenarioError
-        If one breaks its rule.
+        If an option breaks a rule.
     """
 
     engine: str | None = None
@@ -128,7 +128,7 @@ class ReadOptions:
 
     @property
     def given(self) -> dict[str, Any]:
-        """The options that differ from their defaults, as `read_robot` takes them."""
+        """Options that differ from their defaults, as keywords of `read_robot`."""
         usual = ReadOptions()
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         values["packages"] = {name: str(folder) for name, folder in self.packages.items()}

@@ -416,7 +416,7 @@ def order_links(
         for end in (parent, child):
             if end not in links:
                 close = difflib.get_close_matches(end, links, n=1)
-                meant = f", of which the closest is {close[0]}" if close else ""
+                meant = f" (did you mean {close[0]}?)" if close else ""
                 raise ScenarioError(path, end, f"must join links of the model{meant}{remedy}")
         if child in parent_of:
             rule = "must be the only joint that holds its child: a chain of links must be open"

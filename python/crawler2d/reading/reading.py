@@ -29,39 +29,39 @@ _SHOWN = 12  # wheels in the text of a reading
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Reading:
-    """What was read from a model file.
+    """The robot read from a model file.
 
     Parameters
     ----------
     robot : Robot
         The robot, in side view.
     friction : float
-        [-] Between its tracks and the ground, by the law of `engine`.
+        [-] Friction between its tracks and the ground, by the rule of `engine`.
     sources : Sources
-        For every figure of the robot its file and lines, or the word "estimate" with its rule.
+        Source of every figure of the robot: file and lines, or "estimate" with its rule.
     wheels : Table
         One row for each wheel and each drum of a moved track: `side`, `carrier`, `name`, `x`, `y`
         and `z` [m] (in the frame of the model: forward, up and to the left), `radius` [m], `mass`
-        [kg] of what turns, `line`.
+        [kg] of the turning parts, `line`.
     notes : tuple of str
         Decisions made while reading, in words.
     warnings : tuple of str
-        Probable mistakes, in words; each was also a `ScenarioWarning`.
+        Probable mistakes, in words; each was also issued as a `ScenarioWarning`.
     engine : str
-        The engine whose laws combined the friction and drive the motors.
+        The engine whose rules for friction and motors apply.
     tree : Tree
-        Links, joints and collision shapes as the file has them.
+        Links, joints and collision shapes of the file.
     silhouettes : tuple of Silhouette
         Its collision shapes in side view, in the frame of the robot's chassis.
     text : str
         The text to which lines refer: the file, or the expansion of a xacro file.
     frame : Pose
-        Of the chassis frame in the frame of the model: x forward through the end axles, y to the
-        left, z up.
+        The chassis frame in the frame of the model: x forward through the end axles, y to the left,
+        z up.
     path : Path
-        Of the file.
+        Path of the file.
     how : ReadOptions
-        The keywords with which it was read.
+        The keywords used.
     """
 
     robot: Robot
@@ -88,14 +88,14 @@ class Reading:
 
     @takes_keywords
     def friction_on(self, ground: float) -> float:
-        """[-] Return the friction with ground of another coefficient, by the law of `engine`.
+        """[-] Return the friction on ground with another coefficient, by the rule of `engine`.
 
         Raises
         ------
         ScenarioError
-            If it is none, or differs from wheel to wheel.
+            If it is not a valid coefficient, or the friction differs between wheels.
         """
-        ReadOptions(ground_friction=real_number(ground, "ground"))  # which has its bounds
+        ReadOptions(ground_friction=real_number(ground, "ground"))  # checks its bounds
         _, friction, _ = assemble(
             self.tree,
             forward=self.how.forward,
@@ -145,54 +145,53 @@ def read_robot(
 ) -> Reading:
     """Read a robot from a model file of another simulator: SDF, URDF, xacro or MJCF.
 
-    What a side view cannot represent is refused by name: sides that differ, suspension, steering,
-    friction that differs from wheel to wheel. The rules are in ``docs/conventions.md``, "Reading a
-    model file".
+    Parts that a side view cannot represent are refused by name: differences between the sides,
+    suspension, steering, friction that differs between wheels. The rules are in
+    ``docs/conventions.md``, "Reading a model file".
 
     Parameters
     ----------
     path : str or PathLike
-        The file; one with xacro is named ``*.xacro``.
+        Model file; the name of a xacro file is ``*.xacro``.
     engine : {"gz", "classic", "bullet", "mujoco", "isaac"}, optional
-        The simulator by whose laws the model is read: gz-sim with DART, Gazebo Classic with ODE,
-        PyBullet, MuJoCo or Isaac Sim; none of them runs. It determines how the friction of two
-        surfaces is combined, the effect of a commanded speed (a note of the reading), and which
-        figures of a joint count: a rotor inertia where the engine has one, and warnings of what it
-        ignores. ``docs/conventions.md``, "Reading a model file", has the rules with their sources.
-        None takes "mujoco" for MJCF and "gz" for the rest.
+        The simulator whose rules apply: gz-sim with DART, Gazebo Classic with ODE, PyBullet, MuJoCo
+        or Isaac Sim; none of them is run. It determines how the friction of two surfaces is
+        combined, the effect of a commanded speed (a note of the reading), and which figures of a
+        joint count, such as rotor inertia, with warnings for those that it ignores.
+        ``docs/conventions.md``, "Reading a model file", has the rules and their sources. None takes
+        "mujoco" for MJCF and "gz" for other formats.
     forward : {"+x", "-x", "+y", "-y"}, optional
-        Direction of the model that is forward. None takes the side of the links called front, or
-        else +x; if that is ambiguous, it must be given.
+        Forward direction of the model. None takes the side of the links called front, or else +x;
+        if that is ambiguous, it must be given.
     model : str, optional
-        Name of the model in a world; None takes the only one that can move.
+        Name of the model in a world; None takes the only movable one.
     mesh : {"refuse", "hull", "leave_out"}
-        What to do with collision meshes. "hull" takes the hull of a mesh whose file (.dae, .stl,
-        .obj, .glb or .gltf) exists and can be read, and leaves out any other, with a warning.
-        "leave_out" leaves all out, "refuse" refuses them. A model whose wheels or tracks would be
-        left out is refused in any case.
+        What to do with collision meshes. "hull" takes the convex hull of meshes with a readable
+        file (.dae, .stl, .obj, .glb or .gltf), and leaves out others with a warning. "leave_out"
+        leaves all out, "refuse" refuses them. A model is always refused if its wheels or tracks
+        would be left out.
     missing : {"leave_out", "refuse"}
-        What to do with missing parts: includes, macros that no file has, joints of missing links.
-        "leave_out" leaves them out, with a warning each. A file of a package that is not found is
-        then identified by its path, and an argument without a value by a setting in the package.
+        What to do with missing parts: includes, undefined macros, joints of missing links.
+        "leave_out" leaves them out, with a warning each; files of a missing package are then found
+        by their path, and arguments without a value by a setting in the package.
     tracks : collection of str
-        Links whose surface something outside the file moves, as a controller in Isaac does.
+        Links with surfaces that move by means outside the file, such as a controller in Isaac.
     ground_friction : float, optional
-        [-] Coefficient of the ground's own surface. None takes the engine's default: 1.0, in Isaac
-        and Bullet 0.5.
+        [-] Coefficient of the ground's own surface. None takes the engine's default: 1.0, or 0.5 in
+        Isaac and Bullet.
     tolerance : float
-        [m] By how much the two sides may differ in side view.
+        [m] Largest difference between the two sides in side view.
     scale : float, optional
-        [-] By which every length of an SDF or URDF file is multiplied before it is read, moments
-        of inertia by its square: 0.001 for a file in millimetres. `Audit.patch` writes the scaled
-        file.
+        [-] Factor of every length in an SDF or URDF file, and, squared, of moments of inertia:
+        0.001 for a file in millimetres. `Audit.patch` writes the scaled file.
     trusted : bool
-        Whether a xacro file may evaluate expressions of any kind, and see the environment. Without
-        that, only plain data, operators and known functions are evaluated: enough for most files.
+        Whether a xacro file may evaluate any expression and read the environment. Otherwise only
+        plain data, operators and known functions are evaluated, which is enough for most files.
     packages : mapping of str to path, optional
-        Folders of packages that ``$(find ...)``, ``package://`` and ``model://`` name. They come
-        before those that are found: ``docs/conventions.md`` has where they are searched for.
+        Folders of packages named by ``$(find ...)``, ``package://`` and ``model://``. They take
+        precedence over those found by the search described in ``docs/conventions.md``.
     arguments : mapping of str to str, optional
-        Values for the arguments of a xacro file; they come before settings of its package.
+        Values for the arguments of a xacro file; they take precedence over settings of its package.
 
     Returns
     -------
@@ -202,8 +201,9 @@ def read_robot(
     Raises
     ------
     ScenarioError
-        If the file cannot be read, breaks a rule of its format, or has what a side view cannot
-        represent. The error names file, line and element; its notes say what was left out before.
+        If the file cannot be read, breaks a rule of its format, or contains something that a side
+        view cannot represent. The error names file, line and element; its notes list what was left
+        out before.
     ImportError
         If the library for xacro, MJCF or meshes is missing; the message names the extra to install.
 
@@ -266,14 +266,14 @@ def read_robot(
 def read_text(
     data: bytes, path: Path, options: ReadOptions
 ) -> tuple[Reading, list[ScenarioWarning]]:
-    """Read a robot from the content of a file, as `read_robot` does, but without its warnings.
+    """Read a robot from the content of a file, like `read_robot` without issuing warnings.
 
     Parameters
     ----------
     data : bytes
         The content.
     path : Path
-        Of the file, which need not exist.
+        Path of the file, which need not exist.
     options : ReadOptions
         The keywords of `read_robot`.
 

@@ -416,7 +416,7 @@ def _useless(
         is_named = name in files.defaults or any(map(_word(name), files.texts.values()))
         if not is_named and not package.have(name):
             close = difflib.get_close_matches(name, files.defaults, n=1)
-            meant = f", of which the closest is {close[0]}" if close else ""
+            meant = f" (did you mean {close[0]}?)" if close else ""
             reason = f"has no effect: it must be an argument of the model{meant}"
             yield f"arguments[{name}]", f"{name}={value}", reason
 

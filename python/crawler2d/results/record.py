@@ -128,8 +128,8 @@ class Record:
                 )
             case Outcome.DETRACKED:
                 text = (
-                    f"threw its track {after}: a shoe came off what the chain runs on, whose pins"
-                    f" held up to {metrics['max_track_tension']:.0f} N"
+                    f"threw its track {after}: a shoe came off its guide or wheels; pin forces"
+                    f" reached {metrics['max_track_tension']:.0f} N"
                 )
         return text
 

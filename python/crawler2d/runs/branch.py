@@ -170,7 +170,7 @@ def try_variant(
 def refuse_without_result(run: Record) -> None:
     """Refuse a run that ended with an error, or that its scenario does not define."""
     if run.parent is not None:
-        rule = "must not be a branch itself, nor of a Simulation: take the original run"
+        rule = "must not be a branch or a run of a Simulation: take the original run"
         raise ScenarioError("run", run, rule)
     if run.error is not None:
         raise ScenarioError("run", run, f"must have a result, not the error {run.error}")

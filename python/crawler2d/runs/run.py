@@ -277,7 +277,9 @@ class Run(ShownRun):
             for field, value in {**changes, "push": push}.items():
                 is_left_out = isinstance(value, str) if field == "belly" else value is None
                 if not is_left_out:
-                    raise ScenarioError(field, value, "must be left out where a trial is named")
+                    raise ScenarioError(
+                        field, value, "must not be given together with the name of a trial"
+                    )
             result = trial_at(self, time, name)
             self._add_to_diagnosis(result)
             return Trial.of(result, partial(self._run_of_trial, time, result))

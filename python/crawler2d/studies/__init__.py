@@ -1,20 +1,20 @@
-"""Studies of robots and grounds, each with as many runs as its answer needs.
+"""Studies of robots on terrains, each with as many runs as its answer needs.
 
 Every function takes a scenario and models, and returns a `FigureDataset`: an xarray data set whose
-`plot` draws its figure. All take the same keywords:
+`plot` draws its figure. Common keywords:
 
-- `vary`, `unknown`, `samples`, `seed`, `trials`, `store`, `executor`, `threads`, `progress`: as
+- `vary`, `unknown`, `samples`, `seed`, `trials`, `store`, `executor`, `threads`, `progress`: see
   `sweep`;
-- studies of rates take `until`, an `Until`: when a cell has been simulated often enough; those that
-  measure take `repeats`, the runs of each cell; `search` takes `first` and `confirm`.
+- studies of rates take `until`, an `Until` that ends the runs of a cell; studies of measures take
+  `repeats`, the runs per cell; `search` takes `first` and `confirm`.
 
-Intervals of rates are those of `sequential`, which hold although the number of runs depends on
-their results. Measures (`max_speed`, `acceleration`, `braking_distance`, `ride`, `odometry`) have
-no interval, but a median over the repeats, and the lowest and the highest of them. The attribute
-`settings` counts the cells that were tried.
+Intervals of rates are those of `sequential`, which are valid although the number of runs depends on
+the results. Measures (`max_speed`, `acceleration`, `braking_distance`, `ride`, `odometry`) have a
+median, minimum and maximum over the repeats instead of an interval. The attribute `settings` is the
+number of cells tried.
 
-`real_time_factor` measures the machine, and takes only `repeats` and `progress`. `jam_chart`
-and `certify` simulate nothing, and take none of them; `certify` returns a `Certificate`.
+`real_time_factor` measures the machine, and takes only `repeats` and `progress`. `jam_chart` and
+`certify` compute without runs, and take none of these; `certify` returns a `Certificate`.
 
 >>> import crawler2d as c2d
 >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))

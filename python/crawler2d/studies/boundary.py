@@ -1,4 +1,4 @@
-"""Where a rate passes one half: the boundary along one field, or along the range of an unknown."""
+"""Find where a rate crosses one half along a field or the range of an unknown."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 POINTS = 7
-"""Number of values that are tried first."""
+"""Number of initial values."""
 
 LONG_NAMES = {
     "bracket_low": "the rate passes one half above this",
@@ -67,47 +67,47 @@ def critical_value(
     points: int = POINTS,
     **how: Unpack[RateSampling],
 ) -> FigureDataset:
-    """Find where the rate of clearing passes one half along one field, such as a friction.
+    """Find where the rate of clearing crosses one half along one field, such as friction.
 
-    Both ends and points evenly between them are tried first, so that a rate that goes up and down
-    is seen; then the first place where it passes one half is halved until it is known well enough.
+    Tries evenly spaced values with both ends first, to detect a rate that is not monotone; then
+    halves the first interval that contains a crossing until it is narrow enough.
 
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     path : str
-        Of a number, such as ``terrain.friction``.
+        Path of a number, such as ``terrain.friction``.
     between : tuple of 2 floats
         The ends, in units of the field.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     tolerance : float, optional
-        Largest width of the bracket, above 0; None takes a hundredth of the whole.
+        Largest width of the bracket, above 0; None takes a hundredth of the range.
     points : int
-        Number of values that are tried first, 2 to 1000.
+        Number of initial values, 2 to 1000.
     **how
         See `crawler2d.studies`.
 
     Returns
     -------
     FigureDataset
-        Dimensions `model`, the values that were tried for any model (`count` is 0 where a model was
-        not), `sample` if there are unknowns, and `repeat`; the columns of `sweep`, `rate` and its
-        interval; and for each model (and sample):
+        Dimensions `model`, the values tried for any model (`count` is 0 for the others), `sample`
+        if there are unknowns, and `repeat`; the columns of `sweep`, `rate` and its interval; and
+        for each model (and sample):
 
-        - `bracket_low`, `bracket_high`: the rate passes one half between them; NaN if nowhere;
+        - `bracket_low`, `bracket_high`: the rate crosses one half between them; NaN if nowhere;
         - `rises`: whether it rises there;
-        - `monotone`: whether it passes one half no more than once among all values tried.
+        - `monotone`: whether it crosses one half at most once among all values tried.
 
     Raises
     ------
     ScenarioError
-        If the path is no number of the scenario, or an argument breaks a rule.
+        If the path is not a number of the scenario, or an argument breaks a rule.
 
     Examples
     --------
-    A slope is climbed where the friction exceeds its tangent:
+    A robot climbs a slope if the friction exceeds its tangent:
 
     >>> import math
     >>> import crawler2d as c2d
@@ -150,16 +150,16 @@ def critical_value(
 
 
 class Crossing(NamedTuple):
-    """Where a rate passes one half among the values that were tried.
+    """The first crossing of one half among the values tried.
 
     Attributes
     ----------
     bracket_low, bracket_high : float
-        The first two neighbours between which it does; NaN if nowhere.
+        The two neighbours on either side; NaN if there is no crossing.
     rises : bool
         Whether it rises there.
     monotone : bool
-        Whether it passes one half no more than once.
+        Whether the rate crosses one half at most once.
     """
 
     bracket_low: float = math.nan
@@ -169,23 +169,23 @@ class Crossing(NamedTuple):
 
 
 class Line:
-    """The values of a field that were tried with one model.
+    """The values of a field tried with one model.
 
     Parameters
     ----------
     study : Campaign
-        What simulates.
+        The campaign that simulates.
     names : pair of str
         Model and field, for messages.
     at : callable
-        The scenario at a value.
+        Returns the scenario at a value.
     counts : callable
-        Which runs are successes.
+        Tells which runs are successes.
 
     Attributes
     ----------
     tallies : dict of float to list of Tally
-        By value and sample.
+        Tallies by value and sample.
     """
 
     def __init__(
@@ -200,11 +200,11 @@ class Line:
 
     @property
     def samples(self) -> int:
-        """How many samples of the unknowns every value has."""
+        """Number of samples of the unknowns at every value."""
         return len(next(iter(self.tallies.values())))
 
     def add(self, values: Sequence[float]) -> None:
-        """Try values that have not been tried."""
+        """Try new values."""
         new = [value for value in values if value not in self.tallies]
         model, name = self._names
         cells = [Cell((model, f"{name}={value:g}"), self._at(value)) for value in new]
@@ -219,7 +219,7 @@ class Line:
                 for each in crossings
                 if each.bracket_high - each.bracket_low > width
             }
-            if wide <= self.tallies.keys():  # no number is between, or there without a result
+            if wide <= self.tallies.keys():  # no float is between, or it has no result
                 return
             self.add(sorted(wide))
 
@@ -228,7 +228,7 @@ class Line:
         return {value: self.tallies[value][sample].interval.rate for value in sorted(self.tallies)}
 
     def crossing(self, sample: int = 0) -> Crossing:
-        """Find where the rate passes one half; values without a result are passed over."""
+        """Find where the rate crosses one half; skip values without a result."""
         rates = self.rates(sample).items()
         above = [(value, rate >= 0.5) for value, rate in rates if not math.isnan(rate)]
         changes = [
@@ -258,7 +258,7 @@ def _with_crossings(table: FigureDataset, lines: Sequence[Line]) -> FigureDatase
 
 
 _TAIL = 0.01
-"""[-] Of an unbounded distribution, how much of each end is left out of its range."""
+"""[-] Tail of an unbounded distribution that is excluded from its range at each end."""
 
 _NARROW = 0.01
 """[-] Width of a bracket, as a fraction of the range."""
@@ -266,14 +266,14 @@ _NARROW = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """The values of one unknown, from end to end.
+    """The range of one unknown.
 
     Attributes
     ----------
     cell : Scenario
-        With its own values.
+        The scenario with its own values.
     ends : mapping of str to pair of float
-        By path of a field.
+        Ends of the range, by path of a field.
     """
 
     cell: Scenario
@@ -286,12 +286,12 @@ class Range:
 
     @property
     def first(self) -> tuple[float, float]:
-        """The ends of the first field; those of the others move in proportion."""
+        """The ends of the first field; the others move in proportion."""
         return next(iter(self.ends.values()))
 
     @property
     def is_line(self) -> bool:
-        """Whether there is a boundary to look for: not of whole numbers, nor of a single value."""
+        """Whether a boundary can exist: not for whole numbers or a single value."""
         low, high = self.first
         return low < high and not any(is_whole(self.cell, field) for field in self.ends)
 
@@ -307,16 +307,16 @@ class Range:
 
 
 def range_of(unknowns: Variation, path: str, cell: Scenario) -> Range:
-    """Take the ends of a distribution, the lower one of the first field first.
+    """Take the ends of a distribution, with the first field ascending.
 
     Parameters
     ----------
     unknowns : Variation
-        What is not known.
+        The unknowns.
     path : str
-        Which of them.
+        Path of one of them.
     cell : Scenario
-        Whose own values count.
+        Scenario with the nominal values.
 
     Examples
     --------
@@ -342,7 +342,7 @@ def check_ends(
     ends: tuple[float, float],
     names: tuple[str, str],
 ) -> None:
-    """Refuse an end of a line that breaks a rule, before anything is simulated."""
+    """Refuse an end of a line that breaks a rule, before any run."""
     model, name = names
     for value in ends:
         worlds = study.planner.worlds(at(value), (model, f"{name}={value:g}"))
@@ -350,7 +350,7 @@ def check_ends(
 
 
 def line_over(study: Campaign, over: Range, names: tuple[str, str], counts: Counts) -> Line | None:
-    """Find where the rate passes one half over a range; None if its values are not continuous."""
+    """Find where the rate crosses one half over a range; None if it is not continuous."""
     if not over.is_line:
         return None
     low, high = over.first

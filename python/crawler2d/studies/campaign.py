@@ -51,14 +51,14 @@ def scaled_draws(planner: Planner, factors: Mapping[str, float]) -> Planner:
     Parameters
     ----------
     planner : Planner
-        Of the draws as they are.
+        Planner of the original draws.
     factors : mapping of str to float
-        [-] By path of a field whose own value in the scenario has this factor already.
+        [-] By path of a field whose value in the scenario already includes the factor.
 
     Returns
     -------
     Planner
-        The same if there are no factors.
+        The same planner if there are no factors.
     """
     if not factors:
         return planner
@@ -73,7 +73,7 @@ def _scale(variation: Variation, factors: Mapping[str, float]) -> Variation:
     scaled = {
         path: _ScaledDraws(each, factors[first])
         for path, each in variation.distributions.items()
-        # Levels are relative to the field's own value, which has the factor already.
+        # Levels are relative to the field's own value, which already includes the factor.
         if (first := path.replace("[*]", "[0]")) in factors and not isinstance(each, Levels)
     }
     return replace(variation, distributions={**variation.distributions, **scaled})
@@ -81,7 +81,7 @@ def _scale(variation: Variation, factors: Mapping[str, float]) -> Variation:
 
 @dataclass(frozen=True, slots=True)
 class _ScaledDraws(Distribution):
-    """A distribution times a factor, which the field's own value holds already."""
+    """A distribution times a factor that the field's own value already includes."""
 
     of: Distribution
     factor: float
@@ -93,7 +93,7 @@ class _ScaledDraws(Distribution):
 
     @property
     def is_relative(self) -> bool:
-        """Whether values vary about the field's own value."""
+        """Whether values vary around the field's own value."""
         return self.of.is_relative
 
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
@@ -101,29 +101,29 @@ class _ScaledDraws(Distribution):
         return self.factor * self.of.values(numbers, own / self.factor)
 
     def resolve(self, scenario: Scenario) -> Distribution:
-        """Replace what is given as a multiple of a length of the scenario."""
+        """Convert multiples of a length of the scenario to metres."""
         return replace(self, of=self.of.resolve(scenario))
 
 
 class Sampling(TypedDict, total=False):
-    """The keywords that every function of `crawler2d.studies` takes.
+    """Keywords of every function of `crawler2d.studies`.
 
     vary, unknown : mapping of str to distribution
-        What differs from run to run, and what is not known: see `sweep`.
+        What varies from run to run, and what is unknown: see `sweep`.
     samples : int
-        Of the unknowns, 20 unless given.
+        Number of samples of the unknowns; the default is 20.
     seed : int
-        Of the draws.
+        Seed of the draws.
     trials : {"auto", "all"} or sequence of str
-        What to try at every stop; see `simulate`.
+        Trials to make at every stop; see `simulate`.
     store : str or path-like
-        A file that keeps every run; see `sweep`.
+        File that keeps every run; see `sweep`.
     executor : concurrent.futures.Executor
         Where to simulate instead; see `sweep`.
     threads : int
         See `simulate_many`.
     progress : bool or callable
-        See `simulate_many`; the number of all runs grows as cells need more.
+        See `simulate_many`; the total grows as cells need more runs.
     """
 
     vary: Mapping[str, Any] | None
@@ -138,10 +138,10 @@ class Sampling(TypedDict, total=False):
 
 
 class RateSampling(Sampling, total=False):
-    """The keywords of a study of rates.
+    """Keywords of a study of rates.
 
     until : Until
-        When a cell has been simulated often enough.
+        Stopping rule of the cells.
     """
 
     until: Until
@@ -149,16 +149,16 @@ class RateSampling(Sampling, total=False):
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One setting that is tried.
+    """One setting to simulate.
 
     Attributes
     ----------
     names : tuple of str
-        Such as "height=0.1", for messages.
+        Values such as "height=0.1", for messages.
     scenario : Scenario
-        Without draws.
+        The scenario without draws.
     factors : mapping of str to float
-        [-] By path: the factor of the scenario's own value, which draws get, too.
+        [-] Factors by path, included in the scenario's own value and also applied to draws.
     """
 
     names: tuple[str, ...]
@@ -176,12 +176,12 @@ def is_cleared(row: Row) -> bool:
 
 
 def counting(outcome: str) -> Counts:
-    """Count the runs with an outcome, or "stopped" for any stop, as `rate` does.
+    """Return a function that selects runs with an outcome, or "stopped" for any stop.
 
     Raises
     ------
     ScenarioError
-        If there is no such outcome.
+        If the outcome is unknown.
     """
     read_choice(outcome, "outcome", [*map(str, Outcome), "stopped"])
     stops = {str(each) for each in Outcome if each.is_stop}
@@ -191,24 +191,24 @@ def counting(outcome: str) -> Counts:
 
 @dataclass(slots=True)
 class Tally:
-    """The runs so far of one cell with one sample of the unknowns.
+    """The finished runs of one cell with one sample of the unknowns.
 
     Attributes
     ----------
     world : World
-        What is simulated.
+        The cell with its sample.
     until : Until
-        When there are enough.
+        The stopping rule.
     counts : callable
-        Which runs are successes.
+        Tells which runs are successes.
     others : sequence of callable
-        Other outcomes: it is enough if the rate of the commonest one of all is known.
+        Other outcomes: the rule then applies to the commonest of all.
     rows : list of Row
-        One a repeat.
+        One row per repeat.
     drawn : list of mapping of str to ndarray
-        What was drawn for each batch of repeats, by path.
+        Values drawn for each batch of repeats, by path.
     planner : Planner, optional
-        Draws its repeats; None takes the study's.
+        Planner of its repeats; None takes the study's.
     """
 
     world: World
@@ -226,33 +226,33 @@ class Tally:
 
     @property
     def successes(self) -> int:
-        """Number of runs that count."""
+        """Number of successes."""
         return sum(map(self.counts, self.valid))
 
     @property
     def interval(self) -> Interval:
-        """The rate with its interval, which holds however often one looked."""
+        """The rate with an interval that is valid for repeated checks."""
         return self.interval_of(self.counts)
 
     def interval_of(self, counts: Counts) -> Interval:
-        """Return the rate of other runs than successes, with its interval."""
+        """Return the rate of other runs with its interval."""
         valid = self.valid
         return sequential(sum(map(counts, valid)), len(valid), self.until.confidence)
 
     @property
     def commonest_outcome(self) -> str:
-        """How most runs ended."""
+        """The commonest outcome."""
         return Counter(row.outcome for row in self.rows).most_common(1)[0][0]
 
     @property
     def commonest_failure(self) -> str:
-        """How most runs that do not count ended; "" if all count."""
+        """The commonest outcome of failures; "" without any."""
         ends = Counter(row.outcome for row in self.valid if not self.counts(row))
         return ends.most_common(1)[0][0] if ends else ""
 
     @property
     def runs_needed(self) -> int:
-        """Number of runs to simulate next: half as many again, so that few rounds are needed."""
+        """Number of runs to simulate next: half as many again, to need few rounds."""
         count, valid = len(self.rows), self.valid
         commonest = max(sum(map(each, valid)) for each in (self.counts, *self.others))
         if count >= self.until.max_runs or self.until.is_done(commonest, len(valid)):
@@ -266,17 +266,17 @@ class Campaign:
     Attributes
     ----------
     base : Scenario
-        What all cells share.
+        The scenario that all cells share.
     until : Until
-        When a cell has been simulated often enough.
+        Stopping rule of the cells.
     threshold : float, optional
-        [-] The rate that the study, or its `until`, compares with.
+        [-] Threshold of the study or its `until`.
     trials : tuple of str
-        What is tried at every stop.
+        Trials at every stop.
     planner : Planner
-        Draws the repeats.
+        Planner of the repeats.
     settings : int
-        How many cells have been tried.
+        Number of cells tried.
     """
 
     def __init__(
@@ -303,26 +303,26 @@ class Campaign:
         counts: Counts = is_cleared,
         others: Sequence[Counts] = (),
     ) -> list[list[Tally]]:
-        """Simulate cells until each is known well enough.
+        """Simulate cells until the rate of each is known well enough.
 
         Parameters
         ----------
         cells : sequence of Cell
-            The settings.
+            Settings to simulate.
         counts : callable
-            Which runs are successes.
+            Tells which runs are successes.
         others : sequence of callable
             Other outcomes; see `Tally`.
 
         Returns
         -------
         list of list of Tally
-            By cell and sample.
+            Tallies by cell and sample.
 
         Raises
         ------
         ScenarioError
-            If a cell or a draw breaks a rule; its cells have not been simulated.
+            If a cell or a draw breaks a rule; nothing is simulated.
         """
         self.settings += len(cells)
         by_cell = []
@@ -337,7 +337,7 @@ class Campaign:
         return by_cell
 
     def simulate(self, due: Sequence[tuple[Tally, int]]) -> None:
-        """Simulate a number of further runs of each tally.
+        """Simulate a number of additional runs of each tally.
 
         Raises
         ------
@@ -360,7 +360,7 @@ class Campaign:
             tally.drawn.append(plan.drawn)
 
     def attributes(self, figure: str, tallies: Iterable[Tally]) -> dict[str, Any]:
-        """Describe the study, for the attributes of its data set; `figure` is what it plots."""
+        """Describe the study for the attributes of its data set; `figure` names its plot."""
         return {
             "figure": figure,
             "scenario": self.base.to_json(),
@@ -381,27 +381,27 @@ def campaign(
     threshold: float | None = None,
     repeats: int | None = None,
 ) -> Iterator[Campaign]:
-    """Open what a study needs: its store, its progress bar, its draws.
+    """Open a study: store, progress bar and draws.
 
     Parameters
     ----------
     base : Scenario
-        What all cells share.
+        The scenario that all cells share.
     how : Sampling
         The keywords of the study.
     swept : sequence of str
-        Paths that the study sets itself.
+        Paths set by the study.
     threshold : float, optional
-        [-] Where a rate decides, unless `until` has another threshold.
+        [-] Threshold of rates, unless `until` has one.
     repeats : int, optional
-        Runs of every cell, of a study that measures: then there is no `until`.
+        Runs per cell of a study of measures, which has no `until`.
 
     Raises
     ------
     ScenarioError
         If a keyword breaks a rule.
     BatchInterrupted
-        On Ctrl-C; a store keeps what was finished.
+        On Ctrl-C; a store keeps the finished runs.
     """
     check_scenario(base).validate()
     if repeats is None:

@@ -1,4 +1,4 @@
-"""The candidates of a search, its halving in rounds, and the table of its results."""
+"""Candidates of a search, successive halving, and the table of results."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["Candidate", "Confirmation", "FreshDraws", "halve", "ranked", "search
 
 
 class FreshDraws(Planner):
-    """Draws everything afresh: run k has sample k of the unknowns, and repeat k of that."""
+    """Draws everything for each run: run k has sample k of the unknowns, and its repeat k."""
 
     __slots__ = ()
 
@@ -45,13 +45,13 @@ class Candidate:
     Attributes
     ----------
     label : str or number
-        Its name.
+        Name of the candidate.
     cost : float
-        To be minimized.
+        Cost to be minimized.
     tallies : list of Tally
-        By terrain.
+        Tallies by terrain.
     rounds : int
-        How many rounds it has been through.
+        Number of rounds completed.
     """
 
     label: Label
@@ -61,12 +61,12 @@ class Candidate:
 
     @property
     def count(self) -> int:
-        """How often it has been simulated on each terrain."""
+        """Number of runs on each terrain."""
         return len(self.tallies[0].rows)
 
     @property
     def lowest(self) -> int:
-        """The terrain on which its rate is lowest."""
+        """The terrain with the lowest rate."""
         rates = [tally.successes / max(len(tally.valid), 1) for tally in self.tallies]
         return rates.index(min(rates))
 
@@ -77,7 +77,7 @@ class Candidate:
         return tally.successes / max(len(tally.valid), 1)
 
     def fails(self, goal: float) -> bool:
-        """Whether its rate certainly lies below the goal on some terrain."""
+        """Whether its rate is certainly below the goal on some terrain."""
         return any(tally.interval.high < goal for tally in self.tallies)
 
 
@@ -91,17 +91,17 @@ def ranked(candidates: Sequence[Candidate], goal: float) -> list[Candidate]:
 
 
 def halve(study: Campaign, candidates: Sequence[Candidate], goal: float, first: int) -> int:
-    """Simulate all candidates a few times, the better half twice as often, down to two.
+    """Simulate all candidates a few times, then the better half twice as often, down to two.
 
-    What certainly fails has no more runs, unless everything does. What was left behind returns if
-    those before it turn out worse: in the end the first two of all have been through every round.
+    Candidates that certainly fail get no more runs, unless all do. Eliminated candidates return if
+    the others turn out worse: in the end the best two have completed every round.
 
     Parameters
     ----------
     study : Campaign
-        What simulates.
+        The campaign that simulates.
     candidates : sequence of Candidate
-        At least one; their tallies are changed.
+        One or more candidates; their tallies are changed.
     goal : float
         [-] The rate that is wanted on each terrain.
     first : int
@@ -110,7 +110,7 @@ def halve(study: Campaign, candidates: Sequence[Candidate], goal: float, first: 
     Returns
     -------
     int
-        How many rounds there were.
+        Number of rounds.
     """
     rounds = max(math.ceil(math.log2(len(candidates))), 1)
     for number in range(rounds):
@@ -124,7 +124,7 @@ def halve(study: Campaign, candidates: Sequence[Candidate], goal: float, first: 
 
 
 def _advance(study: Campaign, chosen: Sequence[Candidate], rounds: int, first: int) -> None:
-    """Bring candidates to the number of runs that they have after so many rounds."""
+    """Bring candidates to the number of runs after a number of rounds."""
     wanted = first * 2 ** (rounds - 1)
     study.simulate([(tally, wanted - each.count) for each in chosen for tally in each.tallies])
     for each in chosen:
@@ -156,11 +156,11 @@ class Confirmation:
     Attributes
     ----------
     candidate : Candidate
-        Which one.
+        The candidate.
     pooled : sequence of Tally
-        By terrain: runs that each have a draw of everything.
+        Tallies by terrain, of runs with a draw of everything each.
     robots : sequence of sequence of Tally
-        By terrain and sample of the unknowns; empty without unknowns.
+        Tallies by terrain and sample of the unknowns; empty without unknowns.
     """
 
     candidate: Candidate
@@ -169,11 +169,11 @@ class Confirmation:
 
     @property
     def intervals(self) -> list[Interval]:
-        """The rate on each terrain; the number of runs was fixed beforehand."""
+        """The rate on each terrain, for a number of runs fixed in advance."""
         return [wilson(t.successes, len(t.valid), t.until.confidence) for t in self.pooled]
 
     def reaches(self, goal: float) -> bool:
-        """Whether the rate is high enough on every terrain."""
+        """Whether the rate reaches the goal on every terrain."""
         return all(each.rate >= goal for each in self.intervals)
 
 
@@ -184,14 +184,14 @@ def search_table(
     confirmed: Sequence[Confirmation],
     goal: float,
 ) -> FigureDataset:
-    """Arrange a search.
+    """Arrange the results of a search.
 
     Parameters
     ----------
     study : Campaign
         The study.
     candidates : sequence of Candidate
-        All that were tried.
+        All candidates tried.
     grounds : sequence of str or number
         Labels of the terrains.
     confirmed : sequence of Confirmation
@@ -202,7 +202,7 @@ def search_table(
     Returns
     -------
     FigureDataset
-        As `search` says.
+        See `search`.
     """
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
@@ -268,7 +268,7 @@ def _verdict(
     confirmed: Sequence[Confirmation],
     goal: float,
 ) -> str:
-    """Say what was chosen, why, and whether fresh runs confirm it."""
+    """Describe the choice, its reason, and whether fresh runs confirm it."""
     first = confirmed[0].candidate
     reached = sum(each.rate >= goal for each in candidates)
     if first.rate >= goal:

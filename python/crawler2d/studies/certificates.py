@@ -1,4 +1,4 @@
-"""Certificates: in which ranges of height, friction and centre of mass a robot cannot jam."""
+"""Certificates: ranges of height, friction and centre of mass in which a robot cannot jam."""
 
 from __future__ import annotations
 
@@ -25,48 +25,50 @@ if TYPE_CHECKING:
 __all__ = ["Certificate", "certify"]
 
 _MOST_FIELDS = 4
-"""So many fields may vary."""
+"""Largest number of varying fields."""
 
 _STATUSES = {-1: "jams", -2: "as a belt", -3: "undecided"}
-"""What a region is without cells that exclude jams."""
+"""Statuses of regions without a proof."""
 
 _EXCLUSIONS = "apart", "overlap", "belt", "unbalanced", "tips"
-"""Why there is no jam in a cell, in the order of the core."""
+"""Reasons why a cell has no jam, in the order of the core."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Certificate:
-    """In which ranges of fields a robot cannot jam; ``str(certificate)`` says it.
+    """Ranges of fields in which a robot cannot jam; ``str(certificate)`` summarises it.
 
     Attributes
     ----------
     fields : tuple of str
-        Paths of the fields that vary, F of them.
+        Paths of the F varying fields.
     ranges : ndarray of float, shape (F, 2)
-        Their least and greatest values.
+        Their smallest and largest values.
     depth : float
-        [m] Ground inside the track by less is left to the belt.
+        [m] Only jams with at least this depth of ground inside the track are excluded.
     low, high : ndarray of float, shape (N, F)
-        The regions, which cover all values once.
+        Bounds of the regions, which cover all values exactly once.
     status : ndarray of str, shape (N,)
-        What is known of each:
+        Result for each:
 
-        - `certified`: there is no jam in it with ground that deep inside the track;
-        - `as a belt`: there may be, but a belt round the same wheels can jam at each of its values;
-        - `jams`: at `witness` there is one on three contacts;
-        - `undecided`: none of these is shown.
+        - `certified`: it has no jam with ground that deep inside the track;
+        - `as a belt`: it may have one, but a belt round the same wheels can jam at each of its
+          values;
+        - `jams`: at `witness` it has one on three contacts;
+        - `undecided`: none of these was shown.
     witness : ndarray of float, shape (N, F + 3)
-        Values of the fields, and x [m], y [m] and angle [rad] of the chassis there; NaN elsewhere.
+        Values of the fields, and x [m], y [m] and angle [rad] of the chassis in a jam; NaN without
+        one.
     count : ndarray of int, shape (N,)
-        Number of cells that show that a region is certified, else 0.
+        Number of cells that certify a region, else 0.
     cells : dict of ndarray or None
-        These cells, M in the order of the certified regions, if they were asked for. `low` and
-        `high`, shape (M, 3 + F): x [m], y [m] and angle [rad] of the chassis, and the fields.
-        `exclusion`, shape (M,): `apart`, nothing can touch; `overlap`, a part overlaps with the
-        ground; `belt`, no ground is that deep inside the track; `unbalanced`, no forces carry the
-        weight; `tips`, those of one wheel or two do, but small deviations grow. `motion`, shape
-        (M, 3): for `unbalanced`, a velocity of the centre of mass [m/s] and of turning [rad/s] for
-        which the weight has power and no contact resists; NaN elsewhere.
+        These M cells, in the order of the certified regions, if requested. `low` and `high`, shape
+        (M, 3 + F): x [m], y [m] and angle [rad] of the chassis, and the fields. `exclusion`, shape
+        (M,): `apart`, nothing can touch; `overlap`, a part overlaps the ground; `belt`, no ground
+        is that deep inside the track; `unbalanced`, no forces carry the weight; `tips`, forces on
+        one or two wheels carry it, but small deviations grow. `motion`, shape (M, 3): for
+        `unbalanced`, a velocity of the centre of mass [m/s] and a rate of rotation [rad/s] at which
+        the weight does work and no contact resists; NaN for others.
     """
 
     fields: tuple[str, ...]
@@ -81,16 +83,16 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether the robot can jam nowhere, or only where a belt can as well."""
+        """Whether the robot can jam nowhere, or only where a belt can, too."""
         return bool(np.isin(self.status, ["certified", "as a belt"]).all())
 
     def share(self, status: str) -> float:
-        """Tell which share of all values has a status.
+        """Return the fraction of all values that has a status.
 
         Raises
         ------
         ScenarioError
-            If there is no such status.
+            If the status is unknown.
         """
         known = "certified", *_STATUSES.values()
         if status not in known:
@@ -99,7 +101,7 @@ class Certificate:
         return float(sizes[self.status == status].sum())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the regions over one field or two; takes and returns one matplotlib Axes.
+        """Draw the regions over one or two fields; takes and returns one matplotlib Axes.
 
         Raises
         ------
@@ -117,7 +119,7 @@ class Certificate:
         return ax
 
     def __str__(self) -> str:
-        """Say what is certified, and what that means."""
+        """Describe what is certified, and what it means."""
         pairs = zip(self.fields, self.ranges, strict=True)
         where = " and ".join(f"{name} from {low:g} to {high:g}" for name, (low, high) in pairs)
         inside = f"more than {1e3 * self.depth:g} mm of ground inside the track"
@@ -140,7 +142,7 @@ class Certificate:
         return f"{where}: {'; '.join(parts)}. {limits}"
 
     def _percent(self, status: str) -> str:
-        """Write the share of a status: only all is 100 %, and only nothing is 0 %."""
+        """Write the fraction of a status; only everything is 100 %, and only nothing 0 %."""
         own = self.status == status
         percent = 100.0 * self.share(status)
         if percent > 99.5 and not own.all():
@@ -148,7 +150,7 @@ class Certificate:
         return "less than 1 %" if percent < 0.5 and own.any() else f"{percent:.0f} %"
 
     def _first_jam(self) -> str:
-        """Name the values of the fields of the first jam, if there is one."""
+        """Write the values of the fields of the first jam, if any."""
         jams = self.witness[self.status == "jams"]
         values = jams[0] if len(jams) else ()
         pairs = zip(self.fields, values, strict=False)
@@ -171,43 +173,43 @@ def certify(
     most_cells: int = 100_000,
     keep_cells: bool = False,
 ) -> Certificate:
-    """Certify in which ranges of height, friction and centre of mass a robot cannot jam.
+    """Find ranges of height, friction and centre of mass in which a robot provably cannot jam.
 
-    All poses, at all values of the fields, are split into cells until something excludes each: a
-    wheel overlaps with the ground, nothing touches, no ground is inside the track, the weight works
-    with a virtual motion that no force resists, or the pose tips over by itself. Everything is
-    bounded by interval arithmetic with a margin of 1e-9 that is far above rounding, so nothing
-    between cells is left out; see docs/studies/jams.md. Poses tilted by more than
-    `criteria.tip_over_angle` are, as are those at the ends of the ground. Where the robot can jam,
-    the ranges are split into regions, and a belt round the same wheels is tried in each.
+    The space of all poses and field values is split into cells until each is excluded: a wheel
+    overlaps the ground, nothing touches, no ground is inside the track, the weight does work on a
+    virtual motion that no force resists, or the pose is unstable and tips over. All bounds come
+    from interval arithmetic with a margin of 1e-9, far above rounding, so nothing between cells is
+    missed; see docs/studies/jams.md. Poses tilted by more than `criteria.tip_over_angle` and poses
+    at the ends of the ground are not considered. Where the robot can jam, the ranges are split into
+    regions, and a belt round the same wheels is tested in each.
 
     Parameters
     ----------
     scenario : Scenario
-        A robot on round wheels, with a belly or without, flippers held, before an obstacle that is
+        A robot on round wheels, with or without a belly, flippers held, before an obstacle that is
         the same under both tracks.
     over : mapping of str to pair of float
-        Least and greatest values of up to 4 fields, which may move corners of the ground, its
-        friction and the centre of mass, in proportion: `terrain.height` of a step or a barrier,
+        Smallest and largest values of up to 4 fields that linearly change corners of the ground,
+        its friction or the centre of mass: `terrain.height` of a step or a barrier,
         `terrain.friction`, `robot.center_of_mass[0]` and the like.
     depth : float
-        [m] Ground inside the track by less is left to the belt; above 0.
+        [m] Smallest depth of ground inside the track of the excluded jams, above 0.
     smallest : float
-        [-] Regions are split down to this share of each range, from 1/1024 to 1.
+        [-] Smallest region, as a fraction of each range, from 1/1024 to 1.
     most_cells : int
-        A region of more cells than this is split or undecided; at least 1, at most 10 million.
+        A region that needs more cells is split or undecided; 1 to 10 million.
     keep_cells : bool
         Whether to return the cells.
 
     Returns
     -------
     Certificate
-        Regions, and what is known of each.
+        Regions and their statuses.
 
     Raises
     ------
     ScenarioError
-        If an argument breaks a rule, a field changes anything else, or the robot has no wheels, no
+        If an argument breaks a rule, a field changes anything else, or there are no wheels, no
         friction or no speed.
 
     Examples
@@ -255,7 +257,7 @@ def _read(
 
 
 def _members(scenario: Scenario, names: list[str], ranges: NDArray[np.float64]) -> list[Scenario]:
-    """Set the fields to their least values, each alone to its greatest, all, and half way."""
+    """Set the fields to their smallest values, one or all to the largest, and all half way."""
     low, high = ranges.T
     corners = [np.where(np.arange(len(names)) == k, high, low) for k in range(len(names))]
     rows = [low, *corners, high, 0.5 * (low + high)]

@@ -1,4 +1,4 @@
-"""Speed, acceleration and braking distance of models, and what limits them."""
+"""Speed, acceleration and braking distance of models, and their limiting factors."""
 
 from __future__ import annotations
 
@@ -50,16 +50,16 @@ _FACTOR = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What is doubled.
+    """A change: some inputs are doubled.
 
     Attributes
     ----------
     name : str
-        Of the limit, such as "torque".
+        Name of the limit, such as "torque".
     paths : tuple of str
-        The numbers that are doubled.
+        Paths of the doubled numbers.
     meaning : str
-        What it is, for the reader of a table.
+        Description, for tables.
     """
 
     name: str
@@ -68,11 +68,11 @@ class Change:
 
     @property
     def label(self) -> str:
-        """Such as "torque x 2"."""
+        """Label such as "torque x 2"."""
         return f"{self.name} x {_FACTOR:g}" if self.paths else self.name
 
     def factors(self, scenario: Scenario) -> Mapping[str, float]:
-        """[-] By path, for `Cell`: of these numbers, and of the fields that they stand for."""
+        """[-] Factors by path, for `Cell`."""
         return dict.fromkeys([*self.paths, *self._fields(scenario)], _FACTOR)
 
     def of(self, scenario: Scenario) -> Scenario:
@@ -97,27 +97,27 @@ def limiting_changes(
     least: float,
     falls: bool = False,
 ) -> NDArray[np.str_]:
-    """Name what limits a figure: what improves it when doubled, by more than chance.
+    """Name what limits a figure: doubling it improves the figure by more than chance.
 
     Parameters
     ----------
     values : ndarray, shape (m, n, s, r)
-        Of m models, n changes, s samples and r repeats; nan where there is no figure.
+        Values for m models, n changes, s samples and r repeats; NaN without a figure.
     changes : tuple of n Change
-        The first is that nothing is changed.
+        The changes; the first one changes nothing.
     fraction : float
-        [-] Fraction of the unchanged median by which a change must move it, at least.
+        [-] Smallest relevant change of the median, as a fraction of the unchanged one.
     least : float
         The same in units of the figure.
     falls : bool
-        Whether lower is better, as of a braking distance.
+        Whether lower is better, as for a braking distance.
 
     Returns
     -------
     ndarray of str, shape (m, s)
-        Such as "torque", "command and friction", or "none of these". A change counts if the median
-        over the repeats improves by more than these, and by more than the repeats without a change
-        lie apart; where these have no figure, if there is one with the change.
+        Labels such as "torque", "command and friction", or "none of these". A change counts if the
+        median over the repeats improves by more than these amounts, and by more than the range of
+        the unchanged repeats; if these have no figure, it counts if the changed ones do.
     """
     medians = np.median(values, axis=-1)
     before = medians[:, :1]
@@ -134,11 +134,11 @@ def limiting_changes(
 
 
 _FRACTION = 0.02
-"""[-] A change that moves a figure by less does not limit it."""
+"""[-] Smaller improvements do not count as a limit."""
 _OWN = ("drive.speed", "drive.schedule", "duration", "goal")
-"""Fields that these studies set themselves."""
+"""Fields that these studies set."""
 _COMMANDED = (*_OWN, "robot.drivetrain.max_speed")
-"""Fields that may not be drawn, because the largest speed is commanded."""
+"""Fields that must not be drawn, as the largest speed is commanded."""
 _PARTS = ("run-up", "one window", "two windows", "stop", "rest")
 
 
@@ -149,13 +149,13 @@ class Figure:
     Attributes
     ----------
     study, name, units, long_name : str
-        Names of study and column, unit, and what it is in words.
+        Names of study and column, unit, and description.
     command : Change
-        Which inputs are its command.
+        The inputs that command it.
     least : float
         [units] Smaller changes are neglected.
     values : callable
-        Takes a finished run-up, and a stop from there if it `halts`; gives the figure, shape
+        Takes a finished run-up, and a braking course if it `halts`; returns the figure, shape
         (samples, repeats).
     halts : bool
         Whether the robot stops; then less is better.
@@ -180,7 +180,7 @@ def _limiting_study(
     speed: float | None,
     repeats: int,
 ) -> FigureDataset:
-    """Drive every model as it is and with each change, and arrange the results."""
+    """Drive every model unchanged and with each change, and arrange the results."""
     check_study(scenario)
     given = None if speed is None else real_number(speed, "speed")
     if given is not None and not given > 0.0:
@@ -244,7 +244,7 @@ def _limiting_study(
 
 
 def _check_fields(given: object, place: str) -> None:
-    """Refuse fields that the study sets itself."""
+    """Refuse fields that the study sets."""
     for path in given if isinstance(given, Mapping) else ():
         if path in _OWN:
             rule = f"must not have {path}, which the study sets; give a speed by speed="
@@ -252,7 +252,7 @@ def _check_fields(given: object, place: str) -> None:
 
 
 def _sampling(how: Sampling) -> Sampling:
-    """Remove what the study commands from the default draws, or refuse to draw it."""
+    """Drop commands of the study from the default draws, or refuse given draws of them."""
     vary = how.get("vary")
     if vary is None:
         vary = of_start() | of_contact()
@@ -267,7 +267,7 @@ def _sampling(how: Sampling) -> Sampling:
 
 
 _STANDS = 1e-3
-"""[m/s] A slower robot stands."""
+"""[m/s] Slower robots count as standing."""
 
 
 @takes_keywords
@@ -279,23 +279,22 @@ def max_speed(
     repeats: int = 10,
     **how: Unpack[Sampling],
 ) -> FigureDataset:
-    """Measure the steady speed of each model at full command, and find what limits it.
+    """Measure the steady speed of each model at full command, and what limits it.
 
-    Each model stands on the scenario's level ground, or on the slope of its ramp, without end, and
-    drives off. Its speed is the mean over two windows, each of 20 grouser pitches or more, after a
-    run-up that is made longer until the two windows agree within 3 %, up to eight times as long.
-    What limits it is found by repeating the runs with the commanded speed, the torque or the
-    friction doubled, one at a time.
+    Each model starts from rest on the scenario's level ground, or the slope of its ramp, extended
+    to an endless plane. Its speed is the mean over two windows of at least 20 grouser pitches each,
+    after a run-up that is extended, up to eight times, until the two windows agree within 3 %. To
+    find the limit, the runs are repeated with the commanded speed, the torque or the friction
+    doubled, one at a time.
 
     Parameters
     ----------
     scenario : Scenario
-        On level ground or a ramp; command, goal and duration are set by the study.
+        Level ground or a ramp; the study sets command, goal and duration.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     speed : float, optional
-        [m/s] What is commanded, above 0; None takes each robot's `max_speed`, which it must not
-        exceed.
+        [m/s] Commanded speed, above 0, at most the robot's `max_speed`, which None takes.
     repeats : int
         Runs of every cell, 1 to 1,000,000.
     **how
@@ -305,23 +304,23 @@ def max_speed(
     Returns
     -------
     FigureDataset
-        Dimensions `model`, `change` (what was doubled), `part` (one run for each instant), `sample`
-        if there are unknowns, and `repeat`:
+        Dimensions `model`, `change` (what was doubled), `part` (one run per instant), `sample` if
+        there are unknowns, and `repeat`:
 
-        - `speed` [m/s]: median over the repeats; `speed_low`, `speed_high`: the lowest and the
-          highest of them; with unknowns, `speed_band_low`, `..._median` and `..._high`: 5, 50 and
-          95 % of the medians. All are NaN where a repeat has no steady speed, as on a slope down
-          which it slides ever faster.
+        - `speed` [m/s]: median over the repeats; `speed_low`, `speed_high`: their minimum and
+          maximum; with unknowns, `speed_band_low`, `..._median` and `..._high`: 5, 50 and 95 %
+          quantiles of the medians. All are NaN if a repeat has no steady speed, such as sliding
+          ever faster down a slope.
         - `limit`: "command", "torque", "friction", several joined by "and", or "none of these":
-          what improves the median by more than 2 % and by more than the repeats lie apart;
-        - `speed_with` [m/s]: the median with each change, and its bounds: the evidence;
-        - `ended`: how most of the longest runs of each change ended, or "not settled";
+          what improves the median by more than 2 % and by more than the range of the repeats;
+        - `speed_with` [m/s]: the median with each change, and its bounds, as evidence;
+        - `ended`: commonest outcome of the longest runs of each change, or "not settled";
         - `speed_each`, `speed_with_each`, and the columns of `sweep`.
 
     Raises
     ------
     ScenarioError
-        If the ground is another, or an argument breaks a rule.
+        If the ground is neither level nor a ramp, or an argument breaks a rule.
 
     Examples
     --------
@@ -345,12 +344,12 @@ def acceleration(
     repeats: int = 10,
     **how: Unpack[Sampling],
 ) -> FigureDataset:
-    """Measure the mean acceleration of each model from rest to its speed, and find what limits it.
+    """Measure the mean acceleration of each model from rest to its speed, and what limits it.
 
-    While it accelerates, a robot falls behind one that has its steady speed v from the start. If
-    that distance is s, the mean acceleration is v^2 / (2 s): the constant one that loses as much.
-    The drivetrain's `max_acceleration` is an input of a robot; where the limit is "command", the
-    study has measured no more than that.
+    While accelerating, a robot falls behind one that has the steady speed v from the start. If that
+    distance is s, the mean acceleration is v^2 / (2 s): the constant one that loses as much. The
+    drivetrain's `max_acceleration` is an input; if the limit is "command", the study has only
+    measured that.
 
     Parameters
     ----------
@@ -360,13 +359,13 @@ def acceleration(
     Returns
     -------
     FigureDataset
-        As of `max_speed`, with `acceleration` [m/s^2] in the place of `speed`, and `speed` [m/s],
-        the steady speed that was reached.
+        Like `max_speed`, with `acceleration` [m/s^2] instead of `speed`, and `speed` [m/s], the
+        steady speed reached.
 
     Examples
     --------
-    The Engineer's acceleration is that of its drivetrain, until that exceeds what its motors
-    have, less what their own rotors take:
+    The Engineer's acceleration is that of its drivetrain, up to the torque of its motors minus the
+    part that accelerates their rotors:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
@@ -391,10 +390,10 @@ def braking_distance(
     repeats: int = 10,
     **how: Unpack[Sampling],
 ) -> FigureDataset:
-    """Measure how far each model moves from the command to stop until it rests, and what limits it.
+    """Measure the distance of each model from the command to stop until rest, and what limits it.
 
-    It brakes from its steady speed. The drivetrain's `max_deceleration` is an input of a robot;
-    where the limit is "command", the study has measured no more than that.
+    It brakes from its steady speed. The drivetrain's `max_deceleration` is an input; if the limit
+    is "command", the study has only measured that.
 
     Parameters
     ----------
@@ -404,14 +403,14 @@ def braking_distance(
     Returns
     -------
     FigureDataset
-        As of `max_speed`, with `braking_distance` [m] in the place of `speed`, where less is
-        better, and `speed` [m/s], the steady speed from which it brakes.
-        `braking_distance` is NaN where a repeat never stops, as on a slope down which it slides.
+        Like `max_speed`, with `braking_distance` [m] instead of `speed`, for which less is better,
+        and `speed` [m/s], the steady speed from which it brakes. `braking_distance` is NaN if a
+        repeat never stops, such as sliding down a slope.
 
     Notes
     -----
     The 0.3 to 1 m from 0.4 m/s that the paper gives for its models (Table 3) are decelerations of
-    0.27 to 0.08 m/s^2: not what friction allows, which with a coefficient of 0.9 is 9 mm.
+    0.27 to 0.08 m/s^2. Friction with a coefficient of 0.9 would allow 9 mm.
 
     Examples
     --------

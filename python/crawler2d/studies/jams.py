@@ -1,4 +1,4 @@
-"""Where in height and friction a model can jam at all: computed, not sampled."""
+"""Heights and frictions at which a model can jam at all: computed, not sampled."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["jam_chart"]
 
 _MOST = 1.5
-"""[-] Usual end of the frictions."""
+"""[-] Default largest friction."""
 
 _HEIGHTS = 200
-"""Usual number of heights."""
+"""Default number of heights."""
 
 _INSIDE = 1e-6
-"""[m] Ground that reaches less deep into the track is not inside it."""
+"""[m] Shallower ground does not count as inside the track."""
 
 _TEXTS = {
     "low": ("friction from which on it can jam", "1"),
@@ -55,49 +55,49 @@ def jam_chart(
     values: Sequence[float] | None = None,
     most_friction: float = _MOST,
 ) -> FigureDataset:
-    """Chart at which heights and frictions each model can jam at all, and between which wheels.
+    """Chart the heights and frictions at which each model can jam, and between which wheels.
 
-    A pose on three contacts depends on the geometry alone, and the frictions at which forces carry
-    the robot there are known exactly: they are intervals whose ends are zeros of polynomials. So
-    the borders of a region are curves, of which a point is computed for each height.
+    A pose on three contacts depends only on the geometry. The frictions at which forces carry the
+    robot in it are intervals whose ends are zeros of polynomials, so the borders of a region are
+    exact curves, computed at each height.
 
-    Poses on one contact or two, in which a robot leans or balances, are left out here, as are
-    motors' limits: see `crawler2d.jams`. That a robot can jam does not mean that it gets there.
+    Poses on one or two contacts, in which a robot leans or balances, are not included, and motors
+    have no limits: see `crawler2d.jams`. A possible jam is not necessarily reached in a run.
 
     Parameters
     ----------
     scenario : Scenario
-        Robot and ground; the friction of the ground does not matter.
+        Robot and ground; its friction is ignored.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot. Tracks of round wheels, or belts.
+        See `compare`; None takes the scenario's own robot. Tracks of round wheels, or belts.
     x : str
         Path of the number along the first axis.
     values : sequence of float, optional
-        Its values; None takes 200 of a height, up to twice the front radius.
+        Its values; None takes 200 heights up to twice the front radius.
     most_friction : float
         [-] Largest friction, above 0.
 
     Returns
     -------
     FigureDataset
-        Dimensions `model`, the values of `x`, and `jam`, of which a model has some at each value,
-        and NaN elsewhere:
+        Dimensions `model`, the values of `x`, and `jam`, filled up with NaN, as the number of jams
+        differs:
 
-        - `low`, `high`: the frictions between which it can jam so;
+        - `low`, `high`: the range of friction of the jam;
         - `rear`, `front`: bodies on either side of the ground inside the track, -1 without any;
-        - `depth` [m]: how deep that is; `position` [m] and `angle` [rad] of the chassis;
+        - `depth` [m] of that ground; `position` [m] and `angle` [rad] of the chassis;
         - `belt_low`, `belt_high`, along `belt_jam`: the same for a belt round the model's bodies.
 
     Raises
     ------
     ScenarioError
-        If `x` is no number of the scenario, an argument breaks a rule, or a model has another
-        track.
+        If `x` is not a number of the scenario, an argument breaks a rule, or a track model is not
+        supported.
 
     Examples
     --------
-    Four wheels that touch can be caught by a step of 100 mm up to a friction of 1.28, a belt cannot
-    stand there above 0.75:
+    A step of 100 mm can jam four touching wheels up to a friction of 1.28, but a belt only up to
+    0.75:
 
     >>> import crawler2d as c2d
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
@@ -139,7 +139,7 @@ def _values(scenario: Scenario, x: str, values: Sequence[float] | None) -> list[
 
 
 def _ranges(cells: Sequence[Scenario], most: float) -> list[dict[str, Any]]:
-    """Compute the jams of each scenario, whatever its friction."""
+    """Compute the jams of each scenario at any friction."""
     return _core.jam_ranges([cell.to_json() for cell in cells], most)
 
 
@@ -193,7 +193,7 @@ def _bodies(cell: dict[str, Any]) -> tuple[list[int], list[int]]:
 
 
 def _padded(models: Sequence[Sequence[dict[str, Any]]], column: Any) -> NDArray[np.float64]:
-    """Stack a column of every cell, shape (models, values, most jams of any), NaN beyond."""
+    """Stack a column of every cell, shape (models, values, jams), padded with NaN."""
     rows = [[np.asarray(column(cell), float) for cell in cells] for cells in models]
     most = max(len(row) for cells in rows for row in cells)
     padded = [

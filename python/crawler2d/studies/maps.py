@@ -1,4 +1,4 @@
-"""Maps of how runs end over two fields: a grid, refined where outcomes change."""
+"""Maps of outcomes over two fields: a grid, refined where outcomes change."""
 
 from __future__ import annotations
 
@@ -43,27 +43,27 @@ if TYPE_CHECKING:
 __all__ = ["Grid", "seizure_map"]
 
 _AROUND = [(j, i) for j in (-1, 0, 1) for i in (-1, 0, 1) if (j, i) != (0, 0)]
-"""The neighbours of a cell."""
+"""Offsets to the neighbours of a cell."""
 
 
 class Grid:
-    """Cells by model, y and x, of which some are simulated.
+    """Cells by model, y and x; some of them are simulated.
 
     Parameters
     ----------
     shape : tuple of 3 ints
-        Of the finest grid.
+        Shape of the finest grid.
     simulate : callable
-        Given the places of cells, returns the tallies of each by sample.
+        Takes the indices of cells, returns the tallies of each by sample.
     classify : callable
-        Given the tallies of a cell, returns its rate, the number of its kind, 0 for one that its
-        neighbours must not copy, and whether that is certain.
+        Takes the tallies of a cell, returns its rate, the number of its kind (0 if neighbours must
+        not copy it), and whether the kind is certain.
 
     Attributes
     ----------
     rates, kinds, certain : ndarray, shape (models, y, x)
-        [-] What `classify` returns. Of a cell that is not simulated they are taken from those
-        around it, and certain if all of these are; NaN where nothing is known yet.
+        [-] Results of `classify`. Cells that are not simulated take them from their neighbours, and
+        are certain if all of these are; NaN where nothing is known yet.
     """
 
     def __init__(
@@ -77,12 +77,12 @@ class Grid:
         self._simulate, self._classify = simulate, classify
 
     def refine(self, stride: int, *, whole: bool) -> None:
-        """Simulate every `stride`-th cell: the whole grid, or those that neighbours leave open."""
+        """Simulate every `stride`-th cell: all, or those that neighbours do not decide."""
         part = np.s_[:, ::stride, ::stride]
         if whole:
             self._add(np.ones(self.kinds[part].shape, bool), stride)
             return
-        # What was not simulated before stays open: it may get neighbours of another kind.
+        # Cells not simulated before stay open, as they may get neighbours of another kind.
         while (due := self._open(stride) & ~self._agrees(stride)).any():
             self._add(due, stride)
         fill = np.isnan(self.kinds[part])
@@ -95,14 +95,14 @@ class Grid:
 
     @property
     def tried(self) -> NDArray[np.bool_]:
-        """Which cells have been simulated, shape (models, y, x)."""
+        """Mask of the simulated cells, shape (models, y, x)."""
         tried = np.zeros(self.kinds.shape, bool)
         tried[tuple(np.array(list(self._tallies)).T)] = True
         return tried
 
     @property
     def tallies(self) -> list[list[Tally]]:
-        """The tallies of all cells by sample; those of one that was not simulated are empty."""
+        """Tallies of all cells by sample; empty for cells that are not simulated."""
         some = next(iter(self._tallies.values()))
         none = [Tally(replace(t.world, own={}, sampled={}), t.until, t.counts) for t in some]
         return [self._tallies.get(place, none) for place in np.ndindex(self.kinds.shape)]
@@ -111,7 +111,7 @@ class Grid:
         return ~self.tried[:, ::stride, ::stride]
 
     def _agrees(self, stride: int) -> NDArray[np.bool_]:
-        """Whether a cell and its neighbours, as far as known, are all of one certain kind."""
+        """Whether a cell and its known neighbours are all of one certain kind."""
         own = self.kinds[:, ::stride, ::stride]
         around = np.concatenate([_neighbours(own), own[None]])
         low, high = np.fmin.reduce(around), np.fmax.reduce(around)
@@ -126,7 +126,7 @@ class Grid:
 
 
 def _neighbours(grid: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Stack the values of the eight neighbours of every cell; NaN beyond the rim."""
+    """Stack the values of the eight neighbours of every cell; NaN outside the grid."""
     _, rows, columns = grid.shape
     padded = np.pad(grid, ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
     return np.stack([padded[:, 1 + j : 1 + j + rows, 1 + i : 1 + i + columns] for j, i in _AROUND])
@@ -143,28 +143,28 @@ def seizure_map(
     refine: int = 1,
     **how: Unpack[RateSampling],
 ) -> FigureDataset:
-    """Map how runs end over two fields, such as height and friction, and how often.
+    """Map outcomes and their rates over two fields, such as height and friction.
 
-    A run clears, has the outcome that is asked for, or ends otherwise. Every cell of the grid is
-    simulated; then the grid is halved, and of the new cells only those are simulated around which
-    not all cells end, for certain, in the same way. With unknowns their commonest ends alone are
-    compared: more cells make no band over the samples certain.
+    A run clears, has the requested outcome, or ends otherwise. Every cell of the grid is simulated;
+    then the grid is halved, and new cells are simulated unless all their neighbours certainly end
+    in the same way. With unknowns only the commonest ends are compared, as more cells cannot narrow
+    a band over the samples.
 
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     x, y : pair of str and sequence of float
-        Path of a number and at least two values of it, ascending, in units of the field.
+        Path of a number and at least two ascending values, in units of the field.
     outcome : str
         Name of an `Outcome`, or "stopped" for any stop.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     refine : int
-        How often the grid is halved, 0 to 6.
+        Number of times that the grid is halved, 0 to 6.
     **how
         See `crawler2d.studies`. Each cell is simulated until the rate of its commonest end is known
-        to lie on one side of one half, or within 0.2, unless `until` says otherwise.
+        to be above or below one half, or within 0.2, unless `until` says otherwise.
 
     Returns
     -------
@@ -173,24 +173,24 @@ def seizure_map(
         and `repeat`; the columns of `sweep`, `rate` of the outcome and its interval; and for each
         cell:
 
-        - `ending`: the commonest end: "cleared", the outcome, or "otherwise"; where a cell was not
-          simulated (`count` is 0), that of all cells next to it;
-        - `unsure`: whether it is not certain that more than half of the runs end so: the interval
-          of their rate, or with unknowns the band over the samples, begins at one half or below; of
-          a cell that was not simulated, whether one next to it is unsure;
-        - `around`: where a cell was not simulated, the mean of the rates next to it; NaN elsewhere.
+        - `ending`: the commonest end: "cleared", the outcome, or "otherwise"; for cells that were
+          not simulated (`count` is 0), that of their neighbours;
+        - `unsure`: whether it is uncertain that more than half of the runs end so: the interval of
+          their rate, or with unknowns the band over the samples, starts at one half or below; for
+          cells that were not simulated, whether a neighbour is unsure;
+        - `around`: for cells that were not simulated, the mean rate of their neighbours, else NaN.
 
-        With unknowns, the end with the largest median over the samples is the commonest. `plot`
+        With unknowns, the commonest end is the one with the largest median over the samples. `plot`
         draws one model: ``found.sel(model="belt").plot()``.
 
     Raises
     ------
     ScenarioError
-        If a path is no number of the scenario, or an argument breaks a rule.
+        If a path is not a number of the scenario, or an argument breaks a rule.
 
     Examples
     --------
-    A belt slips on a slope whose tangent exceeds the friction:
+    A belt slips on a slope with a tangent larger than the friction:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.ramp(0.3))
@@ -248,13 +248,13 @@ def seizure_map(
 
 
 def _ends(outcome: str) -> dict[str, Counts]:
-    """Return the outcomes that are distinguished, by name."""
+    """Return the distinguished ends, by name."""
     named = {"cleared": is_cleared, outcome: counting(outcome)}
     return {**named, "otherwise": lambda row: not any(each(row) for each in named.values())}
 
 
 def _commonest(tallies: Sequence[Tally], ends: Sequence[Counts]) -> tuple[int, bool]:
-    """Return the number of the commonest end of a cell, and whether most runs certainly end so."""
+    """Return the commonest end of a cell, and whether most runs certainly end so."""
     intervals = [[tally.interval_of(each) for tally in tallies] for each in ends]
     rates = [[each.rate for each in own if not math.isnan(each.rate)] for own in intervals]
     if not rates[0]:  # no run has a result

@@ -1,4 +1,4 @@
-"""The highest obstacle, the steepest slope, the widest gap, and rates over a set of terrains."""
+"""Highest obstacle, steepest slope, widest gap, and rates over a set of terrains."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["max_gap", "max_obstacle", "max_slope", "success_rate"]
 
 _NONE = "none up to here"
-"""The limit of what clears all that was tried."""
+"""Limit of a model that clears everything tried."""
 
 
 @takes_keywords
@@ -48,38 +48,39 @@ def max_obstacle(
 ) -> FigureDataset:
     """Find the highest obstacle that each model clears.
 
-    Every height is tried, because a lower one may fail where a higher one does not: wheels seize on
-    edges that come just between them.
+    Every height is tried, because a lower one may fail and a higher one may not: wheels seize on
+    edges that just fit between them.
 
     Parameters
     ----------
     scenario : Scenario
-        Its terrain has a `height`, as a step or a barrier has.
+        Its terrain has a `height`, such as a step or a barrier.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     heights : sequence of float, optional
-        [m] Heights to try; None takes every sixth of the front radius, from a sixth to twice.
+        [m] Heights to try; None takes multiples of a sixth of the front radius, up to twice the
+        radius.
     **how
-        See `crawler2d.studies`. Each cell is simulated until its rate is known to lie on one side
-        of one half, or within 0.2, unless `until` says otherwise.
+        See `crawler2d.studies`. Each cell is simulated until its rate is known to be above or below
+        one half, or within 0.2, unless `until` says otherwise.
 
     Returns
     -------
     FigureDataset
-        Dimensions `model`, `height`, `sample` if there are unknowns, and `repeat`; besides `rate`,
-        `low`, `high`, `count`, `side`, and the columns of `sweep`:
+        Dimensions `model`, `height`, `sample` if there are unknowns, and `repeat`; `rate`, `low`,
+        `high`, `count`, `side`, the columns of `sweep`, and:
 
-        - `highest` [m]: the greatest height whose rate is at least one half; NaN if there is none;
-        - `certain` [m]: the greatest whose interval lies above one half;
-        - `gaps`: how many lower heights have a rate below one half;
-        - `limit`: how most runs end on the next height; "none up to here" without one.
+        - `highest` [m]: the largest height with a rate of at least one half; NaN if there is none;
+        - `certain` [m]: the largest one with an interval above one half;
+        - `gaps`: the number of lower heights with a rate below one half;
+        - `limit`: the commonest outcome at the next height; "none up to here" if there is none.
 
-        The attribute `summary` says it in words.
+        The attribute `summary` describes it in words.
 
     Raises
     ------
     ScenarioError
-        If the terrain has no such measure, or an argument breaks a rule.
+        If the terrain has no such field, or an argument breaks a rule.
 
     Examples
     --------
@@ -114,7 +115,7 @@ def max_slope(
     Parameters
     ----------
     scenario : Scenario
-        Its terrain has an `angle`, as a ramp has.
+        Its terrain has an `angle`, such as a ramp.
     models, **how
         See `max_obstacle`.
     angles : sequence of float, optional
@@ -138,11 +139,11 @@ def max_gap(
     Parameters
     ----------
     scenario : Scenario
-        Its terrain has a `width`, as a gap has.
+        Its terrain has a `width`, such as a gap.
     models, **how
         See `max_obstacle`.
     widths : sequence of float, optional
-        [m] Widths to try; None takes every tenth of the axle distance up to the whole.
+        [m] Widths to try; None takes multiples of a tenth of the axle distance, up to all of it.
     """
     check_study(scenario)
     length = scenario.robot.outline.axle_distance
@@ -210,7 +211,7 @@ def _find_greatest(
 
 
 def _limits_text(limits: Sequence[_Limits], name: str, units: str) -> str:
-    """Say what a model clears, over all samples of the unknowns."""
+    """Describe what a model clears, over all samples of the unknowns."""
     greatest = sorted({each.highest for each in limits if not math.isnan(each.highest)})
     if not greatest:
         text = f"no {name} that was tried"
@@ -227,7 +228,7 @@ def _limits_text(limits: Sequence[_Limits], name: str, units: str) -> str:
 
 
 class _Limits(NamedTuple):
-    """What one model clears, see `max_obstacle`."""
+    """The limits of one model, see `max_obstacle`."""
 
     highest: float
     certain: float
@@ -254,38 +255,38 @@ def success_rate(
     models: Models | None = None,
     **how: Unpack[RateSampling],
 ) -> FigureDataset:
-    """Find how often each model gets over each ground, and how and where it fails.
+    """Find the rate at which each model clears each terrain, and how and where it fails.
 
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     terrains : mapping of str to terrain, optional
-        By label; None takes the scenario's own.
+        Terrains by label; None takes the scenario's own.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     **how
-        See `crawler2d.studies`. Unless `vary` is given, every run on a random step field has a
-        field of its own, too. Each cell is simulated until its rate is known within 0.2, unless
-        `until` says otherwise.
+        See `crawler2d.studies`. Unless `vary` is given, every run on a random step field also has
+        its own field. Each cell is simulated until its rate is known within 0.2, unless `until`
+        says otherwise.
 
     Returns
     -------
     FigureDataset
-        Dimensions `model`, `terrain`, `sample` if there are unknowns, and `repeat`; `rate` of runs
-        that cleared with its interval and `count`; the columns of `sweep` for each run, of which
-        `outcome`, `stop_x` and `mechanism` tell how and where it failed; and for every outcome
-        that occurred a column `ended_...`, how many runs ended so.
+        Dimensions `model`, `terrain`, `sample` if there are unknowns, and `repeat`; `rate` of
+        clearing with its interval and `count`; the columns of `sweep` for each run (`outcome`,
+        `stop_x` and `mechanism` show how and where it failed); and a column `ended_...` with the
+        count of each outcome that occurred.
 
     Raises
     ------
     ScenarioError
-        If `terrains` has something else in it, or an argument breaks a rule.
+        If `terrains` contains anything else, or an argument breaks a rule.
 
     Warns
     -----
     ScenarioWarning
-        If random step fields differ in their seed alone, and `vary` is not given.
+        If random step fields differ only in their seed, and `vary` is not given.
 
     Examples
     --------

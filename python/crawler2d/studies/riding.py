@@ -1,4 +1,4 @@
-"""Ride, error of odometry, and real-time factor of models."""
+"""Ride, odometry error, and real-time factor of models."""
 
 from __future__ import annotations
 
@@ -40,24 +40,24 @@ if TYPE_CHECKING:
 __all__ = ["odometry", "real_time_factor", "ride"]
 
 _STANDS = 1e-3
-"""[m] A robot that has moved less has no error of odometry."""
+"""[m] A robot that moved less has no odometry error."""
 
 
 @takes_keywords
 def ride(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
 ) -> FigureDataset:
-    """Measure how each model rides on the scenario's ground: how its chassis shakes and rocks.
+    """Measure the ride of each model on the scenario's ground: vibration and pitching.
 
     Parameters
     ----------
     scenario : Scenario
-        Each run is one of it, from the start to its end, with the standstill of a stop; `ended` and
-        `speed` say what it covers.
+        Every run covers it from start to end, including standstill in a stop; `ended` and `speed`
+        show what it covers.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     repeats : int
-        Runs of every model, 1 to 1,000,000.
+        Runs per model, 1 to 1,000,000.
     **how
         See `crawler2d.studies`.
 
@@ -69,15 +69,15 @@ def ride(
         - `vibration` [m/s^2]: vertical acceleration of the chassis frame, averaged over 10 ms, root
           mean square;
         - `rocking` [rad/s]: rate of change of the chassis angle, root mean square;
-        - `swing` [rad]: from the smallest to the greatest chassis angle;
-        - `speed` [m/s]: distance along the chassis by the time that the run took;
-        - `ended`: how most runs ended;
+        - `swing` [rad]: largest minus smallest chassis angle;
+        - `speed` [m/s]: distance along the chassis divided by the duration of the run;
+        - `ended`: the commonest outcome;
         - and the columns of `sweep`.
 
-        The first four are medians over the repeats; each has its bounds, `vibration_low` and
-        `vibration_high`, the lowest and the highest repeat, and `vibration_each`; with unknowns,
-        also the band of the medians over the samples, `vibration_band_low`, `..._median` and
-        `..._high`. `found.plot(of="swing")` draws another one than the vibration.
+        The first four are medians over the repeats. Each has bounds, such as `vibration_low` and
+        `vibration_high`, the minimum and maximum of the repeats, and `vibration_each`; with
+        unknowns, also the band of the medians over the samples, `vibration_band_low`, `..._median`
+        and `..._high`. `found.plot(of="swing")` draws the swing instead of the vibration.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def ride(
 
     Examples
     --------
-    Grousers shake the chassis where a smooth belt does not:
+    Grousers shake the chassis, a smooth belt does not:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
@@ -140,13 +140,12 @@ def ride(
 def odometry(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
 ) -> FigureDataset:
-    """Measure how far the distance run by a track differs from the distance moved by the robot.
+    """Measure the odometry error: travel of the track compared with travel of the robot.
 
-    Odometry with the circumscribed radius reads how far the surface of the track has run. On level
-    ground it reads too much where the track slides, and where it rolls on less than that radius, as
-    a gear wheel does between its tips. To tell the two apart, the same runs are repeated with the
-    friction doubled; the error that remains is not sliding. On uneven ground the two distances
-    differ even without either.
+    Odometry with the circumscribed radius reads the travel of the track surface. On level ground it
+    reads too much if the track slides, or if it rolls on less than that radius, like a gear wheel
+    between its tips. To separate the two, the same runs are repeated with the friction doubled: the
+    remaining error is not sliding. On uneven ground the two distances differ even without either.
 
     Parameters
     ----------
@@ -159,20 +158,20 @@ def odometry(
         Dimensions `model`, `change` (unchanged, and the friction doubled), `sample` if there are
         unknowns, and `repeat`:
 
-        - `odometry_error` [-]: the distance that odometry reads over that travelled, less 1;
-        - `slip` [-]: the mean slip ratio, 1 less the distance travelled over that read;
-        - `rolling_radius` [m]: the radius with which odometry would be right; NaN unless all wheels
-          of the chassis have the same radius;
-        - `odometry_error_with` [-]: the error unchanged, and with the friction doubled;
-        - `ended`: how most runs of each change ended;
+        - `odometry_error` [-]: odometry distance / travelled distance - 1;
+        - `slip` [-]: mean slip ratio, 1 - travelled distance / odometry distance;
+        - `rolling_radius` [m]: the radius for which odometry would be correct; NaN unless all
+          wheels of the chassis have the same radius;
+        - `odometry_error_with` [-]: the error without change, and with the friction doubled;
+        - `ended`: the commonest outcome for each change;
         - and the columns of `sweep`.
 
-        The first four are medians over the repeats, with bounds and bands as in `ride`; they are
-        NaN where a repeat has not moved.
+        The first four are medians over the repeats, with bounds and bands as in `ride`; NaN if a
+        repeat has not moved.
 
     Examples
     --------
-    Round wheels roll on their radius, gear wheels on less than that of their tips:
+    Round wheels roll on their radius, gear wheels on less than their tip radius:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
@@ -198,7 +197,7 @@ def odometry(
         ]
         tallies = study.repeat(cells)
         shape = (len(fields), len(changes), -1, study.until.max_runs)
-        ratios = _figures(tallies, _ratio).reshape(shape)  # of the way made to the way read
+        ratios = _figures(tallies, _ratio).reshape(shape)  # travelled to odometry distance
         radii = _figures(tallies[:: len(changes)], _radius).reshape(ratios[:, 0].shape)
         dims: Dims = {
             "model": (list(fields), {}),
@@ -219,7 +218,7 @@ def odometry(
 
 
 def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArray[np.float64]:
-    """Return a figure of every run, shape (cells, samples, repeats); NaN without a result."""
+    """Return a figure for every run, shape (cells, samples, repeats); NaN without a result."""
     return np.array(
         [
             [
@@ -232,20 +231,20 @@ def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArr
 
 
 def _with_ends(table: FigureDataset, tallies: list[list[Tally]], name: str) -> FigureDataset:
-    """Add how most runs ended, in the dimensions of a column."""
+    """Add the commonest outcome, in the dimensions of a column."""
     ends = np.array([tally.commonest_outcome for each in tallies for tally in each])
     attributes = {"long_name": "how most runs ended"}
     return table.assign(ended=(table[name].dims, ends.reshape(table[name].shape), attributes))
 
 
 def _ratio(row: Row) -> float:
-    """[-] The distance moved over the distance that the track has run."""
+    """[-] Distance moved by the robot divided by the travel of the track."""
     moved, run = row.metrics["path_length"], row.metrics["track_distance"]
     return moved / run if min(abs(moved), abs(run)) > _STANDS else math.nan
 
 
 def _radius(row: Row) -> float:
-    """[m] The circumscribed radius of the wheels of the chassis; NaN if there is no single one."""
+    """[m] Circumscribed radius of the chassis wheels; NaN unless all are equal."""
     wheels = Scenario.from_json(row.scenario).robot.wheels()
     on_chassis = wheels["carrier"] == "chassis"
     radii = set(wheels["radius"][on_chassis].tolist())
@@ -253,7 +252,7 @@ def _radius(row: Row) -> float:
 
 
 _LEAST = 0.05
-"""[s] Processor time that is measured at once: many ticks of any clock."""
+"""[s] Processor time of one measurement: many ticks of any clock."""
 _STANDING = {"drive.speed": 0.0, "drive.schedule": None}
 
 
@@ -266,40 +265,39 @@ def real_time_factor(
     progress: bool | Progress | None = True,
     **others: object,
 ) -> FigureDataset:
-    """Measure how many seconds are simulated in a second of processor time, on one thread.
+    """Measure the simulated seconds per second of processor time, on one thread.
 
-    It is a figure of this machine, this build and this hour: so there is no store, no executor and
-    no number of threads, and nothing varies from repeat to repeat but the machine. The clock is
-    that of the processor, which does not run while others have it; models take turns, so that a
-    machine that slows down slows all of them.
+    The result depends on the machine, the build and the moment, so there is no store, executor or
+    number of threads, and repeats vary only by the machine. The clock counts processor time of this
+    process only; models take turns, so a machine that slows down affects all of them.
 
     Parameters
     ----------
     scenario : Scenario
-        What is simulated, from its start.
+        The scenario, simulated from its start.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     duration : float
-        [s] Simulated time, above 0, up to 1000; whatever the outcome, the simulation goes on.
+        [s] Simulated time, above 0, up to 1000; the simulation continues after an outcome.
     repeats : int
-        Measurements of every model, 1 to 1000. A quick one simulates the same several times, for
-        50 ms of processor time.
+        Measurements per model, 1 to 1000. Short simulations are repeated until they take 50 ms of
+        processor time.
     progress : bool or callable
         See `simulate_many`.
     **others
-        The other keywords of studies are refused.
+        Refused: other keywords of studies.
 
     Returns
     -------
     FigureDataset
-        Dimensions `model`, `motion` ("standing" without a command, "driving" as the scenario
-        commands) and `repeat`:
+        Dimensions `model`, `motion` ("standing" without a command, "driving" as commanded by the
+        scenario) and `repeat`:
 
         - `factor` [-]: the real-time factor, median over the repeats; `factor_low`, `factor_high`:
-          the lowest and the highest of them; `factor_each`;
-        - `moved` [m]: how far the robot came, along x.
+          minimum and maximum; `factor_each`;
+        - `moved` [m]: distance of the robot along x.
 
-        The attributes name the processor, if it is known, and the build.
+        The attributes name the processor, if known, and the build.
 
     Raises
     ------
@@ -333,7 +331,7 @@ def real_time_factor(
     moved, passes = [], []
     factors = np.empty((len(jobs), count))
     with reporter(progress, len(jobs) * (count + 1)) as report:
-        for job in jobs:  # what is used for the first time costs more
+        for job in jobs:  # first use costs more
             spent, way = _simulated(job, span)
             moved.append(way)
             passes.append(math.ceil(_LEAST / max(spent, 1e-4)))
@@ -367,7 +365,7 @@ def real_time_factor(
 
 
 def _simulated(scenario: Scenario, duration: float) -> tuple[float, float]:
-    """Simulate, and return the processor time [s] that it took and the way [m] along x."""
+    """Simulate, and return processor time [s] and distance [m] along x."""
     simulation = Simulation(scenario)
     start = float(simulation.state().position[0])
     begin = time.thread_time()

@@ -1,4 +1,4 @@
-"""The cheapest candidate that gets over a set of grounds: found by halving, confirmed afresh."""
+"""Find the cheapest candidate that clears a set of terrains, and confirm it with fresh runs."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["search"]
 
 _FRESH_SEED = 2**64
-"""Users' seeds are smaller, so that seeds above it draw other numbers."""
+"""Users' seeds are smaller, so larger seeds draw other numbers."""
 
 Objective = Callable[[Scenario], float]
 
@@ -59,59 +59,60 @@ def search(
 ) -> FigureDataset:
     """Find the cheapest candidate that clears every terrain, such as the one with fewest wheels.
 
-    In the search every run has its own draw of what varies *and* of the uncertain parameters:
-    another robot on another floor. All candidates are simulated a few times, the better half twice
-    as often, and so on down to two (successive halving). The winner has also been lucky, so winner
-    and runner-up are simulated again with new draws, and only those runs give their success rates.
+    In the search every run has its own draw of what varies *and* of the uncertain parameters: a
+    different robot on a different floor. All candidates are simulated a few times, then the better
+    half twice as often, and so on down to two (successive halving). The winner is partly lucky, so
+    winner and runner-up are simulated again with fresh draws, and only those runs give their
+    success rates.
 
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     space : mapping of str to track or fields, or sequence of tracks
-        The candidates, as the models of `compare`. One that breaks a rule, such as wheels that do
-        not fit, is left out.
+        The candidates, like the models of `compare`. Those that break a rule, such as wheels that
+        do not fit, are left out.
     objective : callable, optional
-        The cost to minimize among the candidates that reach the goal: takes a `Scenario`, returns a
-        number. None counts the wheels of one side, which every candidate must then have.
+        Cost to minimize among the candidates that reach the goal: takes a `Scenario`, returns a
+        number. None counts the wheels of one side; every candidate must then have wheels.
     terrains : mapping of str to terrain, or sequence of terrains, optional
-        All of them must be cleared: a candidate is as good as its lowest rate over them. None takes
-        the scenario's own.
+        Terrains to clear: a candidate counts by its lowest rate over them. None takes the
+        scenario's own.
     at_least : float
-        [-] The goal: the rate of clearing that is wanted on every terrain, above 0, at most 1.
+        [-] The goal: required rate of clearing on every terrain, above 0, at most 1.
     first : int
-        Runs of every candidate on each terrain in the first round, 1 to 1,000,000. A good candidate
-        that is unlucky in them may be left behind: with more runs, fewer are.
+        Runs of every candidate on each terrain in the first round, 1 to 1,000,000. More runs reduce
+        the chance of eliminating a good but unlucky candidate.
     confirm : int
-        Fresh runs of winner and runner-up on each terrain, 1 to 1,000,000. With unknowns, as many
-        again are spread over `samples` of them, for the band.
+        Fresh runs of winner and runner-up on each terrain, 1 to 1,000,000. With unknowns, the same
+        number again is spread over `samples` of them, for the band.
     **how
         See `crawler2d.studies`; there is no `until`. Unless `vary` is given, every run on a random
-        step field has a field of its own, too.
+        step field also has its own field.
 
     Returns
     -------
     FigureDataset
-        Dimensions `candidate` and `terrain`. Of the search:
+        Dimensions `candidate` and `terrain`. From the search:
 
-        - `rate`, `low`, `high`, `count`: with intervals that hold however often one looks; the
-          rates of those that came far are too high, because they were chosen for them;
-        - `cost` and `round` of each candidate: how many rounds it has been through;
-        - `ending`: how most runs that did not clear ended.
+        - `rate`, `low`, `high`, `count`: with intervals valid for repeated checks; rates of the
+          last candidates are biased high by the selection;
+        - `cost` and `round` of each candidate: its cost and number of rounds;
+        - `ending`: the commonest outcome of failed runs.
 
-        Of the confirmation, nan for all but winner and runner-up:
+        From the confirmation, NaN for all but winner and runner-up:
 
-        - `confirmed_rate`, `confirmed_low`, `confirmed_high`, `confirmed_count`: `confirm` fresh
-          runs, looked at once, with Wilson's interval;
+        - `confirmed_rate`, `confirmed_low`, `confirmed_high`, `confirmed_count`: from `confirm`
+          fresh runs, with Wilson's interval;
         - `confirmed`: whether the rate reaches the goal on every terrain;
-        - with unknowns `band_low`, `band_median`, `band_high`: the rates of single robots, of which
-          each is one sample of the unknowns.
+        - with unknowns `band_low`, `band_median`, `band_high`: the rates of single samples of the
+          unknowns.
 
-        The attributes `winner` and `runner_up` name what the search chose: of those that reached
-        the goal the cheapest, else the one with the highest rate. `verdict` says it in words, with
-        the confirmed rates. If these fall short, the choice stands and the verdict says so: trying
-        one after another until one is confirmed would be luck again. `settings` counts candidates
-        times terrains, `refused` those that were left out, `refusals` says why.
+        The attributes `winner` and `runner_up` are the choice of the search: the cheapest candidate
+        that reached the goal, else the one with the highest rate. `verdict` describes it with the
+        confirmed rates. If these fall short, the choice stays and the verdict says so, as trying
+        others until one is confirmed would again select by luck. `settings` is the number of
+        candidates times terrains, `refused` the number left out, `refusals` the reasons.
 
     Raises
     ------
@@ -121,8 +122,8 @@ def search(
     References
     ----------
     Karnin, Z., Koren, T., Somekh, O. (2013). Almost optimal exploration in multi-armed bandits.
-    Proceedings of the 30th International Conference on Machine Learning. Their halving; here what
-    certainly fails drops at once, and what was left behind may return.
+    Proceedings of the 30th International Conference on Machine Learning. Their halving, except that
+    here candidates that certainly fail drop at once, and eliminated ones may return.
 
     Examples
     --------
@@ -174,7 +175,7 @@ def _candidates(
     grounds: Mapping[Label, Any],
     objective: Objective | None,
 ) -> tuple[list[Candidate], list[str]]:
-    """Make the candidates, and list why others are left out."""
+    """Make the candidates, and list the reasons for those left out."""
     own = study.planner
     nominal = replace(own, unknowns=Variation({}))
     planner = FreshDraws(own.variation, own.unknowns, own.seed)
@@ -210,7 +211,7 @@ def _cost(scenario: Scenario, label: Label, objective: Objective | None) -> floa
 
 
 def _confirmed(study: Campaign, chosen: Sequence[Candidate], fresh: int) -> list[Confirmation]:
-    """Simulate what was chosen with draws that the search has not had."""
+    """Simulate the choice with fresh draws."""
     own = study.planner
     planner = FreshDraws(own.variation, own.unknowns, own.seed + _FRESH_SEED)
     by_robot = replace(own, seed=own.seed + 2 * _FRESH_SEED)

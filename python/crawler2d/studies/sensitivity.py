@@ -1,4 +1,4 @@
-"""Sensitivity of an outcome to uncertain parameters: Sobol indices, and where the rate changes."""
+"""Sensitivity of an outcome to uncertain parameters: Sobol indices and boundaries."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class ModelResult:
     matrices : list of Tally
         The runs of the design.
     lines : list of pair of Range and Line
-        By unknown: its range, and the values that were tried along it, if it is a line.
+        By unknown: its range and the values tried along it, if it is a line.
     """
 
     matrices: list[Tally]
@@ -87,25 +87,25 @@ def sensitivity_table(
     Parameters
     ----------
     study, design
-        What was done.
+        The study and its design.
     models : sequence of str or number
-        Labels.
+        Labels of the models.
     results : sequence of ModelResult
-        By model.
+        Results by model.
     outcome : str
-        What the rates are rates of.
+        Outcome of the rates.
 
     Returns
     -------
     FigureDataset
-        As `sensitivity` says.
+        See `sensitivity`.
     """
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
     xr = extra("xarray", "analysis")
     names = [*design.factors.values(), *([RUN_TO_RUN] if design.is_varied else [])]
     units = [field_attributes([path]).get("units", "1") for path in design.factors]
-    rest = [""] * (len(names) - len(units))  # what varies is no field
+    rest = [""] * (len(names) - len(units))  # run-to-run variation is not a field
     whole = len(design.matrices)
     rates = [rate_of(each.matrices) for each in results]
     complete = [len(each.matrices) == whole for each in results]
@@ -165,7 +165,7 @@ def sensitivity_table(
 
 
 def _indices(matrices: Sequence[Tally], confidence: float, seed: int) -> NDArray[np.float64]:
-    """Estimate the indices of a model, in the order of their columns."""
+    """Estimate the indices of a model, in the order of the columns."""
     f_a, f_b, *f_ab = (
         np.array([tally.counts(row) for row in tally.rows], dtype=float) for tally in matrices
     )
@@ -188,7 +188,7 @@ def _outcomes(matrices: Sequence[Tally], whole: int) -> list[list[str]]:
 def _boundaries(
     xr: Any, results: Sequence[ModelResult], models: Sequence[Any], names: Sequence[str]
 ) -> xarray.Dataset:
-    """Arrange crossings, ranges, and what was tried along them, by model and unknown."""
+    """Arrange crossings, ranges and the values tried, by model and unknown."""
     lines = [[line for _, line in each.lines] for each in results]
     crossings = [[Crossing() if ln is None else ln.crossing() for ln in row] for row in lines]
     rates = [[{} if ln is None else ln.rates() for ln in row] for row in lines]
@@ -217,7 +217,7 @@ def _boundaries(
 
 
 _FEWEST, _MOST = 32, 2**16
-"""Points of a design."""
+"""Default number of points of a design."""
 
 
 @takes_keywords
@@ -231,51 +231,51 @@ def sensitivity(
     """Find which uncertain parameters matter most for the outcome: a global sensitivity analysis.
 
     The outcome differs between runs because of the uncertain parameters of robot and floor, and
-    because of what varies from run to run. Sobol indices say how much of that variance comes from
-    each uncertain parameter, and from all that varies from run to run together. They are estimated
-    from separate runs: n + 2 times `samples` for n such factors. Then each parameter is moved over
-    its range, all others as in the scenario, to find where the rate crosses one half.
+    because of the run-to-run variation. Sobol indices say how much of the variance comes from each
+    uncertain parameter, and from all run-to-run variation together. They need separate runs: n + 2
+    times `samples` for n such factors. Then each parameter is moved over its range, with all others
+    as in the scenario, to find where the rate crosses one half.
 
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     models : mapping of str to track or fields, optional
-        As for `compare`; None takes the scenario's own robot.
+        See `compare`; None takes the scenario's own robot.
     outcome : str
         Name of an `Outcome`, or "stopped" for any stop.
     **how
-        See `crawler2d.studies`. `unknown` must be given. `samples`, a power of two from 32 to
-        65536, is 256 unless given. `until` is for the rates along the ranges; its confidence is
-        that of the indices, too.
+        See `crawler2d.studies`. `unknown` is required. `samples` is a power of two from 32 to
+        65536; the default is 256. `until` applies to the rates along the ranges; its confidence
+        also applies to the indices.
 
     Returns
     -------
     FigureDataset
-        Dimensions `model`; `unknown`, by the last part of its path, and last "run to run" if
-        anything varies; `place`, the values that were tried of each; and `matrix` and `sample`, the
-        points of the design: A, B, and A with one factor of B. For each model and unknown:
+        Dimensions `model`; `unknown`, by the last part of its path, and finally "run to run" if
+        anything varies; `place`, the values tried of each; and `matrix` and `sample`, the points of
+        the design: A, B, and A with one factor of B. For each model and unknown:
 
-        - `first`: the fraction of the variance that would go if this one were known; `total`: the
-          fraction that would be left if all others were; with `..._low` and `..._high`. The
-          difference is its interaction with the others. An estimate may lie below 0;
-        - `bracket_low`, `bracket_high`, `rises`, `monotone`: as of `critical_value`, over the range
-          of the distribution (1 to 99 % of an unbounded one), all elements of a path with ``[*]``
-          together, with the values of the first; NaN also for whole numbers and "run to run";
+        - `first`: the fraction of the variance that would vanish if this one were known; `total`:
+          the fraction that would remain if all others were known; with `..._low` and `..._high`.
+          The difference is its interaction with the others. Estimates may be below 0;
+        - `bracket_low`, `bracket_high`, `rises`, `monotone`: see `critical_value`, over the range
+          of the distribution (1 to 99 % of an unbounded one); elements of a path with ``[*]`` move
+          together, and values are those of the first; NaN also for whole numbers and "run to run";
         - `range_low`, `range_high`, `own`: ends of the range, and the scenario's own value;
-        - `tried`, `tried_rate`: the values along the range, and the rate at each.
+        - `tried`, `tried_rate`: the values tried along the range, and the rate at each.
 
-        For each model: `rate` over all that varies or is not known, of `count` runs; and `caveat`,
-        empty if the indices are there. They are NaN where the rate is not from 0.1 to 0.9, because
-        too few runs have the rarer outcome; then only those for the rate are made. `outcome`
-        is that of every run of the design, "" of those that were not made; a store keeps the runs.
+        For each model: `rate` over all variation and unknowns, from `count` runs; and `caveat`,
+        empty if there are indices. These are NaN if the rate is not between 0.1 and 0.9, as too few
+        runs then have the rarer outcome; the other runs are skipped. `outcome` is that of every run
+        of the design, "" if skipped; a store keeps the runs.
 
         `plot` draws the indices of one model, and ``plot(show="boundary")`` the ranges.
 
     Raises
     ------
     ScenarioError
-        If an argument breaks a rule, or a value in the range of an unknown does.
+        If an argument, or a value in the range of an unknown, breaks a rule.
     SimulationDiverged
         If a run of the design has no result.
     ImportError
@@ -285,12 +285,12 @@ def sensitivity(
     ----------
     Sobol, I. M. (2001). Global sensitivity indices for nonlinear mathematical models and their
     Monte Carlo estimates. Mathematics and Computers in Simulation 55, 271-280. The estimator is
-    described in `crawler2d.studies.sobol`; how often intervals held known indices is in the
-    attribute `coverage`.
+    described in `crawler2d.studies.sobol`; the attribute `coverage` says how often intervals
+    contained known indices.
 
     Examples
     --------
-    Friction decides whether a belt climbs a slope; motors that are strong enough do not matter:
+    Friction decides whether a belt climbs a slope; sufficiently strong motors do not matter:
 
     >>> import math
     >>> import crawler2d as c2d

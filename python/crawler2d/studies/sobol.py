@@ -1,4 +1,4 @@
-"""Sobol indices of a yes-or-no outcome: points, design of runs, estimates and intervals."""
+"""Sobol indices of a binary outcome: points, design of runs, estimates and intervals."""
 
 from __future__ import annotations
 
@@ -25,32 +25,32 @@ COVERAGE = (
     "intervals of 95 % held indices known in closed form in 0.91 to 1.00 of 200 designs or more"
     " with 64 to 1024 points"
 )
-"""How often `bounds` holds the truth, as measured with edges both simple and as rough as chance."""
+"""Measured coverage of `bounds`, for boundaries from simple to random."""
 
-# What is added to the count of each of the eight kinds of point: Jeffreys's prior, whose intervals
-# cover well near 0, too (Brown, Cai, DasGupta 2001). The first-order index takes all eight kinds,
-# the total index little more than whether a swap changed the outcome: of these two each gets a
-# half, too, spread over its four kinds. Without it, an unknown whose few swaps all left the outcome
-# as it was would have an interval of 0 to 0.
+# Added to the count of each of the eight kinds of point: Jeffreys's prior, whose intervals have
+# good coverage near 0, too (Brown, Cai, DasGupta 2001). The first-order index uses all eight kinds.
+# The total index mostly depends on whether a swap changed the outcome: each of these two cases also
+# gets a half, spread over its four kinds. Without it, an unknown whose few swaps never changed the
+# outcome would have an interval of 0 to 0.
 _ADDED_FIRST, _ADDED_TOTAL = 1.0 / 2.0, 1.0 / 8.0
 
-# With so many, bounds vary by about 2 % of the interval's width.
+# With this many, bounds vary by about 2 % of the interval's width.
 _RESAMPLES = 4000
 
-# Bits of the points' numbers: with SciPy's 30, some would be exactly 0, where a normal distribution
-# is infinite.
+# Bits of the points: with SciPy's 30, some would be exactly 0, where a normal distribution is
+# infinite.
 _BITS = 64
 
 
 class Indices(NamedTuple):
-    """Shares of the variance of the outcome, by factor.
+    """Fractions of the variance of the outcome, by factor.
 
     Attributes
     ----------
     first : ndarray, shape (d,)
-        [-] By how much it would shrink if this factor were known.
+        [-] Fraction that would vanish if this factor were known.
     total : ndarray, shape (d,)
-        [-] How much of it would be left if all others were known.
+        [-] Fraction that would remain if all others were known.
     """
 
     first: NDArray[np.float64]
@@ -58,21 +58,21 @@ class Indices(NamedTuple):
 
 
 def points(count: int, sizes: Sequence[int], seed: int) -> NDArray[np.float64]:
-    """Place the points of a Saltelli design, from 0 to 1: scrambled Sobol points.
+    """Generate a Saltelli design of scrambled Sobol points from 0 to 1.
 
     Parameters
     ----------
     count : int
-        Of points in A, a power of two.
+        Number of points in A, a power of two.
     sizes : sequence of int
-        Numbers that each factor takes; those of a factor are swapped as a block.
+        Number of columns of each factor, which are swapped together.
     seed : int
-        Of the scrambling. The first points of a larger design with the same seed are these.
+        Seed of the scrambling. A larger design with the same seed starts with these points.
 
     Returns
     -------
     ndarray, shape (2 + d, count, sum of sizes)
-        A; B; then for each factor A with the numbers of that factor from B.
+        A; B; then for each factor A with the columns of that factor from B.
 
     References
     ----------
@@ -105,17 +105,17 @@ def estimate(
     f_a, f_b : ndarray, shape (n,)
         The output at A and at B; n is a power of two.
     f_ab : ndarray, shape (d, n)
-        At A with each factor from B, of two factors or more.
+        The output at A with each factor from B, for two factors or more.
 
     Returns
     -------
     Indices
-        Unbiased but for the variance they are divided by, so that small ones may be estimated below
-        0; those of a factor that changes no output are 0.
+        Unbiased except for the division by the variance, so small ones may be estimated below 0; 0
+        for a factor that changes no output.
 
     Examples
     --------
-    Of the sum of two numbers from 0 to 1, each decides half:
+    In the sum of two numbers from 0 to 1, each contributes half:
 
     >>> pages = points(256, [1, 1], seed=0)
     >>> f_a, f_b, *f_ab = pages.sum(axis=2)
@@ -136,31 +136,31 @@ def bounds(
     confidence: float = 0.95,
     seed: int = 0,
 ) -> tuple[Indices, Indices]:
-    """Bound the indices of an output of 0 and 1 by a Bayesian bootstrap.
+    """Bound the indices of a binary output by a Bayesian bootstrap.
 
     Parameters
     ----------
     f_a, f_b, f_ab
         See `estimate`; 0 or 1.
     confidence : float
-        [-] Between 0 and 1.
+        [-] Confidence level between 0 and 1.
     seed : int
-        Of the resampling.
+        Seed of the resampling.
 
     Returns
     -------
     pair of Indices
-        Lower and upper bounds from 0 to 1, unless the estimate lies outside: they hold it. They
-        take the points for independent, and are too wide where the edge between yes and no is
-        simple, for there Sobol points are better than that. See `COVERAGE`.
+        Lower and upper bounds from 0 to 1, extended if necessary to contain the estimate. They
+        assume independent points, and are too wide for simple boundaries between the outcomes, for
+        which Sobol points are better than that. See `COVERAGE`.
 
     Notes
     -----
-    For one factor a point is one of eight kinds, by its outputs at A, B and the swap. Their shares
-    have a Dirichlet distribution around what was counted; each draw of them gives an index. The
-    bootstrap of SciPy was not taken because it cannot be seeded, and because where few of the swaps
-    change the output it often resamples none: for a total index of 0.02, its intervals of 95 % from
-    64 points held it in 0.45 of 200 designs.
+    For one factor there are eight kinds of points, by the outputs at A, B and the swap. Their
+    fractions have a Dirichlet distribution around the counts; each draw gives an index. SciPy's
+    bootstrap is not used because it cannot be seeded, and because it often resamples none of the
+    swaps if few of them change the output: for a total index of 0.02, its 95 % intervals from 64
+    points contained it in 0.45 of 200 designs.
 
     References
     ----------
@@ -178,7 +178,7 @@ def bounds(
         total = _of_fractions(rng.dirichlet(kinds + _ADDED_TOTAL, _RESAMPLES)).total
         drawn.append((first, total))
     low, high = np.quantile(drawn, [tail, 1.0 - tail], axis=2).clip(0.0, 1.0)
-    high[:, 0] = np.minimum(high[:, 0], high[:, 1])  # a first-order index is at most the total one
+    high[:, 0] = np.minimum(high[:, 0], high[:, 1])  # a first-order index <= the total one
     own = np.stack(estimate(f_a, f_b, f_ab), axis=1)
     return Indices(*np.minimum(low, own).T), Indices(*np.maximum(high, own).T)
 
@@ -193,34 +193,34 @@ def _of_fractions(fractions: NDArray[np.float64]) -> Indices:
 
 
 RUN_TO_RUN = "run to run"
-"""All that varies from run to run, as one factor."""
+"""All run-to-run variation, as one factor."""
 
 _INFORMATIVE = (0.1, 0.9)
-"""[-] Rates outside which too few runs have the rarer outcome to estimate indices."""
+"""[-] Range of rates with enough runs of the rarer outcome to estimate indices."""
 
 
 class Design:
-    """The points that all models share, and the runs at them.
+    """The points shared by all models, and their runs.
 
     Parameters
     ----------
     study : Campaign
-        What simulates; it has no unknowns of its own.
+        Campaign that simulates; it has no unknowns of its own.
     unknowns : Variation
-        What is not known: each path is a factor.
+        The unknowns; each path is a factor.
     samples : int
-        Points in A, a power of two.
+        Number of points in A, a power of two.
     counts : callable
-        Which runs have the outcome.
+        Tells which runs have the outcome.
 
     Attributes
     ----------
     unknowns : Variation
         What is not known.
     factors : dict of str to str
-        Names of the unknowns by path.
+        Names of the unknowns, by path.
     is_varied : bool
-        Whether there is a factor of what varies from run to run, the last one.
+        Whether the last factor is the run-to-run variation.
     matrices : list of str
         Names of the sets of points: A, B, then A with each factor from B.
     """
@@ -237,17 +237,17 @@ class Design:
         self._points = points(samples, sizes, study.planner.seed)
 
     def run(self, cell: Scenario, label: str) -> list[Tally]:
-        """Simulate A, then B, then the rest, unless the rate makes indices uncertain.
+        """Simulate A, then B, then the rest, unless the rate is too low or high for indices.
 
         Returns
         -------
         list of Tally
-            One per matrix that was simulated.
+            One per simulated matrix.
 
         Raises
         ------
         ScenarioError
-            If a draw breaks a rule; nothing of its matrix has been simulated.
+            If a draw breaks a rule; nothing of its matrix is simulated.
         SimulationDiverged
             If a run has no result.
         """
@@ -276,7 +276,7 @@ class Design:
 
 
 def rate_of(matrices: list[Tally]) -> float:
-    """Return the rate at A and B; the other points are not independent of these."""
+    """Return the rate at A and B, as the other points depend on these."""
     return float(np.mean([tally.successes / len(tally.rows) for tally in matrices[:2]]))
 
 

@@ -1,4 +1,4 @@
-"""Runs on an endless plane, lengthened until the speed is steady, or the robot at rest."""
+"""Runs on an endless plane, extended until the speed is steady or the robot is at rest."""
 
 from __future__ import annotations
 
@@ -24,16 +24,17 @@ if TYPE_CHECKING:
 __all__ = ["Course", "Halt", "RunUp", "drive", "on_plane"]
 
 _LENGTH = 1e4
-"""[m] Of the plane to either side."""
+"""[m] Length of the plane to either side."""
 _LONG = 1e4
-"""[s] Longer than any run, so that none clears the goal."""
+"""[s] Longer than any run, so that none reaches the goal."""
 _ROUNDS = 4
-"""A course is driven at most this often, each time for twice as long."""
+"""Largest number of times that a course is driven, each time for twice as long."""
 _PITCHES = 20.0
-"""[-] Grouser pitches in a window: the speed of gear wheels swings with every pitch."""
+"""[-] Grouser pitches in a window: the speed of gear wheels oscillates with every pitch."""
 _STEADY = 0.03
-"""[-] The mean speeds of two windows that differ by less are one: those of gear wheels do by 0.01,
-those of a robot that keeps accelerating by 0.18, for a window is a fourth of the time before."""
+"""[-] Relative difference below which the mean speeds of two windows count as equal: gear wheels
+differ by 0.01, a robot that keeps accelerating by 0.18, as a window is a fourth of the time
+before."""
 _SPEED = 1e-3
 """[m/s] Smaller differences of speed are neglected."""
 _REST = 1e-4
@@ -41,19 +42,19 @@ _REST = 1e-4
 
 
 def on_plane(scenario: Scenario, speed: float | None) -> Scenario:
-    """Extend a robot's ground to an endless plane, with the robot at rest, and command a speed.
+    """Extend the ground to an endless plane with the robot at rest, and command a speed.
 
     Parameters
     ----------
     scenario : Scenario
-        On level ground or a ramp; of a ramp, its slope is taken, and the robot stands on it.
+        Level ground or a ramp; on a ramp the robot stands on an endless slope.
     speed : float, optional
-        [m/s] Above 0; None takes the drivetrain's `max_speed`.
+        [m/s] Speed, above 0; None takes the drivetrain's `max_speed`.
 
     Raises
     ------
     ScenarioError
-        If the ground is another.
+        If the ground is neither level nor a ramp.
     """
     terrain = scenario.terrain
     if not isinstance(terrain, (Flat, Ramp)):
@@ -75,12 +76,12 @@ def on_plane(scenario: Scenario, speed: float | None) -> Scenario:
 
 
 class Course(ABC):
-    """Runs of one cell that differ in how long they last.
+    """Runs of one cell with different durations.
 
     Attributes
     ----------
     tallies : list of list of Tally
-        By duration and sample.
+        Tallies by duration and sample.
     """
 
     def __init__(self, names: tuple[str, ...], factors: Mapping[str, float]) -> None:
@@ -100,7 +101,7 @@ class Course(ABC):
     @property
     @abstractmethod
     def is_settled(self) -> NDArray[np.bool_]:
-        """Whether they are long enough, shape (samples, repeats); where a run ended, they are."""
+        """Whether the runs are long enough, shape (samples, repeats); true for runs that ended."""
 
     @abstractmethod
     def lengthen(self) -> None:
@@ -108,7 +109,7 @@ class Course(ABC):
 
     @property
     def cells(self) -> list[Cell]:
-        """One for every duration."""
+        """One cell for every duration."""
         return [
             Cell(
                 (*self._names, f"duration={time:g}"),
@@ -120,14 +121,14 @@ class Course(ABC):
 
     @property
     def path_lengths(self) -> NDArray[np.float64]:
-        """[m] How far the robot has moved along its axis, shape (durations, samples, repeats)."""
+        """[m] Distance of the robot along its axis, shape (durations, samples, repeats)."""
         return np.array(
             [[[_path_length(row) for row in tally.rows] for tally in own] for own in self.tallies]
         )
 
     @property
     def ended(self) -> list[str]:
-        """How most of the longest runs ended, by sample; "not settled" if one was too short."""
+        """Commonest outcome of the longest runs, by sample; "not settled" if one was too short."""
         settled = np.all(self.is_settled, axis=-1).tolist()
         ends = [Counter(row.outcome for row in tally.rows) for tally in self.tallies[-1]]
         return [
@@ -137,7 +138,7 @@ class Course(ABC):
 
 
 class RunUp(Course):
-    """From rest to a steady speed, and twice a window further."""
+    """From rest to a steady speed, plus two windows."""
 
     def __init__(
         self, names: tuple[str, ...], scenario: Scenario, factors: Mapping[str, float]
@@ -155,7 +156,7 @@ class RunUp(Course):
 
     @property
     def window(self) -> float:
-        """[s] Over which a speed is a mean."""
+        """[s] Averaging window of a speed."""
         return _round_up(max(0.25 * self.time, self._least))
 
     @property
@@ -183,7 +184,7 @@ class RunUp(Course):
 
 
 class Halt(Course):
-    """From a steady speed to rest: the command to stop comes when the run-up is over."""
+    """From a steady speed to rest: the command to stop comes at the end of the run-up."""
 
     def __init__(self, before: RunUp) -> None:
         super().__init__(before._names, before._factors)
@@ -213,7 +214,7 @@ class Halt(Course):
 
     @property
     def distance(self) -> NDArray[np.float64]:
-        """[m] From the command to rest, shape (samples, repeats); NaN if it never stops."""
+        """[m] Distance from command to rest, shape (samples, repeats); NaN if it never stops."""
         distance = self.path_lengths[1] - self.before.path_lengths[0]
         return np.where(self.is_settled & np.isfinite(self.before.speed), distance, np.nan)
 
@@ -223,7 +224,7 @@ class Halt(Course):
 
 
 def drive(study: Campaign, courses: Sequence[Course]) -> None:
-    """Simulate courses; those that do not settle are made longer, up to eight times as long."""
+    """Simulate courses; extend those that do not settle, up to eight times."""
     due = list(courses)
     if not due:
         return
@@ -239,12 +240,12 @@ def drive(study: Campaign, courses: Sequence[Course]) -> None:
 
 
 def _round_up(time: float) -> float:
-    """[s] Round up to 10 ms, at which the core samples a run in any case."""
+    """[s] Round up to 10 ms, the sampling interval of the core."""
     return math.ceil(100.0 * time) / 100.0
 
 
 def _path_length(row: Row) -> float:
-    """[m] The path length of a run that lasted to its end or stopped; NaN of any other."""
+    """[m] Path length of a run that stopped or lasted to its end, else NaN."""
     if row.error is not None:
         return math.nan
     outcome = Outcome(row.outcome)

@@ -1,4 +1,4 @@
-"""Models and terrains of a study, and its runs as a data set of rates or measures by cell."""
+"""Models and terrains of a study, and its results as a data set of rates or measures."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ __all__ = [
 ]
 
 Models = Mapping[Any, Variant] | Sequence[Variant]
-"""By label, or objects that label themselves; see `compare`."""
+"""Models by label, or a sequence of models; see `compare`."""
 
 
 def check_study(scenario: object) -> None:
-    """Refuse anything but a scenario, and a lack of xarray, before anything runs.
+    """Check that xarray is installed and the argument is a scenario, before any run.
 
     Raises
     ------
     ScenarioError
-        If it is no `Scenario`.
+        If it is not a `Scenario`.
     ImportError
         If xarray is missing; the message names the extra to install.
     """
@@ -65,12 +65,12 @@ def check_study(scenario: object) -> None:
 def read_models(
     scenario: Scenario, models: Models | None, own: Sequence[str] = ()
 ) -> dict[Any, Mapping[str, Any]]:
-    """Return the fields that each model replaces, by label; None is the scenario's own track.
+    """Return the fields that each model replaces, by label; None means the scenario's own track.
 
     Raises
     ------
     ScenarioError
-        If something else is given, or a model replaces one of the study's `own` paths.
+        If it is anything else, or a model replaces one of the study's `own` paths.
     """
     if models is None:
         return {scenario.robot.track.description: {}}
@@ -80,12 +80,12 @@ def read_models(
 
 
 def refuse_own(fields: Mapping[Any, Mapping[str, Any]], own: Sequence[str], place: str) -> None:
-    """Refuse models that replace what the study sets, one of which would have no effect.
+    """Refuse models that replace fields set by the study.
 
     Raises
     ------
     ScenarioError
-        For the first of them; `place` names the argument.
+        For the first such field; `place` names the argument.
     """
     for label, model in fields.items():
         for path in own:
@@ -95,25 +95,25 @@ def refuse_own(fields: Mapping[Any, Mapping[str, Any]], own: Sequence[str], plac
 
 
 def read_terrains(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
-    """Return terrains by label; None is the scenario's own."""
+    """Return terrains by label; None means the scenario's own."""
     if terrains is None:
         return {scenario.terrain.kind: scenario.terrain}
     by_label = read_labels(terrains, "terrains")
     for label, terrain in by_label.items():
         if not isinstance(terrain, Terrain):
-            # A list labels itself: its values are no places in it.
+            # Items of a list have labels from their values, not indices.
             path = f"terrains[{label!r}]" if isinstance(terrains, Mapping) else "terrains"
             raise ScenarioError(path, terrain, "must be a terrain")
     return by_label
 
 
 def vary_fields(terrains: Mapping[Label, Terrain]) -> Ranges:
-    """Return what varies if terrains have a seed: that, too.
+    """Return the variation, with the seed of terrains that have one.
 
     Warns
     -----
     ScenarioWarning
-        If terrains differ in their seed alone, which leaves no difference.
+        If terrains differ only in their seed, which is drawn.
     """
     labels: dict[Terrain, list[str]] = {}
     for label, terrain in terrains.items():
@@ -130,12 +130,12 @@ def vary_fields(terrains: Mapping[Label, Terrain]) -> Ranges:
 
 
 def read_numbers(values: object, place: str) -> list[float]:
-    """Return the numbers of an argument that takes one or more.
+    """Read an argument that takes one or more numbers.
 
     Raises
     ------
     ScenarioError
-        If it is something else.
+        If it is anything else.
     """
     listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else []
     if not listed:
@@ -144,7 +144,7 @@ def read_numbers(values: object, place: str) -> list[float]:
 
 
 def paths_of(fields: Mapping[Any, Mapping[str, Any]]) -> list[str]:
-    """List the paths that any model replaces, each once."""
+    """List all paths that models replace, each once."""
     return list(dict.fromkeys(path for own in fields.values() for path in own))
 
 
@@ -173,7 +173,7 @@ def rate_table(
     campaign : Campaign
         The study.
     figure : str
-        What `FigureDataset.plot` draws.
+        Name of the plot of `FigureDataset.plot`.
     tallies : sequence of sequence of Tally
         By cell and sample; the last dimension of the cells changes fastest.
     dims : mapping of str to pair
@@ -182,9 +182,9 @@ def rate_table(
     Returns
     -------
     FigureDataset
-        With `rate`, `low`, `high`, `count`, `side` for each cell (and `sample` of unknowns, with a
-        band over them, as of `rate`), and the columns of `sweep` for each run; `repeat` is
-        as long as the longest cell, and where a cell has fewer runs, its `outcome` is "".
+        With `rate`, `low`, `high`, `count`, `side` for each cell (and each `sample` of unknowns,
+        with their band, see `rate`), and the columns of `sweep` for each run; `repeat` is as long
+        as the longest cell, and the `outcome` of missing runs is "".
     """
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
 
@@ -217,16 +217,16 @@ def rate_table(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measure:
-    """What was measured in every repeat of every cell and sample.
+    """A quantity measured in every repeat of every cell and sample.
 
     Attributes
     ----------
     dims : tuple of str
-        Those of the cells.
+        Dimensions of the cells.
     values : ndarray, shape (..., samples, repeats)
-        NaN where there is no figure.
+        Values; NaN if there is none.
     units, long_name : str
-        Unit, and what it is in words.
+        Unit and description.
     """
 
     dims: tuple[str, ...]
@@ -242,22 +242,22 @@ def measure_table(
     dims: Dims,
     measures: Mapping[str, Measure],
 ) -> FigureDataset:
-    """Arrange the measures of a study, which repeats each cell a fixed number of times.
+    """Arrange the measures of a study with a fixed number of repeats.
 
     Parameters
     ----------
     campaign, figure, tallies, dims
         See `rate_table`.
     measures : mapping of str to Measure
-        By name, which no column of `sweep` has; `FigureDataset.plot` draws the first.
+        Measures by name, different from columns of `sweep`; `FigureDataset.plot` draws the first.
 
     Returns
     -------
     FigureDataset
-        The columns of `sweep` for each run; and of each measure, say `speed`: `speed_each` of every
-        repeat, their median `speed` and their bounds `speed_low` and `speed_high`, the lowest and
-        the highest, all three NaN if a repeat has no figure; with unknowns, a band of the medians
-        over the samples, NaN if a sample has none: `speed_band_low`, `speed_band_median` and
+        The columns of `sweep` for each run; and for a measure such as `speed`: `speed_each` of
+        every repeat, their median `speed`, and their minimum `speed_low` and maximum `speed_high`,
+        all three NaN if a repeat has no value; with unknowns, a band of the medians over the
+        samples, NaN if a sample has none: `speed_band_low`, `speed_band_median` and
         `speed_band_high`.
     """
     from crawler2d.sweeps.figure_dataset import FigureDataset  # noqa: PLC0415 - needs xarray
@@ -276,14 +276,14 @@ def measure_table(
 
 
 def summary(name: str, each: xarray.DataArray) -> dict[str, xarray.DataArray]:
-    """Sum up a measure over its dimension `repeat`, and over `sample` if it has that.
+    """Summarise a measure over its dimension `repeat`, and `sample` if present.
 
     Parameters
     ----------
     name : str
-        Of the measure.
+        Name of the measure.
     each : DataArray
-        Of every repeat, with `units` and `long_name`.
+        Value of every repeat, with `units` and `long_name`.
 
     Returns
     -------
@@ -311,7 +311,7 @@ def summary(name: str, each: xarray.DataArray) -> dict[str, xarray.DataArray]:
 
 
 def _each(measure: Measure, runs: xarray.Dataset) -> xarray.DataArray:
-    """Give the values of a measure the dimensions that they have among the runs."""
+    """Give the values of a measure their dimensions in the table of runs."""
     names = [*measure.dims, *(dim for dim in ("sample", "repeat") if dim in runs.sizes)]
     others = {dim: 0 for dim in runs["outcome"].dims if dim not in names}
     like = runs["outcome"].isel(others, drop=True).transpose(*names)
@@ -320,7 +320,7 @@ def _each(measure: Measure, runs: xarray.Dataset) -> xarray.DataArray:
 
 
 def _frame(campaign: Campaign, dims: Dims) -> tuple[dict[str, int], dict[str, Any]]:
-    """Return sizes and coordinates of the cells, and of the samples if there are unknowns."""
+    """Return sizes and coordinates of cells and, with unknowns, samples."""
     sizes = {name: len(labels) for name, (labels, _) in dims.items()}
     coordinates: dict[str, Any] = {
         name: (name, np.array(labels), dict(attributes))
@@ -353,7 +353,7 @@ def _runs(
 
 
 def _drawn(tally: Tally, path: str, longest: int) -> NDArray[np.float64]:
-    """Join the draws of all batches of a tally; NaN beyond its last run."""
+    """Join the draws of all batches of a tally, padded with NaN."""
     batches = [drawn[path] for drawn in tally.drawn if path in drawn]
     values = np.concatenate(batches) if batches else np.empty(0)
     return np.pad(values, (0, longest - values.size), constant_values=math.nan)

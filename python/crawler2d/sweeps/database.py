@@ -102,7 +102,7 @@ def read_checked(values: Sequence[Any]) -> Kept:
     try:
         if outcome not in _OUTCOMES or (error is None) == (outcome in NO_RESULT):
             with_error = "without" if error is None else "with"
-            raise ValueError(f"{str(outcome)[:40]!r} is no outcome {with_error} an error")
+            raise ValueError(f"{str(outcome)[:40]!r} is not an outcome {with_error} an error")
         row = Row(
             identity,
             scenario,
@@ -128,7 +128,7 @@ def _number(value: float | None) -> float:
     if value is None:
         return math.nan
     if type(value) not in {float, int}:
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{value!r} is not a number")
     return value
 
 
@@ -401,7 +401,7 @@ def store_errors(path: Path) -> Iterator[None]:
             case "READONLY" | "PERM":
                 why = f"cannot be written: {error}"
             case "NOTADB" | "CORRUPT":
-                why = f"is no SQLite file, or is damaged ({error})"
+                why = f"is not an SQLite file, or is damaged ({error})"
             case _:
                 why = f"cannot be read: {error}"
         raise StoreError(f"{path} {why}") from error
@@ -414,7 +414,7 @@ def _kind(error: sqlite3.Error) -> str:
 
 def _connect(real: Path, mode: str) -> sqlite3.Connection:
     if real.stat().st_size == 1:  # SQLite would treat it as empty and overwrite it
-        raise StoreError(f"{real} is no SQLite file, or is damaged (it has a single byte)")
+        raise StoreError(f"{real} is not an SQLite file, or is damaged (it has a single byte)")
     uri = f"{real.as_uri()}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, timeout=_PATIENCE, isolation_level=None)
     # Let the checksum find damaged text.

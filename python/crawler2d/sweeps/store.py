@@ -177,8 +177,8 @@ def stored_rows(path: Place) -> Iterator[Kept]:
     for kept, (identity, build, *_) in _stored(place):
         if kept is None:
             raise StoreError(
-                f"{place}: the run {identity[:12]} is of the build {build}, whose outcomes or"
-                " diagnoses this one cannot read: read it with that one"
+                f"{place}: the run {identity[:12]} is from the build {build}, with outcomes or"
+                " diagnoses that this one cannot read: read it with that build"
             )
         yield kept
 

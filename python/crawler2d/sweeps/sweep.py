@@ -58,7 +58,7 @@ def sweep(
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     over : mapping
         Maps each dotted path to its values, in the order in which they are set:
         ``{"terrain.height": [0.05, 0.1]}``. A mapping of values gives them labels:
@@ -250,7 +250,7 @@ def compare(
     Parameters
     ----------
     scenario : Scenario
-        What all runs share.
+        The scenario that all runs share.
     models : mapping of str to model, or sequence of models
         At least two; in a sequence, their short texts become labels. A model is either a track, a
         robot or another part of a scenario, such as a `Solver`, which replaces the scenario's own;
