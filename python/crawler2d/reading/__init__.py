@@ -1,1 +1,1 @@
-"""From a public model file to a robot, with the file and line of every figure."""
+"""Read robots from model files, with the file and line of every figure."""

@@ -1,4 +1,4 @@
-"""From a neutral tree to a robot: sides paired, masses summed, every figure with its source."""
+"""Assemble a robot from a tree: pair the sides, sum masses, record every source."""
 
 from __future__ import annotations
 
@@ -41,18 +41,18 @@ from crawler2d.reading.wheels import Runner, RunningGear
 
 __all__ = ["Assembly", "Silhouette", "assemble", "silhouettes"]
 
-_LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorter.
-_LONGEST = 100.0  # [m] Axle distance that a robot can have.
+_LARGEST = 3.0  # [m] Tracked robots that climb obstacles are shorter.
+_LONGEST = 100.0  # [m] Largest axle distance of a robot.
 _SHOWN = 4  # names of links in a warning
-_LEAST_MOVING = 0.001  # [kg] The least that a robot can have.
-_MOVING_FRACTION = 0.01  # of the mass, for a surface that moves without mass in its file
-_CHORDS = 64  # of a circle; at most 0.2 % of its radius inside it
+_LEAST_MOVING = 0.001  # [kg] Smallest mass of a robot.
+_MOVING_FRACTION = 0.01  # of the mass, for a moving surface without mass in the file
+_CHORDS = 64  # per circle; at most 0.2 % of its radius inside it
 _SIGN = {"front": 1.0, "rear": -1.0}
 
 
 @dataclass(slots=True, kw_only=True)
 class Assembly:
-    """A robot in the making.
+    """A robot under construction.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Assembly:
         Raises
         ------
         ScenarioError
-            If the model has what a side view cannot represent, or breaks a rule of a robot.
+            If a side view cannot represent the model, or it breaks a rule of a robot.
         """
         log, tree = self.log, self.log.tree
         surfaces = surfaces_of(tree)
@@ -120,7 +120,7 @@ class Assembly:
         on_flippers = [pair for end in by_end.values() for pair in end.pair.pairs]
         driven = pairs or on_flippers
         outline = _outline_of(log, base, bent)
-        # The estimate of Robot.simple: 1.6 times what holds it on 45 degrees.
+        # The estimate of Robot.simple: 1.6 times the torque that holds it on 45 degrees.
         simple = Robot.simple(mass, axle_distance=1.0, radius=rear.radius)
         lever = rear.radius - simple.outline.grouser_height
         torque = simple.drivetrain.max_torque * rear.radius / lever
@@ -159,14 +159,14 @@ class Assembly:
         return Pose(place=place, turn=turn)
 
     def sort_boxes(self, gear: RunningGear, bent: list[Pair], *, is_moved: bool) -> None:
-        """Take what lies within the belt as part of it, and what sticks out as belly.
+        """Treat shapes inside the belt as part of it, and shapes that stick out as belly.
 
         Raises
         ------
         ScenarioError
-            If a moved shape sticks out where it may meet the ground.
+            If a moved shape sticks out where it may touch the ground.
         """
-        if not is_moved:  # by the file: then what is fixed between the drums is no belly
+        if not is_moved:  # by the file: then shapes between the drums are not belly
             gear.bars += gear.shapes
             gear.shapes = []
         outlines = [silhouette(shape, self.view) for _, shape in gear.bars]
@@ -198,7 +198,7 @@ class Assembly:
                 self.log.add_warning(wheels[0].link.at, names, reason)
 
     def warn_of_coupled(self, gear: RunningGear) -> None:
-        """Warn of what moves wheels or flippers together with other joints."""
+        """Warn of couplings of wheels or flippers with other joints."""
         runners = [*gear.runners, *(runner for arm in gear.arms for runner in arm.runners)]
         joints = {runner.joint.name for runner in runners if runner.joint is not None}
         joints |= {arm.joint.name for arm in gear.arms}
@@ -207,9 +207,10 @@ class Assembly:
                 self.log.add_warning(f"{each.at}: {each.name}", each.value, each.reason)
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
-        """[kg] Return the mass that moves at track speed: moment of inertia by radius squared.
+        """[kg] Return the mass that moves at track speed: moment of inertia / radius squared.
 
-        No body within a wheel's radius has more than its mass there, so no wheel counts for more.
+        A body within a wheel's radius cannot have more than its mass there, which limits each
+        wheel.
         """
         path, moving, is_excessive = "robot.track_mass", 0.0, False
         for wheel in (runner for pair in pairs for runner in pair.both):
@@ -249,7 +250,7 @@ class Assembly:
         return tuple((float(x), float(y)) for x, y in corners)
 
     def gauge(self, pairs: list[Pair]) -> float:
-        """[m] Return the lateral distance of the tracks; note wheels that are off it."""
+        """[m] Return the lateral distance of the tracks; note wheels at other distances."""
         runners = [runner for pair in pairs for runner in pair.both]
         across = [abs(runner.z - self.view.middle) for runner in runners]
         usual = float(np.median(across))
@@ -269,7 +270,7 @@ class Assembly:
         for pair in [pair for _, carried in carriers for pair in carried]:
             left, right = pair.left[0], pair.right[0]
             off = abs(left.z + right.z - 2.0 * middle)
-            if off > self.view.tolerance:  # which a side view does not show
+            if off > self.view.tolerance:  # not visible in side view
                 text = f"{left.name} and {right.name}: not mirrored across, by {1e3 * off:.3g} mm"
                 log.notes.append(text)
         for side in ("left", "right"):
@@ -292,9 +293,9 @@ class Silhouette:
     Parameters
     ----------
     link : str
-        The link that it is a shape of.
+        Link of the shape.
     kind : str
-        As in `Shape`.
+        See `Shape`.
     outline : ndarray, shape (n, 2)
         [m] Its corners in the frame of the chassis, counter-clockwise; circles as polygons.
     at : Where
@@ -346,20 +347,20 @@ def _outline_pairs(
     *,
     is_belt: bool,
 ) -> list[Pair]:
-    """Return the pairs whose hull the outline is, from the rear to the front; log their lines.
+    """Return the pairs that define the outline, from rear to front; log their lines.
 
     These are the two outermost wheels, or the drums that a belt bends round; without either, the
-    roots of flippers; of a robot with one wheel a side, that and its castors.
+    roots of flippers; for a robot with one wheel per side, that wheel and its castors.
 
     Raises
     ------
     ScenarioError
-        If there is nothing to stand on at one end, or something sticks out of a belt.
+        If one end has no support, or something sticks out of a belt.
     """
     if is_belt:
         bent = bending_drums(pairs, at=log.at)
     elif len(pairs) == 1 and castors:
-        # One wheel a side is no track: the robot stands on it and on what it trails.
+        # One wheel per side is not a track: the robot stands on it and on its castors.
         singles = [
             Pair(left=(each,), right=(each,), x=each.x, y=each.y, radius=each.radius)
             for each in castors
@@ -396,7 +397,7 @@ def _outline_pairs(
 def _sum_links(
     tree: Tree, view: SideView, base: Base, arms: Iterable[tuple[AtEnd, float]]
 ) -> tuple[float, tuple[float, float], float]:
-    """Sum all links, with the flippers turned to angle 0, as the figures of a robot have them.
+    """Sum all links, with the flippers at angle 0, as a robot requires.
 
     Parameters
     ----------
@@ -412,11 +413,11 @@ def _sum_links(
     Returns
     -------
     mass : float
-        [kg] Of the robot.
+        [kg] Mass of the robot.
     center : tuple of float, shape (2,)
         [m] Its centre of mass in the chassis frame.
     inertia : float
-        [kg m^2] About that.
+        [kg m^2] Moment of inertia about the centre of mass.
     """
     mass = np.array([link.mass for link in tree.links])
     places = base.of(view.of(np.array([link.center for link in tree.links]))[:, :2])
@@ -436,7 +437,7 @@ def _sum_links(
 
 
 def _outline_of(log: ReadLog, base: Base, bent: list[Pair]) -> TrackOutline:
-    """Return the outline, without grousers, which no format has."""
+    """Return the outline; no format has grousers."""
     radii = [pair.radius for pair in bent]
     grousers = {
         "grouser_height": 0.0,

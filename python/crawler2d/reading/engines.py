@@ -1,4 +1,4 @@
-"""The laws of the engines: how each combines friction and drives joints."""
+"""Rules of the engines: how each combines friction and drives joints."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ __all__ = [
 ]
 
 Engine = Literal["gz", "classic", "bullet", "mujoco", "isaac"]
-_SAME = 1e-9  # [-] Coefficients are as written: no rounding lies between two that are meant equal.
+_SAME = 1e-9  # [-] Coefficients are as written, so equal ones differ by no more than this.
 
 FASTEST = 100.0
-"""[rad/s] and [m/s] Larger limits of speed stand for no limit."""
+"""[rad/s] and [m/s] Larger speed limits mean no limit."""
 
 _ALIKE = 0.01
-"""[-] By how much rotors or forces may differ, relative to the largest: files round them."""
+"""[-] Tolerated difference of rotors or forces, relative to the largest, as files round them."""
 
 _LARGE = 0.1
-"""[-] A smaller loss of torque is within the uncertainty of a torque that a file states."""
+"""[-] Smaller losses of torque are within the uncertainty of a stated torque."""
 
 _UNITS = {
     "effort": "N m",
@@ -52,10 +52,10 @@ _UNITS = {
 }
 
 _SPEEDS = ("max_velocity", "max_linear_velocity", "linear_velocity/max_velocity")
-"""Of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
+"""Settings of Gazebo's TrackController, DiffDrive and TrackedVehicle."""
 
 _RATES = ("_acceleration", "_linear_acceleration")
-"""Behind "max" and "min", of the same; that of TrackedVehicle is within ``linear_velocity``."""
+"""Their names after "max" and "min"; TrackedVehicle has its own in ``linear_velocity``."""
 
 _QUICKEST = 1e6  # [m/s^2]
 _SIDES = ("left", "right")
@@ -68,29 +68,29 @@ WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EngineLaws:
-    """How an engine combines friction, and drives a joint whose speed is commanded.
+    """How an engine combines friction and drives a speed-controlled joint.
 
     Parameters
     ----------
     name : str
-        Of the engine.
+        Name of the engine.
     friction : callable
         Combines the coefficients of two surfaces.
     combination : str
-        The name of that.
+        Name of the combination.
     usual_friction : float
-        [-] The coefficient of a surface for which a file states none.
+        [-] Default coefficient of a surface.
     command : str
-        The effect of a commanded speed of a wheel.
+        Effect of a commanded wheel speed.
     surface : str
-        The effect of a commanded speed of a belt, whose surface is moved; empty if it moves none.
+        Effect of a commanded belt speed; "" if it cannot move surfaces.
     basis : str
-        The evidence for that: whether it was run or read.
+        Evidence: whether it was run or read.
     has_gain : bool
-        Whether the gain of a servo in the file is that of the motor.
+        Whether the motor uses the gain of a servo in the file.
     ignored : mapping of str to str
-        The figures of a joint that it ignores, each with the reason: "effort", "velocity",
-        "damping", "friction", "armature".
+        Ignored figures of a joint with the reasons: "effort", "velocity", "damping", "friction",
+        "armature".
     """
 
     name: str
@@ -203,7 +203,7 @@ ENGINES: dict[str, EngineLaws] = {
         },
     ),
 }
-"""The laws by engine."""
+"""Rules by engine."""
 
 
 def combine_friction(
@@ -225,16 +225,16 @@ def combine_friction(
     Returns
     -------
     friction : float
-        [-] Between tracks and ground.
+        [-] Friction between tracks and ground.
     source : str
         Its derivation.
     places : list of Where
-        The lines that state it; empty if none does.
+        Lines that state it; empty if none does.
 
     Raises
     ------
     ScenarioError
-        If it differs from wheel to wheel, or has no limit.
+        If it differs between wheels, or has no limit.
     """
     laws = ENGINES[engine]
     values: list[tuple[float, str]] = []
@@ -263,7 +263,7 @@ def combine_friction(
 def rotor_inertia(
     log: ReadLog, path: str, inertias: Sequence[float], joints: Sequence[Joint]
 ) -> float:
-    """[kg m^2] Return the rotor inertia of one side as the engine has it, and log its source.
+    """[kg m^2] Return the rotor inertia of one side in the engine, and log its source.
 
     Parameters
     ----------
@@ -272,7 +272,8 @@ def rotor_inertia(
     path : str
         Of the figure.
     inertias : sequence of float
-        [kg m^2] Of both sides, or of all wheels with motors of their own: their mean counts.
+        [kg m^2] Rotor inertias of both sides, or of all wheels with their own motors; the mean is
+        used.
     joints : sequence of Joint
         The joints of the motors.
     """
@@ -295,7 +296,7 @@ def warn_ignored(log: ReadLog, joints: Sequence[Joint]) -> None:
     laws = ENGINES[log.engine]
     for name, reason in laws.ignored.items():
         stating = [joint for joint in joints if _states(joint, name)]
-        # The speeds of MJCF are limits of commands, which all engines obey.
+        # Speeds in MJCF limit commands, which applies in all engines.
         if stating and not (log.tree.format == "MJCF" and name == "velocity"):
             first = stating[0]
             where = getattr(first, f"{name}_at", first.dynamics_at)
@@ -305,12 +306,12 @@ def warn_ignored(log: ReadLog, joints: Sequence[Joint]) -> None:
 
 
 def report_losses(log: ReadLog, joints: Sequence[Joint], lost: float, limit: float) -> None:
-    """Report the torque that damping and friction take at full speed: no motor here has them.
+    """Report the torque lost to damping and friction at full speed, which motors here lack.
 
     Parameters
     ----------
     log : ReadLog
-        Takes a warning if it is more than a tenth of the limit, or else a note.
+        Gets a warning if it exceeds a tenth of the limit, else a note.
     joints : sequence of Joint
         Of the motors.
     lost, limit : float
@@ -328,7 +329,7 @@ def report_losses(log: ReadLog, joints: Sequence[Joint], lost: float, limit: flo
 
 
 def resistance(joint: Joint, rate: float, engine: str) -> float:
-    """[N m] Return the torque that damping and friction take at a rate [rad/s], in an engine."""
+    """[N m] Return the torque lost to damping and friction at a rate [rad/s] in an engine."""
     ignored = ENGINES[engine].ignored
     damping = 0.0 if "damping" in ignored else joint.damping * rate
     return damping + (0.0 if "friction" in ignored else joint.friction)
@@ -348,7 +349,7 @@ def drivetrain_of(
     Parameters
     ----------
     log : ReadLog
-        Takes the sources of the figures, and warnings about figures that the engine ignores.
+        Gets the sources of figures, and warnings about ignored figures.
     pairs : list of Pair
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     on_flippers : list of Pair
@@ -356,7 +357,7 @@ def drivetrain_of(
     tracks : sequence of Track
         The models of the tracks, that of the chassis first.
     radius : float
-        [m] Of the rear end, at which the torque of a robot acts.
+        [m] Radius of the rear end, where the torque of a robot acts.
     torque : float
         [N m] The estimate for a motor without limit.
     """
@@ -371,21 +372,21 @@ def drivetrain_of(
         )
     sides = [_wheels(tree, pairs, side, engine) for side in _SIDES]
     of_chassis = [wheel for side in sides for wheel in side]
-    if of_chassis:  # not a belt alone, whose force no wheel on a flipper states
+    if of_chassis:  # not just a belt, whose force wheels on flippers do not state
         arms = [_wheels(tree, on_flippers, side, engine) for side in _SIDES]
         sides = [[*own, *more] for own, more in zip(sides, arms, strict=True)]
     wheels = [wheel for side in sides for wheel in side]
     joints = [joint for joint, _ in wheels]
-    # What rolls freely has no motor, whatever limit its joint states.
+    # Freely rolling wheels have no motor, whatever limit their joints state.
     motors = [wheel for wheel in wheels if wheel[0].name in tree.driven] or wheels
-    if not all(joint.effort for joint, _ in motors):  # those on flippers may state none
+    if not all(joint.effort for joint, _ in motors):  # wheels on flippers may state none
         motors = [wheel for wheel in motors if wheel in of_chassis] or motors
     forces = [joint.effort / own for joint, own in motors if joint.effort]
     has_limits = bool(motors) and len(forces) == len(motors)
     torque_source = estimate("that of Robot.simple: the file has no limit")
     sharing_source = estimate("one speed, as motors without limit hold")
     if has_limits:
-        # Each of these has its own motor; the robot's figure is that of one side.
+        # Each wheel has its own motor; the robot's figure is the sum of one side.
         torque = 0.5 * sum(forces) * radius
         torque_source = lines([joint.effort_at for joint, _ in motors], "sum of one side")
         sharing_source = lines([joint.at for joint in joints])
@@ -400,7 +401,7 @@ def drivetrain_of(
     warn_ignored(log, joints)
     lost = 0.5 * sum(resistance(joint, speed / own, engine) * radius / own for joint, own in wheels)
     report_losses(log, joints, lost, torque)
-    # At the sprocket a wheel's rotor counts by the square of the ratio of their rates.
+    # Reflected to the sprocket, a wheel's rotor counts by the square of the ratio of their rates.
     rotors = [[joint.armature * (radius / own) ** 2 for joint, own in side] for side in sides]
     inertias = [sum(side) for side in rotors]
     if sharing == "wheel":
@@ -427,8 +428,9 @@ def _friction_along(
 ) -> tuple[float, int, Where | None]:
     """Return the coefficient along the track, its priority, and its line.
 
-    A controller of tracks turns the first direction along the track. Else it is fdir1, in the frame
-    of the collision; without one, an engine may choose any, and the smaller coefficient counts.
+    A track controller turns the first direction along the track. Otherwise it is fdir1, in the
+    frame of the collision; without fdir1 an engine may choose any direction, so the smaller
+    coefficient counts.
     """
     friction = shape.friction
     if friction is None:
@@ -467,7 +469,7 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
 
 
 def _acceleration(tree: Tree, which: str, usual: float) -> tuple[float, str]:
-    """[m/s^2] Return how fast the track gains speed ("max") or loses it ("min", stated below 0)."""
+    """[m/s^2] Return the limit of acceleration ("max") or deceleration ("min", stated below 0)."""
     names = [f"{which}{name}" for name in _RATES]
     stated = _of_plugins(tree, [*names, f"linear_velocity/{names[0]}"])
     limits = [(abs(rate), where) for rate, where in stated if 0.0 < abs(rate) <= _QUICKEST]
@@ -486,14 +488,14 @@ def _of_plugins(tree: Tree, names: Sequence[str]) -> list[tuple[float, Where]]:
 
 
 def _least(limits: Sequence[tuple[float, Where]]) -> tuple[float, str]:
-    """Return the smallest limit, and where it stands."""
+    """Return the smallest limit and its line."""
     least = min(limit for limit, _ in limits)
     return least, lines([where for each, where in limits if each == least])
 
 
 def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[tuple[Joint, float]]:
     """Return the joints of one side with the radii [m] of their wheels; drums have none."""
-    # The differential drives of Gazebo Classic limit their motors by themselves.
+    # Differential drives of Gazebo Classic have their own motor limits.
     torques = wheel_torques(tree.plugins) if engine == "classic" else {}
     wheels = []
     for runner in (each for pair in pairs for each in getattr(pair, side)):
@@ -511,8 +513,8 @@ def _sharing(
 ) -> Literal["track", "wheel"]:
     """Return how motors, with the radii [m] of their wheels, share the torque of a side.
 
-    Those of a line of wheels that are alike have one each, unless flippers have belts; a note says
-    where alike torques are unlike forces.
+    Equal motors of a line of wheels share it by wheel, unless flippers have belts; a note tells if
+    equal torques give different forces.
     """
     track, *others = tracks
     efforts = [joint.effort or 0.0 for joint, _ in motors]
@@ -538,9 +540,9 @@ def _controller(
     of_chassis: Sequence[tuple[Joint, float]],
     radius: float,
 ) -> PI | None:
-    """Return the controller of one side: the servos of its wheels, if the engine has such.
+    """Return the controller of one side: the servos of its wheels, if the engine has them.
 
-    All wheels of the chassis need one. Motors on flippers without a servo add nothing to the gain.
+    All wheels of the chassis need a servo. Motors on flippers without one add nothing to the gain.
     """
     servos = [wheel for wheel in wheels if (wheel[0].gain or 0.0) > 0.0]
     others = [wheel for wheel in wheels if wheel not in servos]

@@ -1,9 +1,9 @@
-"""Expressions of xacro, evaluated here and not by Python, with a list of harmless names.
+"""Evaluate xacro expressions without Python's eval, with a list of harmless names.
 
-The text is parsed, but never compiled. Each node of its tree is evaluated below on plain data, or
-refused: nothing else of Python can be reached, because no attribute of any object is ever read. A
-dotted name is a key of a dict, a member of a namespace such as ``math``, or a method of the list
-below. Sizes are checked before anything is built, and work is counted.
+The text is parsed but never compiled. Each node of its tree is evaluated here on plain data, or
+refused. Nothing else of Python can be reached, because attributes of objects are never read: a
+dotted name is a key of a dict, a member of a namespace such as ``math``, or a method listed below.
+Sizes are checked before anything is built, and steps are counted.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class NotAllowed(Exception):
     Attributes
     ----------
     expression : str
-        All of it.
+        The whole expression.
     """
 
     def __init__(
@@ -60,21 +60,21 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     Parameters
     ----------
     text : str
-        As Python writes it.
+        Expression in Python syntax.
     names : mapping
-        The values of names: plain data, functions, and namespaces, which are mappings but no dicts.
+        Values by name: plain data, functions, and namespaces, which are mappings other than dicts.
 
     Returns
     -------
     number, str, None, list, tuple or dict
-        Plain data, with all that is in it.
+        Plain data at every level.
 
     Raises
     ------
     NotAllowed
-        If a part of it is not on the list, or a value too large.
+        If a part is not on the list, or a value is too large.
     Exception
-        The same as Python raises, such as `NameError`.
+        As raised by Python, such as `NameError`.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
             raise NotAllowed(f"{len(text)} characters", f"must have at most {_LONGEST} characters")
         try:
             tree = ast.parse(text.strip(), mode="eval")
-        except (RecursionError, MemoryError):  # of the parser
+        except (RecursionError, MemoryError):  # raised by the parser
             raise _too_deep() from None
         evaluation = _Evaluation(text.strip(), names)
         return evaluation.checked(evaluation.value(tree.body))
@@ -100,7 +100,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
 
 
 def copy_data(value: Any) -> Any:
-    """Copy lists and dicts of any class as plain ones; anything but data is refused."""
+    """Copy lists and dicts of any class as plain ones; refuse anything but data."""
     return _Evaluation("", {}).copy(value, 0)
 
 
@@ -119,7 +119,7 @@ class _Evaluation:
             raise NotAllowed("more", f"must be evaluated in {_STEPS} steps")
 
     def checked(self, value: Any) -> Any:
-        """Return a value whose parts, with repetitions, are all plain and not too many."""
+        """Check that all parts of a value are plain, and not too many with repetitions."""
         waiting, weight = [value], 0
         while waiting:
             part = waiting.pop()
@@ -213,7 +213,7 @@ class _Evaluation:
         raise NotAllowed(self.written(node))
 
     def written(self, node: ast.expr) -> str:
-        """Return the beginning of a node as it is written."""
+        """Return the beginning of a node's text."""
         return (ast.get_source_segment(self.text, node) or type(node).__name__)[:60]
 
     def lookup(self, name: str) -> Any:
@@ -252,12 +252,12 @@ class _Evaluation:
         if len(named) < len(keywords) or (named and function is not dict):
             raise NotAllowed(f"{keywords[0].arg or '**'}=")
         result = self.checked(function(*values, **named))
-        if isinstance(function, partial):  # a method, which may have added to what it is of
+        if isinstance(function, partial):  # a method may have extended its object
             self.checked(list(function.args))
         return result
 
     def either(self, parts: list[ast.expr], *, until: bool) -> Any:
-        """Return the first of some values that is true, or false; else the last."""
+        """Return the first value that decides `or` or `and`, else the last."""
         value = None
         for part in parts:
             value = self.value(part)
@@ -266,7 +266,7 @@ class _Evaluation:
         return value
 
     def compare(self, left: ast.expr, ops: list[ast.cmpop], parts: list[ast.expr]) -> Any:
-        """Compare values in a row."""
+        """Evaluate a chained comparison."""
         one = self.checked(self.value(left))
         holds: Any = True
         for op, part in zip(ops, parts, strict=True):
@@ -280,7 +280,7 @@ class _Evaluation:
     def comprehend(
         self, element: ast.expr, name: str, source: ast.expr, tests: list[ast.expr]
     ) -> list[Any]:
-        """Build a list from each element of another; its name is known inside only."""
+        """Evaluate a list comprehension; its variable is local."""
         outer, values = self.names, []
         for each in iter(self.value(source)):
             self.names = ChainMap({name: each}, outer)  # type: ignore[arg-type]
@@ -356,7 +356,7 @@ def _replace(text: str, old: str, new: str) -> str:
 
 
 def _list_of(function: Callable[..., Any]) -> Callable[..., list[Any]]:
-    """Return a function that lists the values of another one, which are not plain data."""
+    """Wrap a function so that it returns a list instead of an iterator."""
     return lambda *values: list(function(*values))
 
 
@@ -404,10 +404,10 @@ _METHODS: dict[type, dict[str, Callable[..., Any]]] = {
         **{name: _list_of(getattr(dict, name)) for name in ("keys", "values", "items")},
     },
 }
-"""The methods that public files call; none returns more than its arguments hold, or it checks the
-size before."""
+"""Methods called by public files; none returns more data than its arguments hold, or it checks the
+size first."""
 
-# Their values grow faster than their arguments.
+# Operators whose values grow faster than their arguments.
 _GROWING = ("factorial", "comb", "perm", "prod")
 _MATH = {
     name: member
@@ -431,4 +431,4 @@ NAMES: Mapping[str, Any] = MappingProxyType(
         "python": MappingProxyType(_PYTHON),
     }
 )
-"""The names of xacro that are harmless."""
+"""Harmless names of xacro."""

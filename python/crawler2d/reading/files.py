@@ -1,20 +1,20 @@
-"""The only access to files that a model names, and the packages that they are in.
+"""Safe access to the files named by a model, and search for their packages.
 
-All that a model consists of is read here and nowhere else: the model itself, its includes, meshes
-and textures, settings in YAML, manifests of packages. A file is read if it
+All files of a model are read here and nowhere else: the model itself, its includes, meshes and
+textures, YAML settings, manifests of packages. A file is read if it
 
-- is in the folder of the model, in the package around that, in another package of its tree, or in a
-  folder that the user named: one of ``packages=``, or of the variables in which ROS and Gazebo look
-  for packages; or is the only file of the tree that a name fits, though no manifest has the name of
-  its package. Links and ``..`` are resolved first, so none of them leads out;
+- is in the folder of the model, in its package, in another package of its tree, or in a folder
+  named by the user (``packages=`` or the variables in which ROS and Gazebo look for packages); or
+  is the only file of the tree that fits a name, if no manifest has the name of its package. Links
+  and ``..`` are resolved first, so they cannot lead outside;
 - is a regular file: a pipe may never answer, a device never end;
-- is not too large, by itself and with all others of its model.
+- is not too large, alone and together with all others of its model.
 
-Each refusal is a `ScenarioError` that names the file, the rule and what to do.
+Refusals are `ScenarioError`s that name the file, the rule and a remedy.
 
-Packages are looked for in the tree of the model, by their manifests, then in the folders that the
-variables of ROS and Gazebo name. If no manifest has the name, a file of the package may still be
-identified by its path. Only manifests are read, in folders up to a number and a depth.
+Packages are searched by their manifests in the tree of the model, then in the folders of the
+variables of ROS and Gazebo. If no manifest has the name, a file of the package may still be
+identified by its path. The search reads only manifests, in a limited number and depth of folders.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from crawler2d.reading.log import ReadingWarning
 __all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "VARIABLES", "Files", "is_absent", "reason_of"]
 
 MANIFESTS = ("package.xml", "manifest.xml", "model.config")
-"""Files that make a folder a package."""
+"""Manifests: files that make a folder a package."""
 
 VARIABLES = {
     "AMENT_PREFIX_PATH": ("share/{name}",),
@@ -47,21 +47,21 @@ VARIABLES = {
     "ROS_PACKAGE_PATH": (),
     "ROS_ROOT": (),
 }
-"""By variable the path of a package in one of its folders; without a pattern, anywhere below."""
+"""Variables, with the paths of a package in one of its folders; () for anywhere below."""
 
 _NAME = re.compile(rb"<name\s*>([^<]+)</name\s*>")
 _ALLOWED = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+ -]*")
 _LARGEST = 64_000  # [bytes] of a manifest
-_FARTHEST = 8  # folders, that of the model and those around it, that may have a repository
-_WIDER = 2  # folders above a package that is in no repository
+_FARTHEST = 8  # folders, from that of the model upwards, that may be a repository
+_WIDER = 2  # folders above a package outside of repositories
 _DEEPEST = 7  # levels below the folder in which a search starts
 _MOST = 4000  # folders of one search
 
 LARGEST_MODEL = 4_000_000
-"""[bytes] Of one file of elements or settings. The largest public models have 150 kB."""
+"""[bytes] Limit of a file of elements or settings. The largest public models have 150 kB."""
 
 LARGEST_TOGETHER = 30_000_000
-"""[bytes] Of all files of one model, and so of any mesh: 600,000 facets of a binary STL."""
+"""[bytes] Limit of all files of a model, and so of a mesh: 600,000 facets of a binary STL."""
 
 _IN_PACKAGE = re.compile(
     r"(?:file://)?(?:(?:package|model)://([^/]*)|\$\((?:find|find-pkg-share)\s+([^)\s]+)\s*\))(.*)",
@@ -291,7 +291,7 @@ class Files:
         Raises
         ------
         ScenarioError
-            If it must not or cannot be read; the system's error, if any, is its cause.
+            If it must not or cannot be read; its cause is the system's error, if any.
         """
         path = self.path(name, at=at)
         inside = any(path.is_relative_to(root) for root in self._roots)
@@ -315,7 +315,7 @@ class Files:
         return data
 
     def path(self, name: str, *, at: str) -> Path:
-        """Return the path of a file that a model names; see `read`."""
+        """Return the path of a file named by a model; see `read`."""
         match = _IN_PACKAGE.fullmatch(name)
         if match is None:
             return _real(self.folder / name.removeprefix("file://"), at)
@@ -345,12 +345,12 @@ def folders(variable: str) -> list[Path]:
 
 
 def is_absent(error: BaseException) -> bool:
-    """Whether a file was refused because there is none among those of the model."""
+    """Whether a file was refused because it does not exist among those of the model."""
     return isinstance(error.__cause__, (FileNotFoundError, NotADirectoryError))
 
 
 def reason_of(error: ScenarioError) -> str:
-    """Return why a file could not be read, and which one it is if it is missing."""
+    """Return why a file could not be read, and its name if it is missing."""
     cause = error.__cause__
     if isinstance(cause, FileNotFoundError) and cause.strerror != _ELSEWHERE:
         return f"there is no file {cause.filename}"
@@ -360,8 +360,8 @@ def reason_of(error: ScenarioError) -> str:
 def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
     """Return where to look for packages: the innermost package, then its repository.
 
-    Without a repository, that is the outermost package. Folders above it, which come second, may
-    have sibling packages, unless they are a home or a folder for temporary files.
+    Without a repository, that is the outermost package. Folders above it come second, as they may
+    have sibling packages, unless they are a home or temporary folder.
     """
     near = [folder, *folder.parents][:_FARTHEST]
     packages = [each for each in near if any((each / name).is_file() for name in MANIFESTS)]
@@ -377,7 +377,7 @@ def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
 
 
 def _within(starts: Iterable[Path]) -> Iterator[tuple[Path, set[str]]]:
-    """Yield folders with the names in them, those close to a start first, each once."""
+    """Yield folders and the names in them once each, those close to a start first."""
     seen: set[Path] = set()
     for start in starts:
         level = [start]
@@ -415,28 +415,28 @@ def _without_comments(data: bytes) -> bytes:
 
 
 def _real(path: str | os.PathLike[str], at: str) -> Path:
-    """Resolve all links; a circle of them is refused when it is opened."""
+    """Resolve all links; circular ones are refused on opening."""
     try:
         return Path(os.path.realpath(path))
-    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
+    except (OSError, ValueError) as error:  # null bytes in names raise ValueError
         raise ScenarioError(at, str(path), f"must be the name of a file ({error})") from None
 
 
 def _read_regular(path: Path, most: int) -> bytes:
-    """Read so many bytes of a file that is checked after it is opened: it cannot be swapped."""
+    """Read bytes of a file that is checked after opening, so it cannot be swapped."""
     number = os.open(path, _FLAGS)
     try:
         kind = stat.S_IFMT(os.fstat(number).st_mode)
         if kind != stat.S_IFREG:
             raise OSError(errno.EINVAL, f"it is {_KINDS.get(kind, 'no file')}")
         with os.fdopen(number, "rb", closefd=False) as file:
-            return file.read(most) or b""  # None if the system has nothing ready
+            return file.read(most) or b""  # None if no data are ready
     finally:
         os.close(number)
 
 
 def _package_around(folder: Path) -> Path:
-    """Return the innermost folder with a manifest around a folder, or else that itself."""
+    """Return the innermost folder with a manifest at or above a folder, else that folder."""
     for each in (folder, *folder.parents):
         if any(os.path.exists(each / name) for name in MANIFESTS):
             return each

@@ -1,4 +1,4 @@
-"""Flippers: arms that pivot at the end axles, paired across, with the sources of their figures."""
+"""Flippers: arms that pivot on the end axles, paired left and right, with their sources."""
 
 from __future__ import annotations
 
@@ -37,27 +37,27 @@ from crawler2d.reading.wheels import Arm, Runner
 __all__ = ["ArmPair", "AtEnd", "arm_pairs", "arms_at", "flippers_of"]
 
 _NEAR = 0.05
-"""[-] How far a pivot may be from the end axle, relative to the axle distance."""
+"""[-] Largest distance of a pivot from the end axle, relative to the axle distance."""
 
 _ALIKE = 0.01
-"""[-] By how much the masses of two arms may differ: scales and cables."""
+"""[-] Tolerated difference between the masses of two arms, for scales and cables."""
 
 _DIRECTIONS = 360
-"""In which shapes are compared with wheels; the error is 0.004 % of a length."""
+"""Directions in which shapes are compared with wheels; the error is 0.004 % of a length."""
 
 _BEYOND = 0.2
 """[-] How far a shape that is left out may stick out of a flipper's wheels, relative to the largest
 radius: such as the boxes that represent grousers or a sagging belt."""
 
 _SAME_ANGLE = 1e-3
-"""[rad] By how much the angles of two arms may differ: files round them."""
+"""[rad] Tolerated difference between the angles of two arms, as files round them."""
 
-_RATE = 1.0  # [rad/s] of MARV's flippers
+_RATE = 1.0  # [rad/s] rate of MARV's flippers
 
 _LIGHTEST = 1.001e-5
-"""[-] Of the mass of the robot; the core refuses lighter ones, which no solver could hold."""
+"""[-] Smallest fraction of the robot's mass; the core refuses lighter ones as unsolvable."""
 
-_NOTED = 1e-4  # [m] At an edge, tenths of a millimetre have decided whether a robot gets over it.
+_NOTED = 1e-4  # [m] Tenths of a millimetre have decided whether a robot gets over an edge.
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -67,15 +67,15 @@ class ArmPair:
     Parameters
     ----------
     arms : tuple of Arm
-        Two, or one whose joint turns both.
+        Two arms, or one with a joint that turns both.
     pivot : ndarray, shape (2,)
-        [m] In the side view.
+        [m] Pivot in the side view.
     pairs : tuple of Pair
         Wheels or drums, from the pivot to the tip.
     is_belt : bool
         Whether a plugin moves a belt round them.
     mass : float
-        [kg] Of one flipper.
+        [kg] Mass of one flipper.
     """
 
     arms: tuple[Arm, ...]
@@ -95,13 +95,13 @@ class ArmPair:
         return self.arms[0].joint.path
 
     def refuse(self, value: object, rule: str) -> NoReturn:
-        """Raise the error that this pair breaks a rule."""
+        """Raise an error: this pair breaks a rule."""
         raise ScenarioError(self.path, value, rule)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AtEnd:
-    """A pair of flippers as a robot has them, at the front or at the rear.
+    """A pair of flippers of a robot, at the front or rear.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class AtEnd:
 
     @property
     def motors(self) -> list[tuple[Joint, float]]:
-        """Its joints, each with the number of flippers that it turns."""
+        """Joints, each with the number of flippers that it turns."""
         arms = self.pair.arms
         return [(arm.joint, 2.0 / len(arms)) for arm in arms]
 
@@ -139,8 +139,8 @@ def arm_pairs(log: ReadLog, arms: list[Arm], view: SideView) -> list[ArmPair]:
     Raises
     ------
     ScenarioError
-        If a flipper has no partner, has wheels and drums, differs in mass from its partner, or has
-        shapes that neither turn nor are moved and stick out of the envelope of its wheels.
+        If a flipper has no partner, has both wheels and drums, differs in mass from its partner, or
+        has fixed shapes that stick out of the envelope of its wheels.
     """
     pairs = []
     waiting = list(arms)
@@ -271,7 +271,7 @@ def _pair(log: ReadLog, arms: tuple[Arm, ...], view: SideView) -> ArmPair:
 
 
 def _leave_out_fixed(log: ReadLog, arm: Arm, view: SideView, *, is_belt: bool) -> None:
-    """Leave out shapes of an arm that do not move; warn of those that something may touch."""
+    """Leave out fixed shapes of an arm; warn of those within reach."""
     largest, tolerance = max(runner.radius for runner in arm.runners), view.tolerance
     for _, shape in arm.shapes:
         flat = silhouette(shape, view)
@@ -295,7 +295,7 @@ def _leave_out_fixed(log: ReadLog, arm: Arm, view: SideView, *, is_belt: bool) -
 
 
 def _beyond(flat: Array, runners: Sequence[Runner]) -> float:
-    """[m] Return how far points reach out of the convex envelope of some wheels."""
+    """[m] Return how far points stick out of the convex envelope of some wheels."""
     angles = np.linspace(0.0, 2.0 * math.pi, _DIRECTIONS, endpoint=False)
     away = np.stack([np.cos(angles), np.sin(angles)])
     reach = np.max([np.array([r.x, r.y]) @ away + r.radius for r in runners], axis=0)
@@ -305,7 +305,7 @@ def _beyond(flat: Array, runners: Sequence[Runner]) -> float:
 def _at_end(
     log: ReadLog, pair: ArmPair, base: Base, view: SideView, *, is_front: bool, radius: float
 ) -> AtEnd:
-    """Describe a pair of flippers as a robot has them.
+    """Describe a pair of flippers as part of a robot.
 
     Parameters
     ----------
@@ -320,12 +320,12 @@ def _at_end(
     is_front : bool
         Whether they are at the front.
     radius : float
-        [m] Of the rear end of the chassis: that of the sprocket, about which a flipper turns.
+        [m] Radius of the rear end of the chassis, the sprocket's, about which a flipper turns.
 
     Raises
     ------
     ScenarioError
-        If it pivots far from the end axle, or its belt does not run round the pivot.
+        If its pivot is far from the end axle, or its belt does not run round the pivot.
     """
     sign = 1.0 if is_front else -1.0
     off = math.hypot(*(pair.pivot - (base.front if is_front else base.rear)))
@@ -339,7 +339,7 @@ def _at_end(
     has_root = len(pair.pairs) > 1 and bool(from_pivot[0] <= view.tolerance)
     tip_place = np.array([tip.x, tip.y])
     if pair.is_belt:
-        # Along the arm: a steep one has its tip above its root.
+        # Measured along the arm, as the tip of a steep arm is above its root.
         away = tip_place - pair.pivot
         along = away / max(math.hypot(*away), 1e-9)
         ends = belt_ends(list(pair.pairs), along=along, at=pair.at)
@@ -378,7 +378,7 @@ def _refuse_unlike(log: ReadLog, front: AtEnd, rear: AtEnd, tolerance: float) ->
     Raises
     ------
     ScenarioError
-        If they differ in shape: a robot has one kind.
+        If they differ in shape, as a robot has one kind.
     """
     for name in ("length", "root_radius", "tip_radius"):
         first, second = getattr(front, name), getattr(rear, name)

@@ -151,7 +151,7 @@ class LoadedModel:
     text : str
         The file, or its expansion.
     warnings : list of ReadingWarning
-        What was left out or replaced, with its line.
+        Parts left out or replaced, with their lines.
     """
 
     tree: Tree
@@ -176,16 +176,16 @@ def load_model(data: bytes, path: Path, options: ReadOptions) -> LoadedModel:
     Parameters
     ----------
     data : bytes
-        The file, or what it would hold.
+        Content of the file.
     path : Path
-        Its path: lines have its name, and names in it are relative to its folder.
+        Its path: its name appears in lines, and names in it are relative to its folder.
     options : ReadOptions
         The keywords of `read_robot`.
 
     Raises
     ------
     ScenarioError
-        If it breaks a rule of its format, or needs missing files; its notes say what was left out
+        If it breaks a rule of its format, or needs missing files; its notes list what was left out
         before.
     """
     name, files = path.name, Files(path, options.packages)
@@ -242,10 +242,10 @@ def _check_pairs(pairs: object, path: str, what: str, kinds: tuple[type, ...]) -
 
 
 def _scale_lengths(data: bytes, scale: float, file: str) -> bytes:
-    """Multiply the lengths of an SDF or URDF text, so that its lines stay those of the file.
+    """Multiply the lengths in an SDF or URDF text, keeping its lines.
 
     Positions, sizes and limits of slides are multiplied by the scale, moments of inertia by its
-    square. Masses, torques and settings of plugins and sensors stay as they are.
+    square. Masses, torques and settings of plugins and sensors do not change.
     """
     try:
         document = Document(data.decode("utf-8"))
@@ -285,12 +285,12 @@ def _add_scale(document: Document, mesh: Span, scale: float) -> None:
 
 
 def _limit_inertias(tree: Tree, warnings: list[ReadingWarning]) -> Tree:
-    """Return the tree with no moment of inertia that its mass cannot have inside the robot.
+    """Limit moments of inertia to those possible for a link's mass inside the robot.
 
-    Larger ones get one warning, with the line of the worst. In a link that is light and no wheel it
-    is scaled down to that of the mass on the outermost point of the robot: such figures come from
-    placeholders that no engine rejects. Heavy links, and what turns without limit, keep the figures
-    of their file, and so do all if they make no difference to the robot.
+    Larger ones get one warning, with the line of the worst. For a light link that is not a wheel,
+    the moment is scaled down to that of its mass at the outermost point of the robot, as such
+    figures come from placeholders that engines accept. Heavy links and parts that turn without
+    limit keep the file's figures, and so do all if the effect on the robot is negligible.
     """
     if not any(link.shapes for link in tree.links):
         return tree
@@ -325,7 +325,7 @@ def _limit_inertias(tree: Tree, warnings: list[ReadingWarning]) -> Tree:
 
 
 def _largest_moment(links: Sequence[Link]) -> float:
-    """[kg m^2] Return the largest moment of inertia of all links together."""
+    """[kg m^2] Return the largest principal moment of inertia of all links together."""
     mass = np.array([link.mass for link in links])
     away = np.array([link.center for link in links])
     away -= mass @ away / mass.sum() if mass.sum() > 0.0 else 0.0

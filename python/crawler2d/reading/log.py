@@ -1,4 +1,4 @@
-"""The log of reading a file: sources of figures, notes, warnings, and the wheels in table order."""
+"""Log of reading a file: sources of figures, notes, warnings, and wheels in table order."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = [
     "list_names",
 ]
 
-_MOST_LINES = 4  # that are listed one by one
+_MOST_LINES = 4  # listed individually
 _MOST_NOTES = 10  # on one error
 
 ReadingWarning = tuple[str, object, str]
@@ -73,7 +73,7 @@ class Sources(Mapping[str, str]):
 
 @dataclass(slots=True, kw_only=True)
 class ReadLog:
-    """What is recorded while a robot is built from a model, by the laws of an engine.
+    """Records made while a robot is built from a model by the rules of an engine.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class ReadLog:
     warnings : list of ReadingWarning
         Probable mistakes.
     rows : list of (str, Runner)
-        All wheels and drums, each with its carrier, in the order of the table.
+        All wheels and drums with their carriers, in table order.
     """
 
     tree: Tree
@@ -113,7 +113,7 @@ class ReadLog:
 
 
 def estimate(rule: str) -> str:
-    """Return the source of a figure that is an estimate by a rule."""
+    """Return the source of an estimated figure, with its rule."""
     return f"estimate: {rule}"
 
 
@@ -143,7 +143,7 @@ def lines(places: Iterable[Where], what: str = "") -> str:
 
 @contextmanager
 def add_warnings(warnings: Iterable[ReadingWarning]) -> Iterator[None]:
-    """Add earlier warnings to an error as notes: what was left out may be its cause."""
+    """Add earlier warnings to an error as notes, as parts left out may be its cause."""
     try:
         yield
     except ScenarioError as error:

@@ -1,7 +1,7 @@
-"""Meshes as the hulls of their corners, which trimesh finds in a child process.
+"""Read meshes as hulls of their corners, by trimesh in a child process.
 
-The child reads only the bytes that it is given. Whatever they refer to (materials, textures,
-buffers in other files) is never opened: trimesh gets no resolver, and no file can be opened.
+The child reads only the given bytes. References to other files (materials, textures, buffers) are
+never followed: trimesh gets no resolver, and the process cannot open files.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ __all__ = ["MOST_CORNERS", "MeshRule", "Meshes"]
 MeshRule = Literal["refuse", "hull", "leave_out"]
 
 MOST_CORNERS = 300_000
-"""Of all meshes of a model, each corner of a mesh once."""
+"""Limit of all meshes of a model, counting each corner of a mesh once."""
 
 _KINDS = ("dae", "glb", "gltf", "obj", "stl")
 _FARTHEST = 1e6  # [m] as for any number of a model file
 
-# What trimesh and pycollada take if it is there, but corners do not need: pictures, and scipy, the
-# import of which takes longest. lxml is not the parser that refuses document types below.
+# Optional imports of trimesh and pycollada that corners do not need: pictures, and scipy, which
+# takes longest. lxml would bypass the parser below, which refuses document types.
 _UNUSED = ("PIL", "lxml", "scipy")
 
 
@@ -50,7 +50,7 @@ class Meshes:
     files : Files
         The files of the model.
     warnings : list of ReadingWarning
-        Takes shapes that are left out.
+        Gets warnings about shapes left out.
     """
 
     rule: MeshRule
@@ -59,12 +59,12 @@ class Meshes:
     _corners: dict[str, Array | str] = field(default_factory=dict)  # or why there are none
 
     def read(self, elements: dict[str, Element]) -> None:
-        """Read meshes, all at once: the child process has its limits for all of them.
+        """Read all meshes at once, as the limits of the child process apply to all together.
 
         Parameters
         ----------
         elements : dict of str to Element
-            By the name of a mesh the first element that names it.
+            The first element that names a mesh, by the mesh's name.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class Meshes:
         return replace(shape, kind="hull", points=shape.pose.at(points))
 
     def missing(self, element: Element, name: str, reason: str) -> Unread:
-        """Leave out a mesh that has no corners for a reason; refuse it by rule."""
+        """Leave out a mesh without corners, with the reason, or refuse it by the rule."""
         if self.rule == "refuse":
             rule = 'must not be a mesh; pass mesh="hull" for its hull, or mesh="leave_out"'
             element.refuse(name, rule)
@@ -143,7 +143,7 @@ def _read_meshes(trimesh: Any, meshes: list[dict[str, str]], most: int) -> list[
         try:
             with no_more_files():
                 points = _corners_of(trimesh, base64.b64decode(mesh["data"]), mesh["kind"])
-        except Exception as error:  # whatever trimesh raises, it is no mesh of that format
+        except Exception as error:  # any error of trimesh means an invalid mesh
             said = " ".join(f"{type(error).__name__} {error}".split())[:150]
             answers.append({"reason": f"must be a mesh that trimesh reads ({said})"})
             continue
@@ -171,7 +171,7 @@ def _corners_of(trimesh: Any, data: bytes, kind: str) -> Array:
 def _unit(data: bytes) -> float:
     """[m] Return the unit of a COLLADA file; document types and entities are refused.
 
-    Gazebo and RViz apply the unit and take no notice of the axis that is up.
+    Gazebo and RViz apply the unit and ignore the up axis.
     """
     units = []
 

@@ -1,4 +1,4 @@
-"""MJCF as a neutral tree, by MuJoCo's own parser in a child process.
+"""Read MJCF into a tree, by MuJoCo's own parser in a child process.
 
 The child answers with plain data. It reads meshes and height maps only through the files of the
 model, and MuJoCo itself opens none.
@@ -64,14 +64,14 @@ _INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is
 
 
 def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tree:
-    """Read the robot of an MJCF file: the bodies on one free joint, in the frame of the root body.
+    """Read the robot of an MJCF file: the bodies on one free joint, in the root's frame.
 
     Parameters
     ----------
     root : Element
         Of the file.
     text : str
-        All of it, which MuJoCo parses itself.
+        The whole text, parsed by MuJoCo.
     model : str, optional
         Name of the body with the free joint; None takes the only one.
     meshes : Meshes
@@ -80,12 +80,12 @@ def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tr
     Raises
     ------
     ScenarioError
-        If MuJoCo does not compile it, or no body floats.
+        If MuJoCo cannot compile it, or no body has a free joint.
     ImportError
         If MuJoCo is missing; the message names the extra to install.
     """
     for element in root.within():
-        if element.tag in ("include", "model"):  # whose lines would be those of another file
+        if element.tag in ("include", "model"):  # lines would be those of another file
             rule = "must contain the robot itself: read the file that is named, or copy it in here"
             element.refuse(element.attributes.get("file", ""), rule)
     file = root.where.file
@@ -114,7 +114,8 @@ def _check_numbers(answer: Item, file: str) -> None:
                 if not most <= (_LARGEST if name in _SIZES else math.inf) or math.isnan(most):
                     rule = f"must be finite and at most {_LARGEST:g} in magnitude"
                     raise ScenarioError(f"{path}: {name}", float(most), rule)
-                # Squares of numbers that are too large leave MuJoCo with no direction at all.
+                # The squares of too large numbers overflow, which leaves MuJoCo without a
+                # direction.
                 if name in ("turn", "axes") and not numbers.any():
                     raise ScenarioError(f"{path}: {name}", 0.0, "must be a rotation")
 
@@ -182,7 +183,7 @@ class _Model:
         )
 
     def root(self, name: str | None) -> int:
-        """Return the body that floats."""
+        """Return the body with the free joint."""
         floating = [
             number
             for number, joints in self.joints.items()
@@ -204,7 +205,7 @@ class _Model:
         return driving[0]
 
     def subtree(self, root: int) -> list[int]:
-        """Return a body and those that hang on it, parents before their children."""
+        """Return a body and its descendants, parents before their children."""
         numbers = {root: None}
         for number, body in enumerate(self.bodies):
             if number and body["parent"] in numbers:
@@ -212,7 +213,7 @@ class _Model:
         return list(numbers)
 
     def drives(self, root: int) -> bool:
-        """Whether anything on a body turns without limit, or has a surface that moves."""
+        """Whether a body has parts that turn without limit, or moving surfaces."""
         on = self.subtree(root)
         joints = [joint for number in on for joint in self.joints.get(number, [])]
         turns = any(joint["kind"] == "hinge" and not joint["range"] for joint in joints)
@@ -319,8 +320,8 @@ class _Model:
         elif kind not in ("box", "cylinder", "capsule", "sphere"):
             return self.meshes.leave_out(geom, kind, "unsupported shape")
         is_round = kind in ("cylinder", "capsule", "sphere")
-        # A surface moves as given, or by turning at its radius. A box or hull has none: that it
-        # moves counts, and its drums have the speed.
+        # A surface moves as given, or by turning at its radius. A box or hull has no radius: only
+        # that it moves counts, and its drums have the speed.
         velocity, lever = item["surface_velocity"], sizes[0] if is_round else 1.0
         return Shape(
             name=item["name"],
@@ -387,7 +388,7 @@ def _compile(mujoco: Any, *, text: str, file: str, files: Item) -> Item:
 
 
 def _remove_textures(spec: Any) -> None:
-    """Remove what is only visible: its files need not exist, nor be read."""
+    """Remove visual parts, so that their files are not needed."""
     for material in spec.materials:
         material.textures = [""] * len(material.textures)
     for kind in (spec.textures, spec.skins):
@@ -398,8 +399,8 @@ def _remove_textures(spec: Any) -> None:
 def _load_assets(spec: Any, files: Files, file: str) -> Iterator[tuple[Any, Item, ScenarioError]]:
     """Read the meshes and height maps of a model, and give MuJoCo their contents by name.
 
-    Those that cannot be read are removed from the model. Their geoms are, too, and each is yielded
-    with its body and the error.
+    Unreadable ones are removed from the model with their geoms, and each geom is yielded with its
+    body and the error.
     """
     folder, spec.meshdir = spec.meshdir, ""
     lowest, highest = spec.compiler.inertiagrouprange
@@ -476,8 +477,8 @@ def _shape(model: Any, geom: Any) -> Item:
     i = geom.id
     kind = _SHAPES.get(int(model.geom_type[i]), "unknown")
     collides = bool(model.geom_contype[i] or model.geom_conaffinity[i])
-    # In one dimension a contact has no friction. The ground has three, and the larger number
-    # counts, unless the geom has the higher priority.
+    # A contact of dimension 1 has no friction. The ground has dimension 3, and the larger one
+    # applies, unless the geom has the higher priority.
     priority = int(model.geom_priority[i])
     is_smooth = priority > 0 and int(model.geom_condim[i]) == 1
     points = None

@@ -1,8 +1,8 @@
-"""Untrusted input: XML as elements that know their line, and child processes with limits.
+"""Parse untrusted input: XML as elements with lines, and child processes with limits.
 
-Entities, document types and external parts of XML are refused before anything is expanded, and so
-are files that are too long, too deep or have too many elements. Third-party parsers run in a child
-process, which alone may hang, grow or crash.
+Entities, document types and external parts of XML are refused before anything is expanded, as are
+files that are too long, too deep or have too many elements. Third-party parsers run in a child
+process, so that only this may hang, grow or crash.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from crawler2d.reading.log import ReadingWarning
 
 __all__ = ["Element", "ask_child", "no_more_files", "parse_xml", "real", "serve"]
 
-# [m, kg, ...] No robot has a larger figure; a larger effort or limit of an angle is no limit.
+# [m, kg, ...] Largest figure of a robot; larger efforts or angle limits mean no limit.
 _LARGEST = 1e6
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
@@ -36,13 +36,13 @@ _MOST_ELEMENTS = 50_000
 _DEEPEST = 60
 
 SECONDS = 2
-"""[s] Of computing, after the imports."""
+"""[s] Processor time after the imports."""
 
 CLOCK = 4 * SECONDS
-"""[s] Of the clock, after the imports: it waits for nothing for ever."""
+"""[s] Elapsed time after the imports, against endless waiting."""
 
 MEGABYTES = 400
-"""[MB] Of memory, beyond what the imports took."""
+"""[MB] Memory in addition to that of the imports."""
 
 # [s] Of the clock, in which the child starts, imports and works; what it may compute is less.
 _PATIENCE = 30.0
@@ -97,11 +97,11 @@ class Element:
         return f"{self.where}: {self.path}"
 
     def refuse(self, value: object, rule: str, part: str = "") -> NoReturn:
-        """Raise the error that this element, or an attribute of it, breaks a rule."""
+        """Raise an error: this element, or one of its attributes, breaks a rule."""
         raise ScenarioError(f"{self.at}{part}", value, rule)
 
     def all(self, tag: str) -> Iterator[Element]:
-        """Yield the children of a name."""
+        """Yield the children with a name."""
         return (child for child in self.children if child.tag == tag)
 
     def within(self) -> Iterator[Element]:
@@ -131,21 +131,21 @@ class Element:
         return children[0] if children else None
 
     def needed(self, path: str) -> Element:
-        """Return the one child at a path, which must be there."""
+        """Return the one child at a path, which must exist."""
         element = self.only(path)
         if element is None:
             self.refuse("none", f"must have an element <{path}>")
         return element
 
     def attribute(self, name: str) -> str:
-        """Return an attribute, which must be there and not empty."""
+        """Return an attribute, which must exist and not be empty."""
         text = self.attributes.get(name, "").strip()
         if not text:
             self.refuse("none", f"must have an attribute {name}")
         return text
 
     def reals(self, count: int, attribute: str | None = None) -> list[float]:
-        """Return so many numbers, from its text or an attribute."""
+        """Return a given number of numbers, from its text or an attribute."""
         text = self.text if attribute is None else self.attributes.get(attribute, "")
         words = text.split() if len(text) <= _LONGEST_NUMBER * (count + 1) else []
         part = "" if attribute is None else f"@{attribute}"
@@ -155,7 +155,7 @@ class Element:
         return [real(self, word, part) for word in words]
 
     def real(self, path: str, usual: float | None = None) -> float:
-        """Return the number that a child holds; `usual` if there is none and it may be left out."""
+        """Return the number in a child; `usual` if it is missing and optional."""
         element = self.only(path)
         if element is None and usual is not None:
             return usual
@@ -183,7 +183,7 @@ def parse_xml(data: bytes, file: str) -> Element:
     Parameters
     ----------
     data : bytes
-        In an encoding that XML knows.
+        Content, in an encoding known to XML.
     file : str
         Its name, for the lines.
 
@@ -195,7 +195,7 @@ def parse_xml(data: bytes, file: str) -> Element:
     Raises
     ------
     ScenarioError
-        If it is no XML, has a document type or entities, or is larger than a robot needs.
+        If it is not XML, has a document type or entities, or is larger than a robot needs.
 
     Examples
     --------
@@ -251,11 +251,11 @@ def parse_xml(data: bytes, file: str) -> Element:
         reason = expat.ErrorString(error.code)
         where = line_of(parser.ErrorByteIndex)
         raise ScenarioError(str(where), reason, "must be well-formed XML") from None
-    except ScenarioError:  # which is a ValueError, too
+    except ScenarioError:  # also a ValueError
         raise
     except (ValueError, LookupError) as error:  # an encoding that Python lacks or cannot map
         raise ScenarioError(file, str(error), "must be in a known encoding") from None
-    return roots[0]  # without one, expat has raised
+    return roots[0]  # expat raises if there is none
 
 
 def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> None:
@@ -264,9 +264,9 @@ def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> 
     Parameters
     ----------
     prepare : callable
-        Imports what is needed and returns what answers. It runs before the limits hold.
+        Imports modules and returns the answering function; runs before the limits apply.
     """
-    out, sys.stdout = sys.stdout, sys.stderr  # what a library prints is no answer
+    out, sys.stdout = sys.stdout, sys.stderr  # output of libraries is not the answer
     try:
         work = prepare()
         _limit()
@@ -281,7 +281,7 @@ def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> 
 
 @contextlib.contextmanager
 def no_more_files() -> Iterator[None]:
-    """Prevent any file from being opened, by whatever means, where the system has such a limit."""
+    """Prevent opening any file, if the system has such a limit."""
     try:
         import resource  # noqa: PLC0415 - not on Windows
     except ImportError:
@@ -296,7 +296,7 @@ def no_more_files() -> Iterator[None]:
 
 
 def ask_child(program: str, question: dict[str, Any], *, file: str, files: Files) -> dict[str, Any]:
-    """Ask a program of this room, in a process of its own, for plain data.
+    """Run a program of this folder in its own process, and return its plain data.
 
     Parameters
     ----------
@@ -307,17 +307,17 @@ def ask_child(program: str, question: dict[str, Any], *, file: str, files: Files
     file : str
         The subject of errors.
     files : Files
-        The files of the model, in whose folder the program runs.
+        The files of the model; the program runs in their folder.
 
     Raises
     ------
     ScenarioError
-        With the path, value and rule that the program gave, or if it exceeded its limits.
+        With path, value and rule from the program, or if it exceeded its limits.
     ImportError
         If the library that the program needs is missing.
     """
     try:
-        # Nothing of the folder of the model is imported: -P keeps it off the path.
+        # Nothing in the folder of the model is imported: -P keeps it off the path.
         done = subprocess.run(
             [sys.executable, "-P", "-m", program],
             input=json.dumps(question).encode(),
@@ -347,12 +347,12 @@ def ask_child(program: str, question: dict[str, Any], *, file: str, files: Files
 
 
 def _limit() -> None:
-    """Set the limits, where the system has them."""
+    """Set the limits supported by the system."""
     with contextlib.suppress(ImportError):
         import resource  # noqa: PLC0415 - not on Windows, where only the patience of the parent holds
 
-        # Their signals end the process. The limit knows whole seconds only, but nothing that runs
-        # here can take it back.
+        # Their signals end the process. The limit is in whole seconds, but code running here cannot
+        # undo it.
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         signal.setitimer(signal.ITIMER_REAL, CLOCK)
         used = resource.getrusage(resource.RUSAGE_SELF)

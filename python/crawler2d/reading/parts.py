@@ -1,4 +1,4 @@
-"""Shapes, inertias, joints and plugins of SDF and URDF, and the order of links in a tree."""
+"""Read shapes, inertias, joints and plugins of SDF and URDF, and order links in a tree."""
 
 from __future__ import annotations
 
@@ -63,12 +63,12 @@ _SIZES = {
     "sphere": (("radius", 1),),
 }
 
-_CIRCLE = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)  # its chords fall short by 0.12 %
+_CIRCLE = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)  # chords are up to 0.12 % inside
 
 Numbers = Callable[[Element, str, int], list[float]]
 """Reads so many numbers of a name: SDF has them as elements, URDF as attributes."""
 
-_DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
+_DEEPEST_SETTING = 3  # settings of plugins are at most this deep
 
 # Gazebo's TrackController has link; its TrackedVehicle left_track/link and right_track/link; the
 # plugins of Gazebo classic name the links of tracks and flippers like this.
@@ -83,15 +83,15 @@ _DRIVEN = (
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
 ON_ITS_OWN = "is left out: the joint is read as one that moves by itself, within its own limits"
-"""What becomes of a joint that follows another one."""
+"""Treatment of a joint that follows another one."""
 
 Limit = tuple[float, Where]
 """A figure of a joint and its line. A negative or infinite effort or speed is no limit."""
 
 _MOST_LINKS = 1000
-_USUAL_FRICTION = 1.0  # of SDF, where a file says nothing
+_USUAL_FRICTION = 1.0  # default of SDF
 _LONGEST_NAME = 200
-_UPRIGHT = 0.01  # [rad] A root that leans by less is meant to stand upright.
+_UPRIGHT = 0.01  # [rad] A root with a smaller tilt counts as upright.
 
 
 def shape_of(
@@ -159,8 +159,8 @@ def inertia(
 ) -> Array:
     """Read a tensor of inertia [kg m^2] by the names of its six components.
 
-    One with a negative moment is taken as 0, that of a point, with a warning: a guess at its size
-    would be worse, and the position of a link matters more than its own inertia.
+    A tensor with a negative moment is taken as 0, that of a point, with a warning: guessing its
+    size would be worse, and the position of a link matters more than its own inertia.
     """
     tensor = np.zeros((3, 3))
     for name, row, column in _AXES:
@@ -220,14 +220,14 @@ def wheel_torques(plugins: tuple[Plugin, ...]) -> dict[str, tuple[float, Where]]
 
 
 def moved_links(tree: Tree) -> dict[str, Where]:
-    """Return the links whose surface is moved, and the lines that say so."""
+    """Return the links with moved surfaces, and the lines that say so."""
     links = tree.by_name
     moved = {name: where for name, where in named_tracks(tree.plugins) if name in links}
     return moved | {name: links[name].at for name in tree.tracks}
 
 
 def named_tracks(plugins: Iterable[Plugin]) -> Iterator[tuple[str, Where]]:
-    """Yield the names of tracks in plugins, with the lines; some may be no links."""
+    """Yield the names of tracks in plugins, with lines; some may not be links."""
     for plugin in plugins:
         if "track" in f"{plugin.name} {plugin.filename}".lower():
             for path, text, where in plugin.settings:
@@ -245,7 +245,7 @@ def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -
     name : str
         Its name.
     parent, child : str
-        The links that it joins.
+        The joined links.
     pose : Pose
         Of its frame.
     """
@@ -264,18 +264,18 @@ def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -
 def joint_or_fixed(
     joint: Joint, complete: Callable[[], Joint], *, carries: bool, warnings: list[ReadingWarning]
 ) -> Joint:
-    """Return a joint with axis and limits, or a fixed one where its faults make no difference.
+    """Return a joint with axis and limits, or a fixed one if its faults do not matter.
 
     Parameters
     ----------
     joint : Joint
         As from `joint_of`.
     complete : callable
-        Returns it with its axis and limits, or raises the rule that it breaks.
+        Returns the joint with axis and limits, or raises the error of a broken rule.
     carries : bool
         Whether anything in its subtree collides.
     warnings : list of ReadingWarning
-        Takes the fault.
+        Gets a warning about the fault.
     """
     try:
         return complete()
