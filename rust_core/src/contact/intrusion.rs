@@ -35,7 +35,7 @@ pub(crate) struct TrackEnvelope {
     tips: Belt,
     /// The belt round the root circles.
     roots: Belt,
-    /// [m] How far the belts are offset inwards from the circles.
+    /// [m] Inward offset of the belts from the circles.
     margin: f64,
 }
 

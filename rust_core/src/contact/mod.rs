@@ -58,7 +58,7 @@ pub(crate) struct Contact {
 }
 
 impl Contact {
-    /// One that has not carried a load yet.
+    /// A contact that has not carried a load yet.
     pub(crate) fn new(
         part: usize,
         (facet, edge): (usize, i32),

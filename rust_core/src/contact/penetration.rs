@@ -53,7 +53,7 @@ fn arcs_and_corners(part: &Part) -> Vec<Disc> {
     }
 }
 
-/// [m] How far a disc would have to move to be out of the ground; a corner is a disc of radius 0.
+/// [m] Distance that a disc must move to be out of the ground; a corner is a disc of radius 0.
 fn depth_of_disc(center: Vector, radius: f64, lane: &Profile) -> f64 {
     let below = lane.height_under_disc(center.x, 0.0) - center.y;
     let is_inside = below > 0.0;

@@ -37,7 +37,7 @@ pub struct Pull {
     pub body: usize,
     /// [m] Position.
     pub point: Vector,
-    /// [N] By how much.
+    /// [N] Pulling force.
     pub force: f64,
 }
 

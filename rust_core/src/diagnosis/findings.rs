@@ -208,7 +208,7 @@ named! {
 }
 
 impl Change {
-    /// Those that change nothing.
+    /// Trials that change nothing.
     pub const CONTROLS: [Self; 2] = [Self::Nothing, Self::Rebuilt];
 
     /// Whether the robot starts again where its run began, in place of going on from the stop.
@@ -222,7 +222,7 @@ impl Change {
     }
 }
 
-/// Which trials to make of a stop, besides those that its outcome needs.
+/// Trials to make at a stop, in addition to those that decide its outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     changes: [bool; Change::ALL.len()],

@@ -14,7 +14,7 @@ use crate::robot::{BodyKind, Model, Mount, Running, Shape};
 use crate::scenario::SeizureCriteria;
 use crate::terrain::Profile;
 
-/// What a diagnosis needs besides the stop itself.
+/// Input of a diagnosis in addition to the stop itself.
 pub(crate) struct Scene<'a> {
     pub model: &'a Model,
     pub lanes: &'a [Profile],

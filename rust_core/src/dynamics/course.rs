@@ -40,7 +40,7 @@ impl Touch {
         }
     }
 
-    /// [m] How far an arc has rolled on its face since the middle of the step.
+    /// [m] Distance that an arc has rolled on its face since the middle of the step.
     fn rolled(&self, moved: &Moved) -> f64 {
         let Meeting::Arc(radius) = self.meeting else {
             return 0.0;

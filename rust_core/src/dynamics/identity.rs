@@ -30,7 +30,7 @@ const MOST_LOST: usize = 256;
 /// A number that no run comes near, with room for more above it.
 const MOST_GIVEN: u64 = 1 << 60;
 
-/// What is remembered of contacts besides the last step's.
+/// Remembered contacts, in addition to those of the last step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Identity {
     /// The last number given; the first is 1.

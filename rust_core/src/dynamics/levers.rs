@@ -158,7 +158,7 @@ pub(super) struct Moved {
     pub arm: Vector,
     /// [m] From there to the touching point.
     pub spoke: Vector,
-    /// [m] How far that has moved.
+    /// [m] Travel of that.
     pub way: Vector,
     /// How far its carrier has turned, and the part itself.
     pub of_carrier: Rotation,

@@ -118,7 +118,7 @@ mod tests {
     }
 
     impl Scene {
-        /// One whose gap stays as it is.
+        /// A meeting with a constant gap.
         fn new() -> Self {
             let (normal, center, turn) = (
                 Rotation::new(0.4) * Vector::Y,

@@ -17,7 +17,7 @@ impl SetPoint {
         2.0 * self.middle - self.end
     }
 
-    /// One that does not change.
+    /// A constant set point.
     #[cfg(test)]
     pub(super) fn constant(speed: f64) -> Self {
         Self {

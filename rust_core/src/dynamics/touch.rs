@@ -54,11 +54,11 @@ impl<'a> Start<'a> {
     }
 }
 
-/// What a step knows of a contact besides what its solves do.
+/// Data of a contact in a step, in addition to those of its solves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
     pub on: On,
-    /// Unit normal away from what it is on.
+    /// Unit normal away from the ground that it touches.
     pub normal: Vector,
     /// The drive of its part.
     pub drive: Option<usize>,
@@ -74,7 +74,7 @@ pub(super) struct Touch {
     pub meeting: Meeting,
     /// Its point in the middle of the step.
     pub middle: Place,
-    /// [m] How far an arc has rolled on its face since the middle of the step.
+    /// [m] Distance that an arc has rolled on its face since the middle of the step.
     pub rolled: f64,
     /// Whether it closes in a step in which something strikes the ground.
     pub strikes: bool,
@@ -189,7 +189,7 @@ impl Touch {
         !matches!(self.on, On::Guide { .. })
     }
 
-    /// What carries it, if that is no shoe.
+    /// Its carrier, unless that is a shoe.
     pub(super) fn mount(&self) -> Option<Mount> {
         match self.on {
             On::Ground(mount) => Some(mount),

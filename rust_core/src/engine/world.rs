@@ -51,7 +51,7 @@ pub(super) struct Wheel {
     pub(super) spin_before: f64,
 }
 
-/// What acts on the robot in a step besides weight and contacts.
+/// Loads on the robot in a step, in addition to weight and contacts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Command {
     /// [m/s] Surface speed that the motors hold.

@@ -7,11 +7,11 @@ use serde_json::{Map, Number, Value, from_str};
 use super::TEXTS;
 use crate::draw::Draw;
 
-/// What may stand where a number stands.
+/// Replacements of a number.
 const NUMBERS: [f64; 16] = [
     0.0, -0.0, 1.0, -1.0, 2.0, 3.0, 0.5, 200.0, 1e-20, 1e-9, 1e-6, 1e-3, 100.0, 1e6, 1e9, 1e308,
 ];
-/// What may stand where a text stands.
+/// Replacements of a string.
 const WORDS: [&str; 24] = [
     "flat",
     "step",
@@ -39,7 +39,7 @@ const WORDS: [&str; 24] = [
     "gear",
 ];
 
-/// A text with one to three changes; one that is no JSON stays.
+/// A text with one to three changes; unchanged if it is not JSON.
 pub fn mutated(data: &[u8], seed: u32) -> Option<Vec<u8>> {
     let mut whole: Value = serde_json::from_slice(data).ok()?;
     let mut draw = Draw(u64::from(seed));

@@ -17,7 +17,7 @@ pub(super) struct Arc {
     pub radius: f64,
     /// [rad] Outward direction at its start.
     pub from: f64,
-    /// [rad] How far it turns, clockwise.
+    /// [rad] Angle of the arc, clockwise.
     pub sweep: f64,
     /// Its first and its last outward direction.
     pub ends: [Vector; 2],

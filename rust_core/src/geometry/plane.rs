@@ -71,7 +71,7 @@ impl Disc {
         }
     }
 
-    /// The disc about the same centre whose radius is larger by a length [m], or smaller if that is below 0.
+    /// The concentric disc with a radius larger by a length [m], or smaller if that is below 0.
     pub(crate) fn grown(self, by: f64) -> Self {
         Self {
             radius: self.radius + by,

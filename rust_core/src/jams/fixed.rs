@@ -93,7 +93,7 @@ fn parallel(three: &[Contact; 3]) -> Parallel {
     }
 }
 
-/// [m] How far two parallel lines are apart.
+/// [m] Distance of two parallel lines.
 pub(super) fn apart(one: (Vector, f64), other: (Vector, f64)) -> Difference {
     let value = one.1 - one.0.dot(other.0).signum() * other.1;
     [value, one.1.abs() + other.1.abs()]
@@ -192,7 +192,7 @@ pub(super) fn on_circle(
     [foot + along * half, foot - along * half]
 }
 
-/// [m] How far a pose may be off before it is polished.
+/// [m] Largest error of a pose before polishing.
 const NEAR: Metres = Metres(1e-4);
 /// [m] Gaps of a pose that is found.
 const FOUND: Metres = Metres(1e-12);

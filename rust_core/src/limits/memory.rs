@@ -106,7 +106,7 @@ impl<'a> Rows<'a> {
     /// Makes room for so many rows in all; `reserve` is called with the number of rows to make room for.
     ///
     /// # Errors
-    /// There is no room.
+    /// Memory is exhausted.
     pub(crate) fn make_room(
         &mut self,
         rows: usize,

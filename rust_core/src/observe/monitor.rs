@@ -26,7 +26,7 @@ pub(crate) struct Monitor {
     /// End axles in the chassis frame, the rear one first.
     axles: [Vector; 2],
     rear_radius: f64,
-    /// [rad] Chassis angle at which its track stands on level ground.
+    /// [rad] Chassis angle of its track standing on level ground.
     standing_angle: f64,
     grouser_pitch: f64,
     /// The parts of the robot.
@@ -180,7 +180,7 @@ impl Monitor {
         rear - self.goal - self.rear_radius
     }
 
-    /// [m] How far it still has to the goal; below 0 beyond it.
+    /// [m] Distance to the goal; below 0 beyond it.
     pub(crate) fn to_goal(&self, now: &Reading) -> f64 {
         let [rear, _] = self.axles;
         -self.beyond((now.position + turned_by(now.chassis_angle)(rear)).x)
@@ -282,7 +282,7 @@ impl Monitor {
         self.observed.progress.share
     }
 
-    /// [m] How far the robot has come in the commanded direction, at most.
+    /// [m] Farthest position in the commanded direction.
     pub(crate) fn best_advance(&self) -> f64 {
         self.observed.progress.best_advance()
     }

@@ -61,7 +61,7 @@ pub struct Tensioner {
     pub stiffness: f64,
     /// [N s/m] Damping.
     pub damping: f64,
-    /// [m] How far it can be pressed in before it meets its stop.
+    /// [m] Travel up to its stop.
     pub stop: f64,
 }
 
@@ -125,7 +125,7 @@ pub struct Flipper {
 pub(crate) struct Mounted {
     /// Its frame in the chassis frame.
     pub pose: Pose,
-    /// [m] How far its belt has run because the arm turned about its sprocket.
+    /// [m] Travel of its belt caused by turning the arm about its sprocket.
     pub run: f64,
 }
 

@@ -14,7 +14,7 @@ impl Model {
         Ok(Self::new(robot)?.placed_on(ground))
     }
 
-    /// The same, from a robot whose tracks are lumped.
+    /// The same, from a robot with lumped tracks.
     pub(crate) fn placed_on(self, ground: &Ground) -> Self {
         let mut model = if ground.tracks > 1 {
             self.side_by_side()

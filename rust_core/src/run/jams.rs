@@ -17,9 +17,9 @@ use crate::units::{Metres, Seconds};
 const SPELL: Seconds = Seconds(0.5);
 /// The push, as a share of the weight.
 const PUSH: f64 = 0.01;
-/// [m] How far it may be from where it was, if it stays.
+/// [m] Largest displacement of a robot that stays.
 const FAR: Metres = Metres(1e-3);
-/// [rad] And how far it may have turned.
+/// [rad] Largest rotation of a robot that stays.
 const TURNED: f64 = 0.01;
 
 /// A jam, and what a simulation that begins there shows.
@@ -55,7 +55,7 @@ pub fn find_jams(scenario: &ValidScenario, cancel: &Cancel) -> Result<Vec<FoundJ
 /// The jams on three contacts at every friction up to `most`, with the ground deepest inside the track.
 pub type JamRanges = Vec<(JamRange, Option<Intrusion>)>;
 
-/// Those of several scenarios, on all cores.
+/// The jams of several scenarios, on all cores.
 ///
 /// # Errors
 /// As [`find_jams`].

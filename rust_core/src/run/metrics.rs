@@ -75,7 +75,7 @@ metrics! {
 }
 
 impl Metrics {
-    /// Former names of metrics, with those that they have now.
+    /// Former names of metrics, with the current ones.
     pub const RENAMED: [(&str, &str); 1] = [("lowerings", "solver_fallbacks")];
 
     /// Names and values, in the order of the tables.

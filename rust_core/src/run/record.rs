@@ -24,7 +24,7 @@ pub struct Record {
     pub sample_interval: f64,
     /// Keep the trace and the contact table; without it only outcome, metrics and events.
     pub history: bool,
-    /// What to try if the run ends in a stop, besides what its outcome needs.
+    /// Trials to make if the run ends in a stop, in addition to those that decide its outcome.
     pub trials: Wanted,
 }
 
@@ -122,7 +122,7 @@ table! {
         commanded_speed: f64 [1],
         /// [m/s] Surface speed of the track, mean over the drives.
         track_speed: f64 [1],
-        /// [m] How far the track surface has run, mean over the drives.
+        /// [m] Travel of the track surface, mean over the drives.
         track_position: f64 [1],
         /// 1 - v / track speed; 0 where the track stands still.
         slip_ratio: f64 [1],
@@ -132,7 +132,7 @@ table! {
         drive_force: f64 [1],
         /// [m/s] Surface speed of each drive.
         drive_speeds: f64 [robot.drives],
-        /// [m] How far the surface of each drive has run.
+        /// [m] Travel of the surface of each drive.
         drive_positions: f64 [robot.drives],
         /// [N] Force of each motor, mean of the interval.
         drive_forces: f64 [robot.drives],

@@ -272,7 +272,7 @@ impl Simulation {
         self.with_scene(|scene| diagnosis::balance(scene, &self.monitor.stance(), tolerance))
     }
 
-    /// What a diagnosis needs besides the stop.
+    /// Input of a diagnosis in addition to the stop.
     fn with_scene<T>(&self, of: impl FnOnce(&Scene) -> T) -> T {
         let running = self.running();
         let model = self.dynamics.model().as_one_body(&running);
@@ -351,7 +351,7 @@ impl Simulation {
         self.state.shoes.iter().map(pose)
     }
 
-    /// [m] How far the surface of each drive has run.
+    /// [m] Travel of the surface of each drive.
     pub fn drive_positions(&self) -> impl Iterator<Item = f64> + '_ {
         self.state.drives.iter().map(|drive| drive.position)
     }

@@ -1,4 +1,4 @@
-//! The length of the next step: a given one, or one whose local error is what was asked for.
+//! The length of the next step: fixed, or such that the local error is the requested one.
 
 use serde::{Deserialize, Serialize};
 

@@ -59,7 +59,7 @@ impl Chord {
         a.x <= point.x && point.x <= b.x && (point - a).dot(self.up) < SAME_FACE.value()
     }
 
-    /// [m] How far a corner rises above the line.
+    /// [m] Height of a corner above the line.
     pub(super) fn rise(&self, corner: &Corner) -> f64 {
         (corner.center - self.ends[0]).dot(self.up) + corner.radius
     }

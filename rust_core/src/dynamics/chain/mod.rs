@@ -32,7 +32,7 @@ const STOP_STIFFNESS: f64 = 100.0;
 pub(super) struct Chain {
     pub rule: ChainOfShoes,
     pins: Vec<Pin>,
-    /// [m] How far it lags behind its sprocket, ...
+    /// [m] Lag behind its sprocket, ...
     behind: f64,
     /// [m] ... and did when the step began.
     lagged: f64,
@@ -149,7 +149,7 @@ impl Chain {
         turns.sum::<f64>() * self.rule.path.pitch / std::f64::consts::TAU
     }
 
-    /// Integrates how far the chain lags behind its sprocket, whose teeth run at a speed [m/s].
+    /// Integrates the lag of the chain behind its sprocket; the teeth move at a speed [m/s].
     pub(super) fn count(&mut self, drive_speed: f64, state: &State, h: f64) {
         self.lagged = self.behind;
         if self.has_sprocket() {

@@ -1,4 +1,4 @@
-//! What a search finds, and how far it goes.
+//! Results and limits of a search.
 
 use super::balance::Twist;
 use super::cell::NUMBERS;
@@ -11,7 +11,7 @@ pub enum Exclusion {
     Apart,
     /// A part overlaps with the ground.
     Overlap,
-    /// No ground is inside the track: a belt stands there as well.
+    /// No ground is inside the track, so a belt can stand there, too.
     Belt,
     /// The weight works with a virtual motion that no force works against.
     Unbalanced,

@@ -121,7 +121,7 @@ impl Rectangle {
         }
     }
 
-    /// How far its vectors are from the origin.
+    /// Range of the lengths of its vectors.
     pub(super) fn distance(self) -> Interval {
         let middle = self.middle.abs();
         let least = (middle - self.half).max(Vector::ZERO);

@@ -1,4 +1,4 @@
-//! Whether a robot that one wheel or two can carry would leave that pose by itself.
+//! Whether a robot carried by one or two wheels is unstable in that pose.
 //!
 //! On two contacts it has one freedom. With the vector `b` of the weight, the contacts' wrenches `w`, per unit of normal
 //! force and about the centre of mass, and the velocity `u` that keeps both closed, its motion is

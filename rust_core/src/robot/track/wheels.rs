@@ -12,7 +12,7 @@ use crate::scenario::{
     TorqueSharing, Track, TrackOutline, Wheel,
 };
 
-/// Wheels driven by motors, together or each by itself.
+/// Wheels driven by one motor together, or by a motor each.
 pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, ScenarioError> {
     let own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
     let part = |(i, disc): (usize, Disc)| {

@@ -25,7 +25,7 @@ pub(super) struct Commands {
 }
 
 impl Commands {
-    /// Those of a scenario at time 0.
+    /// The commands of a scenario at time 0.
     pub(super) fn of(drive: &Drive) -> Self {
         Self {
             speed: drive.speed,
