@@ -1,4 +1,4 @@
-"""What the tests are given: how long to test, a scenario, a run."""
+"""Fixtures of all tests: length of the tests, a scenario, a run."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def children_of_its_own() -> None:
 
 @pytest.fixture(autouse=True)
 def _standing_children(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pay for what the reader's processes import once, not a second a file."""
+    """Import the reader's modules once, which saves a second per file."""
     if sys.platform != "win32" and "children_of_its_own" not in request.fixturenames:
         children: StandingChildren = request.getfixturevalue("children")
         monkeypatch.setattr("crawler2d.reading.parsing.subprocess.run", children.run)

@@ -1,4 +1,4 @@
-"""What a user does with the wheel alone; `make test-wheel` runs it where there is no compiler."""
+"""Typical use of the wheel alone; `make test-wheel` runs it without a compiler."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""A belt closed round the bodies of another model: what it is, and what is refused."""
+"""A belt round the bodies of another model: its shape, and refused values."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What can be simulated and what a run says is told to users, and has a scenario in the tests."""
+"""Everything that can be simulated or reported is documented, and has a scenario in the tests."""
 
 import inspect
 import json

@@ -1,4 +1,4 @@
-"""Optional packages: missing ones are told from those whose import fails or was interrupted."""
+"""Optional packages: missing ones are distinguished from failed or interrupted imports."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Ctrl-C: answered at once, and what is finished is kept."""
+"""Ctrl-C is answered at once, and finished runs are kept."""
 
 import signal
 import subprocess
@@ -112,7 +112,7 @@ SLACK = 1.0
 
 
 def interrupted(program: str, delay: float) -> tuple[float, list[str]]:
-    """Run a program, interrupt it, and return its latency [s] and what it said after that."""
+    """Run a program, interrupt it, and return its latency [s] and later output."""
     command = [sys.executable, "-c", program]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None

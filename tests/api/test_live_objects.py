@@ -1,4 +1,4 @@
-"""Processes that begin while objects live: they get right results or are told, and never hang."""
+"""Processes started while objects exist get right results or an error, and never hang."""
 
 import contextlib
 import multiprocessing

@@ -1,4 +1,4 @@
-"""Outlines of discs: either form of two, any number of them, and what is refused."""
+"""Outlines of discs: both forms of two discs, any number of them, and refusals."""
 
 import copy
 import dataclasses

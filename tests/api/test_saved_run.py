@@ -1,4 +1,4 @@
-"""A run in a file: it loads with the same bits, and what is no such file is refused."""
+"""Saved runs load with the same bits, and other files are refused."""
 
 import json
 import pickle
@@ -31,7 +31,7 @@ def saved(stopped: c2d.Run, tmp_path: Path) -> Path:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two values are alike to the last bit."""
+    """Whether two values are equal, bit by bit."""
     if isinstance(one, np.ndarray):
         bits = one.tolist() == other.tolist() if one.dtype == object else _bits(one) == _bits(other)
         return one.dtype == other.dtype and one.shape == other.shape and bits

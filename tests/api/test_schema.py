@@ -1,4 +1,4 @@
-"""The JSON Schema of scenario files: it accepts what the core reads, and refuses what is wrong."""
+"""The JSON Schema of scenario files accepts what the core reads, and refuses invalid values."""
 
 import copy
 import inspect
@@ -118,7 +118,7 @@ def test_a_wrong_value_anywhere_is_refused_as_it_is_by_the_core() -> None:
 
 
 def joins_fields(place: Place, wrong: Any) -> bool:
-    """Whether a value is wrong beside another one only, which no schema of a field tells."""
+    """Whether a value is invalid only with another one, which the schema cannot express."""
     return wrong is None and place in {("solver", "accuracy"), ("solver", "time_step")}
 
 

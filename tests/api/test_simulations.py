@@ -1,4 +1,4 @@
-"""Many simulations beside each other."""
+"""Many simulations at once."""
 
 import math
 from typing import Any

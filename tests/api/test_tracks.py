@@ -1,4 +1,4 @@
-"""Track models: which wheels can be, and what is refused."""
+"""Track models: valid wheels, and refusals."""
 
 import math
 from collections.abc import Callable

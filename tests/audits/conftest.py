@@ -29,7 +29,7 @@ def found() -> c2d.Audit:
 
 @pytest.fixture(scope="session")
 def of_file(tmp_path_factory: pytest.TempPathFactory) -> c2d.Audit:
-    """A cart that seizes as a file, on two steps of which it clears one."""
+    """A cart file that seizes on one of two steps and clears the other."""
     path = tmp_path_factory.mktemp("cart") / "cart.urdf"
     path.write_text(seizing_file(), encoding="utf-8")
     steps = {**STEP, "step of 30 mm": c2d.terrains.step(0.03)}
@@ -38,5 +38,5 @@ def of_file(tmp_path_factory: pytest.TempPathFactory) -> c2d.Audit:
 
 @pytest.fixture
 def one_obstacle(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The standard obstacles are one step: for what is the same on every obstacle."""
+    """One step as standard obstacles, for tests that do not depend on the obstacle."""
     monkeypatch.setattr(audit_module, "standard_obstacles", lambda *_: STEP)

@@ -27,7 +27,7 @@ def seizing_file(name: str = "cart", wheels: str = "") -> str:
 
 
 def instant_audit(found: c2d.Audit) -> Any:
-    """An audit that takes no time, and prints what it found."""
+    """An audit that takes no time and prints its result."""
 
     def audit(*_: Any, progress: Any, **__: Any) -> c2d.Audit:
         progress.print(found.summary)

@@ -1,4 +1,4 @@
-"""The atlas: which files are taken for models, and a page of what was read and what was not."""
+"""The atlas: files taken as models, and a page of files read and not read."""
 
 import re
 import shutil
@@ -36,7 +36,7 @@ def test_files_that_others_include_and_files_of_macros_are_no_models(forest: Pat
 
 
 def test_what_a_scene_of_mjcf_includes_is_a_model(tmp_path: Path) -> None:
-    """It is read by itself; the scene is refused, as the reader takes no includes of MJCF."""
+    """It is read alone; the scene is refused, as the reader does not follow includes of MJCF."""
     folder = tmp_path / "robots"
     folder.mkdir()
     shutil.copy(FILES / "cart.xml", folder)

@@ -1,4 +1,4 @@
-"""An audit from end to end, on a robot whose seizure is known, and what it is given."""
+"""An audit from end to end, on a robot with a known seizure, and its arguments."""
 
 import json
 import math
@@ -498,7 +498,7 @@ def test_bad_input_is_refused(arguments: Any, how: Any, path: str) -> None:
 
 
 def test_reading_an_audited_file_is_quiet() -> None:
-    """What the reader warns of is in the lint and not issued: warnings are errors here."""
+    """Warnings of the reader are in the lint and not issued: warnings are errors here."""
     assert quietly(FILES / "cart.urdf").warnings == ()
 
 

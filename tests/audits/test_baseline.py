@@ -1,4 +1,4 @@
-"""What is new since a baseline fails; words that flip near a bound and lines that move do not."""
+"""New issues since a baseline fail; verdicts that flip near a bound and moved lines do not."""
 
 import dataclasses
 import json
@@ -60,7 +60,7 @@ def made(of_file: c2d.Audit) -> Made:
 
 
 def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
-    """What is new, by rule and obstacle, and what has changed, in words."""
+    """New issues, by rule and obstacle, and changes in words."""
     path = folder / "audit.json"
     write_baseline(path, [before], None)
     check, changes = compare(now, read_baseline(path), path)

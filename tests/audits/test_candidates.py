@@ -1,4 +1,4 @@
-"""What an audit drives beside the robot: the belt for comparison, and candidates for a repair."""
+"""Other robots driven by an audit: the belt for comparison, and candidates for a repair."""
 
 from dataclasses import replace
 from typing import Any

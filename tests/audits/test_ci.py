@@ -36,7 +36,7 @@ def check(of_file: c2d.Audit) -> Check:
 
 
 def cases(text: str) -> dict[str, ElementTree.Element]:
-    """The test cases by their names, after a look at what the schema of Jenkins has rules for."""
+    """The test cases by name, after checks against the schema of Jenkins."""
     root = ElementTree.fromstring(text.encode())
     assert root.tag == "testsuites"
     suites = list(root)

@@ -41,7 +41,7 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def quick(repository: Path, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit) -> Path:
-    """The same, with audits that take no time: all find what is found in a cart that seizes."""
+    """The same, with audits that take no time: all return the result of a cart that seizes."""
     monkeypatch.setattr(command, "audit", instant_audit(of_file))
     monkeypatch.setattr(c2d.Audit, "to_html", lambda _, path, **__: path.write_text("a page"))
     return repository

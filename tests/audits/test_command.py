@@ -1,4 +1,4 @@
-"""The command `crawler2d audit`: what it prints and writes, and its exit status."""
+"""The command `crawler2d audit`: its output, files and exit status."""
 
 import argparse
 import dataclasses

@@ -14,7 +14,7 @@ from crawler2d.sweeps.statistics import wilson
 
 
 def part_of(own: list[str], belt: list[str], samples: int, levels: int = 1) -> xr.Dataset:
-    """Runs over one obstacle of which only the first were made."""
+    """Runs over one obstacle; only the first ones are finished."""
     ends = np.array([[each + [""] * (samples - len(each))] for each in (own, belt)])[..., None]
     dims = ("model", "terrain", "sample", "repeat")
     text = (dims, np.where(ends == "seized", "1-2", ""))

@@ -1,4 +1,4 @@
-"""Every rule of lint fires on what it is for, and is silent on the same robot without it."""
+"""Every rule of lint fires on its mistake, and is silent on the same robot without it."""
 
 import re
 from dataclasses import replace

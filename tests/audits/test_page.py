@@ -1,4 +1,4 @@
-"""The page of an audit, as far as no browser is needed: what it holds, and that it is harmless."""
+"""The page of an audit, without a browser: its content, and that it is harmless."""
 
 import base64
 import dataclasses

@@ -26,7 +26,7 @@ SAMPLES, REPEATS = 40, 2
 
 
 def table(own: list[str], belt: list[str], **columns: Any) -> xr.Dataset:
-    """One obstacle: how the runs of each sample end, both repeats alike."""
+    """One obstacle: the ends of each sample's runs, equal for both repeats."""
     ends = np.array([[[[end] * REPEATS for end in ends]] for ends in (own, belt)])
     dims = ("model", "terrain", "sample", "repeat")
     usual: dict[str, Any] = {

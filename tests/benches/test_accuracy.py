@@ -1,4 +1,4 @@
-"""benches/accuracy: cells keep, runs resume, verdicts hold, and the page tells what was found."""
+"""benches/accuracy: cells are kept, runs resume, verdicts hold, and the page reports results."""
 
 import json
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The comparison of both engines on random robots: what is drawn, kept and told."""
+"""The comparison of both engines on random robots: draws, kept results and tables."""
 
 import dataclasses
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""benches/peers: the chain is one robot in both engines, closes, and its gaps are told rightly."""
+"""benches/peers: the chain is the same robot in both engines and closed, with correct gaps."""
 
 import importlib
 import json

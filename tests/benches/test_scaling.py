@@ -1,4 +1,4 @@
-"""benches/scaling: its scenes run, its ground is as said, and its page tells what was found."""
+"""benches/scaling: its scenes run, its ground is as described, and its page reports results."""
 
 from collections.abc import Sequence
 from pathlib import Path

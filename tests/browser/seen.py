@@ -1,4 +1,4 @@
-"""What is seen of a page: pixels of its canvases, and the time that a replay shows."""
+"""Visible state of a page: pixels of its canvases, and the displayed time of a replay."""
 
 from collections.abc import Callable
 

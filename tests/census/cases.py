@@ -72,7 +72,7 @@ def cases(strata: Strata, sizes: dict[str, int], share: int) -> Iterable[Case]:
 
 
 def case(stratum: str, index: int, run: c2d.Run) -> Case:
-    """What is kept of a run."""
+    """The stored data of a run."""
     robot = run.scenario.robot
     stops = run.events["end"][run.events["kind"] == "stop"] if len(run.events) else np.zeros(0)
     names = [name_of(robot.track)]
@@ -124,7 +124,7 @@ def stopped(census: list[Case]) -> list[Case]:
 
 
 def faults_of_kind(census: list[Case]) -> list[str]:
-    """Cases without a result, or whose diagnosis is there where it should not be, or not there."""
+    """Cases without a result, or with a missing or superfluous diagnosis."""
     wrong = []
     for case in census:
         d = case.diagnosis

@@ -77,7 +77,7 @@ def arm_track(rng: Generator) -> Any:
 
 
 def with_arms(rng: Generator, model: c2d.Robot, arms: Any) -> c2d.Robot:
-    """The robot with flippers whose motors are strong or weak."""
+    """The robot with flippers that have strong or weak motors."""
     flippers = c2d.Flippers(
         length=float(rng.uniform(0.2, 0.36)),
         root_radius=0.064,

@@ -94,7 +94,7 @@ def test_info_has_all_that_a_bug_report_needs(capsys: Capture) -> None:
 
 @pytest.fixture
 def metadata(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What the installed package says that it needs."""
+    """The declared requirements of the installed package."""
     needed: list[str] = []
     monkeypatch.setattr(importlib.metadata, "requires", lambda _: needed)
     return needed

@@ -31,7 +31,7 @@ def started(folder: Path, *arguments: str) -> subprocess.Popen[str]:
 
 
 def interrupted(process: subprocess.Popen[str], text: str) -> tuple[int, str, str]:
-    """Interrupt a program after it has read a text; return its status and what it said."""
+    """Interrupt a program after it has read a text; return its status and output."""
     assert process.stdin is not None
     process.stdin.write(text)
     process.stdin.close()
@@ -180,7 +180,7 @@ def test_help_and_version_go_to_the_standard_output(option: str) -> None:
 
 
 def test_ctrl_c_ends_the_import_of_the_command_in_one_line(tmp_path: Path) -> None:
-    """A numpy that takes long stands for a slow disc."""
+    """A numpy that imports slowly imitates a slow disc."""
     (tmp_path / "numpy.py").write_text("print(flush=True); import time; time.sleep(60.0)")
     with started(tmp_path, "demo") as process:
         assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""`crawler2d run` and `crawler2d view`: what a user gives them, and what they answer."""
+"""`crawler2d run` and `crawler2d view`: arguments and output."""
 
 import io
 import json
@@ -21,7 +21,7 @@ Ran = Callable[..., tuple[int, str, str]]
 
 @pytest.fixture
 def ran(capsys: pytest.CaptureFixture[str]) -> Ran:
-    """Run a command line; returns its exit status and what it printed."""
+    """Run a command line; return its exit status and output."""
 
     def call(*arguments: str) -> tuple[int, str, str]:
         try:

@@ -1,4 +1,4 @@
-"""What of the package the ordinary tests execute, room by room: `make coverage-python`."""
+"""Coverage of the package by the ordinary tests, room by room: `make coverage-python`."""
 
 import ast
 import json
@@ -21,7 +21,7 @@ def missed_errors(file: Path, missing: set[int]) -> list[str]:
 
 
 def is_error(node: Any) -> TypeGuard[ast.stmt]:
-    """Whether a statement raises an error, by itself or by a method that refuses a value."""
+    """Whether a statement raises an error, directly or by a method that refuses a value."""
     if isinstance(node, ast.Raise):
         return True
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):

@@ -1,4 +1,4 @@
-"""What is made and dropped again and again leaves no memory, descriptors or threads behind."""
+"""Objects created and dropped repeatedly leave no memory, descriptors or threads behind."""
 
 import sys
 from collections.abc import Callable

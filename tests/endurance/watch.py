@@ -1,4 +1,4 @@
-"""What is watched while a robot drives on and on: numbers, pins, overlap with ground, speeds."""
+"""Quantities watched during endless driving: numbers, pins, overlap with ground, speeds."""
 
 import math
 import random
@@ -30,7 +30,7 @@ MIDDLE, REACH = 0.4, 1.4
 
 @dataclass
 class Seen:
-    """What was seen of one robot or of several: the worst of each."""
+    """The worst values of one or several robots."""
 
     seconds: float = 0.0
     pin_gap: float = 0.0  # [m]
@@ -48,7 +48,7 @@ class Seen:
         self.faults += other.faults
 
     def judge(self, case: str) -> None:
-        """Note what is beyond its bound."""
+        """Note values beyond their bounds."""
         bounds = {"pin_gap": 0.5e-3, "overlap": 2e-3, "penetration": 2e-3, "speed": 3.0}
         for name, bound in bounds.items():
             if (worst := getattr(self, name)) > bound:

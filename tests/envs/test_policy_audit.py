@@ -1,4 +1,4 @@
-"""The audit of a policy: what it does, and what is said of it."""
+"""The audit of a policy: its runs and its summary."""
 
 import math
 from typing import Any

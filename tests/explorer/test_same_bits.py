@@ -1,4 +1,4 @@
-"""The core in a browser is the core: what it says of a run is the same to the last bit."""
+"""The core in a browser gives the same results, bit by bit."""
 
 import base64
 import math

@@ -1,4 +1,4 @@
-"""What the fuzz tests share: how much they do, from which seed, and an account of what came out."""
+"""Shared by the fuzz tests: amount, seed, and an account of the results."""
 
 import os
 import signal

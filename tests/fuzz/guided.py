@@ -38,7 +38,7 @@ target."""
 
 @dataclass(frozen=True)
 class Target:
-    """What is fuzzed."""
+    """A fuzzed target."""
 
     name: str
     seeds: Mapping[str, bytes]

@@ -1,4 +1,4 @@
-"""Scenes at the edge of what is legal that drawn ones have led to."""
+"""Scenes at the limits of legal values, found by random draws."""
 
 import dataclasses
 import math

@@ -41,7 +41,7 @@ def unbounded(named: Iterable[tuple[str, Any]]) -> list[str]:
 
 
 def of_run(run: c2d.Run) -> list[str]:
-    """What of a run is no number."""
+    """The values of a run that are not numbers."""
     named: list[tuple[str, Any]] = [
         (name, value)
         for name, value in run.metrics.items()
@@ -57,7 +57,7 @@ def of_run(run: c2d.Run) -> list[str]:
 
 
 def of_state(sim: c2d.Simulation) -> list[str]:
-    """What of an instant is no number."""
+    """The values of an instant that are not numbers."""
     state = sim.state()
     numbers = ("position", "velocity", "chassis_angle", "angular_velocity", "commanded_speed")
     more = ("time", "track_speed", "track_position", "flipper_angles")

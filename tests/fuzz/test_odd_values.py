@@ -1,4 +1,4 @@
-"""What is no value of a field, whatever it is: refused by the path of the field, in short."""
+"""Invalid values of any type are refused with the path of the field, in a short message."""
 
 import enum
 import pickle

@@ -59,7 +59,7 @@ def number(draw: random.Random) -> str:
 
 
 def leaf(draw: random.Random) -> str:
-    """What may stand where a value stands, JSON or not."""
+    """Replacements of a value, valid JSON or not."""
     chance = draw.random()
     if chance < 0.4:
         return draw.choice(NUMBERS)

@@ -22,7 +22,7 @@ NO_CENTER = (0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """What a number of the contact table stands for."""
+    """The meaning of a number in the contact table."""
 
     carrier: int
     """0: the chassis; from 1 on its arms, the front first."""
@@ -71,7 +71,7 @@ def shapes_of(geometry: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def height_of_grousers(bodies: Any, carrier: dict[str, Any]) -> float:
-    """[m] How far the grousers of a carrier stand out from the line of its belt."""
+    """[m] Height of a carrier's grousers above the line of its belt."""
     circuit = carrier["circuit"]
     if not circuit or not len(circuit["grousers"]):
         return 0.0

@@ -244,7 +244,7 @@ class Claims:
         return c2d.Run(variant, result, parent=(self.run.scenario, at))
 
     def ahead(self, run: c2d.Run) -> float:
-        """[m] How far a run gets beyond where the robot had come before it stopped."""
+        """[m] Advance of a run beyond the farthest position before the stop."""
         return float((self.direction * run.position[:, 0]).max()) - self.greatest
 
     def gets_away(self, run: c2d.Run) -> bool:
@@ -255,7 +255,7 @@ class Claims:
         return not is_lost and self.ahead(run) > run.scenario.criteria.escape_distance
 
     def ended(self, run: c2d.Run, said: str) -> bool:
-        """Whether a run ended as it is said to have, and where."""
+        """Whether a run ended as claimed, and where."""
         end = said.rsplit(", then ", maxsplit=1)[-1]
         if away := AWAY.search(end):
             end = end[: away.start()]

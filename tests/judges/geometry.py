@@ -59,7 +59,7 @@ class WayRound:
         self.total = float(self.lengths.sum())
 
     def along(self, point: Array) -> float:
-        """[m] How far along the belt the nearest place to a point is."""
+        """[m] Position along the belt of the point nearest to a given one."""
         share, off = nearest(point, self.points, self.ends)
         k = int(off.argmin())
         return float(self.way[k] + share[k] * self.lengths[k])

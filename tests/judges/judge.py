@@ -24,7 +24,7 @@ INSIDE_A_CHAIN = (6, 7, 8, 9, 10)
 
 @dataclass(frozen=True, kw_only=True)
 class Opinion:
-    """What the judge holds of a stop."""
+    """The judge's findings about a stop."""
 
     symptom: str
     jammed: bool
@@ -68,7 +68,7 @@ class Judge(Stop):
     # Opinion
 
     def to_and_fro(self) -> float:
-        """[m] Width of what the chassis frame moved within."""
+        """[m] Width of the range in which the chassis frame moved."""
         scale = np.array([1.0, 1.0, self.half_length])
         return float(np.ptp(self.poses[:, :3] * scale, axis=0).max())
 

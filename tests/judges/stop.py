@@ -1,4 +1,4 @@
-"""What is seen of a stop by the second judge: means of the last windows, and the ground inside."""
+"""A stop as seen by the second judge: means of the last windows, and the ground inside."""
 
 import math
 

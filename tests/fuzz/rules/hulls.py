@@ -20,7 +20,7 @@ class Hull:
     """[m] All the way round."""
 
     def bend(self, disc: int) -> float:
-        """[rad] By how much the belt bends round a disc."""
+        """[rad] Angle by which the belt bends round a disc."""
         return sum(turn for which, _, turn in self.arcs if which == disc)
 
     def runs(self) -> list[float]:

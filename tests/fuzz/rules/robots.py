@@ -200,7 +200,7 @@ def _arm(robot: Json, end: str, outline: Outline, v: Verdict) -> list[Body]:
 
 
 def _check_inertia(robot: Json, outline: Outline, v: Verdict) -> None:
-    """What is left for the chassis beside all that moves."""
+    """The mass left for the chassis after all moving parts."""
     track, arms = robot["track"], robot["flippers"]
     rear, front = ends_of([list(disc) for disc in outline.discs])
     left, of_track = float(robot["moment_of_inertia"]), float(robot["track_mass"])
