@@ -1,6 +1,8 @@
 """What a store that cannot be used says, word for word: which file, why, and what helps."""
 
+import hashlib
 import os
+import sqlite3
 from collections.abc import Callable
 from pathlib import Path
 
@@ -211,3 +213,57 @@ def test_a_full_disk_says_that_nothing_is_lost(path: Path, tmp_path: Path) -> No
             " it are kept. Free some space and call again: it goes on from there"
         )
     assert len(list(stored_rows(path))) == 2
+
+
+OF_SQLITE = {
+    "SQLITE_BUSY": TAKEN,
+    "SQLITE_BUSY_SNAPSHOT": TAKEN,
+    "SQLITE_LOCKED": TAKEN,
+    **dict.fromkeys(
+        ("SQLITE_FULL", "SQLITE_IOERR", "SQLITE_IOERR_WRITE"),
+        "{path} cannot grow (why): the disk is full or fails; the runs in it are kept. Free some"
+        " space and call again: it goes on from there",
+    ),
+    "SQLITE_CANTOPEN": "{path} cannot be made or opened: why",
+    "SQLITE_READONLY": "{path} cannot be written: why",
+    "SQLITE_READONLY_DBMOVED": "{path} cannot be written: why",
+    "SQLITE_PERM": "{path} cannot be written: why",
+    "SQLITE_NOTADB": "{path} is no SQLite file, or is damaged (why)",
+    "SQLITE_CORRUPT_INDEX": "{path} is no SQLite file, or is damaged (why)",
+    "SQLITE_ERROR": "{path} cannot be read: why",
+    "": "{path} cannot be read: why",
+}
+
+
+@pytest.mark.parametrize("name", OF_SQLITE)
+def test_every_error_of_sqlite_is_said_with_what_helps(path: Path, name: str) -> None:
+    error = sqlite3.OperationalError("why")
+    if name:
+        error.sqlite_errorname = name
+
+    def fail(place: Path) -> None:
+        with database.store_errors(place):
+            raise error
+
+    assert said(fail, path) == OF_SQLITE[name]
+
+
+def test_a_message_of_sqlite_that_is_no_text_is_damage(path: Path) -> None:
+    def fail(place: Path) -> None:
+        with database.store_errors(place):
+            b"\xff".decode()
+
+    assert said(fail, path) == (
+        "{path} is damaged ('utf-8' codec can't decode byte 0xff in position 0: invalid start byte)"
+    )
+
+
+def test_a_store_is_marked_as_one_and_its_table_is_that_of_its_version(path: Path) -> None:
+    """Other versions of crawler2d look for these, and refuse the file without them."""
+    assert path.read_bytes()[68:72] == b"c2ds"
+    with opened(path) as connection:
+        assert connection.execute("PRAGMA user_version").fetchone() == (2,)
+        assert connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+        ((table,),) = connection.execute("SELECT sql FROM sqlite_master WHERE type = 'table'")
+    digest = hashlib.sha256(table.encode()).hexdigest()
+    assert digest.startswith("2a3ba8f8d0fcc8ae"), "a table of another version: convert the former"

@@ -417,4 +417,5 @@ def percent(rate: float) -> str:
 
 def rate(of: Proportion) -> str:
     """Write a rate with its interval, in percent."""
-    return f"{percent(of.rate)} ({100 * of.low:.0f}-{100 * of.high:.0f})"
+    interval = f" ({100 * of.low:.0f}-{100 * of.high:.0f})" if of.runs else ""
+    return f"{percent(of.rate)}{interval}"

@@ -1,0 +1,76 @@
+"""What is said of audits in a terminal, on their page and as data: as in `kept`, word for word."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits.issues import check_of, junit_of, sarif_of, unreadable
+from crawler2d.audits.page import sections
+from crawler2d.audits.record import AuditRecord
+from crawler2d.audits.text import plain_of, text_of
+from tests.audits.made import doubtful, made_of_file, made_of_robot
+from tests.kept import check_kept
+
+KEPT = Path(__file__).parent / "kept"
+NAMES = ("file", "doubtful", "robot")
+
+
+@pytest.fixture(scope="module")
+def audits(tmp_path_factory: pytest.TempPathFactory) -> dict[str, AuditRecord]:
+    of_file = made_of_file(tmp_path_factory.mktemp("made"))
+    return {"file": of_file, "doubtful": doubtful(of_file), "robot": made_of_robot()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_text_of_an_audit_is_as_kept(audits: dict[str, AuditRecord], name: str) -> None:
+    check_kept(KEPT / f"{name}.txt", text_of(audits[name]))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_data_of_an_audit_are_as_kept(audits: dict[str, AuditRecord], name: str) -> None:
+    text = json.dumps(plain_of(audits[name]), indent=1)
+    check_kept(KEPT / f"{name}.json", rounded(text))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_sections_of_a_page_are_as_kept(audits: dict[str, AuditRecord], name: str) -> None:
+    audit = audits[name]
+    diffs = {each.description: "-old\n+<new>" for each in audit.repairs[:1]}
+    parts = {
+        "answer": sections.answer_section(audit),
+        "verdicts": sections.verdict_section(audit, {"stairs": 1}),
+        "lint": sections.lint_section(audit),
+        "repairs": sections.repair_section(audit, diffs),
+        "robot": sections.robot_section(audit),
+        "method": re.sub(r"build_id \w+|version [\d.]+", "", sections.method_section(audit)),
+        "command": sections.command(audit),
+    }
+    text = "".join(f"{part}: {each}\n" for part, each in parts.items())
+    if audit.reading is not None:
+        text = text.replace(str(audit.reading.path.parent), "FOLDER")
+    check_kept(KEPT / f"{name}.html", rounded(re.sub(r"(?<=>)(?=<)", "\n", text)))
+
+
+def test_what_other_programs_read_of_audits_is_as_kept(
+    audits: dict[str, AuditRecord], tmp_path: Path
+) -> None:
+    """Of three files, of which one cannot be read, without a baseline and with one."""
+    (tmp_path / ".git").mkdir()
+    checks = [check_of(tmp_path / f"{name}.urdf", audits[name]) for name in ("file", "doubtful")]
+    error = c2d.ScenarioError("broken.urdf:3, 7", 1, "must be 2")
+    checks.append(unreadable(tmp_path / "broken.urdf", error))
+    known = [replace(each, known=frozenset(each.issues[::2])) for each in checks]
+    version = c2d.build_info()["version"]
+    for name, every in (("alone", checks), ("baseline", known)):
+        check_kept(KEPT / f"{name}.xml", junit_of(every).replace(str(tmp_path), "FOLDER"))
+        sarif = sarif_of(every).replace(f'"semanticVersion": "{version}"', "")
+        check_kept(KEPT / f"{name}.sarif", sarif)
+
+
+def rounded(text: str) -> str:
+    """Leave out digits that rounding decides."""
+    return re.sub(r"\d+\.\d{7,}(e-?\d+)?", lambda found: f"{float(found[0]):.6g}", text)
