@@ -8,13 +8,24 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.lint import SEVERITIES, Finding, lint
+from crawler2d.audits import lint as module
+from crawler2d.audits.lint import SEVERITIES, Finding
+from tests.kept import check_said
 from tests.reading.carts import FILES, TENSOR, WHEEL_TENSOR, WHEELS, pair, quietly, read, urdf
 
 ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
 BLOCK = '<transmission name="t"><joint name="{name}_joint"/></transmission>'
 NAMES = [f"{side}_{end}" for side in ("left", "right") for end in ("front", "rear")]
 MOTORS = "".join(BLOCK.format(name=name) for name in NAMES)
+SAID = Path(__file__).with_name("said.txt")
+
+
+def lint(*given: Any, **options: Any) -> tuple[Finding, ...]:
+    """Lint a robot or a file; every finding is kept word for word."""
+    found = module.lint(*given, **options)
+    told = [f"{each.severity}, {each.rule}: {each.message} [{each.where}]" for each in found]
+    check_said(SAID, told)
+    return found
 
 
 def of_rule(found: tuple[Finding, ...], rule: str) -> list[Finding]:
@@ -107,6 +118,76 @@ def test_a_flipper_with_one_wheel_is_found() -> None:
         assert len(of_robot(robot, "no track")) == count
 
 
+def sized(length: float, **changed: Any) -> c2d.Robot:
+    """A robot of this length, a third of which is its height, and half of which is its width."""
+    radius = length / 6.0
+    outline = replace(
+        ROBOT.outline,
+        axle_distance=4.0 * radius,
+        front_radius=radius,
+        rear_radius=radius,
+        grouser_height=0.1 * radius,
+    )
+    mass = 500.0 * length**3 / 6.0
+    usual = {"gauge": 0.5 * length - radius, "mass": mass, "belly": None}
+    inertia = mass * length**2 / 12.0
+    inside = replace(ROBOT, outline=outline, moment_of_inertia=inertia, center_of_mass=(0.0, 0.0))
+    return replace(inside.with_track(c2d.BeltTrack()), **{**usual, **changed})
+
+
+@pytest.mark.parametrize("off", [-1e-3, 1e-3])
+@pytest.mark.parametrize(
+    ("rule", "is_most", "robot"),
+    [
+        ("size", True, lambda off: sized(3.0 + off)),
+        ("size", False, lambda off: sized(0.1 + off)),
+        ("mass", True, lambda off: sized(1.0, mass=8000.0 / 6.0 + off)),
+        ("mass", False, lambda off: sized(1.0, mass=30.0 / 6.0 + off)),
+        (
+            "inertia",
+            True,
+            lambda off: sized(1.0, mass=90.0, moment_of_inertia=90.0 * (0.25 + 1.0 / 36.0) + off),
+        ),
+        (
+            "inertia",  # whose belly is the tallest part
+            True,
+            lambda off: sized(
+                1.0,
+                mass=90.0,
+                moment_of_inertia=90.0 * (0.25 + 0.16) + off,
+                belly=((-0.1, 0.0), (0.1, 0.0), (0.0, -0.4)),
+            ),
+        ),
+        (
+            "effort",
+            True,
+            lambda off: sized(
+                1.0,
+                mass=90.0,
+                drivetrain=replace(
+                    ROBOT.drivetrain,
+                    max_torque=(5.0 * 90.0 * 9.81 + off) * 0.9 / 6.0 / 2.0,
+                ),
+            ),
+        ),
+    ],
+)
+def test_a_rule_of_a_robot_begins_where_its_text_says(
+    rule: str, is_most: bool, robot: Any, off: float
+) -> None:
+    assert bool(of_robot(robot(off), rule)) is ((off > 0.0) is is_most)
+
+
+@pytest.mark.parametrize(
+    ("length", "is_told"), [(3.1, True), (0.09, False), (29.0, True), (31.0, False)]
+)
+def test_a_scale_is_advised_where_a_tenth_of_the_length_is_usual(
+    length: float, is_told: bool
+) -> None:
+    (found,) = of_robot(sized(length), "size")
+    assert found.message.endswith("pass scale=0.1") is is_told
+
+
 def test_undriven_wheels_are_found() -> None:
     free = ROBOT.with_track(c2d.ForceTrack(support="wheels"))
     assert of_robot(free, "not driven")[0].severity == "error"
@@ -193,6 +274,26 @@ def test_an_impossible_inertia_of_a_light_link_is_a_note(tmp_path: Path) -> None
     text = urdf(WHEELS, pair("middle", 0.0)).replace('<mass value="1"/>', light)
     found = of_text(tmp_path, text, "inertia")
     assert [each.severity for each in found] == ["note"]
+
+
+@pytest.mark.parametrize(
+    ("moments", "rule", "count"),
+    [
+        ((0.001, 0.00303, 0.002), "inertia", 0),  # the largest is 1 % above the sum of the others
+        ((0.001, 0.00304, 0.002), "inertia", 1),
+        ((0.00356, 0.007, 0.00356), "inertia", 0),  # 84 mm, of a radius and width of 84 mm
+        ((0.00356, 0.008, 0.00456), "inertia", 1),
+        ((0.002, 0.002, 0.002000001), "placeholder", 1),
+        ((0.002, 0.002, 0.002000003), "placeholder", 0),
+    ],
+)
+def test_inertias_of_wheels_are_found_from_these_on(
+    tmp_path: Path, moments: tuple[float, float, float], rule: str, count: int
+) -> None:
+    names = ("ixx", "iyy", "izz")
+    given = " ".join(f'{name}="{each}"' for name, each in zip(names, moments, strict=True))
+    text = urdf(WHEELS.replace(WHEEL_TENSOR, f'<inertia ixy="0" ixz="0" iyz="0" {given}/>'))
+    assert len(of_text(tmp_path, text, rule)) == count
 
 
 def test_wheels_without_mass_are_found(tmp_path: Path) -> None:
