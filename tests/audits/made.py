@@ -84,7 +84,7 @@ def made_of_file(folder: Path) -> AuditRecord:
     path = folder / "cart.urdf"
     path.write_text(seizing_file(), encoding="utf-8")
     own = subject_of(str(path), {})
-    robot = own.robot
+    robot = replace(own.robot, center_of_mass=(-0.012, 0.034))  # whose sum is 0 but for rounding
     vary = vary_of() | {"terrain.height": c2d.scaled(0.9, 1.1)}
     levels = vary["drive.speed"]
     assert isinstance(levels, Levels)

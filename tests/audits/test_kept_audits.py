@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
+from crawler2d.audits.baseline import compare, read_baseline, write_baseline
 from crawler2d.audits.issues import check_of, junit_of, sarif_of, unreadable
 from crawler2d.audits.page import sections
 from crawler2d.audits.record import AuditRecord
@@ -69,6 +70,31 @@ def test_what_other_programs_read_of_audits_is_as_kept(
         check_kept(KEPT / f"{name}.xml", junit_of(every).replace(str(tmp_path), "FOLDER"))
         sarif = sarif_of(every).replace(f'"semanticVersion": "{version}"', "")
         check_kept(KEPT / f"{name}.sarif", sarif)
+
+
+def test_a_baseline_and_what_changed_since_it_are_as_kept(
+    audits: dict[str, AuditRecord], tmp_path: Path
+) -> None:
+    whole, doubtful = audits["file"], audits["doubtful"]
+    heavy = replace(whole.robot, mass=20.5, center_of_mass=(0.01, 0.02), belly=None, gauge=0.3)
+    smaller = tuple(
+        replace(each, obstacle=each.obstacle.replace("75", "62.5")) for each in whole.verdicts[:-1]
+    )
+    changed = replace(whole, robot=heavy, verdicts=smaller)
+    path, model = tmp_path / "audit.json", tmp_path / "cart.urdf"
+    checks = [check_of(model, each) for each in (whole, doubtful, changed)]
+    write_baseline(path, checks[:1], None)
+    build = c2d.build_info()
+    own = f'"crawler2d": "{build["version"]}",\n   "build": "{build["build_id"]}"'
+    text = path.read_text(encoding="utf-8")
+    assert own in text
+    check_kept(KEPT / "baseline.json", rounded(text.replace(own, "")))
+    lines = []
+    for check in checks:
+        write_baseline(path, [check], None)
+        baseline = read_baseline(path)
+        lines += [line for now in checks for line in ["-", *compare(now, baseline, path)[1]]]
+    check_kept(KEPT / "changes.txt", "\n".join(lines))
 
 
 def rounded(text: str) -> str:
