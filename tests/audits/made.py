@@ -76,7 +76,9 @@ def runs_of(name: str, robots: dict[str, list[str]], speeds: Any) -> xr.Dataset:
         "terrain": [name],
         "speed": (("sample", "repeat"), speeds[turn % len(speeds)]),
     }
-    return xr.Dataset({key: (DIMS, value) for key, value in columns.items()}, at)
+    paths = {"unknown_friction": {"path": "terrain.friction"}}
+    variables = {key: (DIMS, value, paths.get(key)) for key, value in columns.items()}
+    return xr.Dataset(variables, at)
 
 
 def made_of_file(folder: Path) -> AuditRecord:
