@@ -10,7 +10,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.sweeps.axes import COLUMNS, _dimensions, stop_columns
+from crawler2d.sweeps.axes import COLUMNS, _dimensions, short_names, stop_columns
 from crawler2d.sweeps.rates import rate
 from crawler2d.sweeps.sweep import sweep
 from tests.kept import refusing
@@ -245,3 +245,71 @@ def test_an_axis_of_several_paths_whose_name_is_taken_has_that_of_its_paths() ->
     # Of the same last parts as another axis.
     front, rear = (("robot.a.x", "robot.a.y"), ("robot.b.x", "robot.b.y"))
     assert _dimensions([front, rear]) == ["robot_a_x_robot_a_y", "robot_b_x_robot_b_y"]
+
+
+@pytest.mark.parametrize("count", [60, 61])
+def test_a_label_has_sixty_letters_at_most(count: int) -> None:
+    name = "x" * count
+    if count > 60:
+        rule = r"^over\['robot.name'\]\[0\] must have a label of at most 60 letters, got "
+        with refusing(SAID, rule):
+            quiet(BASE, {"robot.name": [name]})
+    else:
+        assert quiet(BASE, {"robot.name": [name]})["name"].values.tolist() == [name]
+
+
+def test_names_of_columns_are_taken_by_no_path() -> None:
+    """As the guide lists them: of a sweep with all trials, of its rates, and of their band."""
+    trials = (
+        *("closed_track", "closed_track_clear_of_the_ground", "belt", "belt_from_the_start"),
+        *("closed_track_from_the_start", "torque_x2", "friction_x2", "no_belly"),
+    )
+    names = [
+        *("sample", "repeat", "seed", "outcome", "error", "wall_time", "identity", "scenario"),
+        *("rate", "low", "high", "count", "distinct", "band_low", "band_median", "band_high"),
+        *("symptom", "transient", "mechanism", "jammed", "belly_side", "stop_x", "stop_angle"),
+        *("stop_edge", "stop_side", "stop_carrier", "stop_bodies"),
+        *(f"{way}_{trial}" for way in ("tried", "freed_by", "then") for trial in trials),
+        *METRICS,
+    ]
+    assert short_names([f"robot.{name}" for name in names]) == {
+        f"robot.{name}": f"robot_{name}" for name in names
+    }
+    assert short_names(["robot.mass"]) == {"robot.mass": "mass"}
+    assert {*names} <= {*COLUMNS, *METRICS}
+
+
+def test_the_columns_of_a_stop_are_those_of_its_diagnosis() -> None:
+    wheels = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+    base = c2d.Scenario(wheels, c2d.terrains.step(0.1))
+    run = c2d.simulate(base, trials="all", record="summary")
+    stop = run.diagnosis
+    assert stop is not None
+    assert stop.intrusion is not None
+    found = stop_columns([stop, None], ["torque x 2"])
+    values = {name: column for name, (_, _, column) in found.items()}
+    assert values["symptom"] == [str(stop.symptom), ""]
+    assert values["mechanism"] == [str(stop.mechanism), ""]
+    assert values["transient"] == [stop.transient, False]
+    assert values["jammed"] == [True, False]
+    assert values["belly_side"] == [stop.belly_side, ""]
+    assert values["stop_x"][0] == stop.position[0] != stop.position[1]
+    assert values["stop_angle"][0] == stop.chassis_angle
+    assert np.isnan([values["stop_x"][1], values["stop_angle"][1]]).all()
+    assert values["stop_edge"] == [stop.intrusion.edge, -1]
+    assert values["stop_side"] == [str(stop.intrusion.side), ""]
+    assert values["stop_carrier"] == [str(stop.intrusion.carrier), ""]
+    assert values["stop_bodies"] == ["-".join(map(str, sorted(stop.intrusion.bodies))), ""]
+    ways = {each.name: each for each in stop.trials}
+    for name, short in (("torque x 2", "torque_x2"), ("closed track", "closed_track")):
+        assert values[f"tried_{short}"] == [True, False]
+        assert values[f"freed_by_{short}"] == [ways[name].freed, False]
+        assert values[f"then_{short}"] == [str(ways[name].outcome), ""]
+    assert "tried_no_belly" not in values
+    kinds = {name: kind for name, (kind, _, _) in found.items()}
+    assert {name for name, kind in kinds.items() if kind is bool} == {
+        *("transient", "jammed"),
+        *(name for name in kinds if name.startswith(("tried_", "freed_by_"))),
+    }
+    assert {name for name, kind in kinds.items() if kind is float} == {"stop_x", "stop_angle"}
+    assert kinds["stop_edge"] is int
