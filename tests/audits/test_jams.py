@@ -1,7 +1,10 @@
 """Which candidates of a repair can be held at all."""
 
+import numpy as np
+import pytest
+
 import crawler2d as c2d
-from crawler2d.audits.jams import free_of_jams
+from crawler2d.audits.jams import _holds, free_of_jams
 
 ROBOT = c2d.robots.engineer(flippers=None)
 STEP = c2d.Scenario(ROBOT, c2d.terrains.step(0.075))
@@ -26,3 +29,33 @@ def test_grounds_and_wheels_without_computed_jams_exclude_no_candidate() -> None
     assert free_of_jams(WHEELS, [lanes, STEP]) == [1]
     gears = [{"robot.track": c2d.LineOfWheels(5, wheel=c2d.GearWheel())}]
     assert free_of_jams(gears, [STEP]) == []
+
+
+@pytest.mark.parametrize(
+    ("depth", "friction", "holds"),
+    [
+        (0.01, 0.5, True),
+        (0.01, 0.8, True),
+        (0.01, 0.49, False),
+        (0.01, 0.81, False),
+        (0.001, 0.6, False),  # as shallow holds a belt, too
+        (0.00101, 0.6, True),
+    ],
+)
+def test_a_jam_holds_from_its_least_friction_to_its_largest(
+    depth: float, friction: float, holds: bool
+) -> None:
+    jams = {"depth": np.array([0.0, depth]), "low": np.array([0.0, 0.5]), "high": np.full(2, 0.8)}
+    assert _holds(jams, friction) is holds
+
+
+def test_frictions_are_computed_up_to_ten(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def ranges(texts: list[str], most: float) -> list[dict[str, np.ndarray]]:
+        asked.append((len(texts), most))
+        return [{name: np.zeros(0) for name in ("depth", "low", "high")}] * len(texts)
+
+    monkeypatch.setattr("crawler2d._core.jam_ranges", ranges)
+    assert free_of_jams(WHEELS, [STEP, STEP]) == [0, 1]
+    assert asked == [(2, 10.0), (2, 10.0)]
