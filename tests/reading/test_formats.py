@@ -6,9 +6,11 @@ import pickle
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.reading.assembly import _axis_name
 from tests.kept import refusing
 from tests.reading.carts import (
     FILES,
@@ -287,6 +289,21 @@ def test_forward_is_the_side_of_the_links_called_front(tmp_path: Path) -> None:
 def test_forward_is_x_where_names_do_not_decide(tmp_path: Path) -> None:
     reading = read(tmp_path, urdf(pair("a", 0.2) + pair("b", -0.2)))
     assert reading.notes[0] == "no link is called front or rear: +x is forward"
+
+
+@pytest.mark.parametrize(
+    ("direction", "name"),
+    [
+        ((-0.8, 0.6, 0.0), "-x"),
+        ((0.8, -0.6, 0.0), "+x"),
+        ((0.1, -0.9, 0.3), "-y"),
+        ((0, 0, 1), "+z"),
+    ],
+)
+def test_a_slanting_direction_is_called_after_its_nearest_axis(
+    direction: tuple[float, float, float], name: str
+) -> None:
+    assert _axis_name(np.array(direction)) == name
 
 
 def across_x(name: str) -> str:

@@ -131,6 +131,17 @@ def test_a_package_that_is_not_found_says_where_it_was_looked_for(
     refused(clone / "models", text, where, "cart.xacro", missing="refuse")
 
 
+def test_of_files_of_one_name_that_of_the_folder_of_the_package_is_meant(clone: Path) -> None:
+    """No folder has a manifest: the path alone tells them apart."""
+    for folder in ("parts", "others"):
+        package(clone / folder / "meshes", "")
+    assert has_belly(clone / "models", "package://parts/meshes/")
+    (clone / "parts" / "meshes" / "m.obj").unlink()
+    assert has_belly(clone / "models", "package://parts/meshes/")  # the only one that is left
+    package(clone / "third" / "meshes", "")
+    left_out(clone / "models", with_mesh("package://parts/meshes/"), "in a package that is found")
+
+
 @pytest.mark.parametrize("name", ["..", ".", "", "a/../..", "~", "$HOME", "-x", "parts\\..\\.."])
 def test_an_invalid_package_name_is_not_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str

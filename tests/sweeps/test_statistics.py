@@ -253,7 +253,7 @@ def test_the_correlation_within_clusters_is_that_of_an_analysis_of_variance() ->
 
 @pytest.mark.parametrize(("hits", "runs"), [([3], [2]), ([-1], [2]), ([1, 1], [2])])
 def test_clusters_out_of_range_are_refused(hits: list[int], runs: list[int]) -> None:
-    with pytest.raises(ValueError, match="successes must be from 0 to counts"):
+    with refusing(SAID, "successes must be from 0 to counts"):
         clustered(hits, runs)
 
 

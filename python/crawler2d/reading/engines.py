@@ -285,7 +285,7 @@ def rotor_inertia(
         log.sources[path] = where
         return 0.0
     log.sources[path] = places
-    if max(inertias) - min(inertias) > _ALIKE * max(inertias):
+    if not math.isclose(min(inertias), max(inertias), rel_tol=_ALIKE):
         value = f"{min(inertias):.4g} to {max(inertias):.4g} kg m^2"
         log.add_warning(path, value, "differs from motor to motor: the mean is used")
     return sum(inertias) / len(inertias)
@@ -517,9 +517,9 @@ def _sharing(
     equal torques give different forces.
     """
     track, *others = tracks
-    efforts = [joint.effort or 0.0 for joint, _ in motors]
+    efforts = [joint.effort for joint, _ in motors if joint.effort]  # of all: they have limits
     forces = [effort / own for effort, (_, own) in zip(efforts, motors, strict=True)]
-    is_even = max(forces) - min(forces) <= _ALIKE * max(forces)
+    is_even = math.isclose(min(forces), max(forces), rel_tol=_ALIKE)
     has_belt = any(isinstance(other, BeltTrack) for other in others)
     is_line = isinstance(track, LineOfWheels) and not has_belt
     if not is_line or not (is_even or len(set(efforts)) == 1):

@@ -262,7 +262,7 @@ def _pair(log: ReadLog, arms: tuple[Arm, ...], view: SideView) -> ArmPair:
         is_belt=is_belted(runners, arms[0].joint.path),
         mass=sum(masses) / 2.0,
     )
-    if max(masses) - min(masses) > _ALIKE * max(masses):
+    if not math.isclose(min(masses), max(masses), rel_tol=_ALIKE):
         value = " and ".join(f"{mass:.4g} kg" for mass in masses)
         log.add_warning(pair.path, value, "differ in mass left and right: the mean is used")
     for arm in arms:
