@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import crawler2d as c2d
@@ -16,6 +17,8 @@ STEP: Any = {"step of 75 mm": c2d.terrains.step(0.075)}
 """Where it seizes."""
 
 QUIET: Any = {"progress": False}
+
+SAID = Path(__file__).with_name("said.txt")
 
 
 def seizing_file(name: str = "cart", wheels: str = "") -> str:

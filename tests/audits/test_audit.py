@@ -23,7 +23,8 @@ from crawler2d.audits.verdicts import least_samples, proportion_of
 from crawler2d.audits.words import repair_sentence, wheels_per_side, worst_rates
 from crawler2d.errors import LimitError
 from crawler2d.sweeps.statistics import wilson
-from tests.audits.seizing import QUIET, SEIZING, STEP
+from tests.audits.seizing import QUIET, SAID, SEIZING, STEP
+from tests.kept import refusing
 from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
 
 
@@ -492,7 +493,7 @@ def test_the_speed_goes_with_the_size_and_the_limit() -> None:
     ],
 )
 def test_bad_input_is_refused(arguments: Any, how: Any, path: str) -> None:
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         c2d.audit(*arguments, **{**QUIET, **how})
     assert path in caught.value.path
 
@@ -522,7 +523,7 @@ def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
     (tmp_path / "cart.urdf").unlink()
     few: Any = {"samples": 1, "repeats": 1, "duration": 0.1, "repair": False, **QUIET}
     assert c2d.audit(reading, **few).reading is reading
-    with pytest.raises(c2d.ScenarioError, match="engine must not be given without a file"):
+    with refusing(SAID, "engine must not be given without a file"):
         c2d.audit(reading, engine="gz")
 
 

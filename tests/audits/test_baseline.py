@@ -14,7 +14,8 @@ from crawler2d.audits.issues import Check, check_of
 from crawler2d.audits.lint import Finding
 from crawler2d.audits.verdicts import Proportion, Verdict
 from crawler2d.sweeps.statistics import wilson
-from tests.shared import refused
+from tests.audits.seizing import SAID
+from tests.kept import refusing
 
 Made = Callable[..., Check]
 
@@ -302,7 +303,8 @@ def test_an_entry_that_lacks_a_part_is_refused_before_anything_is_compared(
     entry = {"crawler2d": "1", "build": "x", "robot": {}, "lint": [], **part}
     file = tmp_path / "audit.json"
     file.write_text(json.dumps({"baseline": 1, "models": {"a.sdf": entry}}), encoding="utf-8")
-    assert "must have whole entries" in refused(lambda: read_baseline(file)).rule
+    with refusing(SAID, "must have whole entries"):
+        read_baseline(file)
     whole = {"word": "seizes", "seized": [[1, 9, 0.0, 0.5]]}
     entry |= {"robot": {}, "lint": [["note", "sides", "differ"]], "verdicts": {"step": whole}}
     file.write_text(json.dumps({"baseline": 1, "models": {"a.sdf": entry}}), encoding="utf-8")
@@ -324,6 +326,6 @@ def test_an_entry_that_lacks_a_part_is_refused_before_anything_is_compared(
 def test_a_file_that_is_no_baseline_is_refused(tmp_path: Path, text: str, path: str) -> None:
     file = tmp_path / "audit.json"
     file.write_text(text, encoding="utf-8")
-    error = refused(lambda: read_baseline(file))
-    assert error.path == path
-    assert "--update-baseline" in error.rule
+    with refusing(SAID, "--update-baseline") as caught:
+        read_baseline(file)
+    assert caught.value.path == path

@@ -10,6 +10,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.audits import lint as module
 from crawler2d.audits.lint import SEVERITIES, Finding
+from tests.audits.seizing import SAID
 from tests.kept import check_said
 from tests.reading.carts import FILES, TENSOR, WHEEL_TENSOR, WHEELS, pair, quietly, read, urdf
 
@@ -17,7 +18,6 @@ ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
 BLOCK = '<transmission name="t"><joint name="{name}_joint"/></transmission>'
 NAMES = [f"{side}_{end}" for side in ("left", "right") for end in ("front", "rear")]
 MOTORS = "".join(BLOCK.format(name=name) for name in NAMES)
-SAID = Path(__file__).with_name("said.txt")
 
 
 def lint(*given: Any, **options: Any) -> tuple[Finding, ...]:

@@ -14,7 +14,8 @@ import crawler2d as c2d
 from crawler2d.__main__ import main
 from crawler2d.audits.patches import best_change
 from crawler2d.errors import ScenarioWarning
-from tests.audits.seizing import QUIET, SEIZING, STEP
+from tests.audits.seizing import QUIET, SAID, SEIZING, STEP
+from tests.kept import refusing
 from tests.reading.carts import quietly
 
 # In a file each wheel has a motor of its own; with the preset's torque one of them would stall.
@@ -47,13 +48,13 @@ def test_the_changed_file_clears_the_obstacle_on_which_the_file_seized(
 
 def test_a_robot_that_was_no_file_is_refused() -> None:
     alone = c2d.audit(STRONG, STEP, unknown={}, repeats=2, repair=False, **QUIET)
-    with pytest.raises(c2d.ScenarioError, match="must be the audit of a file"):
+    with refusing(SAID, "must be the audit of a file"):
         alone.patch()
 
 
 @pytest.mark.parametrize("repair", ["chassis: 5 wheels in place of 4", 0])
 def test_anything_but_a_repair_is_refused(audited: c2d.Audit, repair: Any) -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"^repair must be one of the repairs"):
+    with refusing(SAID, "^repair must be one of the repairs"):
         audited.patch(repair=repair)
 
 
@@ -140,7 +141,7 @@ def test_a_robot_that_can_be_written_neither_on_wheels_nor_on_belts_is_refused_w
     repairs = (*others, replace(wheels, robot=helped.robot))  # whose wheels the file has
     repaired = helped.repaired._replace(repairs=repairs)
     light = replace(helped.belt.robot, moment_of_inertia=0.01)  # less than that of its belts
-    with pytest.raises(c2d.ScenarioError) as caught:
+    with refusing(SAID) as caught:
         replace(helped, repaired=repaired, belt=helped.belt._replace(robot=light)).patch()
     assert caught.value.path == "repair"
     assert caught.value.rule.startswith(

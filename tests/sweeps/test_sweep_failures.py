@@ -15,8 +15,9 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.record import Row
 from crawler2d.sweeps.collect import Collector
 from crawler2d.variation.distributions import scaled, uniform
+from tests.kept import refusing
 from tests.shared import ROBOT
-from tests.sweeps.small import BASE, BRIEF, MODELS, quiet, refusal
+from tests.sweeps.small import BASE, BRIEF, MODELS, SAID, quiet, refusal
 
 
 @pytest.mark.parametrize(
@@ -193,7 +194,7 @@ def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_command_that_a_schedule_replaces_is_not_swept(drive: c2d.Drive, how: Any) -> None:
     """All rows would be alike: a schedule that begins at 0 s leaves no time for another speed."""
     base = BASE.replace({"robot": c2d.robots.engineer(), "drive": drive, "duration": 0.05})
-    with pytest.raises(c2d.ScenarioError, match="must not be swept or drawn where drive") as caught:
+    with refusing(SAID, "must not be swept or drawn where drive") as caught:
         quiet(base, **{"over": {}, **how})
     assert caught.value.path in {"drive.speed", "drive.gait.angle"}
     assert "schedule begins at 0 s and sets it, got ((0.0, 0." in str(caught.value)
