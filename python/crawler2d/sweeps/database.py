@@ -409,7 +409,8 @@ def store_errors(path: Path) -> Iterator[None]:
 
 def _kind(error: sqlite3.Error) -> str:
     """Return the kind of an error without its details: IOERR of SQLITE_IOERR_WRITE."""
-    return f"{getattr(error, 'sqlite_errorname', '')}__".split("_")[1]
+    name = str(getattr(error, "sqlite_errorname", None))  # not every error has one
+    return name.removeprefix("SQLITE_").partition("_")[0]
 
 
 def _connect(real: Path, mode: str) -> sqlite3.Connection:
