@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits.page import Replay, _closest, _diagnosis, _drawn, _options, _seizure
+from crawler2d.audits import page
+from crawler2d.audits.page import (
+    Replay,
+    _closest,
+    _diagnosis,
+    _drawn,
+    _options,
+    _replay_section,
+    _seizure,
+)
 from crawler2d.audits.record import AuditRecord
 from crawler2d.audits.verdicts import BELT, OWN, ObstacleRuns
 from tests.audits.made import made_of_file, made_of_robot
@@ -114,6 +123,20 @@ def test_the_text_of_a_replay_says_why_it_stopped_and_where_others_do(made: Audi
         f" clears.</p>{fold}<p>Sample 0, repeat 0 of the runs, counted from 0. Its random values:"
         " none.</p></details>"
     )
+
+
+def test_the_first_replay_alone_is_shown_at_first(
+    made: AuditRecord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page, "pair_figure", lambda name, run: f"<i>{name}: {run.outcome}</i>")
+    belt = run(c2d.Outcome.CLEARED, "")
+    replay = Replay(made.verdicts[0], 3, 1, [run(c2d.Outcome.SEIZED, "it jams"), belt], "a repair")
+    text = (
+        '<div class="pair"><i>the model: seized</i><i>a repair: cleared</i></div>'
+        f"{_diagnosis(made, replay)}</div>"
+    )
+    assert _replay_section(made, replay, 0) == f'<div class="runs" id="replay-0">{text}'
+    assert _replay_section(made, replay, 2) == f'<div class="runs" id="replay-2" hidden>{text}'
 
 
 def test_every_replay_is_an_option_with_its_rate(made: AuditRecord) -> None:

@@ -11,6 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
+from crawler2d.reading.tracks import fit_phases
 from tests.reading.carts import ACROSS, ROUND, WHEELS, collision, pair, read, refused, urdf
 
 ROOT, TIP, COUNT = 0.07, 0.08, 6
@@ -258,3 +259,35 @@ def test_a_robot_on_gear_wheels_that_was_read_climbs_what_round_ones_do_not(
     ]
     assert outcomes[0] == "cleared"
     assert outcomes[1] != "cleared"
+
+
+@pytest.mark.parametrize(
+    ("own", "step", "offset"),
+    [
+        ([0.25, 0.5, 0.75, 0.0], 0.25, 0.0),
+        ([0.2504, 0.5004, 0.7504, 0.0004], 0.25, 0.0004),  # a frame with a slight tilt
+        ([0.2504, 0.4996, 0.7504, 0.9996], 0.25, 0.0),  # what files round is no tilt
+        ([0.2504, 0.5004, 0.7504, 0.0001], 0.25, 0.0),  # of which it explains a part alone
+        ([0.3, 0.73], 0.43, -0.13),  # any two have an offset and a step
+        ([0.2502, 0.5], 0.25, 0.0),
+        ([0.999999999999, 0.999999999999], 0.0, 0.0),
+        ([0.1, 0.1, 0.1], 0.0, 0.1),
+    ],
+)
+def test_phases_have_a_step_and_an_offset_if_that_explains_them(
+    own: list[float], step: float, offset: float
+) -> None:
+    found = fit_phases(np.array(own), [list(range(len(own)))], 1e-3)
+    assert (found.step, found.offset) == pytest.approx((step, offset), abs=2e-4)
+    assert (found.offset == 0.0) is (offset == 0.0)
+    assert found.residual <= 1e-3
+    assert found.order == list(range(len(own)))
+
+
+def test_phases_in_another_order_are_found_if_the_first_does_not_suffice() -> None:
+    own = np.array([0.3, 0.9, 0.6, 0.2])
+    found = fit_phases(own, [[0, 1, 2, 3], [0, 2, 1, 3]], 1e-6)
+    assert found.order == [0, 2, 1, 3]
+    assert found.step == pytest.approx(0.3)
+    none = fit_phases(own, [[0, 1, 2, 3]], 1e-6)
+    assert none.residual > 0.01

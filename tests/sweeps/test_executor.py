@@ -1,5 +1,6 @@
 """Executors: chunks go out, rows come back, and are those of one thread."""
 
+import asyncio
 import multiprocessing
 import os
 from concurrent.futures import (
@@ -18,6 +19,7 @@ import xarray as xr
 
 import crawler2d as c2d
 from crawler2d.sweeps import collect
+from crawler2d.sweeps.dask import reliable
 from crawler2d.sweeps.store import stored_rows
 from tests.kept import refusing
 from tests.sweeps.small import BASE, MODELS, SAID, quiet
@@ -173,3 +175,72 @@ def test_an_error_of_the_progress_is_no_fault_of_the_executor() -> None:
 def test_anything_but_an_executor_is_refused() -> None:
     with refusing(SAID, r"must be a concurrent\.futures\.Executor"):
         quiet(BASE, {}, executor=4)
+
+
+class OfDask(Executor):
+    """What a client of Dask returns, as far as a sweep sees."""
+
+    __module__ = "distributed.cfexecutor"
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+
+class Client:
+    """Computes at once what is submitted, in a loop that is asked to pass it on."""
+
+    def __init__(self, *, is_lost: bool = False) -> None:
+        self.is_lost, self.loop = is_lost, self
+        self.pure: list[bool] = []
+        self.cancelled: list[Any] = []
+
+    def submit(self, call: Any, *args: Any, pure: bool) -> Any:
+        self.pure.append(pure)
+
+        async def task() -> Any:
+            if self.is_lost:
+                raise KILLED
+            return call(*args)
+
+        return Task(task(), self.cancelled)
+
+    def add_callback(self, pass_on: Any, task: Any, answer: Future[Any]) -> None:
+        asyncio.run(pass_on(task, answer))
+
+
+class Task:
+    def __init__(self, awaitable: Any, cancelled: list[Any]) -> None:
+        self.awaitable, self.cancelled = awaitable, cancelled
+
+    def __await__(self) -> Any:
+        return self.awaitable.__await__()
+
+    def cancel(self) -> None:
+        self.cancelled.append(self)
+
+
+def test_an_executor_of_dask_answers_by_its_client() -> None:
+    """Each task is computed again if it is submitted again."""
+    client = Client()
+    used = reliable(OfDask(client))
+    assert not isinstance(used, OfDask)
+    assert used.submit(max, 3, 7).result() == 7
+    assert client.pure == [False]
+    lost = reliable(OfDask(Client(is_lost=True))).submit(max, 3, 7)
+    assert lost.exception() is KILLED
+    other = Unreliable(losses=0)
+    assert reliable(other) is other
+
+
+def test_a_task_that_nobody_waits_for_is_cancelled_in_dask(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    client = Client()
+    monkeypatch.setattr(client, "add_callback", lambda *later: waiting.append(later))
+    waiting: list[Any] = []
+    answer = reliable(OfDask(client)).submit(max, 3, 7)
+    assert answer.cancel()
+    ((pass_on, task, _),) = waiting
+    assert client.cancelled == [task]
+    asyncio.run(pass_on(task, answer))  # which comes too late, and is no error
+    assert answer.cancelled()

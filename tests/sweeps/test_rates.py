@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
-from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.rates import quantile_band, rate
 from tests.kept import refusing
 from tests.sweeps.small import SAID
 
@@ -245,3 +245,19 @@ def test_a_cell_without_a_result_has_no_band_and_gives_no_warning(
     nothing = rate(TABLE.rename(height="sample").isel(sample=[2]))
     assert nothing["band_median"].isnull().all()
     assert not recwarn.list
+
+
+def test_a_band_says_what_its_bounds_are() -> None:
+    rates = xr.DataArray(np.linspace(0.0, 1.0, 21), dims="sample")
+    band = quantile_band(rates)
+    assert {name: round(each.item(), 12) for name, each in band.items()} == {
+        "band_low": 0.05,
+        "band_median": 0.5,
+        "band_high": 0.95,
+    }
+    assert {name: each.attrs for name, each in band.items()} == {
+        "band_low": {"units": "1", "long_name": "5th percentile of the rates over the unknowns"},
+        "band_median": {"units": "1", "long_name": "median of the rates over the unknowns"},
+        "band_high": {"units": "1", "long_name": "95th percentile of the rates over the unknowns"},
+    }
+    assert not any("quantile" in each.coords for each in band.values())

@@ -254,7 +254,7 @@ def combine_friction(
             raise ScenarioError(path, value, f"must be that of all wheels, {values[0][0]:g}")
         if where is not None:
             places.append(where)
-    friction, source = values[0]  # a model without wheels has been refused
+    (friction, source), *_ = values  # a model without wheels has been refused
     if not math.isfinite(friction):
         raise ScenarioError(f"{places[0]}: friction", friction, "must have a limit")
     return friction, source, places

@@ -511,8 +511,8 @@ def _motor(model: Any, actuator: Any) -> Item:
     limits = []
     if model.actuator_forcelimited[i]:
         limits.append(float(model.actuator_forcerange[i, 1]))
-    if most is not None and not bias.any() and gain * most > 0.0:  # a motor: a gain times control
-        limits.append(gain * most)
+    if most is not None and not bias.any():  # a motor: a gain times control
+        limits += [force for force in (gain * most,) if force > 0.0]
     # A servo of speed holds control / gear, times its gain by that of its bias; one of position has
     # a bias on the position, too, and holds a speed if it integrates its control.
     is_integrator = int(model.actuator_dyntype[i]) == _INTEGRATOR
