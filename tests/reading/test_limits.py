@@ -2,12 +2,15 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import crawler2d as c2d
+from crawler2d.reading import mjcf
 from crawler2d.reading.xacro import Settings
-from tests.reading.carts import FILES, SIDES, WHEELS, link, pair, read, refused, urdf
+from tests.kept import refusing
+from tests.reading.carts import FILES, SAID, SIDES, WHEELS, link, pair, read, refused, urdf
 from tests.reading.test_gear_wheels import gear, wheel_of
 from tests.reading.test_surfaces import arms, motors
 
@@ -149,3 +152,31 @@ def test_settings_that_differ_are_named_with_their_files_and_lines() -> None:
     }
     assert not settings.have("z")
     assert not settings.have("w")
+
+
+def answered(name: str, value: Any) -> dict[str, list[dict[str, Any]]]:
+    """What MuJoCo is asked for, with one figure of a shape."""
+    shape = {"line": 7, "name": "tip", "kind": "box", name: value}
+    return {"bodies": [], "joints": [], "shapes": [shape], "motors": []}
+
+
+MEASURES = ("place", "center", "size", "points", "mass", "inertia", "surface_velocity")
+
+
+@pytest.mark.parametrize("name", MEASURES)
+def test_measures_of_mjcf_are_at_most_a_million(name: str) -> None:
+    mjcf._check_numbers(answered(name, [0.0, -1e6]), "a.xml")
+    for value in ([0.0, -1.000001e6], 1e7, math.nan, [math.inf]):
+        rule = rf"^a\.xml:7: shapes\[tip\]: {name} must be finite and at most 1e\+06 in magnitude"
+        with refusing(SAID, rule):
+            mjcf._check_numbers(answered(name, value), "a.xml")
+
+
+def test_limits_of_mjcf_may_be_infinite_and_rotations_are_some() -> None:
+    for name, value in (("effort", math.inf), ("velocity", 1e9), ("effort", None), ("turn", [1])):
+        mjcf._check_numbers(answered(name, value), "a.xml")
+    with refusing(SAID, "^a.xml:7: shapes.tip.: effort must be finite"):
+        mjcf._check_numbers(answered("effort", math.nan), "a.xml")
+    for name in ("turn", "axes"):
+        with refusing(SAID, f"^a.xml:7: shapes.tip.: {name} must be a rotation, got 0.0$"):
+            mjcf._check_numbers(answered(name, [0.0, 0.0, 0.0, 0.0]), "a.xml")
