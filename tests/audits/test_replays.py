@@ -139,6 +139,59 @@ def test_the_first_replay_alone_is_shown_at_first(
     assert _replay_section(made, replay, 2) == f'<div class="runs" id="replay-2" hidden>{text}'
 
 
+def test_an_obstacle_on_which_it_seizes_by_the_rule_is_replayed_first(
+    made: AuditRecord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Then the others, by how often it seizes; all beside the best repair, if there is one."""
+    step, gap, stairs, kerb, _, knife = made.verdicts
+    often = replace(stairs, seized=replace(stairs.seized, rate=0.99))
+    asked: dict[str, Any] = {}
+
+    def simulate(scenarios: list[Any], **how: Any) -> list[Any]:
+        asked.update(how, scenarios=scenarios)
+        return scenarios
+
+    monkeypatch.setattr(page, "simulate_many", simulate)
+    monkeypatch.setattr(page, "_scenarios", lambda _, each: [each.verdict.obstacle, each.other])
+    audit = replace(made, verdicts=(knife, often, kerb, gap, step))
+    found = page.simulate_replays(audit, threads=3)
+    names = [step.obstacle, gap.obstacle, stairs.obstacle, knife.obstacle]
+    assert [each.verdict.obstacle for each in found] == names
+    repair = "chassis: 5 wheels in place of 4 (confirmed)"
+    assert asked["scenarios"] == [part for name in names for part in (name, repair)]
+    assert all(len(each.runs) == 2 for each in found)
+    assert asked["threads"] == 3
+    assert asked["on_error"] == "record"
+    assert asked["trials"] == ("torque x 2", "friction x 2")
+    bare = page.simulate_replays(replace(audit, repaired=None))
+    assert {each.other for each in bare} == {"the belt"}
+    none = page.simulate_replays(replace(made, verdicts=(kerb,), repaired=None))
+    assert [each.verdict.obstacle for each in none] == ["kerb"]
+
+
+def test_the_other_robot_drives_with_its_tracks_alone(made: AuditRecord) -> None:
+    """All else is what was drawn for the run."""
+    own = c2d.Scenario(made.robot, c2d.terrains.step(0.07)).replace({"robot.mass": 17.5})
+    table = made.table.assign(scenario=made.table["outcome"].astype(object))
+    table["scenario"][:] = own.to_json()
+    audit = replace(made, table=table)
+    replay = Replay(made.verdicts[0], 3, 1, [])
+    first, other = page._scenarios(audit, replay)
+    assert first == own
+    repair = made.repairs[0].robot
+    changed = {
+        "robot.track": repair.track,
+        "robot.drivetrain.torque_sharing": repair.drivetrain.torque_sharing,
+    }
+    assert other == own.replace(changed)
+    belt = made.belt.robot
+    (_, belted) = page._scenarios(replace(audit, repaired=None), replay)
+    assert belted.robot.track == belt.track
+    assert belted.robot.drivetrain.torque_sharing == belt.drivetrain.torque_sharing == "track"
+    same = replace(audit, repaired=None, belt=made.belt._replace(robot=made.robot))
+    assert page._scenarios(same, replay) == [own]
+
+
 def test_every_replay_is_an_option_with_its_rate(made: AuditRecord) -> None:
     replays = [Replay(made.verdicts[number], 0, 0, []) for number in (0, 4)]
     assert _options(replays) == (
