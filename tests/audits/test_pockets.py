@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 import crawler2d as c2d
 from crawler2d.audits.candidates import pocket_between, pockets
+from crawler2d.audits.page.drawings import draw_pockets
 
 
 @pytest.mark.parametrize(("radius", "apart"), [(0.089, 0.5 / 7.0), (0.1, 0.12), (0.1, 0.199)])
@@ -100,3 +101,9 @@ def test_wheels_all_round_show_those_of_the_lower_run() -> None:
 
 def test_a_belt_has_no_pockets() -> None:
     assert pockets(c2d.robots.engineer()) == ()
+
+
+def test_a_robot_without_neighbouring_wheels_has_no_pockets_to_draw() -> None:
+    assert draw_pockets(c2d.robots.engineer(), ()) == (
+        "<p>None: there are no neighbouring wheels.</p>"
+    )
