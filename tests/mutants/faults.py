@@ -19,6 +19,8 @@ EQUIVALENT = [
     ("nearest[0]", "0 -> -1", "the only one"),
     ("holder.children[0]", "0 -> -1", "the only one"),
     ('("diaginertia", 3)', "3 -> 4", "there are but three"),
+    ('("fullinertia", 6)', "6 -> 7", "there are but six"),
+    ("return out if out > tolerance", "0.0 -> -1.0", "neither is above 0, which alone is asked"),
     ("round_size: float", "1.0 -> 1.01", "left out of wheels that are removed, alone"),
     ("if more > 0", "0 -> -1", "wheels come in pairs, and without a difference nothing is told"),
     ("if more > 0", "0 -> 1", "wheels come in pairs, and without a difference nothing is told"),

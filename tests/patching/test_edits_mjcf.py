@@ -1,6 +1,7 @@
 """Which numbers of an MJCF change with its wheels, where they are in classes and in motors."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,16 @@ import pytest
 import crawler2d as c2d
 from crawler2d.patching.patch import patch_file
 from tests.kept import refusing
-from tests.patching.test_edits import CART, SIZE, SQUARE, factors, read, resized
+from tests.patching.test_edits import (
+    CART,
+    GEAR,
+    SIZE,
+    SQUARE,
+    factors,
+    read,
+    resized,
+    with_gears,
+)
 from tests.patching.test_patch import SAID, on_chassis
 
 
@@ -139,3 +149,17 @@ def test_wheels_of_mjcf_that_are_not_found_or_moved_are_named(tmp_path: Path) ->
     nameless = mjcf(tmp_path, ('<body name="left_middle" ', "<body "))
     with refusing(SAID, r"must have a name, to be found in the text, got no"):
         patch_file(nameless, on_chassis(nameless, 4))
+
+
+def test_grousers_of_mjcf_meet_the_ground_as_the_wheel_did(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    of_contact = (
+        'friction="1 0.005 0.0001" condim="4" priority="2" contype="1" conaffinity="1"'
+        ' solref="0.03 1"'
+    )
+    reading = mjcf(tmp_path, (UNSIZED[0], UNSIZED[0].replace("size", f"{of_contact} size")))
+    text = patch_file(reading, with_gears(reading, replace(GEAR, grouser_count=3))).text
+    boxes = re.findall(r'<geom type="box" pos="[^"]*" quat=.*?/>', text)
+    assert len(boxes) == 8 * 3
+    for box in boxes:
+        assert box.endswith(f'mass="0" class="tread" {of_contact}/>')

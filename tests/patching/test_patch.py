@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import _check, _left, _summary, add_label, patch_file
+from crawler2d.patching.patch import _check, _join_ends, _left, _summary, add_label, patch_file
 from crawler2d.writing.document import Document, spans_of
 from tests.kept import refusing
 from tests.reading.carts import (
@@ -467,3 +467,12 @@ def test_an_expanded_xacro_is_read_again_as_a_urdf(name: str, tmp_path: Path) ->
     broken = reading.text.replace('<mass value="16"', '<mass value="-16"')
     with refusing(SAID, "^the changed file, read again: cart.urdf:"):
         _check(reading, robot, broken)
+
+
+def test_equal_lines_at_the_end_of_a_change_stay_in_their_order() -> None:
+    lines = ["-a", "-1", "-2", "-3", "+b", "+1", "+2", "+3", " c"]
+    _join_ends(lines, 0)
+    assert lines == ["-a", "+b", " 1", " 2", " 3", " c"]
+    whole = [" c", "-1", "+0", "+1"]
+    _join_ends(whole, 1)
+    assert whole == [" c", "+0", " 1"]

@@ -44,6 +44,15 @@ def test_a_limit_may_be_infinite_and_is_beyond_a_million() -> None:
     assert "must be a finite number" in said_by(real, B, "infinite", unlimited=True)
 
 
+@pytest.mark.parametrize(("text", "longest"), [("20", 120), ("0 1 2", 240)])
+def test_a_text_of_numbers_is_as_long_as_one_more_of_them_at_most(text: str, longest: int) -> None:
+    """Each has sixty letters at most; a longer text is not taken apart."""
+    count = len(text.split())
+    assert len(element(f"<a c='{text.ljust(longest)}'/>").reals(count, "c")) == count
+    too_long = element(f"<a c='{text.ljust(longest + 1)}'/>")
+    assert "must be" in said_by(too_long.reals, count, "c")
+
+
 def test_a_text_or_an_attribute_has_the_required_count_of_numbers() -> None:
     assert B.reals(1) == [3.0]
     assert B.reals(2, "c") == [1.0, 2.0]

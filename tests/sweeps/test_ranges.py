@@ -180,3 +180,16 @@ def test_the_variability_of_a_start_gives_way_to_a_swept_start() -> None:
     assert Variation.read(BASE, usual, []).text == "; ".join(
         f"{path}: {each}" for path, each in usual.items()
     )
+
+
+@pytest.mark.parametrize("is_first", [False, True])
+def test_a_path_of_one_element_counts_before_that_of_all(is_first: bool) -> None:
+    one = {"robot.belly[0][1]": c2d.uniform(-0.02, -0.02)}
+    every = {"robot.belly[*][1]": c2d.uniform(-0.01, -0.01)}
+    vary = {**one, **every} if is_first else {**every, **one}
+    variation = Variation.read(BASE, vary, [])
+    found = variation.draw(BASE, {path: np.array([0.5]) for path in vary}).values
+    assert ROBOT.belly is not None
+    assert {path: float(values[0]) for path, values in found.items()} == {
+        f"robot.belly[{k}][1]": -0.02 if k == 0 else -0.01 for k in range(len(ROBOT.belly))
+    }
