@@ -8,7 +8,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.reading.engines import ENGINES, Engine
-from tests.reading.carts import FILES, SIDES, pair, read, urdf
+from tests.kept import check_said
+from tests.reading.carts import FILES, SAID, SIDES, pair, read, urdf
 
 
 def mjcf(joint: str, changed: str = "") -> str:
@@ -32,6 +33,18 @@ def stated(*parts: str, dynamics: str = "") -> str:
 
 def test_every_engine_has_its_laws() -> None:
     assert set(get_args(Engine)) == ENGINES.keys()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_every_engine_says_what_moves_belts_and_what_its_motors_do(engine: str) -> None:
+    laws = ENGINES[engine]
+    motors, belts = (laws.description(is_belt=is_belt) for is_belt in (False, True))
+    assert motors == f"motors in {laws.name}: {laws.command} ({laws.basis})"
+    if laws.surface:
+        assert belts == f"belts in {laws.name}: {laws.surface}"
+    else:
+        assert belts == f"{laws.name} moves no surface of a belt"
+    check_said(SAID, [motors, belts])
 
 
 def test_the_armature_of_one_side_is_the_rotor_inertia(tmp_path: Path) -> None:
