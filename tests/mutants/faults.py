@@ -21,6 +21,7 @@ EQUIVALENT = [
     ('("diaginertia", 3)', "3 -> 4", "there are but three"),
     ('("fullinertia", 6)', "6 -> 7", "there are but six"),
     ("return out if out > tolerance", "0.0 -> -1.0", "neither is above 0, which alone is asked"),
+    ("for line in diff[2:]", "2 -> 3", "the third says where, and is neither new nor gone"),
     ("round_size: float", "1.0 -> 1.01", "left out of wheels that are removed, alone"),
     ("if more > 0", "0 -> -1", "wheels come in pairs, and without a difference nothing is told"),
     ("if more > 0", "0 -> 1", "wheels come in pairs, and without a difference nothing is told"),
@@ -190,7 +191,7 @@ def variants(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
         branch = copy.deepcopy(node)
         branch.test = ast.UnaryOp(ast.Not(), node.test)
         yield f"not ({ast.unparse(node.test)})", branch
-    elif isinstance(node, ast.Return) and node.value is not None:
+    elif isinstance(node, ast.Return) and ast.unparse(node) not in ("return", "return None"):
         yield f"{ast.unparse(node)} -> return None", ast.Return(ast.Constant(None))
     elif isinstance(node, (ast.Raise, ast.Expr, ast.AugAssign, ast.Continue)):
         yield f"{ast.unparse(node)} -> pass", ast.Pass()

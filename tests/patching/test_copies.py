@@ -2,7 +2,7 @@
 
 import pytest
 
-from crawler2d.patching.edits import copy_elements, items_about
+from crawler2d.patching.edits import copy_elements, items_about, names_of
 from crawler2d.writing.document import Document
 
 
@@ -33,3 +33,26 @@ def test_a_transmission_and_its_actuator_have_names_of_their_own_as_copies() -> 
         text[3:-4].replace('"t"', '"t2"').replace('"w"', '"w2"').replace('"a"', '"a2"')
     ]
     assert copies(text, {"other": "other2"}) == []
+
+
+def test_the_outermost_parts_about_a_wheel_are_copied_once() -> None:
+    """Other links and joints may name it inside, and stay; what holds neither is looked into."""
+    text = (
+        '<m><link name="hull"><note of="w"/></link><joint name="j"><child>w</child></joint>'
+        '<link name="w"><part of="w"/></link><plugin><list>w</list><list>w v</list></plugin>'
+        '<a><b><motor joint="w"/></b></a></m>'
+    )
+    assert copies(text, {"w": "w2"}) == [
+        '<link name="w2"><part of="w2"/></link>',
+        "<list>w2</list>",
+        '<motor joint="w2"/>',
+    ]
+
+
+def test_a_wheel_has_the_names_of_its_joints_and_of_all_in_its_bodies() -> None:
+    text = (
+        '<m><joint name="a"><child>w</child></joint><joint name="b"><child link="w"/></joint>'
+        '<joint name="c"><child>hull</child></joint><joint name="d"/><link name="e"/>'
+        '<body name="w"><geom name="f"/><geom/></body><body name="v"><geom name="g"/></body></m>'
+    )
+    assert names_of(Document(text).root, ("w",), "own") == {"w", "own", "a", "b", "f"}
