@@ -22,6 +22,7 @@ EQUIVALENT = [
     ('("fullinertia", 6)', "6 -> 7", "there are but six"),
     ("return out if out > tolerance", "0.0 -> -1.0", "neither is above 0, which alone is asked"),
     ("for line in diff[2:]", "2 -> 3", "the third says where, and is neither new nor gone"),
+    ('f"{plugin.name} {plugin.filename}"', "' ' -> ' x'", "no word that is asked for begins so"),
     ("round_size: float", "1.0 -> 1.01", "left out of wheels that are removed, alone"),
     ("if more > 0", "0 -> -1", "wheels come in pairs, and without a difference nothing is told"),
     ("if more > 0", "0 -> 1", "wheels come in pairs, and without a difference nothing is told"),
