@@ -78,7 +78,7 @@ def test_a_baseline_and_what_changed_since_it_are_as_kept(
     whole, doubtful = audits["file"], audits["doubtful"]
     heavy = replace(whole.robot, mass=20.5, center_of_mass=(0.01, 0.02), belly=None, gauge=0.3)
     smaller = tuple(
-        replace(each, obstacle=each.obstacle.replace("75", "62.5")) for each in whole.verdicts[:-1]
+        replace(each, obstacle=each.obstacle.replace("75", "62.5")) for each in whole.verdicts[:-2]
     )
     changed = replace(whole, robot=heavy, verdicts=smaller)
     path, model = tmp_path / "audit.json", tmp_path / "cart.urdf"

@@ -400,9 +400,10 @@ def common_wheel(
     order = list(range(len(pairs)))
     if not gears:
         return RoundWheel(), order
+    first, *_ = gears
     for runner in runners:
-        _refuse_unlike(runner, gears[0])
-    pitch = 2.0 * math.pi / gears[0].count
+        _refuse_unlike(runner, first)
+    pitch = 2.0 * math.pi / first.count
     own = (np.array([_phase(pair.left[0], view) for pair in pairs]) - angles) / pitch
     orders = [order] if is_line else [order, belt_order(centers(pairs), own)]
     phases = fit_phases(own, orders, _TURNED / pitch)
@@ -422,9 +423,9 @@ def common_wheel(
         reason = f"is the best fit: {names} start up to {degrees} off{more}"
         log.add_warning(f"{path}.phase_fraction", float(f"{phases.step:.4g}"), reason)
     tip, base = (float(np.mean([getattr(gear, name) for gear in gears])) for name in _THICKNESSES)
-    is_parallel = base - tip <= _PARALLEL * gears[0].radius
+    is_parallel = base - tip <= _PARALLEL * first.radius
     return GearWheel(
-        grouser_count=gears[0].count,
+        grouser_count=first.count,
         grouser_height=float(np.mean([grousers.height for grousers in gears])),
         tip_thickness=tip,
         base_thickness=None if is_parallel else base,
