@@ -103,3 +103,20 @@ def test_a_run_that_is_not_finished_says_so() -> None:
     runs = collect.runs_of(rows)
     assert [run.error is None for run in runs] == [True, False, True]
     assert [run.scenario.duration for run in runs] == [0.05, 0.06, 0.05]
+
+
+def test_the_run_of_a_row_has_all_that_the_row_has() -> None:
+    wheels = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+    stuck = _core.PreparedScenario(c2d.Scenario(wheels, c2d.terrains.step(0.1)).to_json())
+    _, answers = collect.simulate_chunk([stuck.text], ("torque x 2",), BUILD)
+    row = collect._read_row(stuck, *answers[0])
+    (run,) = collect.runs_of([row])
+    again = c2d.simulate(
+        c2d.Scenario.from_json(stuck.text), trials=("torque x 2",), record="summary"
+    )
+    assert run.outcome == again.outcome == row.outcome == "seized"
+    assert run.metrics == again.metrics == row.metrics
+    assert str(run.diagnosis) == str(again.diagnosis)
+    assert run.diagnosis is not None
+    assert any(trial.name == "torque x 2" for trial in run.diagnosis.trials)
+    assert run.wall_time == row.wall_time > 0.0
