@@ -261,3 +261,16 @@ def test_a_band_says_what_its_bounds_are() -> None:
         "band_high": {"units": "1", "long_name": "95th percentile of the rates over the unknowns"},
     }
     assert not any("quantile" in each.coords for each in band.values())
+
+
+@pytest.mark.parametrize(
+    ("runs", "distinct", "is_warned"), [(10, 4, True), (10, 5, False), (9, 4, False)]
+)
+def test_four_distinct_poses_of_ten_runs_are_few(
+    runs: int, distinct: int, is_warned: bool, recwarn: pytest.WarningsRecorder
+) -> None:
+    zeros = {name: ("repeat", [0.0] * runs) for name in POSES}
+    zeros["final_x"] = ("repeat", [0.1 * (k % distinct) for k in range(runs)])
+    table = xr.Dataset({"outcome": ("repeat", ["cleared"] * runs), **zeros})
+    assert rate(table)["distinct"].item() == distinct
+    assert [each.category for each in recwarn] == [c2d.ScenarioWarning] * is_warned
