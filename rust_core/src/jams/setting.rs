@@ -230,3 +230,153 @@ impl Bins {
         (self.low..=self.low + width).contains(&angle)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::draw::Draw;
+    use crate::geometry::Disc;
+    use crate::jams::contact::Kind;
+    use crate::jams::layout::{Grip, Surface};
+    use crate::robot::BodyKind;
+
+    /// A robot of one surface over one piece of ground, and the box of that.
+    fn reach(shape: Outline, facing: Facing) -> Reach {
+        let surface = Surface {
+            part: 0,
+            kind: BodyKind::Wheel,
+            lane: 0,
+            shape,
+            grip: Grip::Free,
+            friction_limit: f64::INFINITY,
+        };
+        let place = Place {
+            lane: 0,
+            edge: None,
+            shape: facing,
+            friction: 0.5,
+        };
+        let layout = Layout {
+            center_of_mass: Vector::ZERO,
+            reach: 1.0,
+            surfaces: vec![surface],
+            solids: Vec::new(),
+        };
+        let contact = Contact {
+            surface: 0,
+            place: 0,
+            kind: Kind::Across(Vector::Y, 0.0, Vector::ZERO, 0.0),
+        };
+        Reach::of(&layout, &[place], &contact)
+    }
+
+    /// A disc of 0.1 m, and a run of 0.4 m, at a face, at the corner of a step and at one that opens downwards by 60 degrees.
+    #[test]
+    fn a_surface_at_a_piece_of_ground_lies_in_a_box() {
+        let center = Vector::new(2.0, 1.0);
+        let round = Outline::Round(Disc {
+            center: Vector::new(0.3, 0.2),
+            radius: 0.1,
+        });
+        let flat = Outline::Flat {
+            ends: [Vector::new(0.1, 0.0), Vector::new(0.5, 0.0)],
+            outward: Vector::NEG_Y,
+        };
+        let face = Facing::Face {
+            ends: [Vector::new(-1.0, 0.5), Vector::new(3.0, 0.5)],
+            normal: Vector::Y,
+        };
+        let corner = |cone: [Vector; 2]| Facing::Corner {
+            center,
+            radius: 0.02,
+            cone,
+        };
+        let step = corner([Vector::Y, Vector::NEG_X]);
+        let tip = corner([60.0_f64, 120.0].map(|angle| Vector::from_angle(angle.to_radians())));
+        let half = 0.12 * 0.5;
+        for (outline, facing, point, low, high) in [
+            (round, face, [0.3, 0.2], [-1.0, 0.6], [3.0, 0.6]),
+            (round, step, [0.3, 0.2], [1.88, 1.0], [2.0, 1.12]),
+            (
+                round,
+                tip,
+                [0.3, 0.2],
+                [2.0 - half, 1.0 + half * 3.0_f64.sqrt()],
+                [2.0 + half, 1.12],
+            ),
+            (flat, step, [0.3, 0.0], [1.78, 0.78], [2.22, 1.22]),
+        ] {
+            let found = reach(outline, facing);
+            for (found, expected) in [(found.point, point), (found.low, low), (found.high, high)] {
+                let off = (found - Vector::from(expected)).length();
+                assert!(off < 4.0 * TOUCHING.value(), "{found} {expected:?}");
+            }
+            assert!(found.low.x < low[0] && found.high.y > high[1], "{facing:?}");
+        }
+    }
+
+    /// Of two points 0.5 m apart, one stays at the origin and the other in a box.
+    #[test]
+    fn two_surfaces_can_be_together_at_the_angles_that_bring_both_into_their_boxes() {
+        let bins = Bins::between([-0.5 * TAU, 0.5 * TAU]);
+        let mut draw = Draw(20_270_601);
+        let between = Vector::new(0.3, 0.4);
+        let (mut some, mut none) = (0, 0);
+        for _ in 0..300 {
+            let at = |low: Vector, high: Vector, point: Vector| Reach { point, low, high };
+            let corner = Vector::new(draw.between(-0.8, 0.8), draw.between(-0.8, 0.8));
+            let size = Vector::new(draw.between(0.0, 0.3), draw.between(0.0, 0.3));
+            let one = at(Vector::ONE, Vector::ONE, Vector::X);
+            let shift = Vector::ONE;
+            let other = at(corner + shift, corner + size + shift, Vector::X + between);
+            let found = one.angles_with(&other, &bins);
+            let is_at = |angle: f64, slack: f64| {
+                let v = Turn::by(angle).apply(between) - corner;
+                let (low, high) = (v.min(size - v), Vector::ZERO - Vector::ONE * slack);
+                low.x >= high.x && low.y >= high.y
+            };
+            let width = TAU / f64::from(u128::BITS);
+            for bin in 0..u128::BITS {
+                let from = -0.5 * TAU + f64::from(bin) * width;
+                let is_found = found >> bin & 1 == 1;
+                let mut shares = (0..=20).map(|k| from + width * f64::from(k) / 20.0);
+                if shares.clone().any(|angle| is_at(angle, 0.0)) {
+                    assert!(is_found, "bin {bin}");
+                }
+                // A bin moves the point by 0.5 m times its width.
+                if is_found {
+                    assert!(shares.any(|angle| is_at(angle, 0.5 * width)), "bin {bin}");
+                }
+            }
+            some += u32::from(found != 0);
+            none += u32::from(found == 0);
+        }
+        assert!(some > 50 && none > 50, "{some} {none}");
+    }
+
+    #[test]
+    fn neighbouring_bins_are_one_range_and_all_of_them_the_whole() {
+        let bins = Bins::between([-1.0, 3.0]);
+        let width = 4.0 / 128.0;
+        let last = 1_u128 << 127;
+        for (bits, expected) in [
+            (0, vec![]),
+            (1, vec![[0.0, 1.0]]),
+            (0b111_0110, vec![[1.0, 3.0], [4.0, 7.0]]),
+            (last | 1, vec![[0.0, 1.0], [127.0, 128.0]]),
+            (u128::MAX, vec![[0.0, 128.0]]),
+        ] {
+            let found: Vec<[f64; 2]> = bins.ranges(bits).collect();
+            assert_eq!(found.len(), expected.len(), "{bits:b}");
+            for (found, expected) in found.iter().zip(expected) {
+                let off = [0, 1].map(|k| (found[k] + 1.0 - expected[k] * width).abs());
+                assert!(off[0] < 1e-12 && off[1] < 1e-12, "{found:?}");
+            }
+        }
+        for (angle, is_held) in [(-1.01, false), (-1.0, true), (2.9, true), (3.01, false)] {
+            assert_eq!(bins.hold(angle), is_held, "{angle} rad");
+        }
+    }
+}

@@ -302,4 +302,77 @@ mod tests {
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0] - zero).abs() < 1e-5 * width, "{found:?}");
     }
+
+    #[test]
+    fn a_range_is_cut_into_few_pieces_none_wider_than_it_is_far_from_an_angle() {
+        for (range, at, least) in [
+            ([-1.0, 1.3], 0.2, 1e-3),
+            ([0.5, 1.0], 0.2, 1e-3),
+            ([-1.0, -0.5], 0.2, 0.01),
+            ([-1.0, 1.0], 0.0, 4.0),
+        ] {
+            let pieces = graded(range, at, least);
+            let ends = [pieces[0][0], pieces[pieces.len() - 1][1]];
+            assert_eq!(ends.map(f64::to_bits), range.map(f64::to_bits));
+            let joined = pieces.windows(2).map(|pair| pair[1][0] - pair[0][1]);
+            assert!(joined.map(f64::abs).fold(0.0, f64::max) <= 0.0);
+            for [low, high] in &pieces {
+                let far = (low - at).max(at - high).max(least);
+                assert!(
+                    (0.0..=far + 1e-12).contains(&(high - low)),
+                    "{low} to {high}"
+                );
+            }
+            let most = range
+                .map(|end| (end - at).abs())
+                .into_iter()
+                .fold(0.0, f64::max);
+            let steps = (most / least).log2().max(0.0);
+            assert!((pieces.len() as f64) < 2.0 * steps + 4.0, "{pieces:?}");
+        }
+    }
+
+    /// Chebyshev's polynomial of degree k is the cosine of k times an angle whose cosine is t.
+    #[test]
+    fn a_series_has_the_values_and_slopes_of_cosines_and_its_curvature_at_an_end() {
+        for case in 0..40 {
+            let share = |k: usize| libm::sin((7 * case + 3 * k) as f64);
+            let series = Series {
+                terms: std::array::from_fn(share),
+            };
+            for i in 1..20 {
+                let angle = PI * f64::from(i) / 20.0;
+                let (sine, cosine) = libm::sincos(angle);
+                let of = |k: usize| (k as f64 * angle, k as f64 * share(k));
+                let value: f64 = (0..TERMS).map(|k| share(k) * of(k).0.cos()).sum();
+                let slope: f64 = (0..TERMS).map(|k| of(k).1 * of(k).0.sin() / sine).sum();
+                let found = series.at(cosine);
+                // Slopes are a hundred times as large near the ends.
+                assert!((found.0 - value).abs() < 1e-12 && (found.1 - slope).abs() < 1e-10);
+            }
+            let alike = Series {
+                terms: std::array::from_fn(|k| share(k).abs()),
+            };
+            let step = 1e-6;
+            let bend = (alike.at(1.0 + step).1 - alike.at(1.0 - step).1) / (2.0 * step);
+            for series in [&alike, &series] {
+                assert!((series.curvature() / bend - 1.0).abs() < 1e-6, "{bend}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_end_of_a_piece_within_rounding_of_zero_is_one() {
+        // t + 1, t - 1 and their opposites, a little off their zeros.
+        for (sign, end) in [(1.0, -1.0), (-1.0, 1.0)] {
+            for side in [1.0, -1.0] {
+                let mut terms = [0.0; TERMS];
+                (terms[0], terms[1]) = (side * sign * (1.0 + 1e-13), side);
+                let series = Series { terms };
+                let found = series.only_zero(-1.0, 1.0, 1e-12);
+                assert_eq!(found.map(f64::to_bits), Some(f64::to_bits(end)));
+                assert!(series.only_zero(-1.0, 1.0, 1e-14).is_none());
+            }
+        }
+    }
 }

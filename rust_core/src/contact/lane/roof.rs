@@ -140,6 +140,10 @@ mod tests {
         assert!(chord.hides(Vector::new(1.0, 0.1 + 0.5e-6)));
         assert!(!chord.hides(Vector::new(1.0, 0.1 + 2e-6)));
         assert!(!chord.hides(Vector::new(2.1, 0.0)));
+        // Wherever that is.
+        let chord = Chord::new(&at(3.0, 1.0), &at(5.0, 1.2)).expect("they bear on one run");
+        assert!(chord.hides(Vector::new(4.0, 1.1 + 0.5e-6)));
+        assert!(!chord.hides(Vector::new(4.0, 1.1 + 2e-6)));
         let tilted = Touch {
             normal: Vector::new(0.1, 0.995),
             ..at(2.0, 0.2)

@@ -300,3 +300,20 @@ fn a_way_out_yields_to_a_shorter_one_and_not_to_one_as_long() {
         assert_eq!(is_gap(depth, apart), is_it, "{depth} m of {apart} m");
     }
 }
+
+/// Within the disc its pieces are as long as a centimetre, and beyond it by as much as it may move half a millimetre.
+#[test]
+fn contacts_are_thinned_out_where_ground_is_fine_that_the_disc_may_come_to() {
+    let mut points = vec![];
+    let mut x = 0.85;
+    while x < 1.15 {
+        points.push([x, 1e-4 * f64::from(points.len() as u32 % 2)]);
+        let is_far = (x - 1.0_f64).abs() > 0.05;
+        x += if is_far { 5e-4 } else { 0.01 };
+    }
+    let lane = lane_of(&points);
+    let (disc, mut contacts) = touching(20, |_| 1e-5);
+    assert!(!lane.is_fine(disc.center, 0.05));
+    thin_out(&mut contacts, 0, &lane, &disc, 0.05);
+    assert!(contacts.len() < 20);
+}

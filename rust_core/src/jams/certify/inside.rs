@@ -122,3 +122,59 @@ impl Track {
         farthest - outward.dot(from).min(outward.dot(to))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Draw;
+    use crate::geometry::Envelope;
+
+    /// Two wheels of 0.1 m, 0.6 m apart.
+    fn track() -> Track {
+        let discs = [-0.3, 0.3].map(|x| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.1,
+        });
+        let belt = Envelope::new(&discs);
+        Track {
+            discs: discs.into(),
+            belt,
+        }
+    }
+
+    #[test]
+    fn no_point_of_a_segment_is_deeper_than_its_deeper_end_beyond_the_nearest_disc() {
+        let (track, mut draw) = (track(), Draw(20_270_602));
+        let mut inside = 0;
+        for _ in 0..500 {
+            let [a, b] =
+                [0.0; 2].map(|_| Vector::new(draw.between(-0.5, 0.5), draw.between(-0.2, 0.2)));
+            let place = |k: u32| a + (b - a) * (f64::from(k) / 100.0);
+            let depths = (0..=100).map(|k| track.belt.depth(place(k)));
+            let deepest = depths.fold(f64::NEG_INFINITY, f64::max);
+            assert!(
+                track.depth_beyond_a_disc([a, b]) > deepest - 1e-12,
+                "{a} {b}"
+            );
+            inside += u32::from(deepest > 0.0);
+        }
+        assert!(inside > 100, "{inside}");
+        // Across the line from a wheel's centre all of it is as deep, and one that ends beside it is as deep as its nearer end.
+        for side in [-1.0, 1.0] {
+            for (a, b, depth) in [
+                ([0.35, -0.05], [0.35, 0.05], 0.05),
+                ([0.45, -0.05], [0.45, 0.05], -0.05),
+                // Its nearest point is 0.06 m ahead of the wheel and 0.08 m above it.
+                ([0.36 - 0.04, 0.08 + 0.03], [0.36 + 0.04, 0.08 - 0.03], 0.0),
+                // It goes on away from the wheel, along a line from its centre.
+                ([0.35, 0.0], [0.45, 0.0], 0.05),
+            ] {
+                let ends = [a, b].map(|[x, y]| Vector::new(side * x, y));
+                let found = track.depth_beyond_a_disc(ends);
+                assert!((found - depth).abs() < 1e-12, "{ends:?}: {found} m");
+                let [b, a] = ends;
+                assert!((track.depth_beyond_a_disc([a, b]) - depth).abs() < 1e-12);
+            }
+        }
+    }
+}

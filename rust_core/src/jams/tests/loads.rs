@@ -41,6 +41,13 @@ fn one_force_or_two_carry_only_what_they_balance() {
     assert!((choice[0].1 - 0.75).abs() < 1e-15 && (choice[1].1 - 0.25).abs() < 1e-15);
     assert!(left(&both(-0.6), choice) < 1e-15);
     assert!(choices(&both(-0.61)).is_empty() && choices(&both(-0.59)).is_empty());
+    // With a third that bears nothing they are a choice of three, within rounding.
+    let third = [1.0, 0.7, 3.0];
+    let [a, b] = both(-0.6);
+    let [choice] = &choices(&[a, b, third])[..] else {
+        panic!("one choice carries it");
+    };
+    assert!((choice[0].1 - 0.75).abs() < 1e-12 && choice[2].1.abs() < 1e-12);
     // Neither may pull, nor both hang from above.
     assert!(choices(&[[1.0, 0.5, 0.2], [3.0, 2.5, 0.6]]).is_empty());
     assert!(choices(&[[1.0, -0.5, 0.2], [-3.0, -2.5, -0.6]]).is_empty());

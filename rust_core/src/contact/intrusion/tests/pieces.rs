@@ -159,3 +159,13 @@ fn the_points_under_a_track_are_those_within_its_ends_and_one_on_either_side() {
         assert_eq!(under.last(), Some(behind.unwrap_or(&last)), "{x} m");
     }
 }
+
+#[test]
+fn ground_without_a_convex_edge_in_a_track_has_no_deepest_one() {
+    let valley = ground(&[[-2.0, 1.0], [0.0, 0.0], [2.0, 1.0]]);
+    let pose = Pose::from_translation(Vector::new(0.0, 0.07));
+    let [found] = &envelope(0.0).intrusions(&valley, pose)[..] else {
+        panic!("it is one piece");
+    };
+    assert_eq!((found.edges.as_slice(), found.edge), (&[0][..], -1));
+}
