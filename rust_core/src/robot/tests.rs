@@ -1,5 +1,6 @@
 //! However a robot is taken apart, its mass, centre of mass and moment of inertia are those of the scenario.
 
+mod arms_and_lanes;
 mod chains;
 
 use approx::assert_relative_eq;

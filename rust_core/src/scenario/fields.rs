@@ -483,3 +483,6 @@ fn shorten(text: &str) -> String {
     let head: String = text.chars().take(LONGEST).collect();
     format!("{head}...")
 }
+
+#[cfg(test)]
+mod tests;

@@ -164,3 +164,64 @@ fn ground_has_no_more_corners_than_are_asked_for() {
         }
     }
 }
+
+#[test]
+fn whole_numbers_are_written_without_a_point_where_a_field_wants_them() {
+    for (number, whole, text) in [
+        (3.0, true, "3"),
+        (0.0, true, "0"),
+        (3.5, true, "3.5"),
+        (-3.0, true, "-3.0"),
+        (3.0, false, "3.0"),
+        (f64::NAN, true, "\"NaN\""),
+        (f64::INFINITY, false, "\"inf\""),
+    ] {
+        assert_eq!(to_number(number, whole).to_string(), text);
+    }
+}
+
+/// An edge that is rounded takes 90 facets, and a lane a million at most.
+#[test]
+fn a_ground_has_as_many_corners_as_its_points_steps_and_posts_and_more_if_they_are_round() {
+    let points = |count: u32, radius: f64| Terrain::Points {
+        points: (0..count).map(|i| [f64::from(i), 0.0]).collect(),
+        goal: 0.0,
+        surface: Surface::rounded(radius, 0.9),
+        segment_friction: None,
+    };
+    let lanes = |middle: Option<Terrain>| Terrain::Lanes {
+        left: Box::new(points(10, 0.0)),
+        right: Box::new(points(7, 0.0)),
+        middle: middle.map(Box::new),
+    };
+    let stairs = |radius: f64| Terrain::Stairs {
+        count: 5,
+        rise: 0.1,
+        run: 0.3,
+        surface: Surface::rounded(radius, 0.9),
+    };
+    let field = Terrain::RandomStepfield(crate::scenario::Stepfield {
+        seed: 1,
+        pattern: crate::scenario::FieldPattern::Flat,
+        posts: 20,
+        post: 0.1,
+        rise: 0.02,
+        levels: 4,
+        barrier_height: 0.0,
+        barrier_thickness: 0.1,
+        barrier_yaw: 0.0,
+        surface: Surface::sharp(0.9),
+    });
+    for (terrain, count) in [
+        (points(10, 0.0), 10),
+        (points(10, 0.01), 910),
+        (points(20_000, 0.01), 1_020_000),
+        (lanes(None), 34),
+        (lanes(Some(points(3, 0.0))), 20),
+        (stairs(0.0), 10),
+        (stairs(0.01), 910),
+        (field, 120),
+    ] {
+        assert_eq!(corners(&terrain), count, "{count}");
+    }
+}

@@ -1,0 +1,45 @@
+//! Arms by hand, and tracks over lanes of their own.
+
+use super::*;
+
+#[test]
+fn each_closed_track_is_over_the_lane_of_its_own_drive() {
+    for robot in on_all_tracks() {
+        let closed = closed(&robot, ClosedSurface::Own);
+        let lanes = |model: &Model| {
+            let driven = model
+                .parts
+                .iter()
+                .filter_map(|part| Some((part.lane, part.drive?)));
+            let mut lanes: Vec<(usize, usize)> = driven.collect();
+            lanes.sort_unstable();
+            lanes.dedup();
+            lanes
+        };
+        assert_eq!(lanes(&model(&closed)), [(0, 0)]);
+        assert_eq!(lanes(&on_two_lanes(&closed)), [(0, 0), (1, 1)]);
+    }
+}
+
+/// Both arms at an end are one body: a rod of twice the mass, which turns about its root.
+#[test]
+fn arms_at_an_end_are_one_rod_about_the_axle_there() {
+    for robot in on_arms(0.4) {
+        let given = robot.flippers.as_ref().expect("it has arms");
+        let model = model(&robot);
+        assert_eq!(model.flippers.len(), 2);
+        for arm in &model.flippers {
+            let sign = arm.end.sign();
+            let axle = robot.outline.end_discs()[usize::from(sign > 0.0)];
+            assert!((arm.pivot - Vector::new(axle[0], axle[1])).length() < 1e-12);
+            assert_relative_eq!(arm.mass, 2.0 * given.mass);
+            assert_relative_eq!(arm.arm.x, 0.5 * sign * given.length);
+            let inertia = 2.0 * given.mass * given.length.powi(2) / 12.0;
+            assert_relative_eq!(arm.moment_of_inertia, inertia);
+            assert_relative_eq!(arm.torque_limit, 2.0 * given.torque_limit);
+            assert_relative_eq!(arm.rotor_inertia, 2.0 * given.rotor_inertia);
+            assert!(arm.reach >= given.length + given.tip_radius);
+            assert_relative_eq!(arm.start_angle, 0.4);
+        }
+    }
+}
