@@ -123,10 +123,10 @@ def assumed() -> tuple[Assumption, ...]:
     two = ("step of 75 mm", "gap of 100 mm")
     return (
         *(
-            Assumption(obstacle=name, assumption="rotor", drawn=rotor, seized=0, made=18)
+            Assumption(obstacle=name, assumption="rotor", drawn=rotor, seized=0, runs=18)
             for name in two
         ),
-        Assumption(obstacle=two[0], assumption="restitution", drawn=blows, seized=9, made=18),
+        Assumption(obstacle=two[0], assumption="restitution", drawn=blows, seized=9, runs=18),
     )
 
 
@@ -164,7 +164,7 @@ def doubtful(audit: AuditRecord) -> AuditRecord:
     error = replace(audit.lint[0], severity="error")
     warnings = tuple(replace(error, severity="warning", where="") for _ in range(2))
     unsure = tuple(
-        replace(each, result="not certain" if each.where else each.result)
+        replace(each, result="not certain" if each.jam_wheels else each.result)
         for each in audit.verdicts
     )
     assert audit.repaired is not None

@@ -43,7 +43,7 @@ def test_wheels_and_gears_have_their_difference_on_the_page(made: AuditRecord) -
     assert made.repaired is not None
     unchanged = replace(made, repaired=made.repaired._replace(repairs=(same,)))
     (text,) = diffs_of(unchanged).values()
-    assert text.startswith("no change of the file: robot.track must have other wheels")
+    assert text.startswith("no change of the file: robot.track must have wheels that")
     assert diffs_of(made_of_robot()) == {}
 
 

@@ -146,7 +146,7 @@ def test_a_robot_that_can_be_written_neither_on_wheels_nor_on_belts_is_refused_w
     assert caught.value.path == "repair"
     assert caught.value.rule.startswith(
         f"must be one that can be written to a file: {wheels.description}: robot.track must have"
-        " other wheels than the file, got"
+        " wheels that differ from the file's, got"
     )
     assert "; belts: robot.moment_of_inertia must" in caught.value.rule
 

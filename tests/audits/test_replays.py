@@ -39,7 +39,7 @@ def test_the_first_of_the_fastest_runs_that_are_jammed_where_most_are_is_replaye
         (sample, repeat)
         for sample, repeat in np.ndindex(own.ends.shape)
         if own.ends[sample, repeat] == "seized"
-        and own.column("stop_bodies")[sample, repeat] == verdict.where
+        and own.column("stop_bodies")[sample, repeat] == verdict.jam_wheels
     ]
     cleared = [place for place in places if belt.ends[place] == "cleared"]
     chosen = cleared or places
@@ -47,7 +47,7 @@ def test_the_first_of_the_fastest_runs_that_are_jammed_where_most_are_is_replaye
     first = next(place for place in chosen if own.speeds[place] == fastest)
     assert (found.sample, found.repeat) == first
     assert found.other == "the belt"
-    assert found.value(made, "stop_bodies") == verdict.where
+    assert found.value(made, "stop_bodies") == verdict.jam_wheels
 
 
 def test_a_run_that_the_belt_clears_is_preferred_to_a_faster_one(made: AuditRecord) -> None:
@@ -58,7 +58,7 @@ def test_a_run_that_the_belt_clears_is_preferred_to_a_faster_one(made: AuditReco
     ends[4, 0] = "cleared"
     audit = replace(made, table=alone)
     own = ObstacleRuns(alone, OWN, verdict.obstacle)
-    assert own.column("stop_bodies")[4, 0] == verdict.where
+    assert own.column("stop_bodies")[4, 0] == verdict.jam_wheels
     assert own.speeds[4, 0] < own.speeds.max()
     assert (_seizure(audit, verdict).sample, _seizure(audit, verdict).repeat) == (4, 0)
 

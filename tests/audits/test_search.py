@@ -135,7 +135,7 @@ def test_an_assumption_is_driven_with_eighteen_samples(samples: int, made: int) 
         assert (each.obstacle, each.drawn) == ("step", ranges)
         of_all = ends[:made]
         assert each.seized == of_all.count("seized")
-        assert each.made == made - of_all.count("diverged")
+        assert each.runs == made - of_all.count("diverged")
 
 
 def test_an_assumption_holds_where_the_lower_bound_of_its_rate_is_above_5_percent() -> None:

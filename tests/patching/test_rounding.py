@@ -23,7 +23,7 @@ def test_a_radius_that_differs_by_rounding_changes_no_size_and_no_limit(
 
 
 def test_a_robot_that_differs_by_rounding_has_no_change_to_make(reading: c2d.Reading) -> None:
-    with pytest.raises(c2d.ScenarioError, match="must have other wheels than the file"):
+    with pytest.raises(c2d.ScenarioError, match="must have wheels that differ from the file's"):
         patch_file(reading, on_chassis(reading, 3, 0.125 + 9e-7))
 
 

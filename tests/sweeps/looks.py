@@ -130,7 +130,7 @@ def binomial_runs(rate: float, power: float) -> int:
 def wrong_rows() -> Iterator[list[str]]:
     """Yield the table of how often intervals are wrong."""
     kinds = ("Wilson", "sequential")
-    yield ["rate", *(f"{kind}, {when}" for when in ("ever", "at the end") for kind in kinds)]
+    yield ["rate", *(f"{kind}, {when}" for when in ("any check", "at the end") for kind in kinds)]
     until = Until(threshold=0.5)
     shares = {
         rate: (

@@ -64,10 +64,10 @@ def replaced(content: bytes) -> Callable[[Path], None]:
 CANNOT_BE_READ: dict[str, tuple[Callable[[Path], None], str]] = {
     "missing": (Path.unlink, "does not exist: a sweep with store= makes a store"),
     "empty": (replaced(b""), "is empty: no store was made there yet"),
-    "a byte": (replaced(b"\0"), "is no SQLite file, or is damaged (it has a single byte)"),
+    "a byte": (replaced(b"\0"), "is not an SQLite file, or is damaged (it has a single byte)"),
     "a text": (
         replaced(b"no database at all, but long enough to be read as one" * 20),
-        "is no SQLite file, or is damaged (file is not a database)",
+        "is not an SQLite file, or is damaged (file is not a database)",
     ),
     "another program's": (
         executed("PRAGMA application_id = 7"),
@@ -127,10 +127,10 @@ def test_a_store_that_is_in_use_says_what_helps(
 def test_a_damaged_row_is_named_by_number_and_run(path: Path) -> None:
     identities = [row.identity for row, _, _ in stored_rows(path)]
     for column, value, why in (
-        ("outcome", "flown", "'flown' is no outcome without an error"),
-        ("outcome", "diverged", "'diverged' is no outcome without an error"),
-        ("outcome", "y" * 50, f"'{'y' * 40}' is no outcome without an error"),
-        ("error", '["SimulationDiverged", "?"]', "'timed_out' is no outcome with an error"),
+        ("outcome", "flown", "'flown' is not an outcome without an error"),
+        ("outcome", "diverged", "'diverged' is not an outcome without an error"),
+        ("outcome", "y" * 50, f"'{'y' * 40}' is not an outcome without an error"),
+        ("error", '["SimulationDiverged", "?"]', "'timed_out' is not an outcome with an error"),
         ("metrics", '{"time": "long"}', "'long' is no number"),
     ):
         change(path, 2, **{column: value})
@@ -179,8 +179,8 @@ def test_a_run_of_another_build_is_named_with_it(path: Path) -> None:
     identity = next(row.identity for row, _, _ in stored_rows(path))
     change(path, 1, build="0", diagnosis="{}")
     assert said(c2d.table, path) == (
-        f"{{path}}: the run {identity[:12]} is of the build 0, whose outcomes or diagnoses this one"
-        " cannot read: read it with that one"
+        f"{{path}}: the run {identity[:12]} is from the build 0, with outcomes or diagnoses that this"
+        " one cannot read: read it with that build"
     )
 
 
@@ -228,8 +228,8 @@ OF_SQLITE = {
     "SQLITE_READONLY": "{path} cannot be written: why",
     "SQLITE_READONLY_DBMOVED": "{path} cannot be written: why",
     "SQLITE_PERM": "{path} cannot be written: why",
-    "SQLITE_NOTADB": "{path} is no SQLite file, or is damaged (why)",
-    "SQLITE_CORRUPT_INDEX": "{path} is no SQLite file, or is damaged (why)",
+    "SQLITE_NOTADB": "{path} is not an SQLite file, or is damaged (why)",
+    "SQLITE_CORRUPT_INDEX": "{path} is not an SQLite file, or is damaged (why)",
     "SQLITE_ERROR": "{path} cannot be read: why",
     "": "{path} cannot be read: why",
 }
