@@ -87,7 +87,7 @@ def test_every_outcome_and_mechanism_is_in_the_tables_of_the_conventions() -> No
 
 
 def test_every_key_that_a_scenario_file_may_lack_is_in_the_conventions() -> None:
-    told = section("Scenario files").partition("; only ")[2].partition("may be left out")[0]
+    told = section("Scenario files").partition("; only ")[2].partition("may be omitted")[0]
     optional = {name for cls in kinds_below(Parameters) for name in cls.omitted_defaults}
     assert set(re.findall(r"`(\w+)`", told)) == optional
 

@@ -131,7 +131,7 @@ def test_a_damaged_row_is_named_by_number_and_run(path: Path) -> None:
         ("outcome", "diverged", "'diverged' is not an outcome without an error"),
         ("outcome", "y" * 50, f"'{'y' * 40}' is not an outcome without an error"),
         ("error", '["SimulationDiverged", "?"]', "'timed_out' is not an outcome with an error"),
-        ("metrics", '{"time": "long"}', "'long' is no number"),
+        ("metrics", '{"time": "long"}', "'long' is not a number"),
     ):
         change(path, 2, **{column: value})
         fault = f"it cannot be read ({'TypeError' if column == 'metrics' else 'ValueError'}: {why})"
@@ -179,8 +179,8 @@ def test_a_run_of_another_build_is_named_with_it(path: Path) -> None:
     identity = next(row.identity for row, _, _ in stored_rows(path))
     change(path, 1, build="0", diagnosis="{}")
     assert said(c2d.table, path) == (
-        f"{{path}}: the run {identity[:12]} is from the build 0, with outcomes or diagnoses that this"
-        " one cannot read: read it with that build"
+        f"{{path}}: the run {identity[:12]} is from the build 0, with outcomes or diagnoses that"
+        " this one cannot read: read it with that build"
     )
 
 
