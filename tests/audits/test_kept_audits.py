@@ -2,7 +2,9 @@
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import replace
+from difflib import unified_diff
 from pathlib import Path
 
 import pytest
@@ -17,7 +19,6 @@ from tests.audits.made import doubtful, made_of_file, made_of_robot
 from tests.kept import check_kept
 
 KEPT = Path(__file__).parent / "kept"
-NAMES = ("file", "doubtful", "robot")
 
 
 @pytest.fixture(scope="module")
@@ -26,20 +27,32 @@ def audits(tmp_path_factory: pytest.TempPathFactory) -> dict[str, AuditRecord]:
     return {"file": of_file, "doubtful": doubtful(of_file), "robot": made_of_robot()}
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_text_of_an_audit_is_as_kept(audits: dict[str, AuditRecord], name: str) -> None:
-    check_kept(KEPT / f"{name}.txt", text_of(audits[name]))
+def check_each(
+    audits: dict[str, AuditRecord], kind: str, write: Callable[[AuditRecord], str]
+) -> None:
+    """Compare what is written of each audit; of the doubtful one its differences are kept."""
+    texts = {name: write(audit) for name, audit in audits.items()}
+    for name in ("file", "robot"):
+        check_kept(KEPT / f"{name}.{kind}", texts[name])
+    whole, doubtful = (texts[name].splitlines() for name in ("file", "doubtful"))
+    changes = unified_diff(whole, doubtful, "file", "doubtful", lineterm="", n=0)
+    check_kept(KEPT / f"doubtful.{kind}.diff", "\n".join(changes))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_data_of_an_audit_are_as_kept(audits: dict[str, AuditRecord], name: str) -> None:
-    text = json.dumps(plain_of(audits[name]), indent=1)
-    check_kept(KEPT / f"{name}.json", rounded(text))
+def test_the_text_of_an_audit_is_as_kept(audits: dict[str, AuditRecord]) -> None:
+    check_each(audits, "txt", text_of)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_sections_of_a_page_are_as_kept(audits: dict[str, AuditRecord], name: str) -> None:
-    audit = audits[name]
+def test_the_data_of_an_audit_are_as_kept(audits: dict[str, AuditRecord]) -> None:
+    check_each(audits, "json", lambda audit: rounded(json.dumps(plain_of(audit), indent=1)))
+
+
+def test_the_sections_of_a_page_are_as_kept(audits: dict[str, AuditRecord]) -> None:
+    check_each(audits, "html", page_of)
+
+
+def page_of(audit: AuditRecord) -> str:
+    """Write the sections of a page, a tag a line."""
     diffs = {each.description: "-old\n+<new>" for each in audit.repairs[:1]}
     parts = {
         "answer": sections.answer_section(audit),
@@ -53,7 +66,7 @@ def test_the_sections_of_a_page_are_as_kept(audits: dict[str, AuditRecord], name
     text = "".join(f"{part}: {each}\n" for part, each in parts.items())
     if audit.reading is not None:
         text = text.replace(str(audit.reading.path.parent), "FOLDER")
-    check_kept(KEPT / f"{name}.html", rounded(re.sub(r"(?<=>)(?=<)", "\n", text)))
+    return rounded(re.sub(r"(?<=>)(?=<)", "\n", text))
 
 
 def test_what_other_programs_read_of_audits_is_as_kept(

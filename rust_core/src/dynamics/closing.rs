@@ -141,7 +141,6 @@ mod tests {
         });
     }
 
-    /// Up to a tenth of a radian.
     #[test]
     fn at_constant_velocities_no_gap_closes_further_than_its_bound() {
         for_each(|closing, change| {

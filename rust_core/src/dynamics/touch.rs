@@ -58,7 +58,7 @@ impl<'a> Start<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
     pub on: On,
-    /// Unit normal away from the ground that it touches.
+    /// Unit normal away from the surface that it touches.
     pub normal: Vector,
     /// The drive of its part.
     pub drive: Option<usize>,
