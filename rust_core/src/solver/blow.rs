@@ -1,4 +1,4 @@
-//! A blow: what closes stops at once, by impulses of contacts and inertia alone, and contacts may give back of it.
+//! A blow: contacts that close stop at once, by impulses alone, and may rebound.
 //!
 //! The equations: docs/physics.md, "Impacts".
 
@@ -7,9 +7,9 @@ use super::motor::Motor;
 use super::{Contact, MotorState, Problem};
 
 impl Problem {
-    /// Goes on from the velocities of a solve by a blow, in which no time passes: no weight acts, and motors do nothing, but gears
-    /// that lock themselves hold. Contacts that bear leave nothing that approaches, and give back a share of the blow. Its
-    /// impulses are added to those of the solve.
+    /// Adds a blow to the velocities of a solve. No time passes in it: weight and motors do nothing, and only self-locking
+    /// gears hold. After it no contact that bears still approaches, and contacts have returned a share of the blow. Its impulses
+    /// are added to those of the solve.
     pub(crate) fn blow(&mut self, restitution: f64) {
         let before: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
         let along: Vec<f64> = self.bilaterals.iter().map(|each| each.impulse).collect();
@@ -34,8 +34,8 @@ impl Problem {
         self.motors = motors;
     }
 
-    /// Goes on from the velocities of a solve that was a blow: contacts give back a share of its impulses, along normals
-    /// and tangents, and motors have no time to do anything.
+    /// Continues after a solve that was a blow: contacts return a share of its impulses along normals and tangents, and motors
+    /// do nothing.
     pub(super) fn rebound(&mut self, share: f64) {
         let blow: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
         let along: Vec<f64> = self.bilaterals.iter().map(|each| each.impulse).collect();
@@ -58,7 +58,7 @@ impl Problem {
         }
     }
 
-    /// Takes the present velocities as those without constraints, and lets go of what motors turn.
+    /// Takes the present velocities as those without constraints, and releases what motors turn.
     fn start_from_here(&mut self) {
         self.free.clone_from(&self.unknowns);
         for inertia in &mut self.inertias {
@@ -73,14 +73,14 @@ impl Problem {
         }
     }
 
-    /// Has the gears hold that lock themselves.
+    /// Lets self-locking gears hold.
     fn lock(&mut self) {
         for motor in self.motors.iter_mut().filter(|motor| motor.locks) {
             motor.state = MotorState::Holds;
         }
     }
 
-    /// Solves from contacts without impulses.
+    /// Solves, starting with contacts without impulses.
     fn solve_anew(&mut self) {
         for contact in &mut self.contacts {
             contact.set_impulses([0.0; 2]);
@@ -90,8 +90,8 @@ impl Problem {
 }
 
 impl Motor {
-    /// Gives nothing where no time passes. Its gear, if that locks itself, lets what turned with a speed [m/s] turn on more
-    /// slowly, and neither faster nor back.
+    /// Gives no impulse, as no time passes. A self-locking gear lets what turned at a speed [m/s] become slower, but neither
+    /// faster nor turn back.
     fn have_no_time(&mut self, speed: f64) {
         (self.target, self.limits, self.correction) = (speed, [Damper::default(); 2], None);
     }

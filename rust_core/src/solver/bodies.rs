@@ -1,4 +1,4 @@
-//! The bodies in a solve: what motors hold, the system of all constraints, and velocities from impulses.
+//! The bodies in a solve: what motors hold, the linear system of all constraints, and velocities from impulses.
 //!
 //! The equations: docs/physics.md, "The problem".
 
@@ -9,17 +9,17 @@ use super::row::Row;
 use super::system::System;
 use super::{Damper, Problem};
 
-/// The impulses of contacts and bilaterals in a system.
+/// Which impulses contacts and bilaterals have in a linear system.
 #[derive(Clone, Copy)]
 enum Impulses {
-    /// Those of dampers, in the present states.
+    /// Those of their dampers in the present states.
     OfStates,
-    /// The ones that they have.
+    /// The ones they have now.
     Given,
 }
 
 impl Problem {
-    /// Ties what motors hold to the base, and finds the directions of all constraints with that.
+    /// Ties what motors hold to the base, and finds the rows of all constraints that follow from that.
     pub(super) fn tie(&mut self) {
         for motor in &self.motors {
             if let Driven::Body(at) = motor.on {
@@ -50,8 +50,8 @@ impl Problem {
         self.solve_system(Impulses::OfStates)
     }
 
-    /// Solves the system of all bodies with these impulses of contacts and bilaterals, which without rings may be given, and
-    /// notes how that changes the unknowns.
+    /// Solves the linear system of all bodies with these impulses of contacts and bilaterals, and notes by how much it changes
+    /// the unknowns. With rings impulses cannot be given.
     fn solve_system(&mut self, impulses: Impulses) -> Option<()> {
         self.system.start(&self.masses, &self.free);
         let (system, rings) = (&mut self.system, &mut self.rings);
@@ -106,15 +106,15 @@ impl Problem {
         Some(())
     }
 
-    /// Changes all unknowns by a share of the last change.
+    /// Changes all unknowns by a multiple of the last change.
     pub(super) fn go(&mut self, share: f64) {
         for (unknown, change) in self.unknowns.iter_mut().zip(&self.change) {
             *unknown += change * share;
         }
     }
 
-    /// Computes the velocities from all impulses so far, for the current state of the motors. With rings those of the last
-    /// system stay, which hold the hinges exactly.
+    /// Computes the velocities from the present impulses and the states of motors. With rings the velocities of the last
+    /// system are kept, as they satisfy the hinges exactly.
     pub(super) fn find_velocities(&mut self) {
         if self.rings.is_empty() {
             self.solve_system(Impulses::Given);
@@ -122,8 +122,8 @@ impl Problem {
         self.note_loads();
     }
 
-    /// Adds up what all constraints but motors, and inertia along rows, do to each body beside the base: once for all motors,
-    /// which may be hundreds.
+    /// Adds up the impulses of all constraints except motors, and of inertia along rows, on each body but the base: once for
+    /// all motors, as there may be hundreds.
     pub(super) fn note_loads(&mut self) {
         self.loads.fill(0.0);
         let of_contacts = self.contacts.iter().flat_map(|c| {

@@ -1,5 +1,5 @@
-//! A contact: Coulomb's law with softness, the state in which it is, and the conditions under which that holds. No other
-//! file of the solver knows the limit of friction.
+//! A contact: Coulomb's law with softness, the state of the contact, and the conditions for that state. No other file of
+//! the solver knows the limit of friction.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
@@ -25,7 +25,7 @@ pub(crate) enum Grip {
 }
 
 impl Grip {
-    /// The next guess: a change of the direction of slip goes through sticking.
+    /// The next guess: the direction of slip is not reversed without sticking in between.
     pub(super) fn towards(self, fitting: Self) -> Self {
         match (self, fitting) {
             (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Sticks,
@@ -34,30 +34,30 @@ impl Grip {
     }
 }
 
-/// [1/kg] Velocity along normal and tangent per unit impulse along them, ...
+/// [1/kg] Velocity along normal and tangent per unit impulse: of the contact itself, ...
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Admittances {
     pub own: [f64; 2],
-    /// ... and that of the mass on their springs.
+    /// ... and of the mass on its springs.
     pub of_springs: [f64; 2],
 }
 
 /// [N s] How the law of a contact is relaxed along normal and tangent.
 #[derive(Clone, Copy, Debug, Default)]
 struct Relaxation {
-    /// What its law sees beyond the impulses of its dampers, ...
+    /// What is added to the impulses of the dampers before the law is applied, ...
     seen: [f64; 2],
-    /// ... and the part of that which its impulses are without, so that in its present state they are what they were.
+    /// ... and what of that is taken off the resulting impulses, so that the present state leaves them unchanged.
     without: [f64; 2],
 }
 
-/// A contact: it can only push along its normal, and its friction along the tangent is limited by that.
+/// A contact: it can only push along its normal, which limits its friction along the tangent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact {
     pub normal: Row,
     pub tangent: Row,
     pub friction: Friction,
-    /// Whether it can carry a load in this solve.
+    /// Whether it can bear a load in this solve.
     pub bears: bool,
     /// [kg] The mass by which its springs are stiff; `None`: its own effective mass.
     pub mass: Option<f64>,
@@ -65,10 +65,10 @@ pub(crate) struct Contact {
     pub bias: f64,
     /// Compliance in units of the admittance of its spring.
     pub compliance: f64,
-    /// Compliance of the tangential spring while it sticks, in units of the admittance of that spring, about its impulse of the
-    /// last step; 0 if it is rigid.
+    /// Compliance of the tangential spring while it sticks, in units of that spring's admittance; the spring acts about its
+    /// impulse of the last step. 0 if it is rigid.
     pub give: f64,
-    /// Share of a change of the friction of an elastic grip that its spring keeps; the rest is damping.
+    /// The share of a change in friction that stays in that spring; the rest is damping.
     pub spring_share: f64,
     /// [N s] Impulse along the normal.
     pub normal_impulse: f64,
@@ -76,16 +76,16 @@ pub(crate) struct Contact {
     pub friction_impulse: f64,
     /// The present state.
     pub grip: Grip,
-    /// [N s] Impulses about which it is damped.
+    /// [N s] Impulses about which its dampers act.
     center: [f64; 2],
     /// The state that fits the last velocities.
     pub(super) fitting: Grip,
-    /// Normal and tangent, with the motors in their state in this solve.
+    /// Normal and tangent as rows with what motors hold tied to the base.
     pub(super) actions: [Row; 2],
     pub(super) admittances: Admittances,
     /// Dampers of normal and tangent in this solve while no limit is reached.
     pub(super) dampers: [Damper; 2],
-    /// How its law is relaxed on the path to a solution.
+    /// How its law is relaxed along the path to a solution.
     relaxed: Relaxation,
 }
 
@@ -117,7 +117,7 @@ impl Contact {
     /// [m/s] Speeds along normal and tangent in this solve, offsets included.
     pub(super) fn speeds(&self, unknowns: &[f64]) -> [f64; 2] {
         let [n, t] = &self.actions;
-        // Without friction the speed of slip makes no difference, and is left out.
+        // Without friction the speed of slip makes no difference and need not be computed.
         let slip = if self.friction.resists() {
             t.along(unknowns)
         } else {
@@ -126,13 +126,13 @@ impl Contact {
         [n.speed(unknowns), slip + t.offset]
     }
 
-    /// Softens its grip by a compliance, about the friction [N s] of the last step; its spring keeps a share of a change.
+    /// Gives its grip a compliance, about the friction `last` [N s] of the last step; the spring keeps a share of a change.
     pub(crate) fn give_way(&mut self, compliance: f64, spring_share: f64, last: f64) {
         (self.give, self.spring_share) = (compliance, spring_share);
         self.center[1] = last;
     }
 
-    /// [N s] Impulse along the tangent without the part of the damper, from which the next step starts.
+    /// [N s] Impulse along the tangent without what is damping: the next step starts from it.
     pub(crate) fn friction_kept(&self) -> f64 {
         if self.give == 0.0 || self.grip != Grip::Sticks {
             return self.friction_impulse;
@@ -149,7 +149,7 @@ impl Contact {
         [self.normal_impulse, self.friction_impulse] = impulses;
     }
 
-    /// Damps it about its current impulses.
+    /// Makes its dampers act about its current impulses.
     pub(super) fn center(&mut self) {
         self.center[0] = self.normal_impulse;
         if self.give == 0.0 {
@@ -158,7 +158,7 @@ impl Contact {
         self.place_dampers();
     }
 
-    /// Takes the impulses ahead by so many times their change, as far as Coulomb's law lets them.
+    /// Extrapolates the impulses by a multiple of their last change, within Coulomb's law.
     pub(super) fn lead(&mut self, times: f64) {
         let [normal, friction] = self.center;
         self.normal_impulse = beyond(normal, self.normal_impulse, times).max(0.0);
@@ -166,7 +166,7 @@ impl Contact {
         self.friction_impulse = beyond(friction, self.friction_impulse, times).clamp(-limit, limit);
     }
 
-    /// Goes back to the impulses about which it is damped.
+    /// Restores the impulses about which its dampers act.
     pub(super) fn uncenter(&mut self) {
         self.set_impulses(self.center);
     }
@@ -200,17 +200,17 @@ impl Contact {
         self.proximal() * off
     }
 
-    /// Compliance of its damper about the last impulses; one that gives way elastically needs none.
+    /// Compliance of its damper about the last impulses; an elastic grip needs none.
     fn proximal(&self) -> f64 {
         if self.give == 0.0 { COMPLIANCE } else { 0.0 }
     }
 
-    /// Its friction, as a share of the most under its normal impulse.
+    /// Its friction, as a share of the limit at its normal impulse.
     pub(crate) fn friction_load(&self) -> f64 {
         self.friction_impulse.abs() / self.limit(self.normal_impulse)
     }
 
-    /// [N s] The most friction under a normal impulse.
+    /// [N s] The limit of friction at a normal impulse.
     fn limit(&self, normal: f64) -> f64 {
         self.friction.coefficient * normal
     }
@@ -245,13 +245,14 @@ impl Contact {
         [0, 1].map(|i| impulses[i] - share * self.relaxed.without[i])
     }
 
-    /// [N s] The impulses along normal and tangent that its law sees at these velocities, with a share of its relaxation.
+    /// [N s] The impulses along normal and tangent to which the law is applied at these velocities: those of the dampers, with
+    /// a share of its relaxation.
     fn seen(&self, unknowns: &[f64], share: f64) -> [f64; 2] {
         let speeds = self.speeds(unknowns);
         [0, 1].map(|i| self.dampers[i].at(speeds[i]) + share * self.relaxed.seen[i])
     }
 
-    /// Whether the present state fits its law at these velocities, but for what makes no difference to them.
+    /// Whether the present state fits its law at these velocities, or differs from the right one by too little to matter.
     pub(super) fn fits(&self, unknowns: &[f64]) -> bool {
         if self.fitting == self.grip {
             return true;
@@ -261,8 +262,8 @@ impl Contact {
         off(0).max(off(1)) < AGREEMENT.value()
     }
 
-    /// Calls `each` with the constraints of the present state: the impulse of each acts along the first of two rows, with a
-    /// damper along the second.
+    /// Calls `each` with the constraints of the present state: each impulse acts along the first of two rows, and is that of a
+    /// damper at the speed along the second.
     #[inline]
     pub(super) fn constraints(&self, mut each: impl FnMut([&Row; 2], Damper)) {
         let ([normal, tangent], [n, t]) = (&self.actions, self.dampers);
@@ -282,7 +283,7 @@ impl Contact {
         }
     }
 
-    /// The way in which it starts to slide when it touches.
+    /// The direction in which it starts to slide when it touches.
     pub(super) fn slides(&self, unknowns: &[f64], share: f64) -> Grip {
         if self.friction.resists() && self.seen(unknowns, share)[1] < 0.0 {
             Grip::Backwards
@@ -291,8 +292,8 @@ impl Contact {
         }
     }
 
-    /// Calls `each` with the conditions of its state: the state that follows, and the value, with a share of its
-    /// relaxation.
+    /// Calls `each` with the conditions for its state, with a share of its relaxation: the state that follows where the
+    /// condition fails, and the value, which must be above 0.
     pub(super) fn conditions(&self, unknowns: &[f64], share: f64, mut each: impl FnMut(Grip, f64)) {
         let [normal, friction] = self.seen(unknowns, share);
         let limit = self.limit(normal);
@@ -312,7 +313,7 @@ impl Contact {
         }
     }
 
-    /// [m/s] By how much its state does not fit these velocities, as a speed at which it would; 0 if it fits.
+    /// [m/s] By how much its state fails to fit these velocities, as the change of speed that would make it fit; 0 if it fits.
     pub(super) fn violation(&self, unknowns: &[f64]) -> f64 {
         let mut most: f64 = 0.0;
         self.conditions(unknowns, 0.0, |next, value| {
@@ -323,7 +324,7 @@ impl Contact {
         most
     }
 
-    /// Relaxes its law so that its state fits these velocities; by at least a speed [m/s] where that is more.
+    /// Relaxes its law so that its state fits these velocities, by at least as much as a speed `least` [m/s] stands for.
     pub(super) fn relax(&mut self, unknowns: &[f64], least: f64) {
         let [normal, friction] = self.seen(unknowns, 0.0);
         let [of_normal, of_friction] = self.dampers.map(|damper| least * damper.damping);
@@ -360,7 +361,7 @@ impl Contact {
     }
 }
 
-/// What lies beyond the second of two values, by so many times their difference.
+/// Extrapolates from two values by a multiple of their difference.
 pub(super) fn beyond(from: f64, to: f64, times: f64) -> f64 {
     to + times * (to - from)
 }

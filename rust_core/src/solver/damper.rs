@@ -4,8 +4,8 @@
 
 use super::row::Row;
 
-/// Compliance of the dampers: along the normal in units of the admittance of its spring, along the tangent in units of the
-/// contact's own.
+/// Compliance of the dampers of a contact: along the normal in units of the admittance of its spring, along the tangent of
+/// its own.
 pub(super) const COMPLIANCE: f64 = 1e-6;
 
 /// An impulse that decreases with the speed along its direction.
@@ -37,19 +37,19 @@ impl Damper {
         Self::new(self.impulse * share, self.damping * share)
     }
 
-    /// Both at one speed.
+    /// The sum of both at the same speed.
     pub(crate) fn plus(self, other: Self) -> Self {
         Self::new(self.impulse + other.impulse, self.damping + other.damping)
     }
 }
 
-/// A row with a damper: inertia along a direction, of a body that is hinged to the base or of a motor's rotor.
+/// Inertia along a direction, of a body that is hinged to the base or of a motor's rotor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia {
     pub row: Row,
-    /// The impulse that it takes to give it a speed along that.
+    /// The impulse with which it acts at a speed along that row.
     pub damper: Damper,
-    /// The row with the motors in their state in this solve.
+    /// The row with what motors hold tied to the base.
     pub(super) action: Row,
 }
 
@@ -75,15 +75,15 @@ impl Inertia {
     }
 }
 
-/// A row along which nothing moves, whatever impulse that takes.
+/// A direction in which nothing moves, whatever impulse that takes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bilateral {
     pub row: Row,
     /// [N s] Impulse along it.
     pub impulse: f64,
-    /// [N s] Impulse about which a solve damps it.
+    /// [N s] Impulse about which its damper acts.
     pub(super) center: f64,
-    /// The row with the motors in their state in this solve.
+    /// The row with what motors hold tied to the base.
     pub(super) action: Row,
     /// [1/kg] Velocity per unit impulse along it.
     pub(super) admittance: f64,

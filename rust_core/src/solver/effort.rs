@@ -1,4 +1,4 @@
-//! Counts of the solver's work; the motion does not depend on them.
+//! Counts of the solver's work, on which the motion does not depend.
 //!
 //! The equations: docs/physics.md, "Settling".
 
@@ -15,14 +15,14 @@ pub(crate) struct Effort {
     pub solves: u64,
     /// Linear systems solved in them.
     pub rounds: u64,
-    /// How often corrections did not lead to right states, so that a path was followed.
+    /// How often corrections of states did not lead to a solution, so that a path was followed.
     pub paths: u64,
-    /// Solves that found no solution: impulses are those about which constraints were damped last.
+    /// Solves that found no solution: impulses are those about which dampers acted last.
     pub unresolved: u64,
 }
 
 impl Effort {
-    /// The sum with further work.
+    /// The sum of this and further work.
     pub(crate) fn plus(self, more: Self) -> Self {
         Self {
             steps: self.steps + more.steps,

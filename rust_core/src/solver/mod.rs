@@ -1,7 +1,7 @@
 //! A solver of rigid bodies with contacts in the plane; it knows no robot.
 //!
-//! A problem is a base, bodies that are hinged to it or spin on it, and rings of links, with the velocities that all
-//! of them would have without constraints; and the constraints: contacts with Coulomb friction, directions along
+//! A problem consists of bodies, each with the velocity that it would have without constraints: a base, bodies that are
+//! hinged to it or spin on it, and rings of links; and of constraints: contacts with Coulomb friction, directions in
 //! which nothing moves, and motors with limits. A solve finds the velocities and impulses that satisfy all of them.
 //!
 //! The equations: docs/physics.md, "The problem".
@@ -36,46 +36,46 @@ use system::System;
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
 /// corresponds to a force of 1e-5 of the weight, far below anything that decides an outcome.
 const AGREEMENT: MetresPerSecond = MetresPerSecond(1e-7);
-/// Rounds of a search at most, unless told otherwise; most need none.
+/// Maximum number of rounds of a search by default; most searches need none.
 const ITERATIONS: u32 = 8;
 
-/// Where a search starts: from the states of the last solve, or from where all contacts are open.
+/// Where a search starts: from the states of the last solve, or with all contacts open.
 #[derive(Clone, Copy, PartialEq)]
 enum Start {
     LastStates,
     Air,
 }
 
-/// Bodies, what constrains them, and the velocities that a solve finds.
+/// Bodies, their constraints, and the velocities that a solve finds.
 pub(crate) struct Problem {
-    /// Where the unknowns of each body stand.
+    /// The index of each body's unknowns.
     pub layout: Layout,
-    /// [kg, kg, kg m^2] Inertia of the base for x, y and turn, without what turns with it; then [kg m^2] that of each body
-    /// hinged to it, as far as it is not among `inertias`, and of each that spins.
+    /// [kg, kg, kg m^2] Inertia of the base in x, y and rotation, without what turns with it; then [kg m^2] that of each
+    /// hinged body, except for what is among `inertias`, and of each spinning body.
     pub masses: Vec<f64>,
     pub inertias: Vec<Inertia>,
     pub rings: Vec<Ring>,
     pub contacts: Vec<Contact>,
     pub bilaterals: Vec<Bilateral>,
     pub motors: Vec<Motor>,
-    /// Rounds of a search at most.
+    /// Maximum number of rounds of a search.
     pub iterations: Option<u32>,
     /// Velocities without constraints.
     pub free: Vec<f64>,
     /// The velocities, and the impulses of the drives of rings; a solve starts from them.
     pub unknowns: Vec<f64>,
-    /// The work done.
+    /// Counts of the work done.
     pub effort: Effort,
-    /// [N s or N m s] What all constraints but motors have done to each body beside the base, and inertia along rows.
+    /// [N s or N m s] Impulse of all constraints except motors, and of inertia along rows, on each body but the base.
     loads: Vec<f64>,
     system: System,
-    /// The change to the last solution of the linear system.
+    /// By how much the last solution of the linear system has changed the unknowns.
     change: Vec<f64>,
 }
 
 impl Problem {
-    /// Bodies without constraints: a base with a mass [kg] and a moment of inertia [kg m^2], so many bodies hinged to it,
-    /// bodies that spin on it with these moments of inertia [kg m^2], and rings.
+    /// Bodies without constraints: a base with a mass [kg] and a moment of inertia [kg m^2], `joints` bodies hinged to it,
+    /// bodies that spin on it with moments of inertia `spins` [kg m^2], and rings.
     pub(crate) fn new(
         [mass, inertia]: [f64; 2],
         joints: usize,
@@ -119,14 +119,13 @@ impl Problem {
         self.find_velocities();
     }
 
-    /// Searches from the states of the last solve and, where that finds nothing, or its offsets do too much work, from where
-    /// all contacts are open.
+    /// Searches from the states of the last solve; if that fails, or the offsets do too much work, with all contacts open.
     fn find(&mut self) -> bool {
         let mut starts = [Start::LastStates, Start::Air].into_iter();
         starts.any(|start| self.search(start) && !self.offsets_do_too_much())
     }
 
-    /// Searches for them; returns whether they agree.
+    /// Searches for velocities and impulses; returns whether they satisfy all constraints.
     fn search(&mut self, start: Start) -> bool {
         self.tie();
         if start == Start::LastStates && self.settle(false) {
@@ -140,12 +139,12 @@ impl Problem {
                 return true;
             }
         }
-        // Contacts that share a load may pass it round, and agree all the same.
+        // Contacts that share a load may keep passing it among themselves, and that is a solution, too.
         (self.follow_path(start)).is_some_and(|off| off < AGREEMENT.value())
     }
 
-    /// Whether the offsets of contacts do more work than the kinetic energy that bodies have without constraints. Wedged
-    /// together almost exactly, they would have to move fast to follow contacts that hardly move.
+    /// Whether the offsets of contacts do more work than the kinetic energy of the bodies without constraints: bodies that
+    /// are almost exactly wedged together would have to move fast to follow contacts that hardly move.
     fn offsets_do_too_much(&self) -> bool {
         let of_contact = |c: &Contact| {
             (c.normal.offset * c.normal_impulse).abs()
@@ -170,8 +169,7 @@ impl Problem {
         given > of_base + of_bodies + of_inertias + of_rings
     }
 
-    /// Sets all offsets to 0: contacts that jam cannot all open or slide on their own. Returns whether that changes
-    /// anything.
+    /// Sets all offsets to 0, as contacts that jam cannot all open or slide by themselves. Returns whether any was not 0.
     fn forget_offsets(&mut self) -> bool {
         let has_offset = |c: &Contact| c.normal.offset != 0.0 || c.tangent.offset != 0.0;
         if !self.contacts.iter().any(has_offset) {

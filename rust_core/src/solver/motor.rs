@@ -1,8 +1,8 @@
 //! A motor: it holds a speed, or corrects it, up to the limits of its impulse.
 //!
-//! What it turns moves with the base while it holds: that is then no unknown, but adds to the inertia of the base,
-//! wherever it is. What a motor turns that corrects its speed, is at a limit, or is none, has a rate of its own to solve
-//! for.
+//! While a motor holds its speed, what it turns moves with the base at a known rate: it is no unknown, and only adds to the
+//! base's moment of inertia. While a motor corrects its speed or is at a limit, or where there is none, the rate is an
+//! unknown.
 //!
 //! The equations: docs/physics.md, "Motors".
 
@@ -29,43 +29,43 @@ pub(crate) enum MotorState {
     Absent,
 }
 
-/// Relative tolerance of the limit; a smaller excess is rounding.
+/// Relative tolerance at the limit; a smaller excess is rounding.
 const AT_LIMIT: f64 = 1e-12;
-/// [m/s] A motor at its limit holds again once it is past its speed by this.
+/// [m/s] A motor at its limit holds its speed again once it has overshot it by this.
 const PAST: MetresPerSecond = MetresPerSecond(1e-9);
 
-/// What a motor moves over the base.
+/// What a motor drives relative to the base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Driven {
-    /// What spins on the base or is hinged to it, by where its rate stands.
+    /// A body that spins on the base or is hinged to it, by the index of its rate.
     Body(usize),
     /// The links of a ring.
     Ring(usize),
 }
 
-/// A motor. Its speed is a lever times the rate of what it turns, less that of the base.
+/// A motor. Its speed is a lever times the rate of what it turns, relative to the base.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motor {
     pub on: Driven,
-    /// [m] The lever, below 0 if it runs forwards while what it turns spins clockwise; 1 for an arm, where speeds are rad/s and
-    /// impulses N m s.
+    /// [m] The lever; negative if what it turns spins clockwise while it runs forwards; 1 for an arm, where speeds are in rad/s
+    /// and impulses in N m s.
     pub lever: f64,
     /// [m/s] The speed that it holds.
     pub target: f64,
-    /// Its largest impulses at a speed, forwards and backwards.
+    /// The limits of its impulse, forwards and backwards, as functions of its speed.
     pub limits: [Damper; 2],
-    /// Its impulse at a speed between these, if it corrects its speed; if not, it holds that.
+    /// Its impulse within these limits, as a function of its speed, if it corrects that; if not, it holds it.
     pub correction: Option<Damper>,
-    /// Its gear locks itself: its speed stays between 0 and the target whatever the load, as the gear gives what the motor
-    /// cannot.
+    /// Whether its gear is self-locking: its speed stays between 0 and the target whatever the load, as the gear bears what
+    /// the motor cannot.
     pub locks: bool,
     pub state: MotorState,
-    /// [N s] By how much its limits are wider on the path to a solution.
+    /// [N s] By how much its limits are widened on the path to a solution.
     pub(super) relaxed: f64,
 }
 
 impl Motor {
-    /// One at rest; without an impulse to give there is none.
+    /// A motor at rest; `is_there` is false if it has no impulse to give.
     pub(crate) fn new(on: Driven, lever: f64, is_there: bool) -> Self {
         Self {
             on,
@@ -88,7 +88,7 @@ impl Motor {
         self.state == MotorState::Absent
     }
 
-    /// The same behind a gear that locks itself: that holds it at rest whether the motor has an impulse to give or not.
+    /// The same with a self-locking gear, which holds it at rest whether the motor has an impulse to give or not.
     pub(crate) fn behind_lock(self) -> Self {
         Self {
             locks: true,
@@ -97,16 +97,16 @@ impl Motor {
         }
     }
 
-    /// Holds the target with at most this impulse either way [N s].
+    /// Holds a target with an impulse of at most `most` [N s] either way.
     pub(crate) fn aim(&mut self, target: f64, most: f64) {
         self.limits = [most, -most].map(Damper::constant);
         self.turn_to(target);
     }
 
-    /// Holds another target.
+    /// Changes the target.
     pub(crate) fn turn_to(&mut self, target: f64) {
         self.target = target;
-        // Behind a lock a motor gives its limit only the way that it turns.
+        // With a self-locking gear a motor is at its limit only in the direction in which it turns.
         let turns = match self.state {
             MotorState::LimitForwards => target > 0.0,
             MotorState::LimitBackwards => target < 0.0,
@@ -117,7 +117,7 @@ impl Motor {
         }
     }
 
-    /// [m/s] The speed that it holds, if it does.
+    /// [m/s] The speed that it holds in a state in which it holds one.
     pub(super) fn held_speed(&self) -> f64 {
         if self.state == MotorState::Locked {
             0.0
@@ -126,12 +126,12 @@ impl Motor {
         }
     }
 
-    /// [rad/s] How much faster than the base it turns what it holds, if it does.
+    /// [rad/s] The rate, relative to the base, at which it holds what it turns, if it does.
     pub(super) fn held_rate(&self) -> Option<f64> {
         (self.given().is_none()).then(|| self.held_speed() / self.lever)
     }
 
-    /// Its impulse at a speed; none if that is what holds the speed.
+    /// Its impulse as a function of its speed; none if the impulse is whatever holds the speed.
     pub(super) fn given(&self) -> Option<Damper> {
         match self.state {
             MotorState::Holds => self.correction,
@@ -142,22 +142,22 @@ impl Motor {
         }
     }
 
-    /// [1/kg] Its speed per impulse that the base takes up.
+    /// [1/kg] Its change of speed per impulse, as far as that turns the base.
     pub(super) fn admittance(&self, system: &System) -> f64 {
         self.lever * self.lever * system.weights[TURN]
     }
 
-    /// [N s] The part of its impulse that the motor itself can have given, without what its gear has held.
+    /// [N s] The part of its impulse that the motor itself can have given, without what its gear bears.
     pub(crate) fn without_lock(&self, impulse: f64) -> f64 {
         if !self.locks || self.given().is_some() {
             return impulse;
         }
         let [most, least] = self.limits.map(|limit| limit.at(self.held_speed()));
-        // A line of the limit may be below 0 at a speed far from where it began.
+        // A limit that is linear in speed has the wrong sign at a speed that is far enough away.
         impulse.clamp(least.min(0.0), most.max(0.0))
     }
 
-    /// Its state after a solve in which it gave this impulse [N s] at this speed [m/s].
+    /// Its next state after a solve in which it gave this impulse [N s] at this speed [m/s].
     fn next(&self, impulse: f64, speed: f64) -> MotorState {
         let mut next = self.state;
         self.conditions(impulse, speed, |hold, value| {
@@ -175,8 +175,8 @@ impl Motor {
         next
     }
 
-    /// Calls `each` with the conditions of its state at an impulse [N s] and a speed [m/s]: the state that follows, and the
-    /// value.
+    /// Calls `each` with the conditions for its state at an impulse [N s] and a speed [m/s]: the state that follows where the
+    /// condition fails, and the value, which must not be below 0.
     fn conditions(&self, impulse: f64, speed: f64, mut each: impl FnMut(MotorState, f64)) {
         let [most, least] = self.limits.map(|limit| limit.at(speed));
         let wanted = self.correction.map(|correction| correction.at(speed));
@@ -219,9 +219,9 @@ impl Motor {
         }
     }
 
-    /// By how much the condition of its state that leads to the next one is relaxed, with wider limits.
+    /// By how much wider limits relax the condition that leads from its state to another one.
     pub(super) fn relaxed_by(&self, next: MotorState) -> f64 {
-        // One impulse tells both whether it reaches its limit and whether it holds again.
+        // The same impulse decides whether it reaches its limit and whether it holds again.
         let is_soft = self.correction.is_some();
         match (self.state, next) {
             (MotorState::Holds, _) => self.relaxed,
@@ -247,14 +247,14 @@ impl Problem {
         }
     }
 
-    /// [N s] Impulse of a motor so far.
+    /// [N s] The impulse of a motor at the present velocities.
     pub(crate) fn motor_impulse(&self, motor: &Motor) -> f64 {
         if let Some(given) = motor.given() {
             return given.at(self.motor_speed(motor));
         }
         match motor.on {
             Driven::Body(at) => {
-                // It has made the change of momentum that nothing else has.
+                // It accounts for the change of momentum that nothing else explains.
                 let change = self.masses[at] * (self.unknowns[at] - self.free[at]);
                 (change - self.loads[at]) / motor.lever
             }
@@ -262,14 +262,14 @@ impl Problem {
         }
     }
 
-    /// The impulse of a motor so far, as a share of the largest one that way.
+    /// The impulse of a motor, as a share of its limit in that direction.
     pub(crate) fn motor_load(&self, motor: &Motor) -> f64 {
         let impulse = self.motor_impulse(motor);
         let limit = motor.limits[usize::from(impulse < 0.0)];
         impulse / limit.at(self.motor_speed(motor))
     }
 
-    /// Calls `each` with the conditions of the state of a motor.
+    /// Calls `each` with the conditions for the state of a motor.
     pub(super) fn conditions_of(&self, motor: &Motor, each: impl FnMut(MotorState, f64)) {
         motor.conditions(self.motor_impulse(motor), self.motor_speed(motor), each);
     }
@@ -279,7 +279,8 @@ impl Problem {
         motor.next(self.motor_impulse(motor), self.motor_speed(motor))
     }
 
-    /// Releases motors beyond their limit, and lets those past their speed hold again; returns whether any changed.
+    /// Releases motors that exceed their limit, and lets those that overshoot their speed hold again; returns whether any
+    /// changed.
     pub(super) fn switch_motors(&mut self) -> bool {
         self.note_loads();
         let mut switched = false;

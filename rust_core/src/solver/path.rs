@@ -1,11 +1,11 @@
-//! The path from any states to a solution.
+//! The path from given states to a solution.
 //!
-//! All laws are relaxed so far that the present states are a solution, and the relaxation is driven to nothing. On the
-//! way one condition after another is reached: a contact touches or opens, starts to slide or sticks again, a motor
-//! comes to its limit. Between two of these everything changes linearly, so the next one is found exactly, and the
-//! state of what has reached it changes: a pivot. Where that turns the path round, the relaxation grows for a while.
-//! This is the method of Lemke (1965) from an advanced start (Tomlin 1978). From where all contacts are open it finds a
-//! solution of Coulomb's law in the plane wherever contacts may come to rest at all (Anitescu and Potra 1997).
+//! All laws are relaxed just enough to make the present states a solution, and the relaxation is then reduced to zero.
+//! On the way one condition after another is met: a contact touches or opens, starts to slide or sticks again, a motor
+//! reaches its limit. In between everything changes linearly, so the next condition is found exactly; whatever meets it
+//! changes its state, which is a pivot. A pivot may turn the path back: the relaxation then grows for a while.
+//! This is the method of Lemke (1965) from an advanced start (Tomlin 1978). Started with all contacts open, it finds a
+//! solution of Coulomb's law in the plane wherever contacts can come to rest at all (Anitescu and Potra 1997).
 //!
 //! The equations: docs/physics.md, "The path".
 
@@ -13,13 +13,13 @@ use super::contact::Grip;
 use super::motor::{Motor, MotorState};
 use super::{AGREEMENT, Problem, Start};
 
-/// Pivots, at most, for each contact and motor, from where all contacts are open, ...
+/// Maximum number of pivots for each contact and motor if all contacts are open at first, ...
 const FROM_AIR: usize = 16;
-/// ... and from the last states: a path from there is short, or leads round for ever.
+/// ... and from the last states: a path from there is short or goes round in circles.
 const FROM_LAST_STATES: usize = 4;
-/// Conditions within this share of the path are met together: one by one, both sides of what is symmetric would part.
+/// Conditions that are met within this share of the path count as met together: pivots one by one would break symmetry.
 const TOGETHER: f64 = 1e-9;
-/// That share where only the first is met.
+/// That share if only the first one is to count.
 const ALONE: f64 = 0.0;
 /// What the state of a contact or a motor becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,19 +28,18 @@ enum Switch {
     Motor(usize, MotorState),
 }
 
-/// A condition of the present states: they hold as long as its value is above 0, and the switch is made where it
-/// reaches 0.
+/// A condition for the present states: they are valid while its value is above 0, and the switch is made where it reaches 0.
 #[derive(Clone, Copy, Debug)]
 struct Condition {
     switch: Switch,
-    /// Its value now, and where the present states are a solution without relaxation.
+    /// Its value now, and at the point where the present states are a solution without relaxation.
     now: f64,
     there: f64,
 }
 
 impl Problem {
-    /// Follows the path from the present states or from where all contacts are open; returns the largest error of a velocity
-    /// [m/s] at its end. If it has none, impulses stay as they were.
+    /// Follows the path from the present states or with all contacts open; returns the largest error of a velocity [m/s] at
+    /// its end. If the path has no end, impulses stay as they were.
     pub(super) fn follow_path(&mut self, start: Start) -> Option<f64> {
         self.effort.paths += 1;
         self.center();
@@ -48,7 +47,7 @@ impl Problem {
             let end = self.pivot(FROM_LAST_STATES, TOGETHER);
             end.filter(|_| self.fits())
         } else {
-            // What is met together can lead past a solution that one after the other leads to.
+            // Pivots made together can miss a solution that they find one by one.
             [TOGETHER, ALONE].into_iter().find_map(|together| {
                 self.bearing().for_each(|contact| contact.grip = Grip::Open);
                 let motors = self.motors.iter_mut();
@@ -65,8 +64,8 @@ impl Problem {
         off
     }
 
-    /// Pivots until the relaxation is nothing, up to so many times for each contact and motor, with conditions within a share
-    /// of the path together. Returns the error in the end, if there is one.
+    /// Pivots until the relaxation is zero, at most `pivots` times for each contact and motor; conditions within the share
+    /// `together` of the path are met together. Returns the error at the end, if the path has one.
     fn pivot(&mut self, pivots: usize, together: f64) -> Option<f64> {
         loop {
             self.solve_states()?;
@@ -77,11 +76,11 @@ impl Problem {
         }
         let most = self.relax();
         let ends = most == 0.0 || self.pivot_along(pivots, together);
-        // Where conditions are met together, a motor may come to a state that does not fit.
+        // Pivots made together may leave a motor in a state that does not fit.
         (ends && self.motors_off(|_| true) < AGREEMENT.value()).then(|| self.apply_laws())
     }
 
-    /// The pivots of [`Problem::pivot`], from relaxed laws; returns whether the relaxation became nothing.
+    /// The pivots of [`Problem::pivot`], once laws are relaxed; returns whether the relaxation has become zero.
     fn pivot_along(&mut self, pivots: usize, together: f64) -> bool {
         let mut conditions = Vec::new();
         let (mut share, mut back) = (1.0, None);
@@ -112,8 +111,8 @@ impl Problem {
         false
     }
 
-    /// Relaxes all laws so that the present states are a solution at the present velocities, each by at least as much as the
-    /// one that needs most; returns how much that is, as a speed [m/s].
+    /// Relaxes all laws so that the present states are a solution at the present velocities, by as much as the law that is
+    /// violated most needs; returns that, as a speed [m/s].
     fn relax(&mut self) -> f64 {
         let unknowns = &self.unknowns;
         let bearing = self.contacts.iter().filter(|c| c.bears);
@@ -133,7 +132,7 @@ impl Problem {
         most
     }
 
-    /// [m/s] By how much some motors are beyond what their states allow at most.
+    /// [m/s] By how much the worst of some motors violates the conditions of its state.
     fn motors_off(&self, are: impl Fn(&&Motor) -> bool) -> f64 {
         let off = |motor: &Motor| {
             let mut short: f64 = 0.0;
@@ -149,8 +148,8 @@ impl Problem {
         motors.map(off).fold(0.0, f64::max)
     }
 
-    /// Lets motors at a limit or at a lock hold their speed if their state does not fit: with limits that are wide enough
-    /// all can. Returns whether any changed.
+    /// Lets motors whose state, at a limit or locked, does not fit hold their speed: with limits wide enough, all can.
+    /// Returns whether any changed.
     fn hold_with_motors(&mut self) -> bool {
         let mut changed = false;
         for k in 0..self.motors.len() {
@@ -166,8 +165,8 @@ impl Problem {
         changed
     }
 
-    /// Finds the conditions of the present states at this share of the relaxation and at none, and moves the unknowns to where
-    /// these states are a solution without any: at the start they are there. None if the system is singular.
+    /// Finds the conditions of the present states at this share of the relaxation and without any, and moves the unknowns to
+    /// the solution of these states without relaxation, where they are already at the start. None if the system is singular.
     fn look_ahead(
         &mut self,
         share: f64,
@@ -218,7 +217,7 @@ impl Problem {
         }
     }
 
-    /// Makes switches, one of each contact and motor; returns the one that would take back the first.
+    /// Makes switches, at most one for each contact and motor; returns the one that would undo the first.
     fn make_all(&mut self, switches: impl Iterator<Item = Switch>, share: f64) -> Option<Switch> {
         let mut made: Vec<Switch> = Vec::new();
         for switch in switches {
@@ -229,7 +228,7 @@ impl Problem {
         made.first().copied()
     }
 
-    /// Makes a switch; returns the one that would take it back.
+    /// Makes a switch; returns the one that would undo it.
     fn make(&mut self, switch: Switch, share: f64) -> Switch {
         match switch {
             Switch::Contact(i, next) => {
@@ -239,7 +238,7 @@ impl Problem {
                     Grip::Open => contact.slides(&self.unknowns, share),
                     _ => next,
                 };
-                // An open contact has one condition, whatever it becomes.
+                // An open contact has one condition, whichever state follows.
                 let back = if next == Grip::Open {
                     Grip::Sticks
                 } else {
@@ -256,9 +255,9 @@ impl Problem {
     }
 }
 
-/// Whether the relaxation falls (1) or grows (-1) from here, and the share of the rest of the path after which the next
-/// condition is met. The condition that the last switch has left must grow; if it falls where the relaxation falls, the
-/// path leads back.
+/// Whether the relaxation falls (1) or grows (-1) from here, and the share of the remaining path after which the next
+/// condition is met. The condition `back`, which would undo the last switch, has just been met and must grow; if it falls
+/// as the relaxation falls, the path turns back.
 fn first_met(conditions: &[Condition], back: Option<Switch>) -> (f64, f64) {
     let left = conditions.iter().find(|c| Some(c.switch) == back);
     let direction = match left {
@@ -270,7 +269,7 @@ fn first_met(conditions: &[Condition], back: Option<Switch>) -> (f64, f64) {
 }
 
 impl Condition {
-    /// The share of the rest of the path, forwards or back, after which it is met, if it is.
+    /// The share of the remaining path, forwards or backwards, after which it is met, if it is.
     fn met(&self, direction: f64, back: Option<Switch>) -> Option<f64> {
         let falls = (self.now - self.there) * direction;
         (falls > 0.0 && Some(self.switch) != back).then(|| self.now.max(0.0) / falls)
@@ -278,7 +277,7 @@ impl Condition {
 }
 
 impl Switch {
-    /// Whether both are switches of one contact or motor.
+    /// Whether both switch the same contact or motor.
     fn is_of_the_same(self, other: Self) -> bool {
         match (self, other) {
             (Self::Contact(i, _), Self::Contact(k, _)) | (Self::Motor(i, _), Self::Motor(k, _)) => {

@@ -1,17 +1,16 @@
-//! The unknowns in one vector, and rows over it: the directions in which constraints act.
+//! The vector of unknowns, and rows over it: the directions in which constraints act.
 //!
 //! The equations: docs/physics.md, "The problem".
 
-/// Where the turn of the base stands among the unknowns, after its velocities along x and y.
+/// Index of the rate of the base among the unknowns, after its velocities along x and y.
 pub(crate) const TURN: usize = 2;
-/// Number of unknowns of the base.
+/// Number of unknowns of the base, and of a link.
 pub(super) const BASE: usize = 3;
-/// Entries of a row at most, besides those of a link.
+/// Maximum number of entries of a row, not counting those of a link.
 const WIDTH: usize = 5;
 
-/// Where the unknowns of each body stand among all: three velocities of the base, the rate of each body that is hinged
-/// to it or spins on it, the speed of the slide of each ring and the impulse of its drive, and three velocities of each
-/// link.
+/// The order of the unknowns: three velocities of the base, the rate of each body that is hinged to it, of each that spins
+/// on it, the speed of each ring's slide, the impulse of each ring's drive, and three velocities of each link.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Layout {
     pub joints: usize,
@@ -38,17 +37,17 @@ impl Layout {
         BASE + self.joints + self.spins
     }
 
-    /// [m/s] Speed of what slides on the base in a ring.
+    /// [m/s] Speed of a ring's slide on the base.
     pub(crate) fn slide(self, ring: usize) -> usize {
         self.on_base() + ring
     }
 
-    /// [N s] Impulse of the drive of a ring, with the sign turned round.
+    /// [N s] Impulse of a ring's drive, with the opposite sign.
     pub(super) fn drive(self, ring: usize) -> usize {
         self.on_base() + self.rings + ring
     }
 
-    /// [m/s, m/s, rad/s] The first velocity of a link.
+    /// [m/s, m/s, rad/s] The first of the three velocities of a link.
     pub(crate) fn link(self, k: usize) -> usize {
         self.on_base() + 2 * self.rings + BASE * k
     }
@@ -63,12 +62,12 @@ impl Layout {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Link {
     ring: u16,
-    /// Where its velocities stand.
+    /// Index of its first velocity.
     at: u32,
 }
 
 impl Link {
-    /// The link of a number among those of all rings.
+    /// A link of a ring, by its number among the links of all rings.
     pub(crate) fn new(layout: Layout, ring: usize, number: usize) -> Self {
         Self {
             ring: ring as u16,
@@ -81,14 +80,15 @@ impl Link {
         usize::from(self.ring)
     }
 
-    /// Where its velocities stand.
+    /// Index of its first velocity.
     pub(super) fn at(self) -> usize {
         self.at as usize
     }
 }
 
-/// A direction in which a constraint acts, with the levers by which velocities add up along it: three of the base if it
-/// acts on that, then those of what spins, is hinged or slides on it. A solve looks at all rows many times, so it is small.
+/// A direction in which a constraint acts: the levers with which velocities add up to the speed along it. If it acts on the
+/// base, three are for that, followed by those of what is hinged to it, spins or slides on it. A solve looks at all rows
+/// many times, so a row is small.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Row {
     levers: [f64; WIDTH],
@@ -122,7 +122,7 @@ impl Row {
         }
     }
 
-    /// The same with the reaction on the base, by its levers for x, y and turn.
+    /// The same with the reaction on the base, which has these levers for x, y and turn.
     pub(crate) fn against_base(self, levers: [f64; BASE]) -> Self {
         Self {
             link: self.link,
@@ -131,12 +131,12 @@ impl Row {
         }
     }
 
-    /// The direction of the rate over the base of what spins on it or is hinged to it, at a lever [m].
+    /// The rate of a body that spins on the base or is hinged to it, relative to the base, times a lever [m].
     pub(crate) fn over_base(at: usize, lever: f64) -> Self {
         Self::on_base([0.0, 0.0, -lever]).and(at, lever)
     }
 
-    /// The same with a further lever, of another unknown.
+    /// The same with the lever of a further unknown.
     pub(crate) fn and(mut self, at: usize, lever: f64) -> Self {
         self.push(at, lever);
         self
@@ -148,7 +148,7 @@ impl Row {
         self.count += 1;
     }
 
-    /// Its unknowns besides those of a link, with their levers.
+    /// Its unknowns except those of a link, with their levers.
     pub(super) fn entries(&self) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
         self.entries_from(0)
     }
@@ -158,17 +158,17 @@ impl Row {
         self.count > 0
     }
 
-    /// Its levers there, ...
+    /// Its levers on the base, ...
     pub(super) fn of_base(&self) -> [f64; BASE] {
         [self.levers[0], self.levers[1], self.levers[2]]
     }
 
-    /// ... and the entries besides these.
+    /// ... and its other entries, except those of a link.
     pub(super) fn beside_base(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.entries_from(BASE)
     }
 
-    /// Whether it acts on two bodies beside the base.
+    /// Whether it acts on two bodies other than the base.
     pub(super) fn is_on_two_beside_base(&self) -> bool {
         usize::from(self.count) > BASE + 1
     }
@@ -200,7 +200,7 @@ impl Row {
         self.along(unknowns) + self.offset
     }
 
-    /// This with a share of the levers of another row on the same bodies.
+    /// The sum of this row and a multiple of another one on the same bodies; the offset stays.
     pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
         debug_assert_eq!((self.at, self.link), (other.at, other.link));
         let mut sum = *self;
@@ -213,7 +213,7 @@ impl Row {
         sum
     }
 
-    /// The same where some unknowns are the turn of the base and a rate over it [rad/s], which `held` tells.
+    /// The same if some bodies turn with the base: `held` has their rates relative to it [rad/s].
     pub(super) fn tied(&self, held: &[Option<f64>]) -> Self {
         let mut tied = *self;
         tied.count = self.count.min(BASE as u16);

@@ -1,8 +1,8 @@
-//! Right states, and the impulses about which constraints are damped: states that do not fit are corrected, and the
-//! centres of the dampers follow the impulses that a solve finds, until all stay.
+//! Finding the states of contacts and motors, and the impulses about which constraints are damped: states that do not fit
+//! are corrected, and the centres of the dampers follow the impulses that a solution gives, until neither changes.
 //!
-//! Close to a jam each solution of the system comes only a little nearer than the last, always by the same ratio. The
-//! rest of the way is then a geometric series, and is taken at once (Aitken 1926).
+//! Close to a jam each solution of the system comes only a little nearer than the last, always by the same ratio. What is
+//! left is then a geometric series, and is added at once (Aitken 1926).
 //!
 //! The equations: docs/physics.md, "Settling".
 
@@ -11,19 +11,19 @@ use super::row::TURN;
 use super::{AGREEMENT, Problem};
 use crate::units::MetresPerSecond;
 
-/// Solutions of the system at most; since all misfits are corrected at once, corrections could alternate for ever.
+/// Maximum number of solutions of the system: as all misfits are corrected at once, corrections could alternate for ever.
 const SOLUTIONS: u32 = 8;
-/// So many of them are not yet a sign of a jam.
+/// Up to this many are no sign of a jam.
 const FAR_FROM_JAM: u32 = 4;
-/// Changes that are taken at once at most.
+/// The most by which a change is extrapolated, in units of that change.
 const FARTHEST: f64 = 1e6;
-/// [m/s] By how much the base may still move where a search ends close to a jam, ...
+/// [m/s] How much the base may still have to move where a search close to a jam ends, ...
 const CLOSE: MetresPerSecond = MetresPerSecond(1e-6);
-/// ... and by how much it moves at most if it stands.
+/// ... and the most that it moves between two solutions if it stands.
 const STANDS: MetresPerSecond = MetresPerSecond(1e-10);
 
-/// How many times the last change the rest of a series is, from an error before it and the one now; nothing if there was
-/// none before, or if it does not fall.
+/// What is left of a geometric series, in units of its last change, from the error before that and the one now; none if
+/// there was no error before or if errors do not fall.
 fn rest_of_series(before: Option<f64>, now: f64) -> Option<f64> {
     let before = before.filter(|before| now < *before)?;
     Some((now / (before - now)).min(FARTHEST))
@@ -36,9 +36,9 @@ fn stands(before: Option<f64>, moved: f64) -> bool {
 }
 
 impl Problem {
-    /// Solves with the present states, corrects all that do not fit at once, and comes closer to the solution with those
-    /// that fit, until constraints agree; returns whether they do. Close to a jam they agree before the base stands: after
-    /// some solutions, or a path, it must stand as well.
+    /// Solves with the present states and corrects all that do not fit; once all fit, repeats the solution about the impulses
+    /// that it gives, until all constraints are satisfied. Returns whether they are. Close to a jam they are before the base
+    /// has come to rest: after some solutions, or a path, it must stand as well.
     pub(super) fn settle(&mut self, is_after_path: bool) -> bool {
         self.center();
         self.expect_to_close();
@@ -59,7 +59,7 @@ impl Problem {
             }
             let must_stand = is_after_path || solution >= FAR_FROM_JAM;
             let error = if must_stand { self.base_change() } else { off };
-            // The last error that contacts had says nothing of how the base moves.
+            // An error of contacts before this one says nothing of how the base moves.
             let is_alike = is_after_path || solution != FAR_FROM_JAM;
             let before = before.filter(|_| is_alike);
             if off < AGREEMENT.value() && (!must_stand || stands(before, error)) {
@@ -71,7 +71,7 @@ impl Problem {
         false
     }
 
-    /// Expects what is open and would close at the present velocities to do so.
+    /// Closes contacts that are open but would close at the present velocities.
     fn expect_to_close(&mut self) {
         let unknowns = &self.unknowns;
         let bearing = self.contacts.iter_mut().filter(|c| c.bears);
@@ -81,12 +81,12 @@ impl Problem {
         }
     }
 
-    /// The contacts that can carry a load.
+    /// The contacts that can bear a load.
     pub(super) fn bearing(&mut self) -> impl Iterator<Item = &mut Contact> {
         self.contacts.iter_mut().filter(|c| c.bears)
     }
 
-    /// Damps all constraints about their current impulses.
+    /// Makes all dampers act about the current impulses.
     pub(super) fn center(&mut self) {
         self.bearing().for_each(Contact::center);
         for bilateral in &mut self.bilaterals {
@@ -94,7 +94,7 @@ impl Problem {
         }
     }
 
-    /// Goes back to the impulses about which they are damped.
+    /// Restores the impulses about which the dampers act.
     pub(super) fn uncenter(&mut self) {
         self.bearing().for_each(Contact::uncenter);
         for bilateral in &mut self.bilaterals {
@@ -102,8 +102,8 @@ impl Problem {
         }
     }
 
-    /// The same as [`Self::center`] after a solution with an error, the states being those of the last one with its error, if there was one:
-    /// then the impulses are taken to where such changes lead. Returns the error of this one, if they are not.
+    /// As [`Self::center`], after a solution with an error. If the solution before had the same states and a larger error, the
+    /// impulses are first extrapolated to the limit of such changes; if not, returns this error, for the next solution.
     fn center_after(&mut self, before: Option<f64>, error: f64) -> Option<f64> {
         let rest = rest_of_series(before, error);
         if let Some(times) = rest {

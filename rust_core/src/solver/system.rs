@@ -1,34 +1,34 @@
 //! The linear system of a solve: the base, what is hinged to it, and what spins on it.
 //!
-//! What spins is eliminated first, body by body: it is coupled to little else. What a motor holds is no unknown; it turns
-//! with the base.
+//! Spinning bodies are eliminated first, one by one, as each is coupled to little else. What a motor holds turns with the
+//! base, and is no unknown.
 //!
 //! The equations: docs/physics.md, "The linear system".
 
 use super::damper::{Damper, Inertia};
 use super::row::{BASE, Layout, Row, TURN};
 
-/// Bodies hinged to the base, at most.
+/// Maximum number of bodies hinged to the base.
 const JOINTS: usize = 2;
 const BODIES: usize = BASE + JOINTS;
-/// From so many unknowns on it is cheaper to clear what can have been written than all.
+/// From so many unknowns on it is cheaper to clear only the entries that can have been written.
 const MANY: usize = 12;
 
 /// The linear system of the unknowns on the base.
 pub(super) struct System {
     /// Number of unknowns of the base and of what is hinged to it, ...
     bodies: usize,
-    /// ... and with what spins.
+    /// ... and of these and what spins.
     count: usize,
-    /// Row by row, each with the right-hand side at its end.
+    /// The matrix, row by row, each with its right-hand side at the end.
     rows: Vec<f64>,
     /// Whether there are entries off the diagonal, ...
     is_coupled: bool,
-    /// ... and whether there may be some between two bodies beside the base.
+    /// ... and whether there may be some that couple two bodies other than the base.
     spins_meet: bool,
-    /// [1/kg, 1/kg, 1/(kg m^2), ...] One over the inertia of each unknown, 0 for those of rings: the weights of the rows.
+    /// [1/kg, 1/kg, 1/(kg m^2), ...] The weight of each row: one over the inertia of its unknown, 0 for those of rings.
     pub weights: Vec<f64>,
-    /// [rad/s] Rate over the base of each that turns with it.
+    /// [rad/s] Rate relative to the base of each body that turns with it.
     held: Vec<Option<f64>>,
 }
 
@@ -47,17 +47,17 @@ impl System {
         }
     }
 
-    /// Has what a motor turns go with the base at a rate over it [rad/s], or lets go of it.
+    /// Makes the body with the rate at index `at` turn with the base, at a rate relative to it [rad/s], or releases it.
     pub(super) fn hold(&mut self, at: usize, rate: Option<f64>) {
         self.held[at] = rate;
     }
 
-    /// A row with what is held as part of the base.
+    /// A row in which what is held counts as part of the base.
     pub(super) fn tied(&self, row: &Row) -> Row {
         row.tied(&self.held)
     }
 
-    /// Starts from bodies on which nothing acts: their inertias [kg, kg, kg m^2, ...], and their velocities.
+    /// Sets the system up for bodies without constraints, with these inertias [kg, kg, kg m^2, ...] and velocities.
     pub(super) fn start(&mut self, masses: &[f64], free: &[f64]) {
         self.clear();
         for (at, mass) in masses.iter().enumerate() {
@@ -75,7 +75,7 @@ impl System {
         }
     }
 
-    /// Clears all entries that can have been written: where many spin, few of them.
+    /// Clears all entries that can have been written: few of them, if many bodies spin.
     fn clear(&mut self) {
         if self.spins_meet || self.count < MANY {
             self.rows.fill(0.0);
@@ -109,7 +109,7 @@ impl System {
         }
     }
 
-    /// The entry of two unknowns, which may couple them.
+    /// The entry that couples two unknowns.
     pub(super) fn coupling(&mut self, row: usize, column: usize) -> &mut f64 {
         self.is_coupled = true;
         self.spins_meet |= row.min(column) >= BASE && row != column;
@@ -125,7 +125,8 @@ impl System {
         self.entry(row, self.count)
     }
 
-    /// Adds a constraint: its impulse acts along the first of two tied rows, with a damper along the second.
+    /// Adds a constraint: its impulse acts along the first of two tied rows, and is that of a damper at the speed along the
+    /// second.
     pub(super) fn add(&mut self, [force, action]: [&Row; 2], damper: Damper) {
         self.push(force, damper.at(action.offset));
         if damper.damping == 0.0 {
@@ -187,7 +188,7 @@ impl System {
         Some(())
     }
 
-    /// Eliminates what spins from the rows of the base and of all that spin after it.
+    /// Eliminates a spinning body from the rows of the base, of what is hinged to it, and of the spinning bodies after it.
     fn eliminate_spin(&mut self, at: usize) {
         let (count, bodies) = (self.count, self.bodies);
         let stride = count + 1;
@@ -205,8 +206,8 @@ impl System {
         }
     }
 
-    /// Solves for the base and what is hinged to it, a fixed number of unknowns: most problems have three, and the compiler
-    /// can use that.
+    /// Solves for the base and what is hinged to it. The number of unknowns, mostly three, is a constant, so that the compiler
+    /// can unroll the loops.
     fn solve_bodies<const COUNT: usize>(&self, into: &mut [f64]) -> Option<()> {
         let mut rows = [[0.0; BODIES + 1]; COUNT];
         let stride = self.count + 1;
@@ -221,8 +222,8 @@ impl System {
     }
 }
 
-/// Gaussian elimination with pivoting; none if the system is singular. The squares of pivots are compared by the weights
-/// of their rows, so that a copy of a robot on another scale has the same pivots.
+/// Gaussian elimination with pivoting; none if the system is singular. The squares of possible pivots are weighted by their
+/// rows, so that a copy of a robot on another scale gets the same pivots.
 fn eliminate<const COUNT: usize>(
     a: &mut [[f64; BODIES + 1]; COUNT],
     mut weights: [f64; COUNT],

@@ -1,7 +1,8 @@
-//! The elimination of a ring, link by link, once round.
+//! The elimination of a ring, once round, from link to link.
 //!
-//! All that hangs on a link from behind has become part of its equations. What is left to it is to turn about its hinge
-//! in front: that turn is eliminated, and what it then takes to move the hinge becomes part of the next link.
+//! When it is a link's turn, all links behind it have become part of its equations. Given the velocity of its hinge in
+//! front, the link can only rotate about that: the rotation is eliminated, and the impulse that it then takes to move the
+//! hinge becomes part of the next link's equations.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -14,8 +15,8 @@ use crate::geometry::{Twist, Vector, left_of};
 use crate::solver::row::TURN;
 
 impl RingSystem {
-    /// Reduces the system to the border, and that to the base and, where the drive is a body that spins, to this. None if the
-    /// constraints contradict each other.
+    /// Reduces the system to the border, and the border to the base and, if `spins`, the spinning body that drives the ring.
+    /// None if the constraints contradict each other.
     pub(super) fn eliminate(&mut self, hinges: &[Hinge], spins: bool) -> Option<()> {
         let last = self.links.len() - 1;
         self.links[0].close(1, &hinges[last]);
@@ -37,7 +38,7 @@ impl RingSystem {
         self.solve_border(&of_ring[..of_ring.len() - usize::from(spins)])
     }
 
-    /// Makes what is left of a link part of the next one and of the border.
+    /// Makes what remains of a link part of the next one and of the border.
     fn hand_on(&mut self, link: usize, hinge: &Hinge, solved: &Solved) {
         let velocity = Vector2::new(hinge.velocity.x, hinge.velocity.y);
         let below = &self.links[link].below;
@@ -58,7 +59,7 @@ impl RingSystem {
         next.below += on_link(of_pin, end);
     }
 
-    /// The same for what a link and the next one have from each other's turn.
+    /// The same for the resistance of the hinge between them to rotation.
     fn hand_on_twist(&mut self, link: usize, hinge: &Hinge, solved: &Solved) {
         let stiffness = hinge.twist.damping;
         let velocity = Vector2::new(hinge.velocity.x, hinge.velocity.y);
@@ -110,8 +111,8 @@ impl RingSystem {
         Some(())
     }
 
-    /// Computes the velocities of the links and the impulses of the hinges from the velocity of the base and, where the
-    /// drive is a body that spins, of this; returns those of the slide and the drive.
+    /// Computes the velocities of the links and the impulses of the hinges from the velocity of the base and the rate of the
+    /// spinning body that drives the ring, if there is one. Returns the unknowns of the slide and the drive.
     pub(super) fn back_substitute(
         &mut self,
         hinges: &[Hinge],
@@ -163,7 +164,7 @@ impl RingSystem {
 }
 
 impl Entry {
-    /// Adds the hinge that closes the ring, of which it is the link before or after.
+    /// Adds the hinge that closes the ring to the link before it (side 0) or after it (side 1).
     fn close(&mut self, side: usize, hinge: &Hinge) {
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let at_hinge = Matrix2::identity() * sign;
@@ -173,10 +174,10 @@ impl Entry {
         beside -= on_link(at_hinge, hinge.pushed_at[side]);
     }
 
-    /// Solves for its turn about its hinge in front.
+    /// Solves for its rotation about its hinge in front.
     fn turn_about_hinge(&self, hinge: &Hinge) -> Option<Solved> {
         let turning = turning_about(hinge.ends[0]);
-        // The moment about the hinge, of which the hinge has no part.
+        // The moment about the hinge, to which the hinge's own impulse does not contribute.
         let moment = turning_about(hinge.pushed_at[0]);
         let (of_turn, resists) = (self.own * turning, moment.transpose() * self.own);
         let pivot = moment.dot(&of_turn);
@@ -196,14 +197,13 @@ impl Entry {
     }
 }
 
-/// The velocity of a link that turns at rate 1 about a point, which is at `arm` [m] from its centre.
+/// The velocities of a link that rotates at rate 1 about a point at `arm` [m] from its centre.
 fn turning_about(arm: Vector) -> Vector3<f64> {
     let lever = left_of(arm);
     Vector3::new(-lever.x, -lever.y, 1.0)
 }
 
-/// What acts on a point, or follows from its velocity, as it acts on the link that the point is on, at `arm` [m] from its
-/// centre.
+/// Coefficients of the impulse or the velocity of a point on a link, at `arm` [m] from its centre, as those of the link.
 fn on_link<const ROWS: usize>(
     at_point: SMatrix<f64, ROWS, 2>,
     arm: Vector,

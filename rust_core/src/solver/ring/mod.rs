@@ -21,28 +21,28 @@ pub(crate) struct RingSpec {
     pub mass: f64,
     /// [kg m^2] ... and its moment of inertia.
     pub inertia: f64,
-    /// The body that spins on the base and drives it, if any; if not, a motor pulls at some of its links.
+    /// The body that spins on the base and drives the ring, if any; if not, a motor pulls at some of its links.
     pub spin: Option<usize>,
 }
 
 /// One closed ring of links.
 pub(crate) struct Ring {
-    /// Where the velocities of its links begin, and those of its slide, its drive and what spins to drive it.
+    /// Indices of the first velocity of its links, of its slide, of its drive, and of the spinning body that drives it.
     first: usize,
     slide_at: usize,
     drive_at: usize,
     spin: Option<usize>,
     /// [kg] Mass of a link, ...
     mass: f64,
-    /// [1/kg, 1/kg, 1/(kg m^2)] ... and one over its inertia for x, y and turn.
+    /// [1/kg, 1/kg, 1/(kg m^2)] ... and one over its inertia in x, y and rotation.
     pub(super) weights: [f64; BASE],
     /// The hinge in front of each link.
     pub hinges: Vec<Hinge>,
-    /// What holds the slide.
+    /// Spring and damper of the slide.
     pub slide: Damper,
     /// The links at which its motor pulls, if it spins nothing.
     pub grasps: Vec<Grasp>,
-    /// The impulse that the rotor of that motor takes to give it a speed.
+    /// The impulse with which the rotor of that motor acts at a speed.
     pub rotor: Damper,
     system: RingSystem,
 }
@@ -82,8 +82,8 @@ impl Ring {
         links.zip(self.weights.iter().cycle()).map(of_entry).sum()
     }
 
-    /// Sets the velocities of the links without constraints, from those of all unknowns, and the moments of inertia with
-    /// which they turn from there [kg m^2].
+    /// Sets the velocities of the links without constraints, which are among those of all unknowns, and the moments of
+    /// inertia of the links [kg m^2].
     pub(crate) fn start(&mut self, inertias: &[f64], free: &[f64]) {
         let free = self.links(free);
         self.system.free(self.mass, inertias, free);
@@ -106,7 +106,7 @@ impl Ring {
             .sum()
     }
 
-    /// [N s] Impulse of the motor of such a drive while it holds its speed.
+    /// [N s] Impulse of the motor of such a drive if it holds its speed.
     pub(super) fn drive_impulse(&self, unknowns: &[f64]) -> f64 {
         -unknowns[self.drive_at] - self.rotor.at(self.drive_speed(unknowns))
     }
@@ -116,7 +116,7 @@ impl Ring {
         self.system.start(self.slide);
     }
 
-    /// Has a motor pull at its links.
+    /// Makes a motor pull at its links.
     pub(super) fn drive(&mut self, motor: &Motor) {
         if self.grasps.is_empty() {
             return self.system.let_go();
@@ -140,19 +140,20 @@ impl Ring {
         }
     }
 
-    /// Adds a constraint on a link: its impulse acts along the first of two rows, with a damper along the second.
+    /// Adds a constraint on a link: its impulse acts along the first of two rows, and is that of a damper at the speed along
+    /// the second.
     pub(super) fn add(&mut self, link: Link, rows: [&Row; 2], damper: Damper) {
         let number = (link.at() - self.first) / BASE;
         if !rows[1].is_on_base() {
             return self.system.add(number, rows, damper);
         }
-        // What spins and is held is part of the base, and has no entry here.
+        // A spinning body that is held is part of the base, and has no entry here.
         let slides = rows[1].beside_base().any(|(at, _)| at == self.slide_at);
         let column = if slides { SLIDE } else { DRIVE };
         self.system.add_between((number, column), rows, damper);
     }
 
-    /// Reduces its system to the unknowns on the base, and adds that to the rows of these; none if the constraints contradict
+    /// Reduces its system to the unknowns on the base, and adds the result to their rows; none if the constraints contradict
     /// each other.
     pub(super) fn eliminate(&mut self, system: &mut System) -> Option<()> {
         self.system.eliminate(&self.hinges, self.spin.is_some())?;
@@ -168,7 +169,7 @@ impl Ring {
         Some(())
     }
 
-    /// Finds the velocities of links and slide from those of the base and of what spins.
+    /// Finds the velocities of links and slide from those of the base and of the spinning body.
     pub(super) fn back_substitute(&mut self, unknowns: &mut [f64]) {
         let base = [unknowns[0], unknowns[1], unknowns[2]];
         let spin = self.spin.map(|at| unknowns[at]);

@@ -1,10 +1,10 @@
 //! The linear system of a ring of links, reduced by elimination to the system of the base.
 //!
-//! The hinges are exact: their impulses are unknowns, beside the velocities. Each link is coupled only to its own
-//! two hinges, the base, the drive and the slide, so the elimination goes once round the ring, from link to link. The
-//! last hinge closes it; like the base, the drive and the slide, it is part of a border that is carried
-//! along. Stiff springs in place of the hinges would cost as many digits as they are stiffer than links are heavy,
-//! and what is lost acts like blows that shake all of it, harder the shorter the step.
+//! Hinges are exact: their impulses are unknowns, like the velocities. A link is coupled only to its own two hinges, the
+//! base, the drive and the slide, so the elimination goes once round the ring, from link to link. The last hinge closes
+//! the ring; like the base, the drive and the slide it belongs to a border that is carried along. With stiff springs
+//! instead of hinges, the impulses of the springs would swamp the momentum of light links in rounding errors. These act
+//! like blows that shake the whole ring, the harder the shorter the step.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -14,16 +14,17 @@ use crate::geometry::Vector;
 use crate::solver::damper::Damper;
 use crate::solver::row::{Row, TURN};
 
-/// How a hinge holds its two links: it keeps an end of each together, and may resist that they turn against each other.
+/// How a hinge holds its two links: it keeps one end of each together, and may resist their relative rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Hinge {
-    /// [m] From the centre of each link to the end that it holds, ...
+    /// [m] From the centre of each link to the end that the hinge holds, ...
     pub ends: [Vector; 2],
-    /// [m] ... and to where its impulse acts.
+    /// [m] ... and to the point where its impulse acts.
     pub pushed_at: [Vector; 2],
-    /// [m/s] Velocity of the second end relative to the first, with which it closes.
+    /// [m/s] Velocity of the second end relative to the first, which closes a gap between them.
     pub velocity: Vector,
-    /// What turns the next link, by its rate over this one [rad/s]; the hinge that closes the ring has none.
+    /// Torque on the next link, as a function of its rate relative to this one [rad/s]; the hinge that closes the ring has
+    /// none.
     pub twist: Damper,
 }
 
@@ -45,10 +46,10 @@ pub(crate) struct Grasp {
 
 /// Rows and columns of the border: three for the base, ...
 pub(super) const ON_BASE: usize = 0;
-/// ... one for the drive (its force or the spin through which it acts), one for the slide, ...
+/// ... one for the drive (its impulse, or the rate of the body that drives), one for the slide, ...
 pub(super) const DRIVE: usize = 3;
 pub(super) const SLIDE: usize = 4;
-/// ... two for the closing hinge; then the right-hand side, a column without a row.
+/// ... two for the closing hinge; last the right-hand side, a column without a row.
 pub(super) const CLOSING_HINGE: usize = 5;
 pub(super) const RIGHT: usize = 7;
 pub(super) const WIDTH: usize = 8;
@@ -57,22 +58,22 @@ pub(super) const WIDTH: usize = 8;
 #[derive(Clone, Copy, Default)]
 pub(super) struct Entry {
     pub(super) own: Matrix3<f64>,
-    /// Its rows in the columns of the border, and the right-hand side; each is a column here.
+    /// Its rows in the columns of the border and of the right-hand side, transposed.
     pub(super) beside: SMatrix<f64, WIDTH, 3>,
-    /// Rows of the border in its columns.
+    /// The rows of the border in its columns.
     pub(super) below: SMatrix<f64, WIDTH, 3>,
 }
 
-/// What follows for a link, once eliminated, from the velocity of its hinge in front and from the border.
+/// What the elimination keeps of a link: how it depends on the velocity of its hinge in front and on the border.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Solved {
-    /// Its turn ...
+    /// Its rate ...
     pub(super) turn: (RowVector2<f64>, SVector<f64, WIDTH>),
     /// ... and the impulse of the hinge on it.
     pub(super) impulse: (Matrix2<f64>, SMatrix<f64, WIDTH, 2>),
 }
 
-/// The same from the turn of the next link, if that is resisted.
+/// The same for the rate of the next link, if the hinge resists rotation.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Twisted {
     pub(super) turn: f64,
@@ -84,7 +85,7 @@ pub(super) struct RingSystem {
     pub(super) links: Vec<Entry>,
     /// Masses, inertia and momentum of the links without constraints.
     free: Vec<[Vector3<f64>; 2]>,
-    /// What the elimination keeps of each link but the last, and of that one: its velocity in terms of the border.
+    /// What the elimination keeps of each link except the last, and of the last: its velocity in terms of the border.
     pub(super) solved: Vec<Solved>,
     pub(super) twisted: Vec<Twisted>,
     pub(super) last: SMatrix<f64, WIDTH, 3>,
@@ -118,7 +119,7 @@ impl RingSystem {
         }
     }
 
-    /// Starts from the links without constraints and a slide on a damper.
+    /// Starts with links without constraints, and with the slide on its damper.
     pub(super) fn start(&mut self, slide: Damper) {
         for (link, [masses, momentum]) in self.links.iter_mut().zip(&self.free) {
             *link = Entry::default();
@@ -130,7 +131,8 @@ impl RingSystem {
         self.border[(SLIDE, RIGHT)] = slide.at(0.0);
     }
 
-    /// Adds a constraint on a link alone: its impulse acts along the first of two rows, with a damper along the second.
+    /// Adds a constraint on a link alone: its impulse acts along the first of two rows, and is that of a damper at the speed
+    /// along the second.
     pub(super) fn add(&mut self, link: usize, [force, action]: [&Row; 2], damper: Damper) {
         let entry = &mut self.links[link];
         let [force, along] = [force, action].map(|row| Vector3::from(row.on_link));
@@ -139,7 +141,7 @@ impl RingSystem {
         right += force.transpose() * damper.at(action.offset);
     }
 
-    /// The same on a link and the base, with what is beside it there and stands at a column of the border.
+    /// The same on a link and the base, with a slide or a spinning body that has this column of the border.
     pub(super) fn add_between(
         &mut self,
         (link, column): (usize, usize),
@@ -169,14 +171,14 @@ impl RingSystem {
         }
     }
 
-    /// Adds what a hinge does against the turn of one of its links, the other one being at rest.
+    /// Adds the resistance of a hinge to the rotation of one of its links, the other one being at rest.
     pub(super) fn resist(&mut self, link: usize, sign: f64, twist: Damper) {
         let entry = &mut self.links[link];
         entry.own[(TURN, TURN)] += twist.damping;
         entry.beside[(RIGHT, TURN)] += sign * twist.at(0.0);
     }
 
-    /// Couples a link to the drive: how its velocity, and that of the base, enter the drive's speed.
+    /// Couples a link to the drive: its velocity and that of the base add to the drive's speed.
     pub(super) fn add_grasp(&mut self, grasp: &Grasp) {
         let Grasp {
             link,
@@ -192,23 +194,23 @@ impl RingSystem {
         }
     }
 
-    /// Has the drive give no impulse.
+    /// Makes the drive give no impulse.
     pub(super) fn let_go(&mut self) {
         self.border[(DRIVE, DRIVE)] = 1.0;
     }
 
-    /// Has the drive hold a speed [m/s].
+    /// Makes the drive hold a speed [m/s].
     pub(super) fn hold(&mut self, speed: f64) {
         self.border[(DRIVE, RIGHT)] = speed;
     }
 
-    /// Has the drive give the impulse of a damper that is not constant.
+    /// Makes the drive give the impulse of a damper that is not constant.
     pub(super) fn give(&mut self, damper: Damper) {
         self.border[(DRIVE, DRIVE)] = -1.0 / damper.damping;
         self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.damping;
     }
 
-    /// Has the drive give a constant impulse [N s], through a link and the base.
+    /// Makes the drive give a constant impulse [N s] to a link and the base.
     pub(super) fn push(&mut self, grasp: &Grasp, impulse: f64) {
         for i in 0..3 {
             self.links[grasp.link].beside[(RIGHT, i)] += grasp.on_link[i] * impulse;
