@@ -1,21 +1,21 @@
-//! How an arm's motor comes to the angle that it is to hold: at its full rate, then ever more slowly. One that stopped
-//! within a step would need a torque that grows as steps get shorter.
+//! How an arm's motor reaches the angle that it is to hold: at its full rate, and then slowing down evenly. To stop within
+//! one step it would need a torque that grows as steps get shorter.
 //!
 //! The equations: docs/physics.md, "Arms".
 
-/// The motion of an arm relative to what it is to follow, in one step.
+/// The motion of an arm in one step, relative to the angle that it is to hold.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Approach {
     /// [rad/s] Mean rate in the step.
     pub mean: f64,
     /// [rad/s] Rate at its end.
     pub end: f64,
-    /// Whether it goes on at its full rate.
+    /// Whether it turns at its full rate throughout.
     pub goes_on: bool,
 }
 
 impl Approach {
-    /// At the same rate [rad/s] all the time.
+    /// Motion at a constant rate [rad/s].
     pub(super) fn going_on(rate: f64) -> Self {
         Self {
             mean: rate,
@@ -24,8 +24,8 @@ impl Approach {
         }
     }
 
-    /// The one that a `way` [rad] calls for in a step of `h` [s], at a rate of at most `limit` [rad/s], below 0 if what it is
-    /// to follow turns away faster than it can, and with at most this deceleration [rad/s^2], which is above 0.
+    /// The motion in a step of `h` [s] that is to cover `way` [rad], at a rate of at most `limit` [rad/s] and a deceleration
+    /// [rad/s^2] above 0. The limit is negative if the angle moves away faster than the arm can turn.
     pub(super) fn new(way: f64, [limit, deceleration]: [f64; 2], h: f64) -> Self {
         if limit <= 0.0 {
             return Self::going_on(limit * 1.0_f64.copysign(way));

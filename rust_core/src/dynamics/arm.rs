@@ -9,15 +9,15 @@ use crate::geometry::{Twist, Vector, left_of};
 use crate::robot::Flipper;
 use crate::solver::{Inertia, Row};
 
-/// What the flippers at one end are to do; angles and rates are relative to the chassis, upwards > 0.
+/// What the flippers at one end are commanded to do; angles and rates are relative to the chassis, positive upwards.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FlipperCommand {
-    /// \[rad\] To turn to an angle.
+    /// \[rad\] Turn to an angle.
     Angle(f64),
-    /// \[rad\] The same, and to turn against the chassis as fast as it turns, to keep their angle to the ground;
-    /// otherwise they would lag behind.
+    /// \[rad\] Turn to an angle, and against the chassis as fast as that turns: this keeps their angle to the ground, to which
+    /// they would otherwise lag behind.
     Level(f64),
-    /// \[rad/s\] To turn at a rate.
+    /// \[rad/s\] Turn at a rate.
     Rate(f64),
 }
 
@@ -28,7 +28,7 @@ impl Default for FlipperCommand {
 }
 
 impl FlipperCommand {
-    /// \[rad\] or \[rad/s\] Its number.
+    /// \[rad\] or \[rad/s\] The commanded angle or rate.
     pub fn value(self) -> f64 {
         let (Self::Angle(value) | Self::Level(value) | Self::Rate(value)) = self;
         value
@@ -38,17 +38,17 @@ impl FlipperCommand {
 /// The arms at one end of the robot.
 pub(super) struct Arm {
     pub rule: Flipper,
-    /// [rad/s] Rate relative to the chassis at which this solve aims.
+    /// [rad/s] Target rate relative to the chassis in this solve.
     pub rate: f64,
-    /// Its approach to the angle that it is to hold, in this step.
+    /// How it approaches the angle that it is to hold, in this step.
     pub approach: Approach,
-    /// Whether this angle changes against the chassis, as fast as that turns.
+    /// Whether it turns as fast as the chassis, the other way round, to keep its angle to the ground.
     pub keeps_level: bool,
     /// [m] From the chassis' centre of mass to the pivot, in the middle of the step.
     pub pivot: Vector,
-    /// [m] From the pivot to the arm's own centre of mass, in the middle of the step.
+    /// [m] From the pivot to the arm's centre of mass, in the middle of the step.
     pub center: Vector,
-    /// Its velocity in this step if there were no pivot.
+    /// The velocity that it would have in this step without its pivot.
     pub free: Twist,
 }
 
@@ -70,18 +70,17 @@ impl Arm {
         self.rule.moment_of_inertia + self.rule.mass * self.rule.arm.length_squared()
     }
 
-    /// [rad/s^2] How fast its motor can slow it down in the air.
+    /// [rad/s^2] Deceleration that its motor can give it in the air.
     pub(super) fn deceleration(&self) -> f64 {
         self.rule.torque_limit / (self.inertia_about_pivot() + self.rule.rotor_inertia)
     }
 
-    /// [rad/s] Rate relative to the chassis at which the angle changes that it is to hold, if the chassis turns at this
-    /// rate [rad/s].
+    /// [rad/s] Rate, relative to the chassis, of the angle that it is to hold, if the chassis turns at `of_chassis` [rad/s].
     pub(super) fn follows(&self, of_chassis: f64) -> f64 {
         if self.keeps_level { -of_chassis } else { 0.0 }
     }
 
-    /// Aims at a rate relative to that angle, as far as the motor can turn so fast [rad/s].
+    /// Sets the target rate to a rate relative to that angle [rad/s], within the limit of the motor.
     pub(super) fn aim(&mut self, rate: f64, of_chassis: f64) {
         let limit = self.rule.rate_limit;
         self.rate = (rate + self.follows(of_chassis)).clamp(-limit, limit);
@@ -92,7 +91,7 @@ impl Arm {
         chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
-    /// Its inertia along x, along y and in rotation; its rate stands at `joint` among the solver's unknowns.
+    /// Its inertia along x, along y and in rotation; `joint` is the index of its rate among the solver's unknowns.
     pub(super) fn inertias(&self, joint: usize) -> [Inertia; 3] {
         let [pivot, arm] = [self.pivot, self.center].map(left_of);
         let Flipper {

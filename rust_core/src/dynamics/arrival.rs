@@ -1,5 +1,5 @@
-//! When, within a step, a motor comes to its speed or to the end of a piece of its curve, or a contact ceases to slide: its
-//! force or the slope of it jumps then, and the step is to end there.
+//! When, within a step, a motor reaches its speed or the end of a piece of its curve, or a contact stops sliding: a force
+//! or its slope jumps then, and the step should end there.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -7,24 +7,24 @@ use super::local_error::SHORTEST;
 use super::{Dynamics, SetPoint};
 use crate::solver::{Grip, MotorState};
 
-/// No step is cut to more than this share of it.
+/// A step is cut only at a time before this share of its length.
 const LONGEST_SHARE: f64 = 0.97;
 
-/// What has become, in the middle of a step, of a speed that a motor or friction brings to 0.
+/// A speed that a motor or friction brings to 0, as found in the middle of a step.
 #[derive(Clone, Copy)]
 enum Middle {
-    /// It is held at 0, which has taken this share of the largest impulse.
+    /// It is held at 0, by this share of the largest impulse.
     Held(f64),
-    /// [m/s] It is not yet 0.
+    /// [m/s] It is not 0 yet, but this.
     Left(f64),
 }
 
-/// [s] When a speed of `lag` [m/s] comes to 0 under a constant force, from its middle, `half` [s] after the beginning of a
-/// step; none if the step to its end is off by no more than `accuracy` [m].
+/// [s] When a speed of `lag` [m/s] at the beginning of a step reaches 0 under a constant force, from what it is in the
+/// middle, after `half` [s]; none if the step as a whole is wrong by no more than `accuracy` [m].
 fn arrival(lag: f64, middle: Middle, half: f64, accuracy: f64) -> Option<f64> {
     let step = 2.0 * half;
     let (time, off) = match middle {
-        // A lock bears more than its motor gives, and holds from the middle on at the latest.
+        // A lock bears more than its motor can give, and holds from the middle on at the latest.
         Middle::Held(share) => {
             let time = if share > 1.0 { half } else { half * share };
             (time, 0.5 * lag.abs() * time)
@@ -38,8 +38,8 @@ fn arrival(lag: f64, middle: Middle, half: f64, accuracy: f64) -> Option<f64> {
     (is_within && off > accuracy).then_some(time)
 }
 
-/// [s] When a speed [m/s] under a constant force leaves a range that it is in, from its middle, as above; at the shortest
-/// step where that is sooner, so that the next step begins outside.
+/// [s] When a speed [m/s] under a constant force leaves a range, from what it is at the beginning and in the middle of a
+/// step; none as above. At least the shortest step, so that the next step begins outside.
 fn departure(speed: [f64; 2], [low, high]: [f64; 2], half: f64, accuracy: f64) -> Option<f64> {
     let step = 2.0 * half;
     let [begin, middle] = speed;
@@ -56,8 +56,8 @@ fn departure(speed: [f64; 2], [low, high]: [f64; 2], half: f64, accuracy: f64) -
 }
 
 impl Dynamics {
-    /// Notes what motors and friction may bring to 0 within a step: by how much the drives are off their set-points, and
-    /// how fast contacts slide.
+    /// Notes the speeds that motors and friction may bring to 0 within a step: those of the drives relative to their
+    /// set-points, and those at which contacts slide.
     pub(super) fn note_lags(&mut self, set_point: SetPoint) {
         let problem = &self.problem;
         let target = self.model.motor.target(set_point.start());
@@ -76,8 +76,8 @@ impl Dynamics {
         self.lags.extend(of_drives.chain(of_contacts));
     }
 
-    /// [s] When the first of these comes to 0, or a motor leaves the piece of its curve that limits it, from the middle of a
-    /// step, `half` [s] after its beginning; none if the whole step is off by no more than `accuracy` [m].
+    /// [s] When the first of these reaches 0, or a motor leaves the piece of its curve that limits it, from what they are in the
+    /// middle of a step, after `half` [s]; none if the step as a whole is wrong by no more than `accuracy` [m].
     pub(super) fn first_arrival(&self, half: f64, accuracy: f64) -> Option<f64> {
         let problem = &self.problem;
         let drives = &problem.motors[self.model.drive_motors()];

@@ -1,7 +1,7 @@
-//! The motion within a step: what is seen between its ends.
+//! The motion within a step, for states between its ends.
 //!
-//! Forces are constant over a step, so velocities change linearly and positions quadratically. What then remains
-//! between the quadratic and the end of the step, at most its local error, is spread evenly.
+//! Forces are constant over a step, so velocities change linearly and positions quadratically. The quadratic misses the
+//! end of the step by its local error at most, and that is spread evenly.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -14,7 +14,7 @@ use crate::robot::Model;
 struct Within {
     /// [s] Length of the step.
     h: f64,
-    /// Share of it that is over.
+    /// Share of it that has passed.
     share: f64,
 }
 
@@ -23,7 +23,7 @@ impl Within {
         from + (to - from) * self.share
     }
 
-    /// A position, from positions and speeds at the ends.
+    /// A position, from those at the ends and the speeds there.
     fn quadratic(self, [from, to]: [f64; 2], [speed, to_speed]: [f64; 2]) -> f64 {
         let straight = from + (to - from) * self.share;
         straight - 0.5 * (to_speed - speed) * self.h * self.share * (1.0 - self.share)
@@ -40,7 +40,7 @@ impl Within {
 }
 
 impl State {
-    /// Sets this state to that at a share of a step of `h` [s].
+    /// Sets this state to that after a share of a step of `h` [s] between two states.
     pub(crate) fn set_between(&mut self, ends: [&Self; 2], model: &Model, (h, share): (f64, f64)) {
         let at = Within { h, share };
         let [before, after] = ends;

@@ -50,7 +50,7 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
     problem
 }
 
-/// A motor behind a gear, which may lock itself.
+/// A motor with a gear, which may be self-locking.
 fn behind_gear(motor: Motor, locks: bool) -> Motor {
     if locks { motor.behind_lock() } else { motor }
 }

@@ -1,4 +1,4 @@
-//! The course of a contact's gap in a step: how its point moves on from the start.
+//! How the gap of a contact changes in a step, as its point moves on.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -15,8 +15,8 @@ use crate::units::Metres;
 const TOUCHING: Metres = Metres(1e-10);
 
 impl Touch {
-    /// Updates the gap for the motion in a step of `h` [s], and how much faster the gap opens, and the surface slides, at
-    /// its end than with the levers of its middle.
+    /// Updates the gap for the motion in a step of `h` [s], and sets the offsets of its speeds: how much faster the gap opens,
+    /// and the surface slides, at the end of the step than by the levers of its middle.
     pub(super) fn move_gap(
         &mut self,
         solved: &mut Contact,
@@ -25,7 +25,7 @@ impl Touch {
         h: f64,
     ) {
         let Some(mount) = self.mount() else {
-            // Its directions are kept, and so is its speed during the step.
+            // Its directions and its speed stay the same during the step.
             self.gap += solved.normal.along(unknowns) * h;
             return;
         };
@@ -40,7 +40,7 @@ impl Touch {
         }
     }
 
-    /// [m] Distance that an arc has rolled on its face since the middle of the step.
+    /// [m] Distance that an arc has rolled on a face since the middle of the step.
     fn rolled(&self, moved: &Moved) -> f64 {
         let Meeting::Arc(radius) = self.meeting else {
             return 0.0;
@@ -49,7 +49,7 @@ impl Touch {
         along - radius * moved.of_part.sin()
     }
 
-    /// Whether it pressed in the first solve or touches now.
+    /// Whether it pressed in the first solve of the step or touches now.
     pub(super) fn has_closed(&self, solved: &Contact) -> bool {
         solved.normal_impulse > 0.0 || self.gap <= TOUCHING.value()
     }
@@ -59,7 +59,7 @@ impl Touch {
         self.gap_before > TOUCHING.value()
     }
 
-    /// Its part's motion, where that slips at a speed [m/s].
+    /// The motion of its part, which slips at a speed [m/s].
     fn swing(
         &self,
         slip: f64,
@@ -122,7 +122,7 @@ impl Touch {
         self.middle.gap + self.meeting.opened(way, moved.of_part)
     }
 
-    /// Its point then.
+    /// Its point after a time [s] at the present velocities.
     fn moved(&self, state: &State, model: &Model, (mount, time): (Mount, f64)) -> Moved {
         let then = state.carrier(mount, time, model);
         let run = self.drive.map_or(0.0, |k| {
@@ -131,8 +131,8 @@ impl Touch {
         self.middle.moved(&then, run)
     }
 
-    /// [m] How much deeper in the ground the place was in the middle of the step than at either end, if nothing
-    /// bore there: the tip of a wheel that turns fast may come and go within a step.
+    /// [m] How much deeper its point was in the ground in the middle of the step than at either end, if it bore nothing:
+    /// the tip of a wheel that turns fast may dip in and out within a step.
     pub(super) fn dip(&self, solved: &Contact) -> f64 {
         let ends = self.gap_before.min(self.gap).min(0.0);
         if solved.normal_impulse > 0.0 {

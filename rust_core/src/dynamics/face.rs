@@ -1,7 +1,7 @@
-//! The face of the ground on which an arc rolls, and how far the ground falls away below one that rolls past its end.
+//! The face of the ground on which an arc rolls, and how far the ground is below an arc that has rolled past its end.
 //!
-//! Within a step a normal stays that of the face, and forces are constant: the velocities at both ends of the step do not
-//! tell that the face has ended.
+//! Within a step the normal stays that of the face and forces are constant, so the velocities at both ends of the step do
+//! not show that the face has ended.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -28,12 +28,11 @@ impl Dynamics {
     }
 }
 
-/// [m] The gap below an arc that has rolled by `way` [m] along the tangent, at the height of the face that its contact
-/// is on.
+/// [m] The gap below an arc that has rolled by `way` [m] along the tangent, at the height of the face of its contact.
 fn gap_below(contact: &Contact, lane: &Profile, radius: f64, way: f64) -> f64 {
     let bends = lane.bends();
     let face = bends.partition_point(|&bend| bend as usize <= contact.facet) - 1;
-    // Bends and faces are counted from this face on, in the direction of the way.
+    // Bends and faces are counted from this face on, in the direction in which the arc rolls.
     let bend = |k: usize| {
         let i = if way > 0.0 { face + k } else { face + 1 - k };
         lane.points[bends[i] as usize]
@@ -50,7 +49,7 @@ fn gap_below(contact: &Contact, lane: &Profile, radius: f64, way: f64) -> f64 {
     let below = (0..count).find(|&k| ahead(k + 1) > 0.0);
     let below = below.unwrap_or(count - 1);
     let gap = |k: usize| distance(center, [bend(k), bend(k + 1)]) - radius;
-    // Ground that is no higher than the face, and is farther away along it, has a larger gap.
+    // Ground that is no higher than the face and farther along it than this has a larger gap.
     let reach = |gap: f64| (gap.max(0.0) * (2.0 * radius + gap)).sqrt();
     let mut least = gap(below);
     for k in (0..below).rev() {

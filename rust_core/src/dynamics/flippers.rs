@@ -1,7 +1,7 @@
 //! The flippers in the equations of motion.
 //!
-//! An arm is a body that hangs on the chassis by its pivot, so it adds one unknown, its rate, and none while
-//! its motor holds the commanded rate.
+//! An arm is a body that is hinged to the chassis at its pivot, so it adds one unknown, its rate, and none while its motor
+//! holds the commanded rate.
 //!
 //! The equations: docs/physics.md, "Arms".
 

@@ -5,13 +5,13 @@
 use crate::robot::Line;
 use crate::solver::Damper;
 
-/// Forces of one drive in a step, against the speed of its surface.
+/// Forces of one drive in a step, as functions of the speed of its surface.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Forces {
     pub limits: [Damper; 2],
-    /// [m/s] Between which speeds these are its limits.
+    /// [m/s] The ranges of speed in which these are its limits.
     pub ends: [[f64; 2]; 2],
-    /// [m/s] The speed at the beginning, and its error.
+    /// [m/s] The speed at the beginning of the step, and how far it is below the set-point.
     pub speed: f64,
     pub error: f64,
 }

@@ -1,8 +1,8 @@
-//! Identity of contacts: each has one number for as long as it lasts, and everything refers to it by that.
+//! Identity of contacts: each has a number for as long as it lasts, by which everything refers to it.
 //!
-//! Contacts are paired with those of the last step, the nearest first, and keep their numbers. If one opens wider
-//! than the search distance and closes again at the same place, it is still the same contact, though its forces
-//! are gone: otherwise each contact of a rattling robot would be counted many times.
+//! Contacts are paired with those of the last step, nearest first, and keep their numbers. A contact that opens wider than
+//! the search distance and closes again at the same place is still the same contact, but its forces are lost. Otherwise
+//! each contact of a rattling robot would be counted many times.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -44,16 +44,16 @@ pub(super) struct Identity {
     found: Found,
 }
 
-/// What was recognised in a step.
+/// The contacts that were recognised in a step.
 #[derive(Clone, Debug, Default)]
 struct Found {
     /// The last number given.
     given: u64,
     /// Which contacts of the last step are still there.
     taken: Vec<bool>,
-    /// Which contacts that had opened have closed again.
+    /// Which lost contacts have closed again.
     again: Vec<bool>,
-    /// [m] How far contacts are from those of the last step, and both their indices.
+    /// [m] Distances between contacts and those of the last step, with the indices of both.
     pairs: Vec<(f64, usize, usize)>,
 }
 
@@ -156,7 +156,7 @@ impl Identity {
         }
     }
 
-    /// Takes the number of the nearest contact that has opened, if it is near enough.
+    /// The number of the nearest lost contact, if it is near enough.
     fn find_again(&mut self, contact: &Contact) -> Option<u64> {
         let of_part = (self.lost.iter().enumerate())
             .filter(|(i, lost)| lost.contact.part == contact.part && !self.found.again[*i]);
@@ -173,7 +173,7 @@ impl Identity {
         Some(self.lost[nearest].contact.number)
     }
 
-    /// Whether these can be the contacts of the last step; no two known contacts may share a number.
+    /// Whether these can be the contacts of a step; no two known contacts may share a number.
     pub(super) fn fits(&self, last: &[Contact], model: &Model, lanes: &[Profile]) -> bool {
         let fits = |lost: &Lost| {
             let age = self.time - lost.opened;
@@ -195,7 +195,7 @@ impl Identity {
     }
 }
 
-/// [m] How far a contact is from a known place, if their normals are alike.
+/// [m] Distance of a contact from a known place, if their normals are nearly the same.
 fn distance(contact: &Contact, (place, normal): (Vector, Vector)) -> Option<f64> {
     (normal.dot(contact.normal) > SAME_NORMAL).then(|| (place - contact.point).length())
 }
@@ -203,7 +203,7 @@ fn distance(contact: &Contact, (place, normal): (Vector, Vector)) -> Option<f64>
 /// The contacts of the last step, looked up by number.
 pub(super) struct Numbered<'a> {
     contacts: &'a [Contact],
-    /// Likely position of the next one: contacts come in the same order as in the last step.
+    /// Likely index of the next one, as contacts come in the same order as in the last step.
     next: usize,
 }
 

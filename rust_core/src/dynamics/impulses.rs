@@ -1,4 +1,4 @@
-//! What a step passes on to the next besides the state: the start values of its solves.
+//! What a step passes on to the next in addition to the state: where its solves start.
 //!
 //! The equations: docs/physics.md, "State".
 
@@ -69,18 +69,18 @@ impl Dynamics {
             && identity.fits(contacts, &self.model, lanes)
     }
 
-    /// Starts from the impulses that a step left of the same model, or of one that had a belly besides.
+    /// Starts from the impulses of a step of the same model, or of the same with a belly.
     pub(crate) fn start_from(&mut self, impulses: Impulses) {
         self.push_force = impulses.push;
         for (motor, hold) in self.problem.motors.iter_mut().zip(impulses.motors) {
-            // A branch may have another torque: there may be a motor in only one of both.
+            // A branch may have another torque, and so a motor where there was none, or none where there was one.
             if motor.is_none() == (hold == MotorState::Absent) {
                 motor.state = hold;
             }
         }
         self.loaded = impulses.contacts;
         self.identity = impulses.identity;
-        // As in `Model::in_order`, a model without the belly lacks the last parts only.
+        // The parts of the belly are the last ones (`Model::in_order`).
         let parts = self.model.parts.len();
         self.loaded.retain(|l| l.part < parts);
         self.identity.keep_parts(parts);

@@ -1,4 +1,4 @@
-//! Levers of a contact: how the velocities of body, flipper and drive add up along its directions.
+//! Levers of a contact, with which the velocities of chassis, flipper and drive add up along its directions.
 //!
 //! The equations: docs/physics.md, "Levers".
 
@@ -8,19 +8,19 @@ use crate::geometry::{Motion, Rotation, Vector, cross, left_of, right_of};
 use crate::robot::Model;
 use crate::solver::{Layout, Row};
 
-/// How the touching point moves relative to its carrier per metre of drive travel.
+/// How the contact point of the robot moves relative to its carrier per metre of drive travel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Carried {
-    /// [m] From the axle about which it turns, or from where it began, to the point.
+    /// [m] From the axle about which it turns to the point; 0 if it does not turn.
     pub spoke: Vector,
-    /// [1/m] Rotation about that axle.
+    /// [1/m] Rotation about that axle, clockwise.
     turn: f64,
-    /// Translation in addition to that.
+    /// Translation in addition to the rotation.
     along: Vector,
 }
 
 impl Carried {
-    /// Whether its drive moves it at all, other than along the surface.
+    /// Whether its drive moves it in another way than along the surface.
     pub(super) fn is_moving(&self) -> bool {
         self.turn != 0.0 || self.along != Vector::ZERO
     }
@@ -30,17 +30,17 @@ impl Carried {
         self.turn != 0.0
     }
 
-    /// [rad/s] How fast, over its carrier, if its drive runs at a speed [m/s].
+    /// [rad/s] Its rate relative to its carrier if its drive runs at a speed [m/s].
     pub(super) fn turn_at(&self, speed: f64) -> f64 {
         -self.turn * speed
     }
 
-    /// [m/s] How fast, in addition to turning, after the chassis has turned.
+    /// [m/s] Its velocity in addition to the rotation if its drive runs at a speed [m/s] and its carrier has turned.
     pub(super) fn velocity(&self, turned: Rotation, speed: f64) -> Vector {
         turned * self.along * speed
     }
 
-    /// How far it has turned over its carrier once its drive has run by `run` [m]; `None` if it never does.
+    /// Its rotation relative to its carrier after `run` [m] of drive travel; `None` if it does not turn.
     fn turned(&self, run: f64) -> Option<Rotation> {
         (self.turn != 0.0).then(|| Rotation::new(-self.turn * run))
     }
@@ -50,19 +50,19 @@ impl Carried {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Direction {
     pub unit: Vector,
-    /// [m] Lever of the turn of the chassis.
+    /// [m] Lever of the rate of the chassis.
     pub lever: f64,
     /// [m] Lever of the spin of a drive.
     pub spin_lever: f64,
-    /// [m] Lever of the rate of a flipper; `lever` is then that of its pivot.
+    /// [m] Lever of the rate of a flipper; `lever` is then that of the flipper's pivot.
     pub joint_lever: f64,
 }
 
 impl Direction {
-    /// That of a contact on the robot: `arm` leads from the carrier's centre to the contact; `motion` is the velocity of
-    /// the surface over the carrier for a surface speed of 1.
+    /// A direction at a contact of the robot: `arm` leads from the carrier's centre to the contact; `motion` is the velocity
+    /// of the surface relative to the carrier at a surface speed of 1.
     pub(crate) fn on_robot(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
-        // The surface speed is the drive radius times the spin over the chassis, clockwise.
+        // The surface speed is the drive radius times the spin relative to the chassis, clockwise.
         let spin_lever = -model.drive_radius * unit.dot(motion);
         Self {
             unit,
@@ -72,7 +72,7 @@ impl Direction {
         }
     }
 
-    /// That of a contact of a flipper whose pivot is at `pivot` from the chassis' centre of mass [m].
+    /// The same at a contact of a flipper, with `pivot` from the chassis' centre of mass to its pivot [m].
     pub(super) fn on_flipper(self, pivot: Vector) -> Self {
         Self {
             lever: cross(pivot, self.unit),
@@ -81,7 +81,7 @@ impl Direction {
         }
     }
 
-    /// Its row for the solver, with a drive and a flipper on which it acts.
+    /// Its row for the solver, if it acts on a drive and a flipper.
     pub(super) fn row(&self, layout: Layout, drive: Option<usize>, flipper: Option<usize>) -> Row {
         let Vector { x, y } = self.unit;
         let mut row = Row::on_base([x, y, self.lever]);
@@ -105,7 +105,7 @@ pub(crate) struct Levers {
 }
 
 impl Levers {
-    /// The levers of a contact of a part that its drive moves in this way relative to its carrier.
+    /// The levers of a contact of a part that its drive moves relative to its carrier by `over_carrier`.
     pub(crate) fn new(
         contact: &Contact,
         carrier: &Carrier,
@@ -136,7 +136,7 @@ impl Levers {
     }
 }
 
-/// The touching point of the robot in the middle of the step, where the contact was found.
+/// The contact point of the robot in the middle of the step, where the contact was found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
     /// [m] Gap.
@@ -145,28 +145,28 @@ pub(super) struct Place {
     pub carrier: Carrier,
     /// [m] From the carrier's centre to the contact, or to the axle about which it turns.
     pub arm: Vector,
-    /// The way from there to the contact.
+    /// How its drive moves it from there.
     pub carried: Carried,
     /// [m] Position of the drive.
     pub drive_position: f64,
 }
 
-/// The same at another time.
+/// The same point at another time.
 #[derive(Clone, Copy)]
 pub(super) struct Moved {
     /// [m] From the carrier's centre to the end of the arm.
     pub arm: Vector,
-    /// [m] From there to the touching point.
+    /// [m] From there to the contact point.
     pub spoke: Vector,
-    /// [m] Travel of that.
+    /// [m] Displacement of the contact point since the middle of the step.
     pub way: Vector,
-    /// How far its carrier has turned, and the part itself.
+    /// Rotation since then, of the carrier and of the part.
     pub of_carrier: Rotation,
     pub of_part: Rotation,
 }
 
 impl Place {
-    /// Where it is once its carrier is there and its drive has run to `run` [m].
+    /// Where it is when its carrier is at `now` and its drive at `run` [m].
     pub(super) fn moved(&self, now: &Carrier, run: f64) -> Moved {
         let of_carrier = Rotation::new(now.angle - self.carrier.angle);
         let run = run - self.drive_position;

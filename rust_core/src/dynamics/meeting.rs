@@ -1,5 +1,5 @@
-//! How a gap and the speeds at a contact change as robot and normal turn, while a step keeps the normal as it is in its
-//! middle.
+//! How the gap and the speeds of a contact change as the robot and the normal turn: the rows of a step have the normal in
+//! its middle.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -7,38 +7,38 @@ use crate::contact::Contact;
 use crate::geometry::{Disc, Rotation, Vector};
 use crate::robot::{Part, Shape};
 
-/// Cosine of the angle within which a normal leads to the centre of an arc.
+/// Cosine of the largest angle between the normal and the direction to the centre of an arc.
 const TO_CENTER: f64 = 1.0 - 1e-9;
 
-/// What of the part meets what of the ground.
+/// Which feature of the part meets which feature of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Meeting {
-    /// A point of the part a face.
+    /// A point of the part on a face.
     #[default]
     Point,
-    /// An arc, with its centre at this distance [m], a face.
+    /// An arc on a face; [m] from the contact to the centre of the arc.
     Arc(f64),
-    /// The same a corner.
+    /// An arc on a corner; the same.
     ArcOnCorner(f64),
-    /// A straight side a corner.
+    /// A straight side of the part on a corner.
     SideOnCorner,
 }
 
-/// The motion of a part, seen from the contact; pairs are along its normal and its tangent.
+/// The motion of a part as seen from the contact; pairs are along normal and tangent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swing {
     /// [rad/s] Its angular velocity.
     pub turn: f64,
-    /// [m] The way from the contact to the centre of rotation.
+    /// [m] From the contact to the centre of rotation.
     pub center: [f64; 2],
-    /// [m/s^2] Acceleration of that.
+    /// [m/s^2] Acceleration of the centre of rotation.
     pub pull: [f64; 2],
     /// [m/s] Velocity of the part's point at the contact along the tangent.
     pub slip: f64,
 }
 
 impl Meeting {
-    /// That of a contact of a part, whose carrier's points `place` puts into the world.
+    /// The features that meet at a contact of a part; `place` takes points of the part's carrier to the world.
     pub(super) fn of(contact: &Contact, part: &Part, place: impl Fn(Vector) -> Vector) -> Self {
         let on_corner = contact.edge >= 0;
         let arc = |center: Vector| {
@@ -65,10 +65,10 @@ impl Meeting {
         }
     }
 
-    /// [m] By how much the gap has grown after the part's point has moved along normal and tangent by `way` [m] and the
-    /// part has turned, from a pose with this normal.
+    /// [m] By how much the gap has grown after the part's point has moved by `way` [m] along normal and tangent and the part
+    /// has turned, from a pose with this normal.
     pub(super) fn opened(self, way: [f64; 2], turned: Rotation) -> f64 {
-        // Of the normal, as it turned with the part.
+        // Components of the normal as it has turned with the part.
         let [along, across] = [turned.cos(), -turned.sin()];
         match self {
             Self::Point => way[0],
@@ -80,7 +80,7 @@ impl Meeting {
         }
     }
 
-    /// [m/s^2] How fast the speeds at which the gap opens and the part slides grow at constant velocities while the gap
+    /// [m/s^2] The rates at which the opening speed of the gap and the sliding speed grow at constant velocities, while the gap
     /// stays as it is.
     pub(super) fn gains(self, swing: Swing) -> [f64; 2] {
         let Swing { turn, slip, .. } = swing;

@@ -1,7 +1,7 @@
 //! The motors of the drives in a step.
 //!
-//! A force that depends on the speed is taken over a step by the trapezoidal rule up to its middle, and from there by the
-//! backward differentiation formula of second order: exact to second order, and what is stiff settles (Bank et al. 1985).
+//! A force that depends on the speed is integrated by the trapezoidal rule up to the middle of a step, and from there by
+//! the backward differentiation formula of second order: accurate to second order and L-stable (Bank et al. 1985).
 //!
 //! The equations: docs/physics.md, "Motors".
 
@@ -12,7 +12,7 @@ use super::state::State;
 use crate::solver::{Damper, MotorState};
 
 impl Dynamics {
-    /// Has the motors drive to the middle of a step, `half` [s] from its beginning.
+    /// Sets the motors up for the solve in the middle of a step, `half` [s] from its beginning.
     pub(super) fn drive_to_middle(&mut self, state: &State, set_point: SetPoint, half: f64) {
         let rule = &self.model.motor;
         let target = rule.target(set_point.middle);
@@ -47,7 +47,7 @@ impl Dynamics {
         }
     }
 
-    /// Has them drive to its end, `h` [s] from its beginning, once its middle is known.
+    /// Sets them up for the solve at its end, `h` [s] from its beginning, once that of its middle is done.
     pub(super) fn drive_to_end(&mut self, state: &State, set_point: SetPoint, h: f64) {
         let rule = &self.model.motor;
         let target = rule.target(set_point.end);
@@ -72,7 +72,7 @@ impl Dynamics {
         }
     }
 
-    /// Has motors whose force is the same at any speed hold a target [m/s] for a time [s].
+    /// Makes motors whose force does not depend on the speed hold a target [m/s] for a time [s].
     fn hold_speed(&mut self, target: f64, time: f64) {
         let most = self.model.motor.force * time;
         for motor in &mut self.problem.motors[self.model.drive_motors()] {
@@ -80,8 +80,8 @@ impl Dynamics {
         }
     }
 
-    /// Stores the mean forces of the motors over a step of `h` [s], and what the errors of their speeds have added up to: at
-    /// its limits a motor adds up nothing.
+    /// Stores the mean forces of the motors over a step of `h` [s], and the integrals of their speed errors, which do not grow
+    /// while a motor is at its limit.
     pub(super) fn collect_motors(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
         for k in 0..self.forces.len() {
             let error = set_point.end - state.track_speed(&self.model, k);

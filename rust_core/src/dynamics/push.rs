@@ -1,5 +1,5 @@
-//! The push of a track that is modelled as a force only: as if its axis ran on a rail without slip, up to the limit of
-//! the motor.
+//! The push of a track that is modelled as a force only: it drives the chassis along its axis as if on a rail without
+//! slip, up to the limit of the motor.
 //!
 //! The equations: docs/physics.md, "Motors".
 
@@ -12,7 +12,7 @@ use crate::solver::{Layout, Row};
 pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
     let rotation = Rotation::new(angle);
     let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);
-    // One drive radius above the line of action, as for a contact: the motor's reaction does the rest.
+    // One drive radius above the line of action, as for a contact: the motor's reaction adds the rest.
     let arm = model.drive_radius * up - rotation * model.center_of_mass;
     Direction {
         unit: axis,

@@ -5,14 +5,14 @@
 /// [m/s] Set-points of the surfaces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SetPoint {
-    /// In the middle of the step, for its motion.
+    /// In the middle of the step, where its motion is solved for.
     pub middle: f64,
-    /// At its end.
+    /// At the end of the step.
     pub end: f64,
 }
 
 impl SetPoint {
-    /// At its beginning.
+    /// At the beginning of the step.
     pub(super) fn start(self) -> f64 {
         2.0 * self.middle - self.end
     }

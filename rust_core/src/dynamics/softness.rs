@@ -1,4 +1,4 @@
-//! Softness of contacts: a damped spring that is integrated implicitly.
+//! Softness of contacts: that of a damped spring, integrated implicitly.
 //!
 //! The equations: docs/physics.md, "Softness".
 
@@ -7,7 +7,7 @@
 pub(super) struct Softness {
     /// [1/s] Rate at which a penetration is pushed out.
     pub push_rate: f64,
-    /// Compliance in units of the admittance of the mass on it.
+    /// Compliance in units of the admittance of the mass on the spring.
     pub compliance: f64,
 }
 

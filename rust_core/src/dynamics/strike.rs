@@ -1,4 +1,4 @@
-//! When a contact strikes the ground in a step, if velocities go on to change as in the last one.
+//! When a contact strikes the ground in a step, if velocities go on changing as in the last one.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -8,11 +8,11 @@ use super::touch::Touch;
 use super::trend::Trend;
 use crate::robot::Model;
 
-/// Where a tip comes nearest to the ground, its course is looked at again over this share of the step to either side:
-/// over a whole step a wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is 10 um off.
+/// Near the lowest point of a tip its gap is fitted again over this share of the step to either side: over a whole step a
+/// wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is wrong by 10 um.
 const CLOSELY: f64 = 0.125;
 
-/// A gap that changes with time like this: `gap + slope s + bend s^2`, `s` after a time `at`.
+/// A gap as a function of time: `gap + slope s + bend s^2` at a time `s` after `at`.
 #[derive(Clone, Copy, Debug)]
 struct Parabola {
     at: f64,
@@ -22,7 +22,7 @@ struct Parabola {
 }
 
 impl Parabola {
-    /// The one through gaps at a time and `apart` [s] before and after it.
+    /// The parabola through the gaps `apart` [s] before the time `at` [s], at it, and `apart` after it.
     fn through([before, gap, after]: [f64; 3], at: f64, apart: f64) -> Self {
         Self {
             at,
@@ -32,7 +32,7 @@ impl Parabola {
         }
     }
 
-    /// The same with an opening speed that also grows by this [m/s^2] from a time of 0 on.
+    /// The same with an opening speed that in addition grows by `gain` [m/s^2] from a time of 0 on.
     fn speeding_up(self, gain: f64) -> Self {
         let Self {
             at,
@@ -48,12 +48,12 @@ impl Parabola {
         }
     }
 
-    /// [s] When it is lowest, if it comes down and goes up again.
+    /// [s] When the gap is smallest, if it shrinks and grows again.
     fn lowest(&self) -> Option<f64> {
         (self.bend > 0.0).then(|| self.at - 0.5 * self.slope / self.bend)
     }
 
-    /// [s] When it comes down to 0, and how fast [m/s].
+    /// [s] When the gap closes, and [m/s] how fast.
     fn lands(&self) -> Option<(f64, f64)> {
         let squared = self.slope * self.slope - 4.0 * self.bend * self.gap;
         let speed = (squared >= 0.0).then(|| squared.sqrt())?;
@@ -63,9 +63,9 @@ impl Parabola {
 }
 
 impl Dynamics {
-    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if velocities go on to
-    /// change like this; infinite if none does, and with chains: their shoes hit the guide all the time, but are light
-    /// and so are their impacts.
+    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if velocities go on changing
+    /// with this trend; infinite if none does. Also infinite with chains: their shoes hit the guide all the time, but are
+    /// light, and so are their impacts.
     pub(crate) fn next_strike(
         &self,
         state: &State,
@@ -94,10 +94,10 @@ impl Dynamics {
 }
 
 impl Touch {
-    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s]. It opens at `slope` [m/s], which grows by `gain`
-    /// [m/s^2].
+    /// [s] When the gap closes, if faster than `speed` [m/s], in a step of `h` [s]. It opens at `slope` [m/s], which grows by
+    /// `gain` [m/s^2].
     ///
-    /// A tip that a drive carries may come down and go up again within a step.
+    /// A tip that a drive moves may come down and go up again within a step.
     pub(super) fn strike(
         &self,
         (slope, gain): (f64, f64),
@@ -107,7 +107,7 @@ impl Touch {
     ) -> Option<f64> {
         let start = self.gap_before;
         if start <= 0.0 {
-            // It is closed already; if it closes further, the error makes the step short.
+            // It is closed already; if it closes further, the local error makes the step short.
             return None;
         }
         let carried = self.mount().filter(|_| self.middle.carried.is_moving());
@@ -133,7 +133,7 @@ impl Touch {
             }
         };
         let (time, closing) = course.lands()?;
-        // The parabola round the lowest point is off at the beginning, where the gap is still open.
+        // The parabola about the lowest point is inexact at the beginning of the step, where the gap is still open.
         (closing > speed).then_some(time.max(0.0))
     }
 }

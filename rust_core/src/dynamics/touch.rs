@@ -1,4 +1,4 @@
-//! A contact of the robot in one step: where it touches, its gap, and how hard and how softly it may close.
+//! A contact of the robot in one step: where it is, its gap, and how fast and how softly it may close.
 //!
 //! The equations: docs/physics.md, "Softness".
 
@@ -10,27 +10,27 @@ use crate::geometry::{Rotation, Vector, right_of};
 use crate::robot::{Model, Mount};
 use crate::solver::{Contact, Grip, Layout};
 
-/// Compliance of the contacts of shoes, in units of that of the contact frequency: shoes are light, but the
-/// robot stands on them. Harder ones hardly reduce the penetration, and jam more.
+/// Compliance of the contacts of shoes, in units of that which the contact frequency gives: shoes are light, but the robot
+/// stands on them. Stiffer contacts hardly reduce the penetration, and jam more.
 const ON_GUIDE: f64 = 0.1;
 const ON_GROUND: f64 = 0.3;
 
-/// What a contact of a step is on.
+/// The two sides of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum On {
-    /// The ground, at the chassis or a flipper.
+    /// The chassis or a flipper on the ground.
     Ground(Mount),
-    /// The ground, at a shoe.
+    /// A shoe on the ground.
     #[default]
     Shoe,
-    /// The guide of a chain, a wheel in it or a tooth, at a shoe.
+    /// A shoe on the guide of its chain, a wheel in it or a tooth.
     Guide { chain: usize, shoe: usize },
 }
 
 /// What a step starts from.
 pub(super) struct Start<'a> {
     pub state: &'a State,
-    /// Its velocities as the unknowns of a solve, and where they stand.
+    /// Its velocities as the unknowns of a solve, and their order.
     pub unknowns: &'a [f64],
     pub layout: Layout,
     pub model: &'a Model,
@@ -58,13 +58,13 @@ impl<'a> Start<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
     pub on: On,
-    /// Unit normal away from the surface that it touches.
+    /// Unit normal, away from the other side.
     pub normal: Vector,
     /// The drive of its part.
     pub drive: Option<usize>,
     /// [m] Levers of normal and tangent on the spin of that drive.
     pub spin_levers: [f64; 2],
-    /// [N] Forces to start from, the last ones.
+    /// [N] The last forces along normal and tangent, from which a solve starts.
     pub normal_guess: f64,
     pub friction_guess: f64,
     /// [m] Current gap.
@@ -78,13 +78,13 @@ pub(super) struct Touch {
     pub rolled: f64,
     /// Whether it closes in a step in which something strikes the ground.
     pub strikes: bool,
-    /// Index among the shoe's rests.
+    /// Index among the possible rests of its shoe.
     pub rest_index: usize,
 }
 
 impl Touch {
-    /// That of a contact found in the middle of the step, and the contact as the solver sees it; `last` is the same contact in
-    /// the last step.
+    /// The data of a contact that was found in the middle of the step, and the contact as the solver sees it; `last` is the same
+    /// contact in the last step.
     pub(super) fn new(
         contact: &crate::contact::Contact,
         last: Option<crate::contact::Contact>,
@@ -139,14 +139,14 @@ impl Touch {
         (touch, solved)
     }
 
-    /// Takes over the forces and the grip of the last step.
+    /// Starts from the forces and the grip of the last step.
     pub(super) fn go_on(&mut self, solved: &mut Contact, last: Option<crate::contact::Contact>) {
         solved.grip = last.map_or(Grip::Open, |l| l.grip);
         self.normal_guess = last.map_or(0.0, |l| l.normal_guess);
         self.friction_guess = last.map_or(0.0, |l| l.friction_guess);
     }
 
-    /// Sets a contact up for a motion of `h` [s]: an open gap may just close, softly; a penetration is pushed out. The
+    /// Sets a contact up for a motion of `h` [s] on a spring: an open gap may just close, and a penetration is pushed out. The
     /// solve finds the impulse of a `time` [s].
     pub(super) fn close_softly(
         &self,
@@ -172,19 +172,19 @@ impl Touch {
         };
     }
 
-    /// Sets it up before the motion: an open gap may just close, and a penetration is pushed out softly.
+    /// Sets a contact up for a motion of `h` [s]: an open gap may just close, and a penetration is pushed out softly.
     pub(super) fn close(&self, solved: &mut Contact, h: f64, soft: Softness, max_push_speed: f64) {
         solved.bears = true;
         if self.gap > 0.0 {
             (solved.bias, solved.compliance) = (self.gap / h, 0.0);
         } else {
             solved.bias = (soft.push_rate * self.gap).max(-max_push_speed);
-            // Here the impulse of half the step stands for that of all of it.
+            // The solve finds the impulse of half the step, and the spring acts for all of it.
             solved.compliance = 2.0 * soft.compliance;
         }
     }
 
-    /// Whether the ground bears, not the robot itself.
+    /// Whether it is on the ground, not on the robot itself.
     pub(super) fn is_on_ground(&self) -> bool {
         !matches!(self.on, On::Guide { .. })
     }
@@ -197,7 +197,7 @@ impl Touch {
         }
     }
 
-    /// The parts of a vector along normal and tangent.
+    /// The components of a vector along normal and tangent.
     pub(super) fn along(&self, v: Vector) -> [f64; 2] {
         [self.normal.dot(v), right_of(self.normal).dot(v)]
     }
