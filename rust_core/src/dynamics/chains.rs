@@ -11,9 +11,9 @@ use super::state::State;
 use super::touch::{On, Start, Touch};
 use crate::geometry::Vector;
 
-/// A shoe that is closer to the guide than so many times the way of the fastest part may come to rest on it within a step.
-/// Of 5,200 that did so from more than 50 um, the farthest came from 1.6 times that way at the speed after the step; the
-/// rest is for shoes that gain speed within it.
+/// A shoe may come to rest on the guide within a step if it is closer than so many times the travel of the fastest part.
+/// Of 5,200 that did so from more than 50 um, the farthest came from 1.6 times that travel at the speed after the step;
+/// the margin is for shoes that gain speed within the step.
 const NEAR_GUIDE: f64 = 4.0;
 
 /// State of the chains in the last step; the worst value of all chains.
@@ -60,8 +60,8 @@ impl Dynamics {
         state.velocity * self.model.mass + of_shoes + self.momentum_of_flippers(state)
     }
 
-    /// Adds a contact for each place where a shoe rests on guide, wheel or tooth, or nearly does, in the middle of
-    /// the step, in which nothing moves farther than `travel` [m].
+    /// Adds a contact for each place where a shoe rests on the guide, a wheel or a tooth, or nearly does, in the middle of a
+    /// step in which nothing moves farther than `travel` [m].
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64, travel: f64) {
         let pose = state.pose_after(half, &self.model);
         let problem = &mut self.problem;
@@ -114,7 +114,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a step of `h` [s]: velocities without constraints, and pins in place.
+    /// Prepares chains for the first solve of a step of `h` [s]: velocities without constraints, and pins in mid-step.
     pub(super) fn start_chains(&mut self, state: &State, h: f64) {
         self.fall_with_shoes(0.5 * h);
         let pose = state.pose_after(0.5 * h, &self.model);
@@ -124,7 +124,7 @@ impl Dynamics {
         }
     }
 
-    /// Continues after the motion of a step of `h` [s]: the other half of the weight, and pins where they are now.
+    /// Prepares chains for the second solve, after the motion: the other half of the weight, and pins where they are now.
     pub(super) fn hold_chains(&mut self, state: &State, h: f64) {
         self.fall_with_shoes(0.5 * h);
         let free = &self.problem.free;

@@ -1,4 +1,4 @@
-//! By how much a gap may close in a step: where it stays open, the step has no contact.
+//! By how much a gap may close in a step: a contact whose gap stays open is left out of the step.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -8,7 +8,7 @@ use crate::contact::Contact;
 use crate::geometry::{Rotation, left_of, right_of};
 use crate::robot::Mount;
 
-/// How a gap changes while velocities stay as they are.
+/// How a gap closes while velocities stay as they are.
 #[derive(Clone, Copy)]
 pub(crate) struct Closing {
     /// [m/s]
@@ -23,15 +23,15 @@ impl Closing {
         bend: 0.0,
     };
 
-    /// [m] By how much the gap may be smaller within a time [s], before or after.
+    /// [m] By how much the gap may be smaller at any time within a `time` [s] before or after.
     pub(crate) fn within(self, time: f64) -> f64 {
         (self.speed + 0.5 * self.bend * time) * time
     }
 }
 
 impl Dynamics {
-    /// How the gap of a contact changes that is where it will be after a `time` [s] at the velocities of a state; nothing is
-    /// known of shoes.
+    /// How the gap of a contact closes that was found where it will be after a `time` [s] at the velocities of a state; shoes
+    /// may close at any speed.
     pub(crate) fn closing(&self, contact: &Contact, (state, time): (&State, f64)) -> Closing {
         let (part, model) = (&self.model.parts[contact.part], &self.model);
         let (center, _) = state.mass_pose_after(time);
@@ -53,12 +53,12 @@ impl Dynamics {
             let (motion, rotation) = (part.motion(run, 0.0), Rotation::new(carrier.angle));
             let spoke = arm - rotation * (motion.center - carrier.origin);
             velocity += (right_of(spoke) * motion.turn + rotation * motion.along) * speed;
-            // What runs along a carrier that turns, and what turns on it.
+            // Of motion along a carrier that turns, and of rotation on it.
             bend += 2.0 * (of_carrier * speed).abs() * motion.along.length();
             turn += (motion.turn * speed).abs();
             bend += turn * turn * spoke.length();
         }
-        // A side that slides over a corner while it turns.
+        // Of a side that slides over a corner while it turns.
         bend += 2.0 * turn * velocity.length();
         Closing {
             speed: velocity.dot(contact.normal).abs(),
@@ -66,8 +66,8 @@ impl Dynamics {
         }
     }
 
-    /// [m] By how much farther a step of `h` [s] may have taken any point of the outline than the velocities `before` it would
-    /// have; `reach` is the farthest from the centre of mass [m].
+    /// [m] How far a step of `h` [s] may have taken any point of the outline from where the velocities `before` it would have;
+    /// `reach` is the farthest from the centre of mass [m].
     pub(crate) fn strayed(&self, before: &State, h: f64, reach: f64) -> f64 {
         let now = &self.motion;
         let flippers = now.flippers.iter().zip(&before.flippers);

@@ -46,8 +46,8 @@ impl Dynamics {
         }
     }
 
-    /// Has the motors aim at what they are to do at the end of a step. `began` is the angular velocity of the chassis
-    /// at its beginning [rad/s]; half of its change is made.
+    /// Sets the motors' targets to those at the end of a step. `began` is the angular velocity of the chassis at its
+    /// beginning [rad/s], and the state has half of its change.
     pub(super) fn aim_at_end(&mut self, state: &State, began: f64) {
         let of_chassis = 2.0 * state.angular_velocity - began;
         for arm in self.flippers.iter_mut().filter(|arm| !arm.approach.goes_on) {
@@ -64,7 +64,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a step: velocities of the arms after a time [s] under weight alone.
+    /// Starts a step with the velocities that the arms have after a time [s] under weight alone.
     pub(super) fn start_flippers(&mut self, state: &State, time: f64) {
         let chassis = state.twist();
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
@@ -76,10 +76,9 @@ impl Dynamics {
         self.accelerate_flippers(state, state.angular_velocity, time);
     }
 
-    /// Continues for a time [s] under weight and centripetal acceleration: the pivot goes round with the chassis
-    /// and the arm round the pivot, which changes no rate. `began` is the angular velocity of the chassis at the
-    /// beginning of the step [rad/s]. Half of the step is over, so rates have made half of their change; they
-    /// are extrapolated to its end.
+    /// Accelerates the arms for a time [s] by weight and centripetal acceleration: the pivot turns with the chassis and the
+    /// arm about the pivot, which changes no rate. `began` is the angular velocity of the chassis at the beginning of the step
+    /// [rad/s]. In the middle of the step rates have made half of their change; they are extrapolated to its end.
     pub(super) fn accelerate_flippers(&mut self, state: &State, began: f64, time: f64) {
         let (center, gravity) = (self.model.center_of_mass, self.gravity);
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
@@ -91,7 +90,7 @@ impl Dynamics {
         }
     }
 
-    /// Gives the next solve the arms as they are now, and what their motors can do in a `time` [s].
+    /// Adds the arms as they are now to the next solve, with the impulses that their motors can give in a `time` [s].
     pub(super) fn add_flippers(&mut self, time: f64) {
         let arms = self.flippers.iter().enumerate();
         let (layout, turn) = (self.problem.layout, self.problem.free[TURN]);

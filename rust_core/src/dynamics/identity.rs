@@ -17,17 +17,16 @@ use crate::robot::Model;
 use crate::terrain::Profile;
 use crate::units::{Metres, Seconds};
 
-/// [m] A contact continues one that is no farther away than this.
+/// [m] A contact may continue one that is no farther away than this.
 const SAME_PLACE: Metres = Metres(5e-3);
-/// Cosine between normals of one contact: it turns by less than 26 degrees from step to step.
+/// Least cosine between the normals of a contact in two steps: a normal turns by less than 26 degrees in one.
 const SAME_NORMAL: f64 = 0.9;
-/// [s] How long a contact that has opened is remembered: the default window of a stop, over which its
-/// forces are averaged.
+/// [s] How long a lost contact is remembered: the default window of a stop, over which forces are averaged.
 const REMEMBERED: Seconds = Seconds(1.0);
-/// How many of them are remembered at most. Runs have about ten, runs with 24 gear wheels up to 240; there
-/// are more only if everything moves so fast that no contact is at the place of another.
+/// Maximum number of lost contacts. Runs have about ten, those with 24 gear wheels up to 240; there are more only if
+/// everything moves so fast that no contact is at the place of another.
 const MOST_LOST: usize = 256;
-/// A number that no run comes near, with room for more above it.
+/// A number that no run reaches, with room for more above it.
 const MOST_GIVEN: u64 = 1 << 60;
 
 /// Remembered contacts, in addition to those of the last step.
@@ -39,7 +38,7 @@ pub(super) struct Identity {
     time: f64,
     /// Contacts that have opened, the oldest first.
     lost: Vec<Lost>,
-    /// What a step has recognised; it counts once the step is kept.
+    /// The contacts that a step has recognised; adopted once the step is kept.
     #[serde(skip)]
     found: Found,
 }

@@ -1,7 +1,7 @@
 //! The local error of a step: by how much its motion differs from the mean of the velocities at its ends.
 //!
-//! The motion takes the velocities of the closing solve, a rule of the middle; the mean of the velocities before and
-//! after is the rule of the trapezoid. Both are of second order, and they differ most where velocities jump.
+//! The motion uses the velocities of the first solve, which is the midpoint rule; the mean of the velocities before and
+//! after is the trapezoidal rule. Both are of second order, and they differ most where velocities jump.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -16,9 +16,9 @@ pub(crate) const SHORTEST: Seconds = Seconds(2e-5);
 const OF_SHOES: f64 = 0.1;
 
 impl Dynamics {
-    /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest of any point of the robot, whose
-    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; and how deep
-    /// a tip dips into the ground.
+    /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest error of any point of the robot, whose
+    /// farthest point is `reach` [m] from its centre of mass, of any driven surface, and a tenth of that of any pin; or the
+    /// depth to which a tip dips into the ground, if that is larger.
     pub(crate) fn local_error(&self, [before, after]: [&State; 2], h: f64, reach: f64) -> f64 {
         let moved = &self.motion;
         let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;

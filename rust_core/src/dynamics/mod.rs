@@ -2,9 +2,9 @@
 //!
 //! A step is symmetric: half of the weight's impulse, the constraints, the motion, the other half, the
 //! constraints again. Free flight is therefore exact, and a constant load causes only a second-order error.
-//! Before the motion, constraints close gaps and push out of penetration; after it they do not: the soft step
-//! of Erin Catto's 2D solvers (2024). The speed of a surface is found together with the contact forces, so
-//! that its motor's force limit acts on the net traction within the step.
+//! Before the motion, constraints close gaps and push out of penetration; after it they do not: this is the "soft step"
+//! of Erin Catto (Solver2D, 2024). The speed of a surface is found together with the contact forces, so that the force
+//! limit of its motor acts on the net traction within the step.
 //!
 //! The equations: docs/physics.md, "A step".
 
@@ -65,9 +65,9 @@ pub(crate) use state::{
 };
 pub(crate) use trend::Trend;
 
-/// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
-/// sustain. Friction that balance does not require fades with this time constant; not beside chains, whose contacts
-/// are springs: if these faded, whatever hangs on them would creep.
+/// [s] Sticking contacts can pull against each other for ever, which no body with any compliance would sustain. Friction
+/// that equilibrium does not require fades with this time constant; but not on robots with chains, whose contacts are
+/// springs: if these faded, a robot held by them would creep.
 const SELF_STRESS_TIME: Seconds = Seconds(0.1);
 
 /// Solves the motion of one robot.
@@ -79,8 +79,8 @@ pub(crate) struct Dynamics {
     solver: Solver,
     /// The robot's bodies, motors and contacts as the solver sees them, ...
     problem: Problem,
-    /// ... and what else a step knows of these contacts: those with the ground in the order in which they were found,
-    /// then the rests of chains.
+    /// ... and what else a step knows of these contacts: those with the ground in the order in which they were found, then
+    /// the rests of chains.
     touches: Vec<Touch>,
     /// [N] The last force of a track that is modelled as a force only.
     push_force: Option<f64>,
@@ -91,10 +91,10 @@ pub(crate) struct Dynamics {
     /// Speed of the fastest tip relative to its carrier, in units of the surface speed.
     tip_speed: f64,
     loaded: Vec<Contact>,
-    /// The state of the last step with the velocities of its motion.
+    /// The state at the beginning of the last motion, with the velocities of that motion.
     motion: State,
     identity: Identity,
-    /// [m/s] What motors and friction may bring to 0 within the step: of the drives, then of the contacts.
+    /// [m/s] Speeds that motors and friction may bring to 0 within the step: of the drives, then of the contacts.
     lags: Vec<f64>,
     /// [N] External force at the centre of mass.
     pub outer_force: Vector,
@@ -144,9 +144,9 @@ impl Dynamics {
         &self.model
     }
 
-    /// Whether a contact of the last step was not found again after a `time` [s] in which its gap may have closed: its part
-    /// may have passed through the ground. Nothing moves farther than `travel` [m] by then, and nothing `strays` farther [m]
-    /// than the velocities of the state take it.
+    /// Whether a contact of the last step was not found again after a `time` [s] in which its gap may have closed, so that its
+    /// part may have passed through the ground. Nothing moves farther than `travel` [m] in that time, and forces move nothing
+    /// farther than `strays` [m] from where the velocities of the state take it.
     pub(crate) fn has_lost(&self, state: &State, (time, travel): (f64, f64), strays: f64) -> bool {
         let mut gone = self.identity.gone(&self.loaded);
         gone.any(|l| {
@@ -160,24 +160,23 @@ impl Dynamics {
         self.identity.recognise(&self.loaded, contacts, travel);
     }
 
-    /// Numbers contacts that another model of the robot takes over; the next step continues them, without
-    /// forces.
+    /// Numbers the contacts of another model of the robot; the next step continues from them, without forces.
     pub(crate) fn take_over(&mut self, contacts: &mut [Contact]) {
         self.recognise(contacts, 0.0);
         self.identity.keep(&self.loaded, 0.0);
         self.loaded = contacts.to_vec();
     }
 
-    /// Takes the contacts that something else has found in a step of `h` [s] in which nothing moved farther than `travel`
-    /// [m], and numbers them.
+    /// Takes the contacts that another engine found in a step of `h` [s] in which nothing moved farther than `travel` [m], and
+    /// numbers them.
     pub(crate) fn take_contacts(&mut self, mut found: Vec<Contact>, travel: f64, h: f64) {
         self.recognise(&mut found, travel);
         self.identity.keep(&self.loaded, h);
         self.loaded = found;
     }
 
-    /// Prepares a step of `h` [s] in which nothing moves farther than `travel` [m]. The contacts are those in its middle
-    /// ([`State::pose_after`] half of it), numbered by [`Dynamics::recognise`].
+    /// Prepares a step of `h` [s] in which nothing moves farther than `travel` [m]. The contacts are those in the middle of the
+    /// step ([`State::pose_after`] half of it), numbered by [`Dynamics::recognise`].
     pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], (h, travel): (f64, f64)) {
         let half = 0.5 * h;
         let fading = if self.chains.is_empty() {
@@ -209,8 +208,8 @@ impl Dynamics {
         self.rest_on_guides(state, half, travel);
     }
 
-    /// Advances the state by the prepared step of `h` [s], in which something may strike the ground; fails with the time [s]
-    /// after which a force jumps if the step should end there instead.
+    /// Advances the state by the prepared step of `h` [s]; `strikes` tells whether something strikes the ground in it. If the
+    /// step should end at a jump of a force instead, fails with the time [s] until that.
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
@@ -258,8 +257,8 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Keeps what a step of `h` [s] has found, for the next one to start from; after an impact, which is over, that
-    /// starts from the forces before it.
+    /// Keeps what a step of `h` [s] has found as the start for the next one. After an impact the next step starts from the
+    /// forces before it, as the impact is over.
     pub(crate) fn keep(&mut self, contacts: &[Contact], h: f64, strikes: bool) {
         self.identity.keep(&self.loaded, h);
         if !strikes {
@@ -268,7 +267,7 @@ impl Dynamics {
         self.report(contacts, h);
     }
 
-    /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half of it.
+    /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half the step.
     fn close_gaps(&mut self, h: f64) {
         let (soft, most) = (self.softness(h), self.solver.max_push_speed);
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
@@ -280,8 +279,8 @@ impl Dynamics {
         }
     }
 
-    /// Sets them up for the one after it, which finds the impulses of all of it: only those of chains, on which a
-    /// robot stands softly, go on to close.
+    /// Sets them up for the solve after it, which finds the impulses of the whole step. Only the contacts of robots with
+    /// chains still close, as these stand on springs.
     fn keep_closed(&mut self, h: f64) {
         if self.chains.is_empty() {
             return;
@@ -298,9 +297,9 @@ impl Dynamics {
         self.momentum(state)
     }
 
-    /// Gives a robot of several bodies the momentum that it has from the impulses of weight and ground in a step of
-    /// `h` [s]: the solve has its arms where they are in the middle of the step, a third-order error, and the
-    /// elimination of its chains loses the last few digits.
+    /// Gives a robot of several bodies exactly the momentum that weight and ground have given it in a step of `h` [s]. The
+    /// solve places its arms where they are in the middle of the step, a third-order error, and the elimination of its chains
+    /// loses the last few digits.
     fn balance_momentum(&mut self, state: &mut State, before: Vector, h: f64) {
         let mass = self.model.total_mass();
         let of_weight = Vector::new(0.0, -mass * self.gravity);
@@ -322,7 +321,7 @@ impl Dynamics {
         of_contacts + axis * pushes.map(|push| push.impulse).sum::<f64>()
     }
 
-    /// Undoes what a step that was not kept has counted of its chains; motors start from the states that it found.
+    /// Undoes the counts of chains in a step that was not kept. Motors keep the states that it found, as a start.
     pub(crate) fn rewind(&mut self) {
         self.chains.iter_mut().for_each(Chain::rewind);
     }
@@ -399,9 +398,9 @@ impl Dynamics {
     }
 }
 
-/// [kg] The mass on the spring of a contact with the ground, if not what it moves. The ground is as stiff below an arm as
-/// below the chassis; shoes, which are light, have springs of their own, and arms beside them are as light: otherwise
-/// their grip would keep changing with that of the shoes.
+/// [kg] The mass that sets the stiffness of a contact with the ground; none: the contact's own effective mass. The ground is
+/// as stiff below an arm as below the chassis. Shoes are light and have softer springs, and so have arms on robots with
+/// shoes: otherwise the grip of these arms would keep changing with that of the shoes.
 fn mass_on_spring(model: &Model, mount: Mount) -> Option<f64> {
     match (model.chains.first(), mount) {
         (None, _) => Some(model.total_mass()),

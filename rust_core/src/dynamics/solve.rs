@@ -22,7 +22,7 @@ impl Dynamics {
         self.spin_with_chains(state);
     }
 
-    /// Gives the next solve the rotors of the drives, which turn with these over the chassis.
+    /// Adds the rotors of the drives to the next solve; they turn with the drives relative to the chassis.
     fn add_rotors(&mut self) {
         let problem = &mut self.problem;
         for (k, motor) in problem.motors.iter().take(self.model.drives).enumerate() {
@@ -45,7 +45,7 @@ impl Dynamics {
         }
     }
 
-    /// Ends a step with the blow of what strikes in it, on all contacts that bear.
+    /// Ends a step with the blow of contacts that strike in it, on all contacts that bear.
     pub(super) fn blow(&mut self, state: &mut State) {
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
             solved.bears |= touch.strikes;
@@ -54,7 +54,7 @@ impl Dynamics {
         state.take_velocities(self.problem.layout, &self.problem.unknowns);
     }
 
-    /// Starts a step from the forces of the last one, for half its time.
+    /// Starts the first solve of a step from the forces of the last step, acting for half of this one.
     pub(super) fn guess(&mut self, half: f64) {
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
             solved.normal_impulse = touch.normal_guess * half;
@@ -65,9 +65,9 @@ impl Dynamics {
         }
     }
 
-    /// Starts the solve over all of the step, for contacts that bear: from the forces of its first half, in which springs
-    /// shared the load. From those of the last step, wheels that can share a load in many ways did not settle.
-    /// Where something `strikes`, what closes is left to the blow.
+    /// Starts the second solve from the forces of the first one, in which springs shared the load: from the forces of the last
+    /// step, wheels that can share a load in many ways did not settle. Only contacts that have closed bear; if something
+    /// `strikes`, those that close in this step are left to the blow.
     pub(super) fn guess_more(&mut self, strikes: bool) {
         for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {
             (solved.bias, solved.compliance) = (0.0, 0.0);

@@ -91,7 +91,7 @@ impl Shoe {
         Pose::new(self.center, self.angle)
     }
 
-    /// [rad] By how much the next shoe is turned against it, at most half a turn either way.
+    /// [rad] Angle of the next shoe relative to this one, at most half a turn either way.
     pub(crate) fn bend(&self, next: &Self) -> f64 {
         let bend = next.angle - self.angle;
         bend - TAU * (bend / TAU).round()
@@ -114,7 +114,7 @@ pub(crate) struct DriveState {
     pub spin: f64,
     /// [m] Travel of the surface along its path.
     pub position: f64,
-    /// [N] What the sum of the errors of its speed adds to the force of its motor, if that corrects them.
+    /// [N] Part of its motor's force that comes from the integral of the speed error, if the motor corrects its speed.
     pub integral: f64,
     /// [N] Mean force of the motor at the surface over the last step.
     pub force: f64,
@@ -150,7 +150,7 @@ impl State {
         }
     }
 
-    /// Writes its velocities down as the unknowns of a solve.
+    /// Writes its velocities as the unknowns of a solve.
     pub(super) fn write_velocities(&self, layout: Layout, into: &mut [f64]) {
         into[..3].copy_from_slice(&self.twist().entries());
         for (k, flipper) in self.flippers.iter().enumerate() {
@@ -261,7 +261,7 @@ impl State {
         (turn - self.drives[drive].spin) * model.drive_radius
     }
 
-    /// Makes this state equal to another, without asking for memory.
+    /// Makes this state equal to another one, without allocating memory.
     pub(crate) fn copy(&mut self, other: &Self) {
         (self.center, self.angle) = (other.center, other.angle);
         (self.velocity, self.angular_velocity) = (other.velocity, other.angular_velocity);
@@ -296,7 +296,7 @@ impl State {
         (self.angular_velocity - self.drives[drive].spin) * model.drive_radius
     }
 
-    /// Sets the shoes' velocities: with the chassis, and along their chains at a track speed [m/s].
+    /// Makes the shoes move with the chassis, and along their chains at a track speed [m/s].
     pub(crate) fn run_shoes(&mut self, model: &Model, track_speed: f64) {
         let pose = self.pose(model);
         for chain in &model.chains {
@@ -345,7 +345,7 @@ impl State {
             })
     }
 
-    /// Whether it has numbers that mean something: none is infinite, and no speed above that of light.
+    /// Whether all of its numbers are finite, and no speed is above that of light.
     pub(crate) fn is_finite(&self) -> bool {
         let body = self.center.is_finite() && is_speed(self.velocity);
         let turn = self.angle.is_finite() && self.angular_velocity.is_finite();
@@ -363,7 +363,7 @@ impl State {
     }
 }
 
-/// Whether it is below the speed of light [m/s], which solves that have failed soon pass.
+/// Whether it is below the speed of light [m/s], which failed solves soon exceed.
 fn is_speed(velocity: Vector) -> bool {
     velocity.length() < 3e8
 }

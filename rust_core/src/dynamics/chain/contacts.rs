@@ -38,7 +38,7 @@ impl Touch {
         (touch, solved)
     }
 
-    /// A place where a shoe rests on the guide, a wheel or a tooth, without friction.
+    /// The frictionless contact of a shoe that rests on the guide, a wheel or a tooth.
     pub(in crate::dynamics) fn at_rest(
         rest: &Rest,
         last: RestMemory,
@@ -76,7 +76,7 @@ impl Touch {
     }
 }
 
-/// The levers of a body for a direction at a point of it.
+/// The levers of a body for a direction at a point, at `arm` [m] from its centre.
 fn levers(unit: Vector, arm: Vector) -> [f64; 3] {
     [unit.x, unit.y, cross(arm, unit)]
 }

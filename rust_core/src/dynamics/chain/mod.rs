@@ -24,32 +24,32 @@ use crate::solver::{Grip, Ring, RingSpec};
 
 pub(super) use rest::ChainPose;
 
-/// Stiffness of an idler's stop in units of its tensioner's. Harder stops work, but a chain that is tightened
-/// by an obstacle hits them with kilonewtons.
+/// Stiffness of an idler's stop in units of its tensioner's. Stiffer stops work, too, but a chain that is tightened by an
+/// obstacle hits them with kilonewtons.
 const STOP_STIFFNESS: f64 = 100.0;
 
 /// One closed chain.
 pub(super) struct Chain {
     pub rule: ChainOfShoes,
     pins: Vec<Pin>,
-    /// [m] Lag behind its sprocket, ...
+    /// [m] Travel by which it lags behind its sprocket, ...
     behind: f64,
-    /// [m] ... and did when the step began.
+    /// [m] ... and by which it did when the step began.
     lagged: f64,
     /// The shoes in the middle of this step, and unit vectors along them.
     middle: Vec<Shoe>,
     alongs: Vec<Vector>,
     /// [kg m^2] Moments of inertia of the shoes in this solve.
     inertias: Vec<f64>,
-    /// Poses of the shoes, in the world and in the chassis frame, when rests were last searched for.
+    /// Poses of the shoes in the world and in the chassis frame, in the last search for rests.
     places: Vec<[Pose; 2]>,
     /// The last forces and grips of the rests, shoe by shoe.
     memory: Vec<RestMemory>,
-    /// Whether a shoe was too far off the guide to come back when last checked.
+    /// Whether a shoe was too far off the guide to come back, in the last search for rests.
     pub is_off: bool,
 }
 
-/// Initial guess for the next solve of a rest.
+/// What the next solve knows of a rest.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct RestMemory {
     /// [N] Normal force.
@@ -140,7 +140,7 @@ impl Chain {
         };
     }
 
-    /// [m/s] Speed of the chain: one chain length per turn of its shoes relative to the chassis.
+    /// [m/s] Speed of the chain: its length for each turn of its shoes relative to the chassis.
     fn speed(&self, state: &State) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let turns = shoes
@@ -157,7 +157,7 @@ impl Chain {
         }
     }
 
-    /// Forgets the last count.
+    /// Undoes the last count.
     pub(super) fn rewind(&mut self) {
         self.behind = self.lagged;
     }

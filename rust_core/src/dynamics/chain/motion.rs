@@ -1,8 +1,8 @@
-//! A step of a chain: its solve before the motion, and its solve after it.
+//! A chain in a step: its solve before the motion, and the one after it.
 //!
-//! Before the motion pins are where they will be in its middle, and close their gaps by its end. After it they hold
-//! the shoes together where they are, while their forces over the whole step act where the middle has been. A
-//! shoe that goes round keeps its speed that way.
+//! In the solve before the motion pins act where they will be in its middle, and are to close their gaps by its end. In
+//! the solve after it they hold the shoes together where they are, while their forces over the whole step act where they
+//! were in its middle. That way a shoe that goes round an end keeps its speed.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -14,8 +14,8 @@ use crate::robot::{Bushing, Tensioner};
 use crate::solver::{Damper, Hinge, Ring};
 
 impl Chain {
-    /// Prepares the solve before a motion of `h` [s], in whose middle the chassis has the pose `chassis`: pins are to close
-    /// their gaps by its end, and act, like the drive, as in its middle. `free` has the velocities without constraints.
+    /// Prepares the solve before a motion of `h` [s]. Pins are to close their gaps by its end; they and the drive act where
+    /// they are in its middle, where the chassis has the pose `chassis`. `free` has the velocities without constraints.
     pub(in crate::dynamics) fn follow(
         &mut self,
         ring: &mut Ring,
@@ -51,8 +51,8 @@ impl Chain {
         ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, 0.5 * h);
     }
 
-    /// Prepares the solve after it: pins stay together where they are now; their forces over the whole step are
-    /// those in its middle.
+    /// Prepares the solve after it: pins hold where they are now, and their forces over the whole step act where they were in
+    /// its middle.
     pub(in crate::dynamics) fn hold(
         &mut self,
         ring: &mut Ring,
@@ -79,8 +79,8 @@ impl Chain {
         ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, h);
     }
 
-    /// Has the bushings of the pins act for a time [s], by the angles between these shoes and by a damping of their rates
-    /// [N m s/rad]. The pin that closes the chain has none.
+    /// Makes the bushings of the pins act for a time [s], with torques by the angles between these shoes and a `damping`
+    /// [N m s/rad] by their rates. The pin that closes the chain has no bushing.
     fn resist(&self, ring: &mut Ring, shoes: &[Shoe], time: f64, damping: f64) {
         let Bushing { stiffness, .. } = self.rule.bushing;
         if stiffness == 0.0 && damping == 0.0 {
@@ -92,8 +92,8 @@ impl Chain {
         }
     }
 
-    /// Gives each shoe the inertia with which it turns to the middle of a motion of `h` [s] as if the torques of its
-    /// pins followed it there. Otherwise a light shoe under a strong pull would swing wider with each step.
+    /// Gives each shoe a moment of inertia with which it turns in the first half of a motion of `h` [s] as if the torques of
+    /// its pins changed with its angle. Otherwise a light shoe under strong tension would swing wider with each step.
     pub(super) fn stiffen(&mut self, h: f64) {
         self.inertias.fill(0.0);
         let count = self.pins.len();
@@ -126,8 +126,8 @@ impl Chain {
         }
     }
 
-    /// Spring and damper of the idler at a travel [m], with the impulse of a `time` [s], at the end of a motion of
-    /// `h` [s]; its stops are stiff.
+    /// The impulse of the idler's spring and damper over a `time` [s], from a travel [m] and implicitly over a motion of `h`
+    /// [s]; its stop is a stiff spring.
     pub(super) fn tensioner(&self, travel: f64, h: f64, time: f64) -> Damper {
         let Tensioner {
             pre_tension,

@@ -32,7 +32,7 @@ impl Pin {
         self.arms = [alongs[0] * (0.5 * pitch), alongs[1] * (-0.5 * pitch)];
     }
 
-    /// [N m] How hard its force turns each of the two shoes back, per radian: pulled lengthwise, a shoe comes back into
+    /// [N m] Torque per radian with which its force turns each of the two shoes back: under tension, a shoe comes back into
     /// line.
     pub(super) fn straightens(&self) -> [f64; 2] {
         [-self.arms[0].dot(self.force), self.arms[1].dot(self.force)]

@@ -1,9 +1,9 @@
 //! The drive of a chain: a motor turns the sprocket against the chassis, and its teeth pull the chain.
 //!
-//! On a guide the sprocket has no teeth. There the travel of the motor is a function of where the shoes are: each adds
-//! one pitch, little by little, as it goes round the driving end. Motor and chain can so exchange no more energy than
-//! the force of the motor times its travel; forces along the shoes, in shares that are no such function, feed a chain
-//! that swings.
+//! On a guide there is no sprocket. The travel of the motor is then a function of where the shoes are: each adds one
+//! pitch, little by little, as it goes round the driving end. Motor and chain therefore exchange exactly the force of the
+//! motor times its travel. Forces that are shared among the shoes in another way derive from no such function, and would
+//! feed energy into a chain that swings.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -14,7 +14,7 @@ use crate::geometry::{Pose, Vector, cross, right_of};
 use crate::robot::ChainOfShoes;
 use crate::solver::Grasp;
 
-/// Finds how the travel of the motor depends on the places of the shoes at the driving end; the chassis has the pose
+/// Finds how the travel of the motor depends on the positions of the shoes at the driving end. The chassis has the pose
 /// `chassis` and its centre of mass at `center`. A chain that has come off may have no shoe there.
 pub(super) fn find_grasps(
     grasps: &mut Vec<Grasp>,
@@ -32,7 +32,7 @@ pub(super) fn find_grasps(
         if behind <= 0.0 || squared < 0.25 * end.radius * end.radius {
             continue;
         }
-        // Squares of cosines: they add up to a pitch over half a turn, and start and end smoothly.
+        // The square of a cosine adds up to a pitch over half a turn, and starts and ends smoothly.
         let share = FRAC_2_PI * behind * behind / squared;
         let along = right_of(arm) * (chain.path.pitch * share / squared);
         grasps.push(Grasp {

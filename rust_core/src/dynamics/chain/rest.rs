@@ -38,8 +38,8 @@ pub(in crate::dynamics) struct ChainPose {
     pub run: f64,
 }
 
-/// Number of possible rests of a shoe: on each disc of a guide, and with its front pin on the guide; or on
-/// each wheel, with its front pin on each wheel, and on two teeth.
+/// Number of possible rests of a shoe: on a guide, one on each of its discs, and one of the front pin on its outline; on
+/// wheels, one on each, one of the front pin on each, and two of the pin on teeth.
 pub(super) fn of_a_shoe(rule: &ChainOfShoes) -> usize {
     let discs = 2 + rule.between.len();
     match rule.sprocket {

@@ -6,7 +6,7 @@ use super::Chain;
 use super::rest::{Bearing, ChainPose, Rest};
 use crate::geometry::{Disc, Pose, Vector};
 
-/// Number of pitches off the guide from which a chain counts as having jumped off.
+/// A chain has come off if a shoe is farther from the guide than so many pitches.
 const FAR_OFF: f64 = 2.0;
 
 impl Chain {
