@@ -37,7 +37,7 @@ _SPEEDS = (0.1, 0.2, 0.4)
 """[m/s]"""
 _OBSTACLES = ("step", "knife edge")
 FIRM = "firm"
-"""Name of the motor that holds its speed through any blow."""
+"""Name of the motor that holds its speed through any impact."""
 
 _FAST = (
     *("belt", "line of 3", "line of 5", "line of 9", "24 all round"),

@@ -1,4 +1,4 @@
-"""What contacts give back of a blow."""
+"""What contacts give back of an impact."""
 
 import pytest
 

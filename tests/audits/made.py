@@ -119,14 +119,14 @@ def made_of_file(folder: Path) -> AuditRecord:
 
 def assumed() -> tuple[Assumption, ...]:
     rotor = Ranges({"robot.drivetrain.rotor_inertia": c2d.uniform(0.01, 0.1)})
-    blows = Ranges({"restitution": c2d.uniform(0.0, 1.0)})
+    impacts = Ranges({"restitution": c2d.uniform(0.0, 1.0)})
     two = ("step of 75 mm", "gap of 100 mm")
     return (
         *(
             Assumption(obstacle=name, assumption="rotor", drawn=rotor, seized=0, runs=18)
             for name in two
         ),
-        Assumption(obstacle=two[0], assumption="restitution", drawn=blows, seized=9, runs=18),
+        Assumption(obstacle=two[0], assumption="restitution", drawn=impacts, seized=9, runs=18),
     )
 
 

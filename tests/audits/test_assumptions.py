@@ -39,9 +39,13 @@ def test_each_seizure_is_driven_again_under_each_assumption_and_reported() -> No
     how: Any = {"vary": c2d.variability.of_start(), "samples": 20, "repeats": 1}
     found = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)
     assert found.seizes
-    (blows,) = found.assumed
-    assert (blows.obstacle, blows.assumption, blows.runs) == ("step of 75 mm", "restitution", 18)
-    assert blows.seized <= 18
+    (impacts,) = found.assumed
+    assert (impacts.obstacle, impacts.assumption, impacts.runs) == (
+        "step of 75 mm",
+        "restitution",
+        18,
+    )
+    assert impacts.seized <= 18
     assert any("With bouncing contacts (restitution 0 to 1)" in each for each in conclusion(found))
     again = c2d.audit(SEIZING, STEP, **how, repair=False, **QUIET)
     assert again.assumed == found.assumed

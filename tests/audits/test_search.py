@@ -118,14 +118,14 @@ def test_an_assumption_is_driven_with_eighteen_samples(samples: int, made: int) 
     gain = replace(SEIZING.drivetrain, controller=c2d.PI(gain=5.0))
     robot = replace(SEIZING, drivetrain=gain)
     rotor = Ranges({"robot.drivetrain.rotor_inertia": c2d.uniform(0.01, 0.1)})
-    blows = Ranges({"solver.restitution": c2d.uniform(0.0, 1.0)})
+    impacts = Ranges({"solver.restitution": c2d.uniform(0.0, 1.0)})
     known = {"robot.mass": c2d.uniform(5.0, 6.0)}
     runs: Any = MadeRuns(course_of, known)
     found = sampling.check_assumptions(
-        {"rotor": rotor, "restitution": blows}, runs, robot, ("step", STEP), COUNT
+        {"rotor": rotor, "restitution": impacts}, runs, robot, ("step", STEP), COUNT
     )
     assert [each.assumption for each in found] == ["rotor", "restitution"]
-    for each, ranges, (given, course) in zip(found, (rotor, blows), asked, strict=True):
+    for each, ranges, (given, course) in zip(found, (rotor, impacts), asked, strict=True):
         how, robots, name, ground = given
         assert dict(how.unknown) == {**known, **ranges}
         assert (how.repeats, how.trials, name, ground) == (1, (), "step", STEP)

@@ -6,7 +6,7 @@ import pytest
 import crawler2d as c2d
 
 NOT_ALIKE = 0.05  # [rad/s]
-BLOWS = 10  # samples: a blow of a millisecond earlier is no fault
+IMPACTS = 10  # samples: an impact of a millisecond earlier is no fault
 
 
 @pytest.mark.parametrize("height", [0.05, 0.06])
@@ -29,4 +29,4 @@ def test_small_wheels_stay_on_the_corner(height: float) -> None:
     apart = np.abs(long.angular_velocity[:shared] - short.angular_velocity[:shared])
     assert shared > 3000
     # Where the corner fell away below a wheel for a few milliseconds, it was 384 and 537.
-    assert np.count_nonzero(apart > NOT_ALIKE) <= BLOWS
+    assert np.count_nonzero(apart > NOT_ALIKE) <= IMPACTS

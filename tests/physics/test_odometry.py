@@ -9,7 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.parameters.terrain import Points
 
-# A rotor keeps a belt going through a blow, so that it slips by 2 mm more on a ridge.
+# A rotor keeps a belt going through an impact, so that it slips by 2 mm more on a ridge.
 ENGINEER = c2d.robots.engineer(flippers=None).without_rotors()
 RADIUS, AXLES = ENGINEER.outline.front_radius, ENGINEER.outline.axle_distance
 BELT, GROUSERS, WHEELS = c2d.BeltTrack(), c2d.GrouserBeltTrack(), c2d.LineOfWheels(9)

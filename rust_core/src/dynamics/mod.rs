@@ -248,7 +248,7 @@ impl Dynamics {
         self.solve(state, h);
         self.collect_motors(state, set_point, h);
         if strikes {
-            self.blow(state);
+            self.impact(state);
         }
         self.collect_tractions(state, h);
         if let Some(before) = before {

@@ -45,12 +45,12 @@ impl Dynamics {
         }
     }
 
-    /// Ends a step with the blow of contacts that strike in it, on all contacts that bear.
-    pub(super) fn blow(&mut self, state: &mut State) {
+    /// Ends a step with the impact of contacts that strike in it, on all contacts that bear.
+    pub(super) fn impact(&mut self, state: &mut State) {
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
             solved.bears |= touch.strikes;
         }
-        self.problem.blow(self.solver.restitution);
+        self.problem.impact(self.solver.restitution);
         state.take_velocities(self.problem.layout, &self.problem.unknowns);
     }
 
@@ -67,7 +67,7 @@ impl Dynamics {
 
     /// Starts the second solve from the forces of the first one, in which springs shared the load: from the forces of the last
     /// step, wheels that can share a load in many ways did not settle. Only contacts that have closed bear; if something
-    /// `strikes`, those that close in this step are left to the blow.
+    /// `strikes`, those that close in this step are left to the impact.
     pub(super) fn guess_more(&mut self, strikes: bool) {
         for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {
             (solved.bias, solved.compliance) = (0.0, 0.0);

@@ -177,7 +177,7 @@ impl Sinkage {
             path: "max_penetration".to_owned(),
             value: self.deepest,
             reason: format!(
-                "is usually at most {most:.4} m, what softness and blows explain: contacts were not found, or \
+                "is usually at most {most:.4} m, what softness and impacts explain: contacts were not found, or \
                  solver.max_push_speed is too low for the load"
             ),
         })
@@ -203,7 +203,7 @@ fn speed(simulation: &Simulation, reach: f64) -> f64 {
     reading.velocity.length() + reading.angular_velocity.abs() * reach + own
 }
 
-/// [m] The depth that soft contacts explain: all of the load on one of them, and a blow of the whole robot.
+/// [m] The depth that soft contacts explain: all of the load on one of them, and an impact of the whole robot.
 fn explained(simulation: &Simulation, speed: f64) -> f64 {
     let model = simulation.model();
     let omega = std::f64::consts::TAU * simulation.scenario().solver.contact_frequency;
@@ -266,7 +266,7 @@ mod tests {
         assert_eq!(warning(true, 1.0004e-3), None);
         assert_eq!(warning(false, 2e-3), None);
         let found = warning(true, 1.0006e-3).expect("it is deeper");
-        let reason = "is usually at most 0.0010 m, what softness and blows explain:";
+        let reason = "is usually at most 0.0010 m, what softness and impacts explain:";
         assert!(found.reason.starts_with(reason), "{}", found.reason);
         assert!((found.value - 1.0006e-3).abs() < 1e-15);
     }
@@ -282,16 +282,16 @@ mod tests {
     }
 
     /// The contacts have 1000 Hz: 6283.2 /s. On a belt one is as stiff as for 21.2 kg, and bears 207.97 N of weight and
-    /// 2 x 6 N m / 0.052 m = 230.77 N of force: 0.52 um. On a chain it is as stiff as for 15 g, and a blow of 1 m/s goes
+    /// 2 x 6 N m / 0.052 m = 230.77 N of force: 0.52 um. On a chain it is as stiff as for 15 g, and an impact of 1 m/s goes
     /// deeper by the square root of 21.2 / 0.015 = 37.59: 5.98 mm in place of 0.16 mm.
     #[test]
-    fn what_softness_and_blows_explain_depends_on_the_mass_that_a_contact_is_as_stiff_as() {
+    fn what_softness_and_impacts_explain_depends_on_the_mass_that_a_contact_is_as_stiff_as() {
         let depths = |on_chain| [0.0, 1.0].map(|speed| explained(&simulation(on_chain), speed));
-        let [rest, blow] = depths(false);
+        let [rest, impact] = depths(false);
         assert!((rest - 1.000_524e-3).abs() < 1e-9, "{rest} m");
-        assert!((blow - rest - 1.591_55e-4).abs() < 1e-9, "{blow} m");
-        let [rest, blow] = depths(true);
+        assert!((impact - rest - 1.591_55e-4).abs() < 1e-9, "{impact} m");
+        let [rest, impact] = depths(true);
         assert!((rest - 1.0e-3 - 0.74e-3).abs() < 1e-5, "{rest} m");
-        assert!((blow - rest - 5.983e-3).abs() < 1e-6, "{blow} m");
+        assert!((impact - rest - 5.983e-3).abs() < 1e-6, "{impact} m");
     }
 }

@@ -156,7 +156,7 @@ impl ValidScenario {
         let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
         let parts = lumped.map_or(&[][..], |model| &model.parts);
         check_sizes(&scenario, parts)?;
-        check_blows(&scenario)?;
+        check_impacts(&scenario)?;
         engine::check(&scenario)?;
         let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
             Arc::clone(&other.ground)
@@ -216,7 +216,7 @@ impl Scenario {
 }
 
 /// Checks that what is to bounce can: contacts of chains are springs that give nothing back.
-fn check_blows(scenario: &Scenario) -> Result<(), ScenarioError> {
+fn check_impacts(scenario: &Scenario) -> Result<(), ScenarioError> {
     let share = scenario.solver.restitution;
     if share > 0.0 && matches!(scenario.robot.track, Track::Segmental(_)) {
         let rule =

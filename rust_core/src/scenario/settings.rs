@@ -70,7 +70,7 @@ object! {
         max_push_speed: f64 = number(Range::above(0.0, 100.0, "m/s")),
         /// [m] Gap up to which contacts are searched for.
         prediction_distance: f64 = number(Range::between(1e-5, 0.1, "m")),
-        /// Share of the impulses of a blow that contacts give back.
+        /// Share of the impulses of an impact that contacts give back.
         #[serde(skip_serializing_if = "is_zero")]
         restitution: f64 = number_or_zero(Range::between(0.0, 1.0, "")),
     }

@@ -11,7 +11,7 @@ pub(crate) struct Effort {
     pub steps: u64,
     /// Steps taken again with a shorter one, because their error was too large or a force jumped in them.
     pub repeated_steps: u64,
-    /// Searches for impulses that satisfy all constraints: two a step, and those of a blow.
+    /// Searches for impulses that satisfy all constraints: two a step, and those of an impact.
     pub solves: u64,
     /// Linear systems solved in them.
     pub rounds: u64,

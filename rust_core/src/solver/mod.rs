@@ -6,11 +6,11 @@
 //!
 //! The equations: docs/physics.md, "The problem".
 
-mod blow;
 mod bodies;
 mod contact;
 mod damper;
 mod effort;
+mod impact;
 #[cfg(any(test, fuzzing))]
 pub(crate) mod judge;
 mod motor;

@@ -1,6 +1,6 @@
 //! Problems with known solutions, and random ones beside another method.
 
-mod blow;
+mod impact;
 mod interior_point;
 mod offsets;
 mod path;
@@ -73,7 +73,7 @@ fn a_box_on_a_slope_starts_to_slide_at_the_friction_angle() {
 }
 
 /// Painleve's rod: it slides on one end, and friction would press that end into the ground faster than the push of the
-/// ground lifts it. No force lets it go on; a blow stops it.
+/// ground lifts it. No force lets it go on; an impact stops it.
 #[test]
 fn a_rod_that_jams_stops_at_once() {
     let arm = Vector::new(0.15, -0.6); // from the centre to the end on the ground

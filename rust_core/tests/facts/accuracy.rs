@@ -56,7 +56,7 @@ fn a_stop_that_stands_is_waited_for_in_the_longest_steps() {
 }
 
 /// The local error bounds no path, but paths come closer to their limits as steps get more accurate. Single ones may
-/// fall apart at a late blow: the median of nine counts.
+/// fall apart at a late impact: the median of nine counts.
 #[test]
 fn paths_over_an_edge_converge_with_the_accuracy() {
     let path = |height: f64, accuracy: f64| {
@@ -105,7 +105,7 @@ fn depths_at_first(scenario: &Scenario) -> Vec<f64> {
     depths
 }
 
-/// A contact that a search misses is found in the ground later. Where a blow falls into one of the shortest steps, half a
+/// A contact that a search misses is found in the ground later. Where an impact falls into one of the shortest steps, half a
 /// step of 20 us at 0.4 m/s is 4 um. On three gear wheels that is one contact in some 1,500, almost all of them on steps higher
 /// than 75 mm, one in each run.
 #[test]
@@ -127,7 +127,7 @@ fn contacts_are_found_before_they_are_in_the_ground() {
         }
         let count = depths.len();
         let deepest = depths.iter().copied().fold(0.0, f64::max);
-        // As deep as a blow of 1 kN drives one in.
+        // As deep as an impact of 1 kN drives one in.
         let deep = depths.into_iter().filter(|depth| *depth > 2e-6).count();
         println!(
             "{name}: {count} contacts, at most {deepest:.1e} m deep at first, {deep} above 2 um"

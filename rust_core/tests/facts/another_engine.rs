@@ -49,7 +49,7 @@ fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
     }
 }
 
-/// Five wheels, with a servo each, rock on an edge: blows against it and against the ground, in turns, decide the path.
+/// Five wheels, with a servo each, rock on an edge: impacts against it and against the ground, in turns, decide the path.
 #[test]
 fn the_engines_path_goes_to_ours_as_its_step_goes_to_zero() {
     let mut scenario = engineer_on(line(5));
@@ -70,7 +70,7 @@ fn the_engines_path_goes_to_ours_as_its_step_goes_to_zero() {
         (place(&scenario) - ours).length()
     );
     // 0.30 and 0.20 of the distance at 0.125 ms: it ends as far from ours as ours are from each other. The engine's motors
-    // push on through a blow, for a step.
+    // push on through an impact, for a step.
     assert!(apart[1] < 0.35 * apart[0] && apart[2] < 0.25 * apart[0]);
     assert!(apart[2] < 3e-4);
 }

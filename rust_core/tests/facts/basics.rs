@@ -195,7 +195,7 @@ fn imbalance(scenario: &Scenario) -> (f64, f64) {
         let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
         let dt = simulation.last_step();
         let off = Vector::new(fx, fy - weight) - (simulation.momentum() - before) / dt;
-        // A blow of 20 us is a large force.
+        // An impact of 20 us is a large force.
         let forces = weight + fx.hypot(fy);
         worst = worst.max(off.length() / forces);
         sum += off * dt;

@@ -129,7 +129,7 @@ fn nose_climbs_a_face_from_the_friction_of_the_balance_on() {
         let found = bisect(0.8 * expected, 1.2 * expected, |mu| {
             let mut scenario = rigid_track(0.365, 0.064, share, 0.0);
             scenario.terrain = step(0.2, mu);
-            // At 0.05 m/s the blow against the face alone lifts the nose at 1 % less friction.
+            // At 0.05 m/s the impact against the face alone lifts the nose at 1 % less friction.
             scenario.drive.speed = 0.01;
             scenario.duration = 40.0;
             summary(&scenario).metrics.max_angle < 0.1

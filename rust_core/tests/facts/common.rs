@@ -122,7 +122,7 @@ pub(crate) fn articulated() -> Vec<(&'static str, Scenario)> {
     ]
 }
 
-/// Steps of a fixed length [s], for blows: where they fall in a step of an accuracy depends on its rounding, and the
+/// Steps of a fixed length [s], for impacts: where they fall in a step of an accuracy depends on its rounding, and the
 /// next steps on that.
 pub(crate) fn fixed(scenario: &mut Scenario, time_step: f64) {
     (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(time_step));
@@ -136,7 +136,7 @@ pub(crate) fn in_rapier(scenario: &Scenario) -> Scenario {
     scenario
 }
 
-/// Whether grousers or shoes of a robot of that name strike the ground: blows pass differences of rounding on.
+/// Whether grousers or shoes of a robot of that name strike the ground: impacts pass differences of rounding on.
 pub(crate) fn strikes(name: &str) -> bool {
     ["gear", "grousers", "chain"]
         .iter()

@@ -42,7 +42,7 @@ pub(crate) struct Account {
 }
 
 /// Follows a run for a time [s]. The work of a step is that of its mean efforts at the mean of the speeds
-/// before and after: of a blow that is all.
+/// before and after: of an impact that is all.
 pub(crate) fn follow(scenario: &Scenario, duration: f64) -> Account {
     let mut simulation = Simulation::new(&checked(scenario));
     let on_wheels = matches!(

@@ -169,7 +169,7 @@ fn contact_forces_bear_weight_and_inertia_while_arms_move() {
             let gained = (simulation.momentum() - before) / dt;
             let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
             worst = worst.max((fx - gained.x).abs().max((fy - weight - gained.y).abs()));
-            // A blow of 20 us is a large force.
+            // An impact of 20 us is a large force.
             hardest = hardest.max(fx.hypot(fy));
             sum = [sum[0] + fx * dt, sum[1] + (fy - weight) * dt];
             raised = raised.max(simulation.reading().position.y);

@@ -106,7 +106,7 @@ fn pieces_of_flat_ground_leave_no_trace() {
 #[test]
 fn vertices_off_by_a_ten_millionth_leave_none_either() {
     let mut draw = Draw(3);
-    // Grousers strike the ground: what a blow finds differs by more than the ground does.
+    // Grousers strike the ground: what an impact finds differs by more than the ground does.
     let smooth = |(name, _): &(&str, Scenario)| !strikes(name);
     for (name, scenario) in scenarios().into_iter().filter(smooth) {
         let whole = drive(&scenario, cut(1, 0.0, &mut draw)).0;
@@ -162,11 +162,11 @@ fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
             path
         };
         let here = path(0.0);
-        // Blows pass differences of rounding on, and rounding is a hundred times as coarse at 10 km as at 100 m.
-        for (x, after_blows) in [(100.0, 1e-6), (1e4, 1e-5)] {
+        // Impacts pass differences of rounding on, and rounding is a hundred times as coarse at 10 km as at 100 m.
+        for (x, after_impacts) in [(100.0, 1e-6), (1e4, 1e-5)] {
             let off = apart(&here, &path(x));
             println!("{name}, {x} m: off {off:.1e} m");
-            assert!(off < if strikes(name) { after_blows } else { 1e-9 });
+            assert!(off < if strikes(name) { after_impacts } else { 1e-9 });
         }
     }
 }

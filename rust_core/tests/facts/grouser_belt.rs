@@ -97,7 +97,7 @@ fn a_push_is_held_by_the_force_of_the_motors() {
     }
 }
 
-/// A corner that comes down round the front makes a small blow, and a blow passes differences of rounding
+/// A corner that comes down round the front makes a small impact, and an impact passes differences of rounding
 /// on: of a dozen shifts half led 30 um off, the others 1 um. Smooth belts keep a nanometre.
 #[test]
 fn a_shift_by_a_hundred_metres_changes_hundredths_of_a_millimetre_at_most() {

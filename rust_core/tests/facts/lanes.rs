@@ -57,13 +57,13 @@ fn equal_lanes_are_both_tracks_as_one() {
         // Coulomb friction leaves open who bears what; where grousers strike, that shows a little.
         let limit = match name {
             "line of 3 gear wheels" | "chain" => 1e-4,
-            // Within the play of its teeth, 2 mm, a chain finds its own way from blow to blow.
+            // Within the play of its teeth, 2 mm, a chain finds its own way from impact to impact.
             "chain on a sprocket" => 1e-3,
             _ => 1e-6,
         };
         assert!(pose < limit);
-        // The motors bring a drive back from a blow by 60 m/s^2: if it comes 10 us sooner, that is 0.6 mm/s. The speed of
-        // a chain is that of every blow of its shoes.
+        // The motors bring a drive back from an impact by 60 m/s^2: if it comes 10 us sooner, that is 0.6 mm/s. The speed of
+        // a chain is that of every impact of its shoes.
         let most = if name == "line of 3 gear wheels" {
             1e-3
         } else {

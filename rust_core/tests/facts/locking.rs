@@ -85,7 +85,7 @@ fn a_robot_whose_motors_are_too_weak_stands_on_a_slope_by_its_gear_and_rolls_bac
 #[test]
 fn uphill_a_gear_that_locks_changes_no_bit() {
     for (name, mut scenario) in on_slope(SLOPE) {
-        // Blows and wheels in gaps push drives ahead, which the gear does not let through.
+        // Impacts and wheels in gaps push drives ahead, which the gear does not let through.
         if strikes(name) || name.contains("round") || name.contains("arms") {
             continue;
         }
@@ -142,7 +142,7 @@ fn downhill_a_gear_that_locks_keeps_the_speed_that_weak_motors_lose() {
                 assert_relative_eq!(held, 0.4, max_relative = 1e-6);
             }
             assert!(held < 0.4 * (1.0 + 1e-6), "{name}");
-            // Blows slow gear wheels down.
+            // Impacts slow gear wheels down.
             assert!(stands_by_corners(name) || ran > 0.42, "{name}");
         }
     }

@@ -254,9 +254,9 @@ fn a_row_of_wheels_stops_where_statics_says_in_rapier() {
     }
 }
 
-/// A blow takes from a robot what its plastic impact takes: its front wheel comes down, the rear one may lift.
+/// An impact takes from a robot the momentum of a plastic one: its front wheel comes down, the rear one may lift.
 #[test]
-fn a_blow_leaves_the_momentum_of_a_plastic_impact_in_rapier() {
+fn an_impact_leaves_the_momentum_of_a_plastic_impact_in_rapier() {
     let (scenario, expected) = falling_on_its_front_wheel();
     // Within the millisecond after it gravity takes 2 % of what is left.
     agree("turn kept", &scenario, (expected, 0.03), |scenario| {

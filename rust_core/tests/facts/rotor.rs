@@ -12,7 +12,7 @@ use crate::energy::{follow, scale};
 /// [m] Radius of the Engineer's belt, and of its wheels.
 const BELT: f64 = 0.052;
 const WHEEL: f64 = 0.064;
-/// Friction at which wheels stick to the ground through a blow.
+/// Friction at which wheels stick to the ground through an impact.
 const STICKING: f64 = 10.0;
 
 #[test]
@@ -135,7 +135,7 @@ fn pitch_rate_after(scenario: &crawler2d_core::Scenario, u: f64, height: f64) ->
 }
 
 #[test]
-fn a_blow_on_a_driven_wheel_meets_its_rotor() {
+fn an_impact_on_a_driven_wheel_meets_its_rotor() {
     let (u, height) = (0.5, 0.02);
     // Motors that are strong enough to start, and ones that would hold the speed through anything that takes time.
     for (inertia, torque) in [
@@ -165,7 +165,7 @@ fn a_blow_on_a_driven_wheel_meets_its_rotor() {
         let found = simulation.reading().angular_velocity;
         let expected = pitch_rate_after(&scenario, u, height);
         println!("J = {inertia} kg m2, {torque} N m: {found:.5} rad/s, momentum {expected:.5}");
-        // The blow ends a step of 20 us of weight, of 0.2 mm/s.
+        // The impact ends a step of 20 us of weight, of 0.2 mm/s.
         assert_relative_eq!(found, expected, max_relative = 1e-3);
     }
 }

@@ -17,12 +17,12 @@ use crate::units::{Metres, MetresPerSecond, Seconds};
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
 /// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
 const COLLISION_SPEED: MetresPerSecond = MetresPerSecond(0.001);
-/// [s] What closes up to so long after the first strike is of the same blow: the step ends then.
-const SAME_BLOW: Seconds = Seconds(1e-5);
+/// [s] What closes up to so long after the first strike is of the same impact: the step ends then.
+const SAME_IMPACT: Seconds = Seconds(1e-5);
 /// [s] How long before a strike the step before it ends.
 const LEAD: Seconds = Seconds(1e-5);
 /// [s] Length of the step with a strike, if it has its time before.
-const COLLISION_STEP: Seconds = Seconds(LEAD.0 + SAME_BLOW.0);
+const COLLISION_STEP: Seconds = Seconds(LEAD.0 + SAME_IMPACT.0);
 /// [m] Depth up to which new contacts are found; half of what counts as sinking in.
 const UNSEEN: Metres = Metres(5e-4);
 /// How fast parts may gain speed within a step, in units of gravity, as far as the search for contacts looks ahead.
@@ -329,7 +329,7 @@ fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
     if before > COLLISION_STEP.value() {
         return (before, strike <= before);
     }
-    let after = (strike + SAME_BLOW.value())
+    let after = (strike + SAME_IMPACT.value())
         .min(h.max(COLLISION_STEP.value()))
         .min(left);
     // Leaves no short step for the end.

@@ -4,7 +4,7 @@
 //! base, the drive and the slide, so the elimination goes once round the ring, from link to link. The last hinge closes
 //! the ring; like the base, the drive and the slide it belongs to a border that is carried along. With stiff springs
 //! instead of hinges, the impulses of the springs would swamp the momentum of light links in rounding errors. These act
-//! like blows that shake the whole ring, the harder the shorter the step.
+//! like impacts that shake the whole ring, the harder the shorter the step.
 //!
 //! The equations: docs/physics.md, "Chains".
 

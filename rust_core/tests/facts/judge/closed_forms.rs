@@ -167,7 +167,7 @@ fn a_robot_without_motors_gains_no_energy() {
 }
 
 #[test]
-fn a_blow_leaves_little_speed() {
+fn an_impact_leaves_little_speed() {
     let mut scenario = braked(0.0, 0.8);
     scenario.robot.center_of_mass = [0.0, 0.0];
     for settings in refinements() {
@@ -213,7 +213,7 @@ fn a_nose_climbs_a_face_from_the_friction_of_the_balance_on() {
     let mut scenario = slow_and_strong();
     scenario.robot.track = line(2);
     scenario.robot.center_of_mass = [0.0, 0.0];
-    // Little of a blow: once the nose is up the climb gets easier.
+    // Little of an impact: once the nose is up the climb gets easier.
     scenario.drive.speed = 0.01;
     scenario.start.approach = 1e-3;
     for settings in refinements().into_iter().take(few_or_many(2, 3) as usize) {

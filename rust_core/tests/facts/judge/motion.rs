@@ -16,7 +16,7 @@ pub(crate) struct Settings {
     pub time_step: f64,
     /// [N/m] Of every touch, along its normal and along its tangent.
     pub stiffness: f64,
-    /// Damping of an impact over the critical one: at 4 a blow returns 1 / (4 x 4^2), under 2 %, of its
+    /// Damping of an impact over the critical one: at 4 it returns 1 / (4 x 4^2), under 2 %, of its
     /// speed.
     pub damping: f64,
 }
@@ -305,7 +305,7 @@ fn surface(part: &Part, spoke: Vector) -> Vector {
 }
 
 impl Robot {
-    /// [kg] What a blow meets whose arm about the centre of mass is `turned` and whose lever on the
+    /// [kg] What an impact meets whose arm about the centre of mass is `turned` and whose lever on the
     /// drive, if the part has one, is `lever`.
     fn mass_at(&self, turned: f64, lever: f64, driven: bool) -> f64 {
         let lever = if driven { lever } else { 0.0 };

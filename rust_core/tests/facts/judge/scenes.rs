@@ -14,7 +14,7 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// The same with contacts that give back a share of the impulses of blows.
+    /// The same with contacts that give back a share of the impulses of impacts.
     pub(crate) fn giving_back(mut self, share: f64) -> Self {
         self.scenario.solver.restitution = share;
         self

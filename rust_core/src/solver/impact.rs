@@ -1,4 +1,4 @@
-//! A blow: contacts that close stop at once, by impulses alone, and may rebound.
+//! An impact: contacts that close stop at once, by impulses alone, and may rebound.
 //!
 //! The equations: docs/physics.md, "Impacts".
 
@@ -7,10 +7,10 @@ use super::motor::Motor;
 use super::{Contact, MotorState, Problem};
 
 impl Problem {
-    /// Adds a blow to the velocities of a solve. No time passes in it: weight and motors do nothing, and only self-locking
-    /// gears hold. After it no contact that bears still approaches, and contacts have returned a share of the blow. Its impulses
+    /// Adds an impact to the velocities of a solve. No time passes in it: weight and motors do nothing, and only self-locking
+    /// gears hold. After it no contact that bears still approaches, and contacts have returned a share of the impact. Its impulses
     /// are added to those of the solve.
-    pub(crate) fn blow(&mut self, restitution: f64) {
+    pub(crate) fn impact(&mut self, restitution: f64) {
         let before: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
         let along: Vec<f64> = self.bilaterals.iter().map(|each| each.impulse).collect();
         let motors = self.motors.clone();
@@ -34,10 +34,10 @@ impl Problem {
         self.motors = motors;
     }
 
-    /// Continues after a solve that was a blow: contacts return a share of its impulses along normals and tangents, and motors
+    /// Continues after a solve that was an impact: contacts return a share of its impulses along normals and tangents, and motors
     /// do nothing.
     pub(super) fn rebound(&mut self, share: f64) {
-        let blow: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
+        let impact: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
         let along: Vec<f64> = self.bilaterals.iter().map(|each| each.impulse).collect();
         self.start_from_here();
         for contact in &mut self.contacts {
@@ -49,12 +49,12 @@ impl Problem {
         self.start_from_here();
         self.lock();
         self.solve_anew();
-        for (contact, [normal, friction]) in self.contacts.iter_mut().zip(blow) {
+        for (contact, [normal, friction]) in self.contacts.iter_mut().zip(impact) {
             contact.normal_impulse += (1.0 + share) * normal;
             contact.friction_impulse += (1.0 + share) * friction;
         }
-        for (bilateral, blow) in self.bilaterals.iter_mut().zip(along) {
-            bilateral.impulse += blow;
+        for (bilateral, impact) in self.bilaterals.iter_mut().zip(along) {
+            bilateral.impulse += impact;
         }
     }
 

@@ -1,4 +1,4 @@
-//! What blows take, and what contacts give back of it.
+//! What impacts take, and what contacts give back of it.
 
 use approx::assert_relative_eq;
 use crawler2d_core::{Engine, Simulation};
@@ -6,7 +6,7 @@ use crawler2d_core::{Engine, Simulation};
 use crate::common::*;
 use crate::judge::{core_passes, drawn_scene};
 
-/// A robot that stands on its rear wheel while its front wheel comes down, without friction: turn after the blow over turn
+/// A robot that stands on its rear wheel while its front wheel comes down, without friction: turn after the impact over turn
 /// before.
 fn turn_kept(restitution: f64) -> (f64, f64) {
     let (mut scenario, plastic) = falling_on_its_front_wheel();
@@ -18,18 +18,18 @@ fn turn_kept(restitution: f64) -> (f64, f64) {
         advance(&mut simulation, 1e-4);
         turn = simulation.reading().angular_velocity;
     }
-    // The rear wheel lifts off, so only the front wheel has a blow to give back.
+    // The rear wheel lifts off, so only the front wheel has an impact to give back.
     (turn / before, plastic + restitution * (plastic - 1.0))
 }
 
 #[test]
-fn a_wheel_that_comes_down_gives_back_its_share_of_the_blow() {
+fn a_wheel_that_comes_down_gives_back_its_share_of_the_impact() {
     for restitution in [0.0, 0.2, 0.5] {
         let (found, expected) = turn_kept(restitution);
         println!(
             "restitution {restitution}: {found:.4} of the turn is left, {expected:.4} expected"
         );
-        // Up to 0.1 ms of gravity on both sides of the blow.
+        // Up to 0.1 ms of gravity on both sides of the impact.
         assert_relative_eq!(found, expected, epsilon = 5e-3);
     }
 }
@@ -56,9 +56,9 @@ fn what_cannot_bounce_is_refused() {
     }
 }
 
-/// Twenty small gear wheels astride a sharp ridge: whether they get off it hangs on what blows give back.
+/// Twenty small gear wheels astride a sharp ridge: whether they get off it hangs on what impacts give back.
 #[test]
-fn small_gear_wheels_get_off_a_ridge_if_blows_give_something_back() {
+fn small_gear_wheels_get_off_a_ridge_if_impacts_give_something_back() {
     if !is_soak() {
         return;
     }

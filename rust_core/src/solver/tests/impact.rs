@@ -1,4 +1,4 @@
-//! Blows, and what they give back.
+//! Impacts, and what they give back.
 
 use super::*;
 use crate::draw::Draw;
@@ -43,20 +43,23 @@ fn a_body_that_jams_between_two_edges_turns_back() {
                 .push(contact(arm, Vector::new(-side, 0.0), 0.8));
         }
         problem.solve();
-        let blow = problem.contacts[0].normal_impulse;
+        let impact = problem.contacts[0].normal_impulse;
         problem.rebound(share);
-        (problem.unknowns[TURN], blow)
+        (problem.unknowns[TURN], impact)
     };
-    let (turn, blow) = jammed(0.0);
-    assert!(blow > 0.1 && turn.abs() < 1e-6, "{turn} rad/s, {blow} N s");
+    let (turn, impact) = jammed(0.0);
+    assert!(
+        impact > 0.1 && turn.abs() < 1e-6,
+        "{turn} rad/s, {impact} N s"
+    );
     assert_relative_eq!(jammed(1.0).0, -1.0, max_relative = 1e-5);
     assert_relative_eq!(jammed(0.4).0, -0.4, max_relative = 1e-5);
 }
 
-/// A flank on what a motor turns strikes at the speed that the motor holds. The blow meets the body and what spins on it, as if
+/// A flank on what a motor turns strikes at the speed that the motor holds. The impact meets the body and what spins on it, as if
 /// there were no motor, and the solve before it keeps what the motor gave.
 #[test]
-fn a_blow_meets_inertia_and_no_motor() {
+fn an_impact_meets_inertia_and_no_motor() {
     let (radius, speed, inertia) = (0.1, 0.5, 0.01);
     for most in [1e-3, 1.0, 1e3] {
         let mut problem = body_with(&[inertia], Vector::ZERO, 0.0);
@@ -71,15 +74,15 @@ fn a_blow_meets_inertia_and_no_motor() {
         problem.solve();
         assert_relative_eq!(problem.unknowns[spin], speed / radius, epsilon = 1e-9);
         problem.contacts[0].bears = true;
-        problem.blow(0.0);
+        problem.impact(0.0);
         let per_impulse = 1.0 / 2.0 + radius * radius / inertia;
-        let blow = speed / per_impulse;
+        let impact = speed / per_impulse;
         assert_relative_eq!(
             problem.contacts[0].normal_impulse,
-            blow,
+            impact,
             max_relative = 1e-6
         );
-        assert_relative_eq!(problem.unknowns[0], blow / 2.0, max_relative = 1e-6);
+        assert_relative_eq!(problem.unknowns[0], impact / 2.0, max_relative = 1e-6);
         assert!(problem.motor_impulses().all(|impulse| impulse.abs() < 1e-9));
         assert_eq!(problem.motors[0].state, MotorState::Holds);
     }
@@ -88,9 +91,9 @@ fn a_blow_meets_inertia_and_no_motor() {
 /// What a motor turns behind a gear that locks itself is struck ahead and back. It turns on more slowly or stands, and never
 /// turns back nor faster, and motor and target are as they were.
 #[test]
-fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
+fn an_impact_on_a_drive_behind_a_lock_stops_it_at_most() {
     let (radius, speed, inertia) = (0.1, 0.5, 0.01);
-    // The speed at which the body comes: the blow slows the drive down, would turn it back, and would turn it faster.
+    // The speed at which the body comes: the impact slows the drive down, would turn it back, and would turn it faster.
     for (comes, expected) in [(-0.1, 0.1), (-3.0, 0.0), (2.0, 0.5)] {
         let mut problem = body_with(&[inertia], Vector::new(comes, 0.0), 0.0);
         let spin = problem.layout.spin(0);
@@ -104,7 +107,7 @@ fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
         problem.contacts.push(flank);
         problem.solve();
         problem.contacts[0].bears = true;
-        problem.blow(0.0);
+        problem.impact(0.0);
         let found = radius * (problem.unknowns[spin] - problem.unknowns[TURN]);
         assert_relative_eq!(found, expected, epsilon = 1e-6);
         assert_eq!(problem.motors[0].state, MotorState::Holds);
@@ -121,10 +124,10 @@ fn drawn_hard(draw: &mut Draw) -> Problem {
     problem
 }
 
-/// In Poisson's hypothesis with friction given back as well, no blow can gain energy. Its impulses are all that changes the
+/// In Poisson's hypothesis with friction given back as well, no impact can gain energy. Its impulses are all that changes the
 /// momentum.
 #[test]
-fn no_blow_gives_back_more_energy_than_it_took() {
+fn no_impact_gives_back_more_energy_than_it_took() {
     let (mut draw, mut solved) = (Draw(11), 0);
     for case in 0..4000 {
         let mut problem = drawn_hard(&mut draw);
@@ -162,7 +165,7 @@ fn no_blow_gives_back_more_energy_than_it_took() {
 
 /// The same where gears lock themselves: what turned turns on more slowly at most.
 #[test]
-fn no_blow_on_drives_behind_locks_gains_energy() {
+fn no_impact_on_drives_behind_locks_gains_energy() {
     let (mut draw, mut solved) = (Draw(12), 0);
     for case in 0..4000 {
         let mut problem = drawn_hard(&mut draw);
@@ -177,7 +180,7 @@ fn no_blow_on_drives_behind_locks_gains_energy() {
         };
         let had = speeds(&problem);
         let share = draw.between(0.0, 1.0);
-        problem.blow(share);
+        problem.impact(share);
         if problem.effort.unresolved > 0 {
             continue;
         }
@@ -197,7 +200,7 @@ fn no_blow_on_drives_behind_locks_gains_energy() {
 
 /// A body on a rail along a slope strikes the ground and bounces: the rail has turned what the ground gave.
 #[test]
-fn what_a_rail_does_to_a_blow_counts_in_both_of_its_parts() {
+fn what_a_rail_does_to_an_impact_counts_in_both_of_its_parts() {
     let along = Vector::new(0.6, 0.8);
     for share in [0.0, 0.3, 1.0] {
         let mut problem = body(along * -2.0, 0.0);
@@ -209,7 +212,7 @@ fn what_a_rail_does_to_a_blow_counts_in_both_of_its_parts() {
         problem.solve();
         problem.contacts[0].bears = true;
         let before = problem.base().velocity;
-        problem.blow(share);
+        problem.impact(share);
         let gained = (problem.base().velocity - before) * 2.0;
         let of_ground = Vector::Y * problem.contacts[0].normal_impulse;
         let given = of_ground + across * problem.bilaterals[0].impulse;
