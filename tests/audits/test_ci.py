@@ -14,6 +14,7 @@ import crawler2d as c2d
 from crawler2d.audits.issues import Check, check_of, junit_of, sarif_of
 from crawler2d.audits.lint import RULES, Finding
 from crawler2d.audits.text import lint_only
+from crawler2d.audits.verdicts import Proportion
 from tests.audits.seizing import seizing_file
 from tests.reading.carts import FILES
 from tests.walls.rooms import ROOT
@@ -69,6 +70,22 @@ def test_an_obstacle_is_a_test_case_and_a_seizure_its_failure(check: Check) -> N
     assert re.search(r"wheels \d-\d of the chassis \(left_\w+, left_\w+\)", str(seized.text))
     assert found["seizes: step of 30 mm"].find("failure") is None
     assert "not certain" in str(found["seizes: step of 30 mm"].findtext("system-out"))
+
+
+def test_a_report_says_which_runs_have_no_result(check: Check) -> None:
+    assert check.found is not None
+    verdict = check.found.verdicts[1]
+    none = Proportion()
+    no_belt: dict[str, Any] = {"belt_cleared": none, "belt_seized": none, "belt_outcome": "failed"}
+    for changes, line in (
+        ({**no_belt, "belt_outcome": ""}, ", belt not simulated"),
+        (no_belt, ", belt: no result"),
+        ({"cleared": none, "seized": none, **no_belt}, "; no run has a result, belt: no result"),
+    ):
+        verdicts = (dataclasses.replace(verdict, **changes),)
+        found = dataclasses.replace(check.found, verdicts=verdicts)
+        text = junit_of([dataclasses.replace(check, found=found)])
+        assert str(cases(text)["seizes: step of 30 mm"].findtext("system-out")).endswith(line)
 
 
 def test_a_broken_rule_is_a_test_case_that_fails_by_its_errors_alone(check: Check) -> None:

@@ -202,11 +202,7 @@ def _suite(check: Check) -> XML:
     suite = _element("testsuite", name=name)
     for verdict in () if check.found is None else check.found.verdicts:
         issues = [issue for issue in check.issues if issue.obstacle == verdict.obstacle]
-        out = (
-            f"{verdict.obstacle}: {verdict.result}; clears {words.rate(verdict.cleared)}, seizes"
-            f" {words.rate(verdict.seized)}, belt clears"
-            f" {words.percent(verdict.belt_cleared.rate)}"
-        )
+        out = words.verdict_line(verdict)
         suite.append(_case(check, f"{SEIZES}: {verdict.obstacle}", issues, out))
     of_lint = [issue for issue in check.issues if not issue.obstacle]
     for rule in dict.fromkeys(issue.rule for issue in of_lint):

@@ -57,6 +57,7 @@ __all__ = [
     "span",
     "subject",
     "unit_after",
+    "verdict_line",
     "verdict_row",
     "wheel_names",
     "wheels_per_side",
@@ -149,6 +150,18 @@ def verdict_row(each: Verdict) -> tuple[str, ...]:
         each.outcome.replace("_", " "),
         each.result,
     )
+
+
+def verdict_line(each: Verdict) -> str:
+    """Write a verdict in one line of a report."""
+    own = "no run has a result"
+    if each.cleared.runs:
+        own = f"clears {rate(each.cleared)}, seizes {rate(each.seized)}"
+    belt = "belt not simulated"
+    if each.belt_outcome:
+        has_result = each.belt_cleared.runs > 0
+        belt = f"belt clears {percent(each.belt_cleared.rate)}" if has_result else "belt: no result"
+    return f"{each.obstacle}: {each.result}; {own}, {belt}"
 
 
 def run_count(table: xarray.Dataset) -> int:
