@@ -236,7 +236,7 @@ def test_yaml_that_is_no_plain_data_is_refused(
 def test_the_environment_is_not_shown(tmp_path: Path, standing: StandingChild) -> None:
     """A default is taken if there is nothing to show."""
     for text in ("$(env HOME)", "$(optenv HOME 8)", "$(optenv PATH)"):
-        with refusing(SAID, "must ask for no environment variable, or"):
+        with refusing(SAID, "must not use environment variables, or"):
             read(tmp_path, f'{XACRO}<link name="{text}"/></robot>', "cart.xacro")
     text = urdf(WHEELS, mass="$(optenv NOBODY_HAS_THIS_VARIABLE 8)")
     text = text.replace('<robot name="cart">', XACRO)

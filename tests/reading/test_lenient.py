@@ -234,7 +234,7 @@ def test_a_robot_held_to_the_world_is_read_as_free(tmp_path: Path, kind: str) ->
     held = f'<joint name="w" type="{kind}"><parent link="world"/><child link="hull"/></joint>'
     text = urdf(WHEELS, '<link name="world"/>', held)
     told = warnings_of(tmp_path, text)
-    assert [("holds the robot to the world" in each) for each in told] == [True] * (kind == "fixed")
+    assert [("fixes the robot to the world" in each) for each in told] == [True] * (kind == "fixed")
     assert read(tmp_path, text).tree.links[0].name == "hull"
 
 
@@ -252,11 +252,11 @@ def in_model(part: str) -> str:
         (
             '<include><uri>model://arm</uri><name>a</name></include><joint name="j" type="fixed">'
             "<parent>hull</parent><child>a::base</child></joint>",
-            "what it joins is in another file",
+            "it joins a link in another file",
         ),
         (
             '<joint name="w" type="fixed"><parent>world</parent><child>hull</child></joint>',
-            "it holds the robot to the world",
+            "it fixes the robot to the world",
         ),
         (
             '<joint name="g" type="gearbox"><parent>left</parent><child>right</child></joint>',

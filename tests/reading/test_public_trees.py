@@ -75,7 +75,7 @@ def test_a_file_with_shapes_on_the_ground_is_read_as_its_key_says(key: Key) -> N
     ("name", "said"),
     [
         ("maxii", "a file of macros only is read through the file that calls them"),
-        ("myzharbot", "link.Left_wheel. must have a collision shape, for what is only visible"),
+        ("myzharbot", "link.Left_wheel. must have a collision shape, as visuals"),
         ("tank", "link.wheel1_link. must have a collision shape that can be read.*wheel.stl"),
     ],
 )

@@ -24,7 +24,7 @@ pytest.importorskip("xacrodoc")
 OLD = '<robot name="cart" xmlns:xacro="http://ros.org/wiki/xacro">'
 NO_PACKAGE = r"is left out: the file must be in a package that is found in .*: packages="
 NO_MACRO = (
-    "is left out with what is in it: no file has such a macro; what is included at"
+    "is left out with its content: no file defines this macro; what is included at"
     " sekirei2020_gazebo.urdf.xacro:6 and sekirei2020_gazebo.urdf.xacro:7 was left out, too"
 )
 TAKEN = r"is taken to be .*/robots/marv/urdf/{}: no package has that name$"
@@ -36,14 +36,19 @@ WARNED: dict[str, list[tuple[str, str, str]]] = {
         ("marv.xacro:779", "$(find marv_description)/urdf/lights.xacro", TAKEN),
         ("common.yaml:11", "0.065", NO_DEFAULT.format("rover_topBoxX")),
         ("common.yaml:43", "False", NO_DEFAULT.format("has_boson_thermocam")),
-        ("common.yaml", "rover_bodyLength: 0.6050 for 0.6000, ", "is taken as a whole, also in"),
+        (
+            "common.yaml",
+            "rover_bodyLength: 0.6050 for 0.6000, ",
+            "is used with all its settings, also",
+        ),
     ],
     "maxii": [],
     "myzharbot": [
         (
             "myzharbot.urdf.xacro:13",
             "<property>",
-            "is taken as one of xacro, without its prefix, and so are 16 more elements of the file",
+            "is read as an element of xacro without its prefix, and so are 16 more elements of the"
+            " file",
         )
     ],
     "sekirei2020": [],
@@ -242,7 +247,7 @@ def test_a_call_of_an_unknown_macro_is_left_out_with_its_block(tmp_path: Path) -
     reading = read(tmp_path, text, "cart.xacro")
     assert "lidar" not in reading.text
     assert [re.sub(", got.*", "", warning) for warning in reading.warnings] == [
-        f"cart.xacro:{line} is left out with what is in it: no file has such a macro"
+        f"cart.xacro:{line} is left out with its content: no file defines this macro"
         for line in (2, 3)
     ]
 
@@ -251,7 +256,7 @@ def test_a_call_in_a_macro_is_reported_at_the_line_of_the_call(tmp_path: Path) -
     macro = '\n<xacro:macro name="m">\n<xacro:inner/></xacro:macro>\n<xacro:m/><xacro:m/>'
     text = urdf(macro, WHEELS).replace(OLD_NAME, XACRO)
     (warning,) = read(tmp_path, text, "cart.xacro").warnings
-    assert warning.startswith("cart.xacro:3 is left out with what is in it")
+    assert warning.startswith("cart.xacro:3 is left out with its content")
 
 
 def test_a_thousand_warnings_are_cut_to_a_hundred(tmp_path: Path) -> None:
@@ -413,7 +418,7 @@ def test_all_arguments_without_a_value_are_named_at_once(tmp_path: Path) -> None
     own = '<xacro:arg name="known" default="1"/><xacro:if value="$(arg d)"><a/></xacro:if>'
     with refusing(SAID) as caught:
         with_arguments(tmp_path, "a", "b", "known", "c", own=own)
-    rule = "must have a value for each argument, by a default or by arguments={name: value}"
+    rule = "must have a value for each argument, as a default or in arguments={name: value}"
     assert str(caught.value) == f"cart.xacro:1 {rule}, got d, a, b, c"
     own += "${1 / $(arg e)}"
     with refusing(SAID, "got d, e, a, b, c"):
@@ -443,7 +448,7 @@ def test_settings_are_not_used_on_request_or_where_there_is_a_default(tmp_path: 
     reading = with_arguments(tmp_path, "hull", "load", own=own)
     assert reading.robot.mass == 12.0  # 3 kg: the file is taken as a whole
     assert reading.warnings[1] == (
-        "a.yaml is taken as a whole, also in place of defaults, got hull: 3 for 8"
+        "a.yaml is used with all its settings, also instead of defaults, got hull: 3 for 8"
     )
 
 
@@ -490,8 +495,8 @@ def test_elements_of_old_xacro_need_no_prefix(tmp_path: Path) -> None:
     assert reading.robot.mass == 12.0
     assert reading.robot.belly is not None
     assert reading.warnings == (
-        "cart.xacro:2 is taken as one of xacro, without its prefix, and so are 6 more elements of"
-        " the file, got <property>",
+        "cart.xacro:2 is read as an element of xacro without its prefix, and so are 6 more elements"
+        " of the file, got <property>",
         "cart.xacro:8 is taken as a call of the macro, which old xacro allowed, got <box_of>",
     )
 

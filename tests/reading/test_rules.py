@@ -60,7 +60,7 @@ BROKEN_SDF = {
         HULL,
         '<inertial auto="true"/><collision name="cone"><geometry><cone><radius>0.1</radius>'
         "<length>0.1</length></cone></geometry></collision>",
-        "must state mass and inertia, or be of boxes, cylinders, capsules, spheres, got auto",
+        "must state mass and inertia, or have boxes, cylinders, capsules or spheres, got auto",
     ),
     "a shape of two": (
         "<geometry><box>",
@@ -148,7 +148,7 @@ def test_scaled_or_expanded_files_must_be_utf_8(tmp_path: Path) -> None:
 def test_files_are_not_included_by_a_pattern(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     text = f'{XACRO}<xacro:include filename="*.xacro"/></robot>'
-    with refusing(SAID, r"\*\.xacro must include files by their names"):
+    with refusing(SAID, r"\*\.xacro must include files by name, not by pattern"):
         read(tmp_path, text, "cart.xacro")
 
 
@@ -179,7 +179,7 @@ def test_a_drum_with_a_longitudinal_axis_is_refused(tmp_path: Path) -> None:
         for side, sign in SIDES
     )
     told: dict[str, Any] = {"tracks": ["left_belt", "right_belt"]}
-    refused(tmp_path, urdf(belts), "must lie across, to be a drum of a track", **told)
+    refused(tmp_path, urdf(belts), "must have a lateral axis to be a drum of a track", **told)
 
 
 def test_friction_of_a_reading_is_worked_out_for_another_ground() -> None:

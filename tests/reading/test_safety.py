@@ -104,7 +104,7 @@ def test_frames_in_a_circle_are_refused(tmp_path: Path) -> None:
     frames = '<link name="a"><pose relative_to="f"/></link>'
     frames += '<frame name="f"><pose relative_to="a"/></frame>'
     text = f'<sdf version="1.7"><model name="m">{frames}</model></sdf>'
-    refused(tmp_path, text, "must not be a frame that is given in itself", "m.sdf")
+    refused(tmp_path, text, "must not be defined relative to itself", "m.sdf")
 
 
 @pytest.mark.parametrize(

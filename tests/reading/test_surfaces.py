@@ -62,7 +62,7 @@ def test_fixed_drums_that_nothing_moves_are_a_belt(tmp_path: Path) -> None:
     assert found.robot.track == c2d.BeltTrack()
     outline = found.robot.outline
     assert (outline.axle_distance, outline.front_radius, outline.rear_radius) == (0.4, 0.08, 0.06)
-    assert "are moved by nothing in the file" in found.warnings[0]
+    assert "are not moved by anything in the file" in found.warnings[0]
     assert "4 fixed drums: left_front, left_rear, right_front, right_rear" in found.warnings[0]
 
 
@@ -73,7 +73,7 @@ def test_a_sprocket_and_a_fixed_idler_are_a_belt_and_the_sprocket_has_the_torque
     assert found.robot.track == c2d.BeltTrack()
     assert found.robot.drivetrain.max_torque == 5.0
     assert found.robot.outline.axle_distance == 0.4
-    assert "do not turn as the wheel on their side does" in found.warnings[0]
+    assert "stand still, unlike the wheel on their side" in found.warnings[0]
 
 
 def test_a_box_between_the_drums_is_no_belly(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The side view of a model, and its wheels, drums, flippers and chassis in it, paired across."""
+"""The side view of a model, with its left and right wheels and drums paired, and its flippers."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ __all__ = [
     "side_view",
 ]
 
-_MOST_RUNNERS = 400  # of one track, on both sides: any two are compared
+_MOST_RUNNERS = 400  # of one carrier, both sides together; every pair is compared
 _UP = np.array([0.0, 0.0, 1.0])
 _DRUMS = ("cylinder", "capsule", "sphere")
 
-# [rad] An axis so close to one of the model's is meant to be it: files have 3.1415 for pi.
+# [rad] An axis this close to an axis of the model is taken as that axis: files have 3.1415 for pi.
 _SNAP = 0.01
 
 _FORWARDS = {
@@ -50,20 +50,20 @@ _FORWARDS = {
 }
 _FRONT, _REAR = re.compile(r"front|fore"), re.compile(r"rear|back|hind")
 
-# [m] What lies this little behind its pivot does not lie behind it.
+# [m] Wheels that lie less than this behind a pivot do not count as behind it.
 _BEHIND = 0.005
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Pair:
-    """A wheel or drum on the left, and the one at the same position on the right.
+    """A wheel or drum on the left, with its partner at the same position on the right.
 
     Parameters
     ----------
     left, right : tuple of Runner
-        One of each, or more where several stand side by side.
+        One on each side, or several that stand side by side.
     x, y, radius : float
-        [m] Mean of both, forward and up.
+        [m] Means of both sides; x is forward, y up.
     """
 
     left: tuple[Runner, ...]
@@ -74,22 +74,22 @@ class Pair:
 
     @property
     def both(self) -> tuple[Runner, ...]:
-        """All of them."""
+        """All runners of the pair."""
         return self.left + self.right
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SideView:
-    """The plane of the side view: x forward, y up and z to the left.
+    """The frame of the side view: x forward, y up and z to the left.
 
     Parameters
     ----------
     forward, left : ndarray, shape (3,)
         Directions in the frame of the model, whose z axis is up.
     reason : str
-        The rule that gave them.
+        How the forward direction was found.
     tolerance : float
-        [m] By how much positions and radii may differ between the sides.
+        [m] Allowed difference of positions and radii between the sides.
     middle : float
         [m] Lateral position of the middle plane.
     """
@@ -102,11 +102,11 @@ class SideView:
 
     @property
     def up(self) -> Array:
-        """Direction up in the frame of the model."""
+        """The upward direction in the frame of the model."""
         return _UP
 
     def of(self, point: Array) -> Array:
-        """[m] Return forward, up and left of a point, shape (3,), or of several, shape (n, 3)."""
+        """[m] Return forward, up and left coordinates of points, shape (3,) or (n, 3)."""
         turned: Array = np.asarray(point) @ np.stack([self.forward, _UP, self.left], axis=1)
         return turned
 
@@ -115,7 +115,7 @@ class SideView:
         return float(self.left @ tensor @ self.left)
 
     def is_same(self, first: Runner, second: Runner) -> bool:
-        """Whether two runners have one position and radius in side view, within the tolerance."""
+        """Whether two runners agree in position and radius in side view, within the tolerance."""
         off = (first.x - second.x, first.y - second.y, first.radius - second.radius)
         return max(map(abs, off)) <= self.tolerance
 
@@ -126,12 +126,12 @@ def centers(pairs: Iterable[Pair]) -> Array:
 
 
 def is_belted(runners: list[Runner], path: str) -> bool:
-    """Whether a belt runs round them: drums, and no more wheels among them than sprockets.
+    """Whether runners are drums with a belt, among which at most half turn, as its sprockets.
 
     Raises
     ------
     ScenarioError
-        If more of them turn than are fixed.
+        If there are drums, but fewer than wheels.
     """
     turning = sum(runner.joint is not None for runner in runners)
     if 0 < len(runners) - turning < turning:
@@ -141,13 +141,13 @@ def is_belted(runners: list[Runner], path: str) -> bool:
 
 
 def middle_of(runners: Iterable[Runner]) -> float:
-    """[m] Return the lateral position of the middle plane: halfway between the outermost wheels."""
+    """[m] Return the lateral position of the middle plane, halfway between the outermost wheels."""
     across = [runner.z for runner in runners]
     return 0.5 * (min(across) + max(across)) if across else 0.0
 
 
 def pair_runners(runners: list[Runner], view: SideView) -> list[Pair]:
-    """Pair the runners of one carrier, left and right, from the rear to the front.
+    """Pair the left and right runners of one carrier, from the rear to the front.
 
     Raises
     ------
@@ -188,23 +188,24 @@ def pair_runners(runners: list[Runner], view: SideView) -> list[Pair]:
 
 
 def side_view(tree: Tree, surfaces: Surfaces, forward: str | None, tolerance: float) -> SideView:
-    """Find the lateral axis from the axes of wheels and drums, and the forward sign from names.
+    """Find the lateral axis from the axes of wheels and drums, and which way is forward from names.
 
     Parameters
     ----------
     tree : Tree
         The model.
     surfaces : Surfaces
-        Those that move.
+        Which surfaces move.
     forward : {"+x", "-x", "+y", "-y"}, optional
-        The direction that is forward; None finds it.
+        The forward direction; None finds it.
     tolerance : float
-        [m] By how much the sides may differ.
+        [m] Allowed difference between the sides.
 
     Raises
     ------
     ScenarioError
-        If nothing turns, the axes have no common lateral direction, or forward is ambiguous.
+        If there are no wheels or drums, their common axis is not horizontal, or forward is
+        ambiguous or not normal to the axes.
     """
     lateral = _lateral(tree, surfaces)
     ahead = np.cross(lateral, _UP)
@@ -231,13 +232,13 @@ def side_view(tree: Tree, surfaces: Surfaces, forward: str | None, tolerance: fl
 
 
 def running_gear_of(tree: Tree, view: SideView, surfaces: Surfaces) -> RunningGear:
-    """Sort everything that can touch the ground.
+    """Sort everything that can touch the ground by what carries it.
 
     Raises
     ------
     ScenarioError
-        If wheels or tracks hang on springs, slides, rockers or steered joints, or a wheel turns
-        about another axis.
+        If wheels or tracks are on springs, slides, rockers or steered joints, or a wheel has
+        another axis than the others.
     """
     return _Sorting(tree, view, surfaces).gear()
 
@@ -253,7 +254,7 @@ def _refuse_alone(runner: Runner, side: str, view: SideView) -> NoReturn:
 
 
 def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
-    """Return the direction of the most axes of wheels and of the drums of tracks, horizontal."""
+    """Return the horizontal direction shared by most axes of wheels and drums of tracks."""
     axes = [tree.joints[child].axis for child in wheel_shapes(tree)]
     axes += [
         shape.axis
@@ -272,7 +273,7 @@ def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     rows = np.array(axes)
     alike = np.abs(rows @ rows.T) >= math.cos(PARALLEL)
     most = rows[alike[alike.sum(axis=0).argmax()]]
-    # Of each axis its outer product, which has no sign: the mean of those has their direction.
+    # Outer products do not depend on the sign of an axis: their sum has the common direction.
     lateral: Array = np.linalg.eigh(most.T @ most)[1][:, -1]
     for axis in np.eye(3):
         if np.linalg.norm(np.cross(lateral, axis)) <= _SNAP:
@@ -290,7 +291,7 @@ def _axis_text(axis: Array) -> str:
 
 
 def _sign_by_names(tree: Tree, ahead: Array) -> tuple[float, str] | None:
-    """Return on which side the links called front are; None if that is not clear."""
+    """Return the sign of the direction in which links called front lie; None if it is not clear."""
     along: dict[bool, list[float]] = {True: [], False: []}
     for link in tree.links:
         name = link.name.lower()
@@ -306,7 +307,7 @@ def _sign_by_names(tree: Tree, ahead: Array) -> tuple[float, str] | None:
 
 
 class _Sorting:
-    """Sorts links from the root down; the carrier of each is that of its parent, or its joint."""
+    """Sorts links from the root down; a link has its parent's carrier, or its own joint as one."""
 
     def __init__(self, tree: Tree, view: SideView, surfaces: Surfaces) -> None:
         self.tree = tree
@@ -346,7 +347,7 @@ class _Sorting:
         return gear
 
     def carried(self, joint: Joint, above: Joint | None, arms: dict[str, Joint]) -> Joint | None:
-        """Return the joint on which a link moves, None for the chassis; note the arms."""
+        """Return the joint that moves a link, None if the chassis carries it; record flippers."""
         places = list(self.places(joint))
         if joint.kind == "fixed":
             return above
@@ -364,7 +365,7 @@ class _Sorting:
         return self.refuse(joint, self.rule(joint))
 
     def rule(self, joint: Joint) -> str:
-        """Return the rule that a joint breaks that carries wheels and is not a flipper's."""
+        """Return the rule broken by a joint that carries wheels, but is not a flipper's pivot."""
         if joint.kind == "slide" or joint.stiffness > 0.0:
             return "must carry no wheels: a side view has no suspension"
         if joint.kind != "hinge":
@@ -377,7 +378,7 @@ class _Sorting:
         raise ScenarioError(joint.path, joint.kind, rule)
 
     def places(self, joint: Joint) -> Iterator[Array]:
-        """Yield where the wheels and drums are that hang on a joint."""
+        """[m] Yield the positions of the wheels and drums that a joint carries."""
         for name in self.hanging[joint.child]:
             if name in self.wheels:
                 yield self.view.of(self.tree.joints[name].place)
@@ -397,11 +398,11 @@ class _Sorting:
         return bool(along.min() >= -_BEHIND)
 
     def still(self, link: Link) -> tuple[Shape, ...]:
-        """Return the shapes of a link that is no wheel."""
+        """Return the shapes of a link, none if it is part of a wheel."""
         return () if link.name in self.turning else link.shapes
 
     def runners_of(self, link: Link) -> Iterator[Runner]:
-        """Yield the wheel that a link is, or the drums that it has."""
+        """Yield a link as a wheel if it is one, and its drums."""
         if link.name in self.wheels:
             yield self.wheel(self.tree.joints[link.name])
         for shape in self.still(link):
@@ -443,7 +444,9 @@ class _Sorting:
     def drum(self, link: Link, shape: Shape) -> Runner:
         if shape.kind != "sphere" and not is_parallel(shape.axis, self.view.left):
             path = shape.path
-            raise ScenarioError(path, shape.kind, "must lie across, to be a drum of a track")
+            raise ScenarioError(
+                path, shape.kind, "must have a lateral axis to be a drum of a track"
+            )
         x, y, z = (float(part) for part in self.view.of(shape.pose.place))
         name = f"{link.name}/{shape.name}"
         return Runner(name=name, x=x, y=y, z=z, radius=shape.radius, link=link, shape=shape)

@@ -1,4 +1,4 @@
-"""SDF 1.4 to 1.11 as a neutral tree: one model, by itself or in a world, with its frames."""
+"""Read one model of an SDF 1.4 to 1.11 file, by itself or in a world, as a neutral tree."""
 
 from __future__ import annotations
 
@@ -50,18 +50,18 @@ __all__ = ["MODEL", "SCOPE", "read_sdf"]
 
 MODEL = "__model__"
 SCOPE = "::"
-_USUAL_MASS = 1.0  # [kg] of a link, where a file says nothing
-_USUAL_DENSITY = 1000.0  # [kg/m^3] Where masses are to be computed: that of water.
+_USUAL_MASS = 1.0  # [kg] Of a link without a stated mass.
+_USUAL_DENSITY = 1000.0  # [kg/m^3] Default for masses computed from volumes: that of water.
 _DYNAMICS = {"stiffness": "spring_stiffness", "damping": "damping", "friction": "friction"}
-_LONGEST_CHAIN = 100  # Frames, each of which is attached to the next.
+_LONGEST_CHAIN = 100  # Most frames in a row, each attached to the next.
 
 
 @dataclass(slots=True)
 class _Frames:
-    """Poses by name in the frame of the model, computed on demand.
+    """Poses of named frames relative to the model, computed on demand.
 
-    Names in a nested model are preceded by its scope, such as ``arm::``. The pose of a model may be
-    that of another of its frames, by which it is placed.
+    Names in a nested model start with its scope, such as ``arm::``. A nested model may be placed by
+    one of its own frames instead of by its origin.
     """
 
     warnings: list[ReadingWarning]
@@ -70,7 +70,7 @@ class _Frames:
     placed: dict[str, str] = field(default_factory=dict)
 
     def add(self, name: str, element: Element, usual: str, scope: str) -> None:
-        """Add a frame, given in the one that it names, or else in the usual one."""
+        """Add a frame, whose pose is relative to the frame that it names, or to the usual one."""
         pose, relative = _pose_of(element, self.warnings)
         within = scope + relative if relative else usual
         self.given.setdefault(name, (pose, within, element))
@@ -81,14 +81,14 @@ class _Frames:
         Raises
         ------
         ScenarioError
-            If there is no such frame, or it is given in itself by way of others.
+            If there is no such frame, or its definition is circular.
         """
         chain: dict[str, None] = {}
         while name not in self.known:
             if name not in self.given:
                 asked.refuse(name, "must name a link, joint or frame of the model")
             if name in chain:
-                asked.refuse(name, "must not be a frame that is given in itself")
+                asked.refuse(name, "must not be defined relative to itself")
             chain[name] = None
             _, name, asked = self.given[name]
         for name in reversed(chain):
@@ -101,14 +101,14 @@ class _Frames:
         return self.known[name]
 
     def inside(self, element: Element, usual: str, scope: str) -> Pose:
-        """Return the pose of something that is no frame itself, such as a collision."""
+        """Return the pose of an element that is not a frame itself, such as a collision."""
         pose, relative = _pose_of(element, self.warnings)
         return self.of(scope + relative if relative else usual, element).then(pose)
 
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A link, joint or frame, with the scope of the nested model that it is in."""
+    """A link, joint or frame, with the scope of its nested model."""
 
     element: Element
     scope: str
@@ -128,17 +128,17 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
     Parameters
     ----------
     root : Element
-        Of the file.
+        Root element of the file.
     model : str, optional
-        Name of the model; None takes the only one that is not static, or of several the only one
-        that can drive.
+        Name of the model. None takes the only model that is not static, or if there are several
+        of these, the only one that can drive.
     meshes : Meshes
-        The rule for meshes, and the warnings.
+        Reads meshes, and collects warnings.
 
     Raises
     ------
     ScenarioError
-        If anything breaks a rule of the format, or needs what this file does not contain.
+        If the file breaks a rule of the format, or needs something that it does not contain.
     """
     version = root.attributes.get("version", "")
     match = re.fullmatch(r"1\.(\d{1,2})", version, re.ASCII)
@@ -161,7 +161,7 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
 
 
 def _pose_of(element: Element, warnings: list[ReadingWarning]) -> tuple[Pose, str]:
-    """Read the pose of an element, and the name of the frame that it is given in, if any."""
+    """Read the pose of an element, and the name of the frame that it is relative to, if any."""
     pose = element.first("pose", warnings)
     if pose is None:
         return Pose(), ""
@@ -183,7 +183,7 @@ def _pose_of(element: Element, warnings: list[ReadingWarning]) -> tuple[Pose, st
 
 
 def _choose(root: Element, name: str | None) -> Element:
-    """Return the model of a name, or the only one that moves, or the only one that can drive."""
+    """Return the model with this name, or else the only one that moves or that can drive."""
     models = [*root.all("model"), *(m for world in root.all("world") for m in world.all("model"))]
     if name is not None:
         same = [model for model in models if model.attributes.get("name") == name]
@@ -237,7 +237,7 @@ def _turns(joint: Element) -> bool:
 
 
 class _Model:
-    """The conversion of one model to a tree: its frames are needed at every step."""
+    """Converts one model to a tree; a class, because every step needs its frames."""
 
     def __init__(self, model: Element, minor: int, meshes: Meshes) -> None:
         self.model = model
@@ -250,7 +250,7 @@ class _Model:
         self.links = {part.name: part for part in self.parts("link")}
 
     def nested(self, model: Element, scope: str) -> Iterator[_Part]:
-        """Yield a model and those in it; includes of other files are left out."""
+        """Yield a model and the models nested in it, without those included from other files."""
         yield _Part(model, scope)
         for include in model.all("include"):
             name = (include.only("name") or include.only("uri") or include).text
@@ -330,19 +330,19 @@ class _Model:
         ends = self.carrier(part.scope + parent), self.carrier(part.scope + child)
         reason = ""
         if "world" in (parent, child):
-            reason = "it holds the robot to the world, where it is to drive"
+            reason = "it fixes the robot to the world, but the robot has to drive"
         elif joint.attribute("type") == "gearbox":
             reason = "it couples joints, and carries nothing"
         elif self.has_includes and not self.links.keys() >= set(ends):
-            reason = "what it joins is in another file"
+            reason = "it joins a link in another file"
         if reason:
             self.warnings.append((joint.at, part.name, f"is left out: {reason}"))
             return None
         return ends
 
     def carrier(self, name: str) -> str:
-        """Return the link that a frame, joint or nested model is attached to; or else the name."""
-        for _ in range(_LONGEST_CHAIN):  # what is longer is a circle, and ends at no link
+        """Return the link that a frame, joint or nested model is attached to, or else its name."""
+        for _ in range(_LONGEST_CHAIN):  # a longer chain is a circle
             if name not in self.attached:
                 break
             name = self.attached[name]
@@ -350,7 +350,7 @@ class _Model:
 
     @cached_property
     def attached(self) -> dict[str, str]:
-        """What frames, joints and models are attached to: models to one link, usually the first."""
+        """What frames, joints and models are attached to; a model to a link, usually its first."""
         names = {}
         for each in self.models:
             inner = [*each.element.all("link"), *each.element.all("model")]
@@ -406,9 +406,9 @@ class _Model:
         )
 
     def solid(self, part: _Part, inertial: Element) -> tuple[float, Array, Array]:
-        """Return mass, centre and inertia of a link that has those of its collisions.
+        """Return mass, centre and inertia of a link, computed from its collision shapes.
 
-        Each has its own density, or else that of the link. A mass, if there is one, is that of all.
+        A shape has its own density, or else that of the link. A stated mass is that of all shapes.
         """
         usual = inertial.real("density", _USUAL_DENSITY)
         shapes, densities = [], []
@@ -423,7 +423,7 @@ class _Model:
                 shapes = []
                 break
         if not shapes:
-            rule = "must state mass and inertia, or be of boxes, cylinders, capsules, spheres"
+            rule = "must state mass and inertia, or have boxes, cylinders, capsules or spheres"
             inertial.refuse("auto", rule)
         mass, place, tensor = solid(shapes, densities)
         stated = inertial.real("mass", mass)
@@ -432,7 +432,7 @@ class _Model:
     def shape(self, collision: Element, part: _Part) -> Shape | Unread | None:
         bitmask = collision.only("surface/contact/collide_bitmask")
         if bitmask is not None and re.fullmatch(r"0x0+|0+", bitmask.text):
-            return None  # it meets nothing
+            return None  # it collides with nothing
         return self.geometry(collision, part)
 
     def geometry(self, collision: Element, part: _Part) -> Shape | Unread | None:

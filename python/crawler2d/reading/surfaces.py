@@ -1,8 +1,8 @@
-"""Surfaces that move: those that a file moves, and drums of a track that it does not move.
+"""Surfaces that move: those that a file moves, and drums of a track that stand still in the file.
 
-Many models have the drums of a track as fixed cylinders, and leave it to a controller elsewhere, or
-to one sprocket among them, to move the belt. That such drums carry a track is inferred from their
-places, with a warning: a simulator that has only the file lets them slide.
+Many models have fixed cylinders as drums of a track. The belt is then moved by a controller
+elsewhere, or by one sprocket among them. Such drums are recognized by their positions, with a
+warning: in a simulator that has only the file, they slide.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from crawler2d.reading.wheels import (
 __all__ = ["Surfaces", "refuse_unread", "surfaces_of"]
 
 _SAME = 0.002
-"""[m] By how much a drum may differ in side view from its partner on the other side."""
+"""[m] Allowed difference in side view between a drum and its partner on the other side."""
 
 _APART = 0.01
-"""[m] Closer drums are one: a belt round them would have no length."""
+"""[m] Drums closer than this count as one: a belt round them would have no length."""
 
 _BELOW = 0.01
-"""[m] By how much a belly may hang below the drums of a track: less than a boss or a bolt head."""
+"""[m] How far a belly may hang below the drums of a track: less than a boss or a bolt head."""
 
-_HORIZONTAL = 0.02  # of the upward part of a direction
-_SHOWN = 4  # names of links
-_MOST_AXES = 100  # that are compared with all
-_LISTED = 5  # names of links
+_HORIZONTAL = 0.02  # largest upward component of a horizontal direction
+_SHOWN = 4  # names of links in a warning
+_MOST_AXES = 100  # that are compared with all others
+_LISTED = 5  # names of links in an error
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,9 +49,9 @@ class Surfaces:
     Parameters
     ----------
     moved : frozenset of Shape
-        All of them, by the file or by a rule of this module.
+        All of them, whether found in the file or by a rule of this module.
     taken : frozenset of Shape
-        Those by a rule of this module.
+        Those found by a rule of this module.
     warnings : tuple of ReadingWarning
         One for each rule that was used.
     """
@@ -63,7 +63,7 @@ class Surfaces:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Drum:
-    """A fixed lateral cylinder, or a wheel: its position forward, up and across, and its body."""
+    """A fixed lateral cylinder, or a wheel; its place is forward, up and lateral."""
 
     shape: Shape
     link: str
@@ -79,14 +79,14 @@ class _Drum:
 
 
 def surfaces_of(tree: Tree) -> Surfaces:
-    """Find the surfaces of a model that move.
+    """Find the moving surfaces of a model.
 
-    Fixed drums, lateral cylinders on one side with a partner on the other, are those of a track
-    that the file does not move, if either
+    A fixed drum is a lateral cylinder on one side with a partner on the other. Fixed drums are
+    taken as those of a track if either
 
-    - wheels on joints stand on the same body and side, at most one for each drum: sprockets;
-    - or nothing on that body turns or moves, and there are two of them: on the chassis they are the
-      lowest of all shapes, on a flipper one of them is on its pivot.
+    - the same body has wheels on the same side, at most one for each drum: sprockets;
+    - or nothing on that body turns or moves, and there are at least two drums: on the chassis the
+    lowest of all shapes, on a flipper with one on its pivot.
     """
     links = moved_links(tree)
     moved = frozenset(
@@ -98,8 +98,8 @@ def surfaces_of(tree: Tree) -> Surfaces:
     driven, unmoved = _Search(tree, moved).drums()
     warnings = []
     for drums, reason in (
-        (driven, "do not turn as the wheel on their side does: read as a belt round both"),
-        (unmoved, "are moved by nothing in the file: read as the drums of moving belts"),
+        (driven, "stand still, unlike the wheel on their side: read as a belt round both"),
+        (unmoved, "are not moved by anything in the file: read as the drums of moving belts"),
     ):
         if drums:
             names = list_names(list(dict.fromkeys(drum.link for drum in drums)), _SHOWN)
@@ -113,14 +113,14 @@ def surfaces_of(tree: Tree) -> Surfaces:
 def refuse_unread(tree: Tree) -> None:
     """Refuse a model if its contact with the ground would have to be guessed.
 
-    A shape that was left out may be a wheel or a track if its link has no other shape, and its
-    surface moves, or it turns without limit on an axle that is no higher than the wheels. If
-    nothing that was read turns on an axle or is a track, it may be on any link.
+    A shape that was left out may be a wheel or a track if its link has no other shape, and if its
+    surface moves or it turns without limit on an axle no higher than the wheels. If the model has
+    no other wheel or track, it may be on any link.
 
     Raises
     ------
     ScenarioError
-        If there is such a link; it names what was left out, why, and what to do.
+        If there is such a link, with the reason why its shape was left out, and what to do.
     """
     lacking = {link.name: link for link in tree.links if link.unread and not link.shapes}
     moved = moved_links(tree)
@@ -155,7 +155,7 @@ def refuse_unread(tree: Tree) -> None:
 
 
 class _Search:
-    """Drums and wheels by the rigid body that carries them, and by side."""
+    """Finds the drums of tracks among cylinders, by rigid body and side."""
 
     def __init__(self, tree: Tree, moved: frozenset[Shape]) -> None:
         self.tree = tree
@@ -170,7 +170,7 @@ class _Search:
         self.turning = {name for child in self.wheels for name in hanging[child]}
 
     def drums(self) -> tuple[list[_Drum], list[_Drum]]:
-        """Return the drums with sprockets, and those that nothing moves."""
+        """Return the drums with sprockets, and those without."""
         axis = self._lateral()
         if axis is None:
             return [], []
@@ -194,7 +194,7 @@ class _Search:
         return driven, unmoved
 
     def _lateral(self) -> Array | None:
-        """Return the direction of the axes of most wheels, or else of most fixed cylinders."""
+        """Return the direction of most axes of wheels, or else of fixed cylinders."""
         axes = [self.tree.joints[child].axis for child in self.wheels] or [
             shape.axis for _, shape in self._cylinders() if abs(shape.axis[2]) < _HORIZONTAL
         ]
@@ -234,7 +234,7 @@ class _Search:
         )
 
     def _is_track(self, body: str, group: list[_Drum], axis: Array) -> bool:
-        """Whether drums without a sprocket are those of a track that nothing in the file moves."""
+        """Whether drums without a sprocket are those of a track that the file does not move."""
         if not any(not drum.is_at(group[0].place, _APART) for drum in group):
             return False
         joint = self.tree.joints.get(body)
@@ -263,7 +263,7 @@ class _Search:
 
 
 def _in_side_view(place: Array, axis: Array) -> Array:
-    """[m] Return a position forward, up and along a lateral axis, shape (3,)."""
+    """[m] Return the forward, upward and lateral coordinates of a position, shape (3,)."""
     forward = np.cross(axis, (0.0, 0.0, 1.0))
     return np.array([place @ forward, place[2], place @ axis])
 
@@ -290,7 +290,7 @@ def _refuse_bare(tree: Tree, hanging: dict[str, list[str]]) -> None:
     ]
     if bare:
         rule = (
-            "must have a collision shape, for what is only visible touches no ground"
+            "must have a collision shape, as visuals do not touch the ground"
             f"{_so_must([link.name for link in bare[1:]])}: give each the cylinder of its visual,"
             " and a mass"
         )

@@ -1,4 +1,4 @@
-"""Outline and track model: from pairs of wheels and their phases, or the drums of a belt."""
+"""Find outline and track model from pairs of wheels with their phases, or from drums of a belt."""
 
 from __future__ import annotations
 
@@ -31,49 +31,49 @@ __all__ = [
 ]
 
 FIT = 1e-5
-"""[m] Discs this close to a belt lie on it: programs round to six decimals."""
+"""[m] Discs this close to a belt are taken to lie on it: programs round to six decimals."""
 
 _EVEN = 1.2e-4
-"""[m] Wheels this close to an evenly spaced line lie on it: people round to four decimals, which
-moves wheel and ends by 0.05 mm each."""
+"""[m] Wheels this close to an evenly spaced line are taken to lie on it: people round to four
+decimals, which moves the wheel and both ends by 0.05 mm each."""
 
 BELT_TOLERANCE = 0.02
-"""[-] How far boxes may reach out of the belt, relative to the larger radius: boxes that are drawn
-between drums only approximate their tangents. Those of Gazebo's example are off by 1.2 %."""
+"""[-] How far boxes may protrude from the belt, relative to the larger radius: boxes between drums
+only approximate the tangents. Those of Gazebo's example are off by 1.2 %."""
 
-_UPWARDS = 0.5  # 30 degrees above level: what sticks out higher meets no obstacle
-_MOST_DISCS = 64  # that an outline can have
-_AT_ONCE = 10_000  # corners of a mesh that are processed together, in some tens of MB
+_UPWARDS = 0.5  # sine of 30 degrees: what protrudes more steeply upwards meets no obstacle
+_MOST_DISCS = 64  # of an outline
+_AT_ONCE = 10_000  # corners of a mesh that are processed together, which takes some tens of MB
 _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
 _NORMALS = np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
-_CHORDS = 16  # of a circle; at most 2 % of its radius inside it
+_CHORDS = 16  # of a circle; at most 2 % of its radius from it
 _DIGITS = 6  # Files round to a micrometre.
-_SMALLEST = 1e-6  # [m] Closer corners are one, and a thinner hull is none.
+_SMALLEST = 1e-6  # [m] Corners that protrude by less are dropped; a hull must be thicker.
 
 _EXPLAINED = 0.01
 """[-] An offset is real, however small, if it leaves less than this fraction of the residual."""
 
 _TURNED = 1e-3
-"""[rad] The phase deviation that is allowed: files round angles to this."""
+"""[rad] Allowed deviation of a phase: files round angles to this."""
 
-_ROUNDED = 0.01  # relative, of the sizes of grousers, which files round to 0.1 mm
+_ROUNDED = 0.01  # relative tolerance for sizes of grousers, which files round to 0.1 mm
 _THICKNESSES = ("tip_thickness", "base_thickness")
 
 _PARALLEL = 1e-6
-"""[-] Grousers have parallel flanks if their thickness changes by less than this, relative to the
-radius: MuJoCo keeps their corners as float32."""
+"""[-] Flanks of grousers are parallel if the thickness changes by less than this, relative to the
+radius: MuJoCo stores corners as float32."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Base:
-    """The chassis frame in the side view: midway between the end axles.
+    """The chassis frame in the side view, with its origin midway between the end axles.
 
     Parameters
     ----------
     rear, front : ndarray, shape (2,)
-        [m] The end axles in the side view.
+        [m] Positions of the end axles in the side view.
     is_level : bool
-        Whether x is the forward direction of the model, instead of the line through both axles.
+        Whether x points along the model's forward direction, instead of from axle to axle.
     """
 
     rear: Array
@@ -89,7 +89,7 @@ class Base:
 
     @property
     def ahead(self) -> Array:
-        """Direction of x in the side view, shape (2,)."""
+        """Direction of the x axis in the side view, shape (2,)."""
         if self.is_level:
             return np.array([1.0, 0.0])
         along: Array = (self.front - self.rear) / self.length
@@ -97,11 +97,11 @@ class Base:
 
     @property
     def tilt(self) -> float:
-        """[rad] Angle of x above forward."""
+        """[rad] Angle of the x axis above the forward direction."""
         return math.atan2(self.ahead[1], self.ahead[0])
 
     def of(self, points: Array) -> Array:
-        """[m] Return points of the side view, shape (n, 2), in the chassis frame."""
+        """[m] Transform points of the side view, shape (n, 2), to the chassis frame."""
         x, y = self.ahead
         turn = np.array([[x, -y], [y, x]])
         turned: Array = (np.asarray(points) - 0.5 * (self.front + self.rear)) @ turn
@@ -110,16 +110,16 @@ class Base:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Phases:
-    """The phases of the wheels of a track at the start: wheel n at offset + n * step.
+    """Initial phases of the wheels of a track: offset + n * step for wheel n = 1, 2, ...
 
     Parameters
     ----------
     step, offset : float
-        [-] In pitches: the angle between two grousers.
+        [-] In pitches; one pitch is the angle between neighbouring grousers.
     residual : float
         [-] The largest deviation of a wheel.
     order : list of int
-        Which wheel is the first, the second, ...
+        Indices of the first wheel, the second wheel, ...
     """
 
     step: float
@@ -138,33 +138,33 @@ def wheels_of(
     run: float = 0.0,
     is_whole: bool = True,
 ) -> LineOfWheels | HybridWheels:
-    """Return the track model that has these wheels in their positions.
+    """Return the track model with these wheels at these positions.
 
-    A line of wheels, if they stand evenly on the line between the end axles and their radii are
-    equal or change evenly; else wheels that are placed one by one, as also where the wheel at an
-    end axle is missing.
+    It is a line of wheels if they are evenly spaced on the line between the end axles, both of
+    which have wheels, and their radii are equal or change evenly. Otherwise each wheel has its own
+    position.
 
     Parameters
     ----------
     log : ReadLog
-        Takes notes and warnings.
+        Collects notes and warnings.
     pairs : list of Pair
-        From the rear to the front.
+        The wheels, from the rear to the front.
     base : Base
-        The frame of what carries them.
+    The frame of their carrier.
     view : SideView
         The side view.
     path : str
-        Of the track in a scenario.
+        Path of the track in a scenario.
     run : float
         [m] Distance that the track has run before the start, because its flipper is raised.
     is_whole : bool
-        Whether wheels are at both end axles.
+        Whether both end axles have wheels.
 
     Raises
     ------
     ScenarioError
-        If some are gear wheels, and not all are alike.
+        If there are gear wheels, and not all wheels are alike.
     """
     radii = np.array([pair.radius for pair in pairs])
     places = base.of(centers(pairs))
@@ -187,17 +187,17 @@ def wheels_of(
 
 
 def ends_among(drums: list[Pair]) -> tuple[Pair, Pair]:
-    """Return the drums on the rear and on the front end axle, as an outline has them."""
+    """Return the drums on the rear and front end axles, chosen as for any outline."""
     discs = [(drum.x, drum.y, drum.radius) for drum in drums]
     rear, front = end_discs(discs)
     return drums[discs.index(rear)], drums[discs.index(front)]
 
 
 def bending_drums(drums: list[Pair], *, at: Where) -> list[Pair]:
-    """Return the drums that bend the belt round all, from the rear to the front.
+    """Return the drums that bend the belt round all of them, from the rear to the front.
 
-    Those within the belt, such as a return roller, or on one of its straight runs, such as a road
-    wheel between two others, do not bend it.
+    Drums inside the belt, such as a return roller, or on a straight run, such as a road wheel
+    between two others, do not bend it.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def bending_drums(drums: list[Pair], *, at: Where) -> list[Pair]:
         if len(bent) > _MOST_DISCS:
             rule = f"must be a track that bends round at most {_MOST_DISCS} drums: leave some out"
             raise ScenarioError(drums[bent[-1]].left[0].path, "one drum more", rule)
-    # Of several drums on one run, the first that was found may lie between two later ones.
+    # If several drums are on one run, the first that was found may lie between two later ones.
     for each in list(bent):
         others = [other for other in bent if other != each]
         if len(others) > 1 and _Hull(discs[others]).beyond(discs[[each]]).max() <= FIT:
@@ -231,21 +231,21 @@ def bending_drums(drums: list[Pair], *, at: Where) -> list[Pair]:
 
 
 def belt_ends(drums: list[Pair], *, along: Array, at: Where) -> tuple[Pair, Pair]:
-    """Return the rearmost and the foremost drum of a belt that runs round two, as on a flipper.
+    """Return the rearmost and foremost drums of a belt that runs round only two, as on a flipper.
 
     Parameters
     ----------
     drums : list of Pair
         From the rear to the front, at least one.
     along : ndarray, shape (2,)
-        Direction from the rear end to the front end, roughly.
+        Approximate direction from the rear end to the front end.
     at : Where
         Line of the model, for errors.
 
     Raises
     ------
     ScenarioError
-        If there is only one drum, or another one reaches out.
+        If there is only one drum, or another one protrudes from the belt.
     """
     discs = _discs(drums)
     ends = list(_ends(discs, along, at))
@@ -260,16 +260,16 @@ def belt_ends(drums: list[Pair], *, along: Array, at: Where) -> tuple[Pair, Pair
 
 
 def beyond_belt(outlines: list[Array], drums: list[Pair]) -> list[tuple[float, float]]:
-    """[m] Return how far shapes reach out of the belt round drums: anywhere, and not upwards.
+    """[m] Return how far shapes protrude from the belt: in any direction, and not steeply upwards.
 
-    Both are 0 within the tolerance of boxes.
+    A distance within the tolerance for boxes is 0.
 
     Parameters
     ----------
     outlines : list of ndarray, shape (n, 2)
-        [m] Corners of each in the side view.
+        [m] Corners of each shape in the side view.
     drums : list of Pair
-        Those that bend the belt.
+        The drums that bend the belt.
     """
     discs = _discs(drums)
     hull, tolerance = _Hull(discs), BELT_TOLERANCE * float(discs[:, 2].max())
@@ -283,7 +283,7 @@ def beyond_belt(outlines: list[Array], drums: list[Pair]) -> list[tuple[float, f
 
 
 def silhouette(shape: Shape, view: SideView, chords: int = _CHORDS) -> Array:
-    """[m] Return points of the side view whose hull is that of the shape, circles as polygons."""
+    """[m] Return points of the side view with the shape's hull; circles become polygons."""
     if shape.kind in ("box", "hull"):
         return view.of(corners_of(shape))[:, :2]
     half = np.array([-0.5, 0.5]) * (0.0 if shape.kind == "sphere" else shape.length)
@@ -297,23 +297,23 @@ def silhouette(shape: Shape, view: SideView, chords: int = _CHORDS) -> Array:
 
 
 def hull(points: Array) -> list[Array]:
-    """Return the corners of the convex hull, counter-clockwise, none on a straight edge."""
-    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0).tolist()  # floats, which are faster
+    """Return the corners of the convex hull counter-clockwise, without points on its edges."""
+    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0).tolist()  # plain floats are faster
     ends = [_chain(order), _chain(order[::-1])]
     return [np.array(corner) for chain in ends for corner in chain[:-1]]
 
 
 def fit_phases(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
-    """Fit the phases of wheels; in the first order and without an offset, if that suffices.
+    """Fit the phases of wheels, preferably in the first order and without an offset.
 
     Parameters
     ----------
     own : ndarray, shape (n,)
         [-] Phase of each wheel, in pitches.
     orders : list of list of int
-        The orders in which they may be numbered.
+        Orders in which the wheels may be numbered.
     tolerance : float
-        [-] The residual that is allowed.
+        [-] Largest residual of a good fit.
 
     Examples
     --------
@@ -327,8 +327,8 @@ def fit_phases(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
     )
     for each, other in zip(without, turned, strict=True):
         if each.residual <= tolerance:
-            # A frame with a slight tilt turns all wheels by as little, which the step must not take
-            # up. Any two wheels have an offset and a step.
+            # A slightly tilted frame turns all wheels by the same small angle, which the step must
+            # not absorb. An offset and a step fit any two wheels.
             is_turned = len(own) > 2 and other.residual < _EXPLAINED * each.residual
             return other if is_turned else each
     best = min(without + turned, key=lambda each: each.residual)
@@ -336,14 +336,14 @@ def fit_phases(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
 
 
 def belt_order(places: Array, own: Array) -> list[int]:
-    """Return the order of wheels along a belt round them, up at the rear and forward on top.
+    """Return the order of wheels along a belt round them: up at the rear, then forward on top.
 
-    The first is where the phases of neighbours are discontinuous.
+    It begins where the phase jumps between neighbours.
 
     Parameters
     ----------
     places : ndarray, shape (n, 2)
-        [m] Their axles.
+        [m] Positions of the axles.
     own : ndarray, shape (n,)
         [-] Phase of each, in pitches.
     """
@@ -359,7 +359,7 @@ def belt_order(places: Array, own: Array) -> list[int]:
 
 
 def wrap_phase(phase: Any) -> Any:
-    """[-] Wrap phases, in pitches, to -0.5 to 0.5."""
+    """[-] Wrap phases, in pitches, to the range -0.5 to 0.5."""
     return (np.asarray(phase) + 0.5) % 1.0 - 0.5
 
 
@@ -372,28 +372,28 @@ def common_wheel(
     path: str,
     is_line: bool,
 ) -> tuple[RoundWheel | GearWheel, list[int]]:
-    """Return the shape that all wheels of a track have, and the order of their phases.
+    """Return the common shape of the wheels of a track, and the order of their phases.
 
     Parameters
     ----------
     log : ReadLog
-        Takes notes and warnings on their phases.
+        Collects notes and warnings about their phases.
     pairs : list of Pair
         The wheels, from the rear to the front.
     view : SideView
         The side view.
     angles : list of float
-        [rad] By how much the carrier, and the run of its track, have turned each already.
+        [rad] Angle by which carrier and travel of the track have already turned each pair.
     path : str
-        Of the wheel in a scenario.
+        Path of the wheel in a scenario.
     is_line : bool
-        Whether they stand in a line, from the rear to the front; others may be phased in the order
-        of a belt round them.
+        Whether they form a line of wheels; otherwise their phases may follow the order along a
+        belt round them.
 
     Raises
     ------
     ScenarioError
-        If wheels differ in their grousers.
+        If the wheels have different grousers.
     """
     runners = [runner for pair in pairs for runner in pair.both]
     gears = [runner.grousers for runner in runners if runner.grousers is not None]
@@ -434,7 +434,7 @@ def common_wheel(
 
 
 def is_same_wheel(first: RoundWheel | GearWheel, second: RoundWheel | GearWheel) -> bool:
-    """Whether two wheels are the same but for the rounding of files."""
+    """Whether two wheels are the same except for rounding in files."""
     if not isinstance(first, GearWheel) or not isinstance(second, GearWheel):
         return first == second
     count = first.grouser_count
@@ -450,12 +450,12 @@ def is_same_wheel(first: RoundWheel | GearWheel, second: RoundWheel | GearWheel)
 
 
 def _discs(drums: list[Pair]) -> Array:
-    """[m] Return centres and radii, shape (n, 3)."""
+    """[m] Return centres and radii of drums, shape (n, 3)."""
     return np.array([[drum.x, drum.y, drum.radius] for drum in drums])
 
 
 def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
-    """Return the discs that reach farthest back and farthest forward."""
+    """Return the indices of the discs that reach farthest back and farthest forward."""
     places = discs[:, :2] @ along
     rear, front = int((places - discs[:, 2]).argmin()), int((places + discs[:, 2]).argmax())
     if rear == front:
@@ -464,10 +464,10 @@ def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
 
 
 class _Hull:
-    """The support of a belt round discs, in every direction that matters.
+    """The support function of a belt round discs, in many directions and normal to its runs.
 
-    What reaches out of a straight run does so farthest at right angles to it; out of an arc, nearly
-    as far in the closest of many directions.
+    What protrudes from a straight run does so most along its normal; what protrudes from an arc,
+    nearly as far in the closest of the other directions.
     """
 
     def __init__(self, belt: Array) -> None:
@@ -479,15 +479,15 @@ class _Hull:
         across = along - np.arccos(narrower[rows, columns] / distance[rows, columns])
         normals = np.stack([np.cos(across), np.sin(across)])
         reach = belt[:, :2] @ normals + belt[:, 2:]
-        # The runs are those tangents of two discs that no other disc crosses.
+        # The straight runs are the tangents of two discs that no other disc crosses.
         is_run = reach.max(axis=0) <= reach[rows, np.arange(len(rows))] + FIT
         self.normals = np.concatenate([_NORMALS, normals[:, is_run]], axis=1)
         self.reach = (belt[:, :2] @ self.normals + belt[:, 2:]).max(axis=0)
 
     def beyond(self, discs: Array, highest: float = 1.0) -> Array:
-        """[m] Return how far each disc reaches out of the belt; < 0 where it does not.
+        """[m] Return how far each disc protrudes from the belt; negative if it does not.
 
-        Only directions that rise by at most `highest` count.
+        Only directions whose upward component is at most `highest` count.
         """
         counts = self.normals[1] <= highest
         parts = np.array_split(discs, 1 + len(discs) // _AT_ONCE)
@@ -499,7 +499,7 @@ class _Hull:
 
 
 def _chain(order: list[list[float]]) -> list[list[float]]:
-    """Return one half of a hull of sorted points."""
+    """Return one half of the hull of sorted points."""
     chain: list[list[float]] = []
     for point in order:
         while len(chain) > 1 and _height(chain[-2], chain[-1], point) <= _SMALLEST:
@@ -509,7 +509,7 @@ def _chain(order: list[list[float]]) -> list[list[float]]:
 
 
 def _height(start: list[float], corner: list[float], end: list[float]) -> float:
-    """[m] Return by how much a corner stands out to the right of the line past it."""
+    """[m] Return the distance of a corner to the right of the line from start to end."""
     x, y = end[0] - start[0], end[1] - start[1]
     length = math.hypot(x, y)
     out = y * (corner[0] - start[0]) - x * (corner[1] - start[1])
@@ -517,9 +517,9 @@ def _height(start: list[float], corner: list[float], end: list[float]) -> float:
 
 
 def _fit(own: Array, order: list[int], *, has_offset: bool) -> Phases:
-    """Fit the step, and the offset if there may be one."""
+    """Fit the step, and the offset if there is one."""
     number = np.arange(1, len(own) + 1)
-    # Fine enough that the best of these is on the slope of the global optimum.
+    # Fine enough for the best of these to be in the basin of the global optimum.
     steps = np.arange(16 * len(own)) / (16 * len(own))
     sums = np.exp(2j * math.pi * (own - steps[:, None] * number)).sum(axis=1)
     best = int((np.abs(sums) if has_offset else sums.real).argmax())
@@ -540,7 +540,7 @@ def _fit(own: Array, order: list[int], *, has_offset: bool) -> Phases:
 
 
 def _refuse_unlike(runner: Runner, first: Grousers) -> None:
-    """Refuse a wheel whose grousers are not those of the first: a track has one kind."""
+    """Refuse a wheel whose grousers differ from those of the first: a track has one kind."""
     own = runner.grousers
     if own is None:
         rule = "must have grousers, as other wheels of its track: a track has one kind of wheel"
@@ -558,7 +558,7 @@ def _words(grousers: Grousers) -> str:
 
 
 def _phase(runner: Runner, view: SideView) -> float:
-    """[rad] Return the direction of a grouser in side view."""
+    """[rad] Return the direction of one of its grousers in side view."""
     assert runner.grousers is not None
     x, y, _ = view.of(runner.grousers.direction)
     return math.atan2(y, x)

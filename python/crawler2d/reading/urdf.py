@@ -1,4 +1,4 @@
-"""URDF as a neutral tree, with extensions for Gazebo and Bullet; xacro is expanded first."""
+"""Read a URDF with its extensions for Gazebo and Bullet as a neutral tree, after any xacro."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ from crawler2d.reading.parts import (
 
 __all__ = ["read_urdf"]
 
-_WORLD = "world"  # A joint from an empty link of this name holds a robot to the world.
+_WORLD = "world"  # A joint from an empty link of this name fixes a robot to the world.
 
 
 def read_urdf(
@@ -54,18 +54,18 @@ def read_urdf(
     Parameters
     ----------
     root : Element
-        Of the file.
+        Root element of the file.
     meshes : Meshes
-        The rule for meshes, and the warnings.
+        Reads meshes, and collects warnings.
     leave_out : bool
-        Whether joints whose links are missing are left out, or refused.
+        Whether to leave out joints whose links are missing, instead of refusing the file.
     is_bullet : bool
-        Whether it is for Bullet, which does not read the friction that is meant for Gazebo.
+        Whether the file is for Bullet, which does not read the friction written for Gazebo.
 
     Raises
     ------
     ScenarioError
-        If anything breaks a rule of the format.
+        If the file breaks a rule of the format.
     """
     for element in root.within():
         if element.tag.startswith("xacro:"):
@@ -92,7 +92,7 @@ def read_urdf(
         elif parent == _WORLD and parent in elements and not elements[parent].children:
             ground = parent
             if element.attribute("type") != "floating":
-                reason = "is left out: it holds the robot to the world, where it is to drive"
+                reason = "is left out: it fixes the robot to the world, but the robot has to drive"
                 warnings.append((element.at, f"{parent} to {child}", reason))
         else:
             ends.append((element, element.attribute("name"), parent, child))
@@ -155,7 +155,7 @@ def read_urdf(
 
 
 def _frictions(root: Element, *, is_bullet: bool) -> dict[str, Friction]:
-    """Return the friction of extensions, by link; the direction in the frame of the collision."""
+    """Return the friction that extensions give to links; directions are in collision frames."""
     frictions: dict[str, Friction] = {}
     for link in root.all("link"):
         lateral = link.only("contact/lateral_friction")
@@ -190,7 +190,7 @@ def _origin(element: Element, warnings: list[ReadingWarning]) -> Pose:
 
 
 def _origin_element(element: Element) -> Element:
-    """Return the element whose line is that of a position."""
+    """Return the element whose line is cited for a position."""
     return next(element.all("origin"), element)
 
 
@@ -251,7 +251,7 @@ def _moving(joint: Joint, element: Element, pose: Pose) -> Joint:
     is_continuous = element.attribute("type") == "continuous"
     figures: dict[str, Limit] = {}
     if limit is not None:
-        # What is missing is no limit of effort or speed, and an angle of 0.
+        # A missing effort or speed is no limit; a missing angle is 0.
         usual = {"effort": math.inf, "velocity": math.inf, "lower": 0.0, "upper": 0.0}
         figures = {name: (value, limit.where) for name, value in usual.items()}
         figures |= _given(limit, usual)
@@ -275,7 +275,7 @@ def _given(element: Element, names: Iterable[str]) -> dict[str, Limit]:
 
 
 def _driven(root: Element) -> dict[str, Where]:
-    """Return the joints that a transmission or ros2_control turns, and the lines that say so."""
+    """Return the joints that a transmission or ros2_control drives, with their lines."""
     joints = [
         joint
         for tag in ("transmission", "ros2_control")

@@ -1,4 +1,4 @@
-"""Wheels, round or with grousers, drums and flippers of a model, and how to recognize a wheel."""
+"""Wheels, round or with grousers, drums and flippers of a model, and how they are recognized."""
 
 from __future__ import annotations
 
@@ -27,25 +27,25 @@ __all__ = [
 ]
 
 PARALLEL = 0.05
-"""[rad] Axes within this angle count as parallel: files have 3.1415 for pi, and toe-in."""
+"""[rad] Axes within this angle count as parallel: files have 3.1415 for pi, or toe-in."""
 
 UPRIGHT = 0.5
-"""[-] An axis with a larger upward part is no axle, but that of a lidar, say."""
+"""[-] An axis with a larger upward component is not an axle, but belongs to a lidar, say."""
 
-# A wheel may be off its axis by rounding: relative to its radius.
+# Largest offset of a wheel from its axis, relative to its radius: rounding.
 _OFF_AXIS = 0.02
 
-# The hull of a mesh counts as round if its silhouette falls short by at most this, relatively.
+# The hull of a mesh counts as round if its extents differ by at most this fraction.
 _OUT_OF_ROUND = 0.05
 
 _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
 
 ALIKE = 2e-3
-"""[-] By how much grousers may differ, relative to the radius: files round to 0.1 mm."""
+"""[-] Allowed difference between grousers, relative to the radius: files round to 0.1 mm."""
 
 _SHARP = 1e-5
-"""[-] Corners are one if they are nearer than this, relative to their distance from the axle: those
-on both sides of a prism, which MuJoCo keeps as float32."""
+"""[-] Corners closer than this, relative to their distance from the axle, coincide in side view:
+those on both sides of a prism, which MuJoCo stores as float32."""
 
 _MOST_CORNERS = 64  # A prism has eight; its mesh may repeat each for every facet.
 _COUNT = range(3, 201)  # of grousers of a gear wheel
@@ -60,13 +60,13 @@ class Grousers:
     count : int
         Their number.
     radius : float
-        [m] Of their tips about the axle.
+        [m] Distance of their tips from the axle.
     height, tip_thickness, base_thickness : float
-        [m] As in `GearWheel`.
+        [m] See `GearWheel`.
     direction : ndarray, shape (3,)
-        From the axle to one of them.
+        Direction from the axle to one of them.
     shapes : tuple of Shape
-        All of them.
+        Their shapes.
     """
 
     count: int
@@ -85,23 +85,23 @@ class Runner:
     Parameters
     ----------
     name : str
-        Of its link, and of its shape if that is one of several.
+        Name of its link, followed by that of its shape if the link has several.
     x, y, z : float
-        [m] Its middle: forward, up and to the left.
+        [m] Position of its middle: forward, up and to the left.
     radius : float
         [m] Its radius, to the tips of grousers if it has any.
     link : Link
-        The link that it is part of.
+        Its link.
     shape : Shape
-        Its shape, the largest if there are several.
+        Its shape, or the largest of several.
     joint : Joint, optional
-        On which it turns; None for a drum, which is fixed while a plugin moves its surface.
+        The joint on which it turns; None for a drum, which is fixed while its surface moves.
     mass : float
-        [kg] Of all that turns; 0 for a drum.
+        [kg] Mass of all that turns; 0 for a drum.
     inertia : float
-        [kg m^2] Of the same, about its axis.
+        [kg m^2] Moment of inertia of the same about its axis.
     grousers : Grousers, optional
-        Those of a gear wheel.
+        The grousers of a gear wheel.
     """
 
     name: str
@@ -128,7 +128,7 @@ class Runner:
 
     @property
     def pose_at(self) -> Where:
-        """The line of its position."""
+        """The line that gives its position."""
         return self.shape.pose_at if self.joint is None else self.link.pose_at
 
 
@@ -141,9 +141,9 @@ class Arm:
     joint : Joint
         The pivot.
     pivot : ndarray, shape (3,)
-        [m] In the side view.
+        [m] Position of the pivot in the side view.
     links : tuple of Link
-        All that turn with it.
+        All links that turn with it.
     runners : tuple of Runner
         Its wheels or drums.
     shapes : tuple of (Link, Shape)
@@ -166,15 +166,15 @@ class RunningGear:
     runners : list of Runner
         Wheels and drums of the chassis.
     bars : list of (Link, Shape)
-        Shapes of the chassis whose surface is moved, other than drums.
+        Shapes of the chassis with a moving surface, except drums.
     arms : list of Arm
         The flippers.
     shapes : list of (Link, Shape)
-        The other shapes that are fixed to the chassis.
+        Other shapes that are fixed to the chassis.
     moving : list of (Joint, Link, Shape)
         Shapes of other moving parts, such as a lidar or a manipulator.
     passive : set of str
-        Names of wheels that nothing drives, while something drives others.
+        Names of wheels that are not driven, if others are.
     """
 
     runners: list[Runner] = field(default_factory=list)
@@ -205,7 +205,7 @@ def corners_of(shape: Shape) -> Array:
 
 
 def farthest(shape: Shape, point: Array) -> float:
-    """[m] Return the distance from a point to the farthest point of a shape, or a bit more."""
+    """[m] Return an upper bound for the distance from a point to any point of a shape."""
     if shape.kind in ("box", "hull"):
         return float(np.linalg.norm(corners_of(shape) - point, axis=1).max())
     own = math.hypot(shape.radius, 0.5 * shape.length)
@@ -214,7 +214,7 @@ def farthest(shape: Shape, point: Array) -> float:
 
 
 def subtrees(tree: Tree) -> dict[str, list[str]]:
-    """Return for each link the links of its subtree, itself first."""
+    """Return the links in the subtree of each link, itself first."""
     names: dict[str, list[str]] = {link.name: [link.name] for link in tree.links}
     for link in reversed(tree.links):  # children before their parents
         if (joint := tree.joints.get(link.name)) is not None:
@@ -223,12 +223,12 @@ def subtrees(tree: Tree) -> dict[str, list[str]]:
 
 
 def is_parallel(first: Array, second: Array) -> bool:
-    """Whether two directions lie along one line."""
+    """Whether two directions are parallel or opposite, within a tolerance."""
     return bool(np.linalg.norm(np.cross(first, second)) <= math.sin(PARALLEL))
 
 
 def radius_about(shape: Shape, point: Array, axis: Array) -> float | None:
-    """[m] Return the radius of a shape that is round about an axis; None if it is not."""
+    """[m] Return the radius of a shape about an axis; None if it is not round about it."""
     if shape.kind == "hull":
         flat = (shape.points - point) @ plane_across(axis)
         reach = (flat @ np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])).max(axis=0)
@@ -241,7 +241,7 @@ def radius_about(shape: Shape, point: Array, axis: Array) -> float | None:
 
 
 def plane_across(axis: Array) -> Array:
-    """Return two directions at right angles to an axis and to each other, shape (3, 2)."""
+    """Return two unit vectors perpendicular to an axis and to each other, shape (3, 2)."""
     seed = np.eye(3)[int(np.argmin(np.abs(axis)))]
     first = np.cross(axis, seed)
     first /= np.linalg.norm(first)
@@ -249,17 +249,17 @@ def plane_across(axis: Array) -> Array:
 
 
 def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
-    """Return the grousers of a wheel, their sizes as means of all; None if it has none.
+    """Return the grousers of a wheel, with their mean sizes; None if it has none.
 
-    Each is a lateral box or prism that reaches down into the wheel. Its section has a straight tip
-    and two flanks, symmetric about the line from the axle through its middle.
+    Each grouser is a lateral box or prism that reaches down into the wheel. Its cross-section has a
+    straight tip and two flanks, symmetric about the line from the axle through its middle.
 
     Parameters
     ----------
     shapes : list of Shape
-        All that turn.
+        All shapes that turn.
     joint : Joint
-        On which they turn.
+        The joint on which they turn.
     """
     radii = [radius_about(shape, joint.place, joint.axis) for shape in shapes]
     root = max((radius for radius in radii if radius is not None), default=0.0)
@@ -290,10 +290,10 @@ def grousers_on(shapes: list[Shape], joint: Joint) -> Grousers | None:
 
 
 def wheel_shapes(tree: Tree) -> dict[str, list[tuple[Link, Shape]]]:
-    """Return the shapes of each wheel by its link.
+    """Return the shapes of each wheel, by the name of its link.
 
-    A wheel turns without limit about an axle, which does not stand upright. All that turns with it
-    is round about its axis, or one of equal grousers evenly round it.
+    A wheel turns without limit about an axle that is not upright. Everything that turns with it is
+    round about the axis, or is one of equal, evenly spaced grousers.
     """
     hanging, links = subtrees(tree), tree.by_name
     wheels = {}
@@ -313,7 +313,7 @@ def wheel_shapes(tree: Tree) -> dict[str, list[tuple[Link, Shape]]]:
 def _grouser(
     shape: Shape, joint: Joint, plane: Array, root: float
 ) -> tuple[float, float, float, float] | None:
-    """Return thickness at tip and root, radius of the tip [m] and direction [rad] of a grouser."""
+    """Return the thickness at tip and root and the tip radius [m], and the direction [rad]."""
     corners = _section(shape, joint, plane)
     if corners is None:
         return None
@@ -328,7 +328,7 @@ def _grouser(
         return None
     out /= length
     side = np.array([-out[1], out[0]])
-    # Half of the section: away from the axle and to the side, tip first.
+    # Half of the cross-section, radial and lateral coordinates: tip, then base.
     half_tip = np.array([0.5 * length, 0.5 * abs(float((tip[0] - tip[1]) @ side))])
     half_base = np.array([float((third + fourth) @ out), abs(float((third - fourth) @ side))]) / 2.0
     lopsided = abs(float((third + fourth) @ side))
@@ -342,7 +342,7 @@ def _grouser(
 
 
 def _section(shape: Shape, joint: Joint, plane: Array) -> Array | None:
-    """[m] Return the four corners of a section about the axle, shape (4, 2); None if not four."""
+    """[m] Return the four corners of a cross-section, shape (4, 2); None if it has not four."""
     if shape.kind == "box":
         along = np.abs(shape.pose.turn.T @ joint.axis)
         across = int(along.argmax())
@@ -366,7 +366,7 @@ def _section(shape: Shape, joint: Joint, plane: Array) -> Array | None:
 
 
 def _at_root(tip: Array, base: Array, root: float) -> float:
-    """[m] Return the lateral offset at which a flank from tip to base meets the root circle."""
+    """[m] Return the lateral coordinate where a flank from tip to base meets the root circle."""
     along = base - tip
     square, half, beyond = along @ along, tip @ along, tip @ tip - root**2
     under = half**2 - square * beyond
@@ -375,9 +375,9 @@ def _at_root(tip: Array, base: Array, root: float) -> float:
 
 
 def _spaced(angles: Array) -> tuple[list[int], Array]:
-    """Return which of evenly spaced places is nearest to each angle, and how far off that is [rad].
+    """Return the nearest of evenly spaced slots for each angle, and the distance from it [rad].
 
-    The first place is the first angle.
+    The first slot is at the first angle.
     """
     count, step = len(angles), 2.0 * math.pi / len(angles)
     away = (angles - angles[0]) / step

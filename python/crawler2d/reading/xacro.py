@@ -1,8 +1,8 @@
 """Xacro files as URDF, expanded by xacro itself in a child process.
 
-A repository often passes its settings to xacro as arguments. If the model has an argument without a
-value, the YAML files of its package are searched for it, and those that have it are taken as a
-whole, as the repository would. Only ``name: value`` at the beginning of a line counts.
+A repository often passes its settings to xacro as arguments. If an argument of the model has no
+value, the YAML files of its package are searched for it. All settings of a file that has it are
+used, as the repository would use them. Only ``name: value`` at the beginning of a line counts.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ _LARGEST = 64_000  # [bytes]
 _MOST_BYTES = 1_000_000
 _LINE = re.compile(r"([A-Za-z_]\w*) ?: +(\S.*)")
 _QUOTED = re.compile(r"""(["'])([^"'\\]*)\1\s*(?:\s#.*)?""")
-_NO_SCALAR = "[]{}&*!|>%@`\"'#,?:"  # lists, blocks, anchors, comments and the like begin so
+_NO_SCALAR = "[]{}&*!|>%@`\"'#,?:"  # first characters of lists, blocks, anchors, comments and so on
 _NOTHING = ("null", "Null", "NULL", "~")
 
-# The parts of a message of xacro that were unknown, or could not be evaluated.
+# In a message of xacro: names that are unknown, and expressions that cannot be evaluated.
 _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
 
 _EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
@@ -44,7 +44,7 @@ _MOST_WARNINGS = 100
 
 
 class Setting(NamedTuple):
-    """A value in a file of settings: path from the folder of the model, line, and text."""
+    """A value in a file of settings: path relative to the folder of the model, line, and text."""
 
     path: str
     line: int
@@ -57,17 +57,17 @@ class Setting(NamedTuple):
 
 
 class Arguments(dict[str, str]):
-    """Values of arguments by name; those without a value are recorded, and are 0 for now.
+    """Values of arguments by name. Arguments without a value are recorded, and read as 0 for now.
 
     Parameters
     ----------
     values : mapping of str to str
-        Those that are known.
+        The known values.
 
     Attributes
     ----------
     lacking : dict of str to None
-        Those without a value, in the order of requests.
+        Arguments without a value, in the order in which they were asked for.
 
     Examples
     --------
@@ -92,26 +92,26 @@ class Settings:
     Parameters
     ----------
     files : Files
-        Those of the model.
+        The files of the model.
     """
 
     def __init__(self, files: Files) -> None:
         self._files = files
 
     def of(self, lacking: Iterable[str]) -> tuple[dict[str, Setting], list[str]]:
-        """Find values of arguments that have none.
+        """Look up arguments that have no value.
 
         Parameters
         ----------
         lacking : iterable of str
-            The arguments.
+            Their names.
 
         Returns
         -------
         settings : dict of str to Setting
-            All of the files that have one of the arguments, as far as they agree.
+            All settings of the files that set one of the arguments, except those that differ.
         differing : list of str
-            Positions of values for an argument that do not agree, in words.
+            For each argument whose values differ, a text with the values and their positions.
         """
         chosen: dict[int, dict[str, Setting]] = {}
         differing: dict[str, str] = {}
@@ -134,12 +134,12 @@ class Settings:
         return agreed, list(differing.values())
 
     def have(self, name: str) -> bool:
-        """Whether a setting has a name."""
+        """Whether there is a setting with this name."""
         return any(name in table for table in self._tables)
 
     @cached_property
     def _tables(self) -> list[dict[str, Setting]]:
-        """The settings at the beginning of lines, by file; unreadable files are skipped."""
+        """Settings at the beginning of lines, by file; unreadable files are skipped."""
         tables, left = [], _MOST_BYTES
         for path in self._files.packages.files((".yaml", ".yml"))[:_MOST_FILES]:
             try:
@@ -172,12 +172,12 @@ def expand_xacro(
     file : str
         Its name.
     trusted : bool
-        Whether its user trusts it: Python evaluates its expressions, whatever they are.
+        Whether the user trusts the file. If so, Python evaluates any expression in it.
     arguments : mapping of str to str
         Values of its ``xacro:arg``.
     leave_out : bool
-        Whether missing includes, and calls of their macros, are left out, and arguments without a
-        value are looked up in settings.
+        Whether to leave out missing includes with calls of their macros, and to look up
+        arguments without a value in settings.
 
     Returns
     -------
@@ -189,12 +189,12 @@ def expand_xacro(
     Raises
     ------
     ScenarioError
-        If it does not expand, needs missing files, or is not trusted and has expressions of more
-        than plain data and known functions.
+        If the file does not expand or needs missing files, or if it is not trusted and has
+        expressions beyond plain data and known functions.
     ImportError
         If xacrodoc is missing; the message names the extra to install.
     """
-    root = parse_xml(data, file)  # entities are refused before anything else reads the file
+    root = parse_xml(data, file)  # refuses entities before anything else reads the file
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -212,7 +212,7 @@ def expand_xacro(
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
-    """Import xacrodoc, which brings xacro along and needs no ROS, in the child process."""
+    """Import xacrodoc, which includes xacro and needs no ROS, in the child process."""
     module = extra("xacrodoc", "models")
     xacro, substitution = extra("xacro", "models"), extra("xacro.substitution_args", "models")
     own = SimpleNamespace(**vars(xacro), resolve_args=substitution.resolve_args)
@@ -241,7 +241,7 @@ def _scalar(text: str) -> str | None:
 def _expand(
     module: Any, xacro: Any, substitution: Any, own: SimpleNamespace, question: dict[str, Any]
 ) -> dict[str, Any]:
-    """Expand a file in passes, until no more settings and macros are found that it lacks."""
+    """Expand a file repeatedly, until a pass finds no more of the missing settings and macros."""
     text, leave_out, arguments = (question[name] for name in ("text", "leave_out", "arguments"))
     of_model = Files(**question["files"])
     package = Settings(of_model)
@@ -264,7 +264,7 @@ def _expand(
         try:
             document = module.XacroDoc.from_string(text, subargs=values, resolve_packages=False)
             urdf = document.to_urdf_string()
-        except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
+        except Exception as error:  # any error of an expression, some of them wrapped
             failure = error
         lacking |= values.lacking
         more, differing = package.of(lacking) if leave_out and lacking else ({}, [])
@@ -289,7 +289,7 @@ def _expand(
 
 
 def _restrict(xacro: Any, substitution: Any) -> None:
-    """Replace both evaluations of xacro by a checked one; block environment and glob patterns."""
+    """Replace both evaluators of xacro by a checked one; block environment and glob patterns."""
     load, context = xacro.load_yaml, xacro.substitution_args_context
     own: dict[str, Callable[..., Any]] = {
         "load_yaml": lambda name: copy_data(load(name)),
@@ -310,10 +310,10 @@ def _restrict(xacro: Any, substitution: Any) -> None:
         return str(evaluate(text, ChainMap({"true": True, "false": False, **values}, names)))
 
     def refuse_environment(name: str) -> NoReturn:
-        raise NotAllowed(name, "must ask for no environment variable")
+        raise NotAllowed(name, "must not use environment variables")
 
     def refuse_pattern(pattern: str) -> NoReturn:
-        raise NotAllowed(pattern, "must include files by their names")
+        raise NotAllowed(pattern, "must include files by name, not by pattern")
 
     def default(name: str, default: str = "") -> str:
         return default if name not in os.environ else refuse_environment(name)
@@ -338,16 +338,16 @@ def _tokens(text: str, separators: str = ",; ", skip_empty: bool = True) -> list
 def _refuse_arguments(
     files: XacroFiles, lacking: Iterable[str], differing: list[str], *, more: bool
 ) -> NoReturn:
-    """Refuse a file for all arguments that have no value."""
+    """Refuse a file, naming all arguments that have no value."""
     names = dict.fromkeys([*lacking, *(files.lacking() if more else [])])
-    rule = "must have a value for each argument, by a default or by arguments={name: value}"
+    rule = "must have a value for each argument, as a default or in arguments={name: value}"
     if differing:
         rule += f"; files of settings differ: {'; '.join(differing)}"
     raise ScenarioError(files.place([f"$(arg {name})" for name in names]), ", ".join(names), rule)
 
 
 def _refuse(error: Exception, files: XacroFiles, xacro: Any) -> NoReturn:
-    """Refuse a file that does not expand, with the line and what would help."""
+    """Refuse a file that does not expand, with the line and a remedy."""
     refusal, at = _refusal(error)
     if isinstance(refusal, NotAllowed):
         place = files.place([f"${{{at}}}", at, refusal.expression], first=_current_file(xacro))
@@ -368,7 +368,7 @@ def _refuse(error: Exception, files: XacroFiles, xacro: Any) -> NoReturn:
 
 
 def _refusal(error: BaseException | None) -> tuple[ScenarioError | NotAllowed | None, str]:
-    """Return the refusal in the chain of an error, and its expression as the file has it."""
+    """Return the refusal in the chain of an error, and its expression as written in the file."""
     written = ""
     while error is not None and not isinstance(error, (ScenarioError, NotAllowed)):
         stated = _EVALUATED.search(str(getattr(error, "suffix", "") or ""))
@@ -380,7 +380,7 @@ def _refusal(error: BaseException | None) -> tuple[ScenarioError | NotAllowed | 
 
 
 def _current_file(xacro: Any) -> str:
-    """Return the path of the current file: that of the macro, or the innermost include."""
+    """Return the path of the current file: of the current macro, or else the innermost include."""
     macros, files = xacro.macrostack or [], xacro.filestack or []
     files = macros[-1].history[-1] if macros else files
     return os.path.abspath(files[-1]) if files and files[-1] else ""
@@ -389,7 +389,7 @@ def _current_file(xacro: Any) -> str:
 def _warnings_of(
     settings: Mapping[str, Setting], defaults: Mapping[str, str], lacking: Iterable[str]
 ) -> list[ReadingWarning]:
-    """Report the settings that were used: for arguments without a default, and in place of one."""
+    """Report the settings that were used, with those that replaced a default."""
     warnings: list[ReadingWarning] = []
     for name in lacking:
         if name in settings:
@@ -401,16 +401,16 @@ def _warnings_of(
         if name in settings and _value(settings[name].value) != _value(default):
             each = settings[name]
             others.setdefault(each.file, []).append(f"{name}: {each.value} for {default}")
-    reason = "is taken as a whole, also in place of defaults"
+    reason = "is used with all its settings, also instead of defaults"
     return warnings + [(file, ", ".join(values), reason) for file, values in others.items()]
 
 
 def _useless(
     arguments: Mapping[str, str], files: XacroFiles, package: Settings
 ) -> Iterator[ReadingWarning]:
-    """Report arguments that were given and that neither the model nor its settings name.
+    """Report given arguments that neither the model nor its settings name.
 
-    A repository often passes all of its settings, used or not.
+    Settings count, because a repository often passes all of them, used or not.
     """
     for name, value in arguments.items():
         is_named = name in files.defaults or any(map(_word(name), files.texts.values()))
@@ -426,7 +426,7 @@ def _word(name: str) -> Callable[[str], object]:
 
 
 def _value(text: str) -> float | str:
-    """Return the value of a text in xacro, to which 1, 1.0 and True are the same."""
+    """Return a text as the value that xacro takes it for: 1, 1.0 and True are equal."""
     try:
         return float({"true": "1", "false": "0"}.get(text.lower(), text))
     except ValueError:

@@ -1,4 +1,4 @@
-"""A xacro file as the tree on which xacro works, without absent includes and unknown macros."""
+"""A xacro file as the DOM that xacro works on, without missing includes and unknown macros."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crawler2d.reading.parsing import parse_xml
 
 __all__ = ["XacroFiles", "XacroMacros"]
 
-# Elements that xacro took as its own without a prefix until 2016, if they have these attributes.
+# Elements that xacro accepted without its prefix until 2016, if they have these attributes.
 _OLD = {
     "arg": {"name", "default"},
     "if": {"value"},
@@ -39,7 +39,7 @@ OWN_OF_URDF = frozenset(
         *("safety_controller", "actuator", "hardwareInterface", "mechanicalReduction"),
     )
 )
-"""Elements that are never calls of a macro without a prefix."""
+"""Elements of URDF, which without a prefix never call a macro."""
 
 _PLACE = "place"
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^)\s]+)\s*\)")
@@ -48,7 +48,7 @@ _ARGUMENT = re.compile(r"\$\(arg\s+([^)\s]+)\s*\)")
 
 
 class XacroFiles:
-    """Replaces `open`, and the functions of xacro that find packages and parse files.
+    """Replaces `open`, and xacro's functions that find packages and parse files.
 
     Parameters
     ----------
@@ -59,16 +59,16 @@ class XacroFiles:
     text : str
         Its content.
     leave_out : bool
-        Whether missing includes are left out, or refused.
+        Whether to leave out missing includes instead of refusing the file.
 
     Attributes
     ----------
     texts : dict of str to str
-        The texts that were read, by path.
+        Texts of the files that were read, by path.
     warnings : list of ReadingWarning
         What was left out or replaced.
     left_out : list of (str, str)
-        The includes that were left out: file and line, and name.
+        The includes that were left out: position (file and line), and name.
     defaults : dict of str to str
         The defaults of arguments.
     """
@@ -84,7 +84,7 @@ class XacroFiles:
         self._includes: dict[str, bytes] = {}  # their contents, before they are parsed
 
     def attach(self, xacro: Any, substitution: Any, own: Any) -> None:
-        """Replace functions of xacro; `own` has the original ones."""
+        """Replace functions of xacro; `own` holds the original ones."""
 
         def resolve(text: str, context: Any = None, filename: Any = None) -> Any:
             text = re.sub(r"^\$\(find-pkg-share\s", "$(find ", text)
@@ -106,14 +106,14 @@ class XacroFiles:
     def __call__(
         self, path: str | os.PathLike[str], mode: str = "r", *_: object, **__: object
     ) -> IO[Any]:
-        """Open a file to be read."""
+        """Open a file for reading."""
         if mode not in ("r", "rt", "rb"):
             raise PermissionError(errno.EACCES, "must only be read", str(path))
         data = self._read(str(Path(path).absolute()), self.place([Path(path).name]))
         return io.BytesIO(data) if mode == "rb" else io.StringIO(data.decode(), newline=None)
 
     def find(self, name: str) -> str:
-        """Return the folder of a package, or the call itself: it may not be needed."""
+        """Return the folder of a package, or the unexpanded call, whose value may not be needed."""
         folder = self.files.packages.find(name)
         if folder is not None:
             return str(folder)
@@ -130,7 +130,7 @@ class XacroFiles:
         raise ScenarioError(place, ", ".join(dict.fromkeys([*lost, name])), rule)
 
     def place(self, words: list[str], first: str = "") -> str:
-        """Return file and line of the first of some words: in one file, or in all."""
+        """Return file and line where any of some words first occurs, in one file or in all."""
         for path in (first, *self.texts):
             text = self.texts.get(path, "")
             spelled = [each for word in words if word for each in (word, escape(word))]
@@ -140,7 +140,7 @@ class XacroFiles:
         return next(iter(self.texts))
 
     def lacking(self) -> list[str]:
-        """List arguments that a file uses and none declares."""
+        """List arguments that are used, but declared in no file."""
         asked = [name for text in self.texts.values() for name in _ARGUMENT.findall(text)]
         return [name for name in dict.fromkeys(asked) if name not in self.defaults]
 
@@ -150,13 +150,13 @@ class XacroFiles:
         return data
 
     def _absolute(self, absolute: Callable[[str], str], spec: str) -> str:
-        """Return the path of a file that xacro names, also in a package that was not found."""
+        """Return the path of a file that xacro names, even if its package was not found."""
         if not spec.removeprefix("file://").startswith(("$(find ", "package://")):
             return absolute(spec)
         return str(self.files.path(spec, at=self.place([Path(spec).name])))
 
     def _existing(self, paths: Iterator[str]) -> Iterator[str]:
-        """Yield the paths of an include, without those that are left out."""
+        """Yield the paths of an include, except those that are left out."""
         assert self._include is not None
         at = _place_of(self._include)
         is_optional = self._include.getAttribute("optional") in ("true", "True", "1")
@@ -170,7 +170,7 @@ class XacroFiles:
             if not is_absent(error) or not (self.leave_out or is_optional):
                 raise
             if not is_optional:
-                # One of a package that is missing has no path. An error may cut names short.
+                # In a missing package it has no path. The value in an error may be shortened.
                 name = name or str(getattr(error.__cause__, "filename", error.value))
                 self.left_out.append((at, name))
                 self.warnings.append((at, name, f"is left out: the file {error.rule}"))
@@ -189,26 +189,26 @@ class XacroFiles:
 
 
 class XacroMacros:
-    """Replaces the functions of xacro that define and call macros.
+    """Replaces xacro's functions that define and call macros.
 
-    Old xacro allowed calls of macros before their definition. A file with such a call is expanded a
-    second time, with the macros of the first pass as `known`.
+    Old xacro allowed macros to be called before their definition. A file with such a call is
+    expanded a second time, with the macros of the first pass as `known`.
 
     Parameters
     ----------
     files : XacroFiles
         The files, with their warnings.
     leave_out : bool
-        Whether calls of unknown macros are left out, or refused.
+        Whether to leave out calls of unknown macros instead of refusing the file.
     known : mapping of str to Any
-        Macros that are known from the beginning.
+        Macros that are known before the file is read.
 
     Attributes
     ----------
     defined : dict of str to Any
-        Macros of the file and its includes, without those in namespaces.
+        Macros of the file and its includes, except those in namespaces.
     unknown : set of str
-        Macros that were called and were not known.
+        Macros that were called, but not known.
     """
 
     def __init__(self, files: XacroFiles, *, leave_out: bool, known: dict[str, Any]) -> None:
@@ -219,7 +219,7 @@ class XacroMacros:
         self.unknown: set[str] = set()
 
     def attach(self, xacro: Any, own: Any) -> None:
-        """Replace functions of xacro; `own` has the original ones."""
+        """Replace functions of xacro; `own` holds the original ones."""
         define, call = own.grab_macro, own.handle_macro_call
 
         def defined(element: minidom.Element, macros: Any) -> None:
@@ -230,7 +230,7 @@ class XacroMacros:
         def resolve(name: str, macros: Any, symbols: Any) -> Any:
             try:
                 macro = own.resolve_macro(name, macros, symbols)[2]
-            except (KeyError, TypeError):  # of what is no macro, or no namespace
+            except (KeyError, TypeError):  # not a macro, or not a namespace
                 return None
             return macro if isinstance(macro, own.Macro) else None
 
@@ -250,7 +250,7 @@ class XacroMacros:
                 self.unknown.add(name)
                 lost = " and ".join(at for at, _ in self.files.left_out[:3])
                 why = f"; what is included at {lost} was left out, too" if lost else ""
-                self.note(node, f"is left out with what is in it: no file has such a macro{why}")
+                self.note(node, f"is left out with its content: no file defines this macro{why}")
                 own.replace_node(node, by=None)
                 return True
             return call(node, macros, symbols)
@@ -258,11 +258,11 @@ class XacroMacros:
         xacro.grab_macro, xacro.handle_macro_call = defined, called
 
     def note(self, node: minidom.Element, reason: str) -> None:
-        """ReadingWarning a call."""
+        """Add a warning about a call."""
         self.files.warnings.append((_place_of(node), f"<{node.tagName}>", reason))
 
     def fits(self, node: minidom.Element, macro: Any) -> bool:
-        """Whether an element without the prefix has the parameters of a macro, and its blocks."""
+        """Whether attributes and children of an element without prefix fit the macro."""
         if macro is None:
             return False
         given = set(node.attributes.keys())
@@ -276,7 +276,7 @@ class XacroMacros:
 
 
 def _place_of(node: minidom.Element) -> str:
-    """Return file and line of an element, or of the one that it is a copy of."""
+    """Return file and line of an element; a copy has those of its original."""
     place: str = node.getUserData(_PLACE) or ""
     return place
 
@@ -284,12 +284,12 @@ def _place_of(node: minidom.Element) -> str:
 def _dom_of(data: str | bytes, file: str) -> tuple[minidom.Document, list[ReadingWarning]]:
     """Return the document of a file, and a warning if it has elements of old xacro.
 
-    Each element has its line, see `_place_of`.
+    Each element knows its line, see `_place_of`.
 
     Raises
     ------
     ScenarioError
-        If it is no XML, has a document type or entities, or is larger than a robot needs.
+        If the file is not XML, has a document type or entities, or is too large.
     """
     root = parse_xml(data.encode() if isinstance(data, str) else data, file)
     document = minidom.parseString(data)
@@ -304,11 +304,11 @@ def _dom_of(data: str | bytes, file: str) -> tuple[minidom.Document, list[Readin
         return document, []
     place, _, name = old[0].rpartition(" ")
     others = f", and so are {len(old) - 1} more elements of the file" if len(old) > 1 else ""
-    return document, [(place, name, f"is taken as one of xacro, without its prefix{others}")]
+    return document, [(place, name, f"is read as an element of xacro without its prefix{others}")]
 
 
 def _is_old(node: minidom.Element) -> bool:
-    """Whether an element is one of xacro without the prefix, and not a plugin's own."""
+    """Whether an element is one of xacro without the prefix, and not inside a plugin."""
     wanted = _OLD.get(node.tagName)
     if wanted is None or not wanted <= set(node.attributes.keys()):
         return False
