@@ -1,5 +1,5 @@
-//! Calls of the core: in a thread of their own, so that the interpreter can answer Ctrl-C, and with its errors and warnings
-//! as the exceptions of `crawler2d.errors`; no panic gets past this file.
+//! Calls of the core: on a separate thread, so that the interpreter can answer Ctrl-C, and with errors, warnings and
+//! panics of the core as the exceptions of `crawler2d.errors`.
 
 use std::collections::HashSet;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -17,13 +17,13 @@ pub(crate) fn guarded<T>(call: impl FnOnce() -> Result<T, Error>) -> PyResult<T>
     caught(call).map_err(to_python)
 }
 
-/// The same, but returns the core's error, which needs no interpreter.
+/// The same, but returns an error of the core, which needs no interpreter.
 pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
     check_rounding()?;
     crawler2d_core::caught(call)
 }
 
-/// The Python exception of an error.
+/// Returns the Python exception for an error.
 pub(crate) fn to_python(error: Error) -> PyErr {
     Python::attach(|py| exception(py, &error).unwrap_or_else(|failed| failed))
 }
@@ -60,12 +60,12 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     Ok(raise(py, class, (error.to_string(),), Some(&details)))
 }
 
-/// An error without any other details than a message.
+/// Returns an exception that has only a message.
 pub(crate) fn failure(class: &str, message: &str) -> PyErr {
     Python::attach(|py| raise(py, class, (message,), None))
 }
 
-/// Scenarios from their JSON.
+/// Reads and validates scenarios.
 pub(crate) fn read(texts: &[PyBackedStr]) -> Result<Vec<ValidScenario>, Error> {
     texts
         .iter()
@@ -73,18 +73,18 @@ pub(crate) fn read(texts: &[PyBackedStr]) -> Result<Vec<ValidScenario>, Error> {
         .collect()
 }
 
-/// What flippers are to do by an angle or a rate; by neither, as before.
+/// Returns the command of flippers for an angle or a rate; `None` leaves the command as it is.
 pub(crate) fn flipper_command(angle: Option<f64>, rate: Option<f64>) -> Option<FlipperCommand> {
     let by_angle = angle.map(FlipperCommand::Angle);
     by_angle.or(rate.map(FlipperCommand::Rate))
 }
 
-/// A wrong argument that is not a field of the scenario.
+/// Returns the exception for an invalid argument that is not a field of the scenario.
 pub(crate) fn argument(path: &str, value: &str, rule: &str) -> PyErr {
     Python::attach(|py| raise(py, "ScenarioError", (path, value, rule), None))
 }
 
-/// Gives warnings at the line of the caller's own code, once for each field of a whole batch.
+/// Gives warnings at the line of the user's code, once for each field of a whole batch.
 pub(crate) fn warn<'a>(
     py: Python<'_>,
     warnings: impl IntoIterator<Item = &'a Warning>,
@@ -116,10 +116,10 @@ fn raise<'py>(
     }
 }
 
-/// Runs the core in a thread of its own and checks for Ctrl-C until it has ended.
+/// Runs the core on a separate thread and checks for Ctrl-C until it has ended.
 ///
-/// Ctrl-C is answered at once: the thread is asked to end, and does so at its next check. The data that it works
-/// on must be its own, or locked.
+/// Ctrl-C is answered at once: the thread is asked to end, and does so at its next check. It must own or lock its
+/// data.
 pub(crate) fn run_interruptible<T: Send + 'static>(
     py: Python<'_>,
     call: impl Send + 'static + FnOnce(&Cancel) -> Result<T, Error>,
@@ -157,22 +157,22 @@ pub(crate) fn run_interruptible<T: Send + 'static>(
     result.map_err(to_python)
 }
 
-/// Ends a call of the core on the thread of Python when it is time to look for Ctrl-C: short ones take half the time without
-/// a thread of their own.
+/// Ends a call of the core on Python's own thread when it is time to check for Ctrl-C. Without a separate thread, short
+/// calls take half the time.
 pub(crate) fn until_a_look() -> Cancel {
-    /// Time between two looks.
+    /// Time between two checks.
     const PAUSE: Duration = Duration::from_millis(20);
 
     Cancel::at(Instant::now() + PAUSE)
 }
 
-/// Whether a step may take long, by the number of points of the ground and of parts of the robot: thrown against the
-/// ground, a robot of many parts has thousands of contacts to solve for.
+/// Whether a step may take long, judged by the numbers of points of the ground and parts of the robot. A robot of many
+/// parts that is thrown against the ground has thousands of contacts.
 pub(crate) fn may_be_slow((points, parts): (usize, usize)) -> bool {
     points > 10_000 || parts > 100
 }
 
-/// Builds what a text describes, in a thread of its own if that may take long.
+/// Builds what a text describes, on a separate thread if this may take long.
 pub(crate) fn build_interruptible<T: Send + 'static>(
     py: Python<'_>,
     text: PyBackedStr,

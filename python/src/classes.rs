@@ -1,5 +1,5 @@
-//! Classes of the module: a simulation that Python advances and commands step by step, and valid scenarios on their way to
-//! a batch.
+//! Classes of the module: simulations that Python advances and commands step by step, and validated scenarios for
+//! batches.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,18 +19,18 @@ use crate::{calls, convert};
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Simulation {
     inner: Arc<Inner>,
-    /// What it was asked to do; held by the thread that advances: of two at once, one would count the other's steps as
+    /// Log of its commands, held by the thread that advances it: one of two at once would count the other's steps as
     /// its own.
     turn: Turns<Log>,
-    /// The last steps took so long that Ctrl-C must not wait for the next one.
+    /// Whether recent steps took so long that Ctrl-C must not wait for the next one.
     is_slow: AtomicBool,
-    /// By its size, any step may take that long.
+    /// Whether any step may take that long, judged by its size.
     may_be_slow: bool,
-    /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
+    /// Its outcome, once certain. It is kept because it takes trials, and later commands do not change it.
     outcome: Mutex<Option<Outcome>>,
 }
 
-/// Contacts at an instant, whose columns are made when they are asked for.
+/// Contacts at an instant, whose columns are made on request.
 #[pyclass(frozen, module = "crawler2d._core")]
 struct Contacts(ContactTable);
 
@@ -42,7 +42,7 @@ impl Contacts {
     }
 }
 
-/// A step that takes longer is too slow to let Ctrl-C wait for it.
+/// After a longer step, Ctrl-C does not wait for the next one.
 const SLOW: Duration = Duration::from_millis(20);
 
 /// `None` after a step has failed, because its state cannot be trusted.
@@ -137,7 +137,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// All that it has done so far, simulated once more with its history.
+    /// The run so far, simulated again with its history.
     fn to_run<'py>(
         &self,
         py: Python<'py>,
@@ -178,7 +178,7 @@ impl Simulation {
         Ok(state)
     }
 
-    /// The ground inside the envelope of the track now.
+    /// The current ground inside the envelope of the track.
     fn intrusions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = self.with(py, |simulation| Ok(simulation.intrusions()))?;
         convert::intrusions(py, &found)
@@ -218,10 +218,10 @@ impl Simulation {
         Ok(Some(*known().get_or_insert(outcome)))
     }
 
-    /// Waits until no other thread advances it; Ctrl-C is answered meanwhile. The log says how far it has come.
+    /// Waits until no other thread advances it; Ctrl-C is answered meanwhile. The log has the time reached.
     fn turn(&self, py: Python<'_>) -> PyResult<Turn<'_, Log>> {
         let mut turn = self.turn.take(py)?;
-        // Ctrl-C may have ended the last advance before its end, in the middle of a step that nobody waited for.
+        // Ctrl-C may have ended the last advance early, in the middle of a step that nobody waited for.
         let time = self.with(py, |simulation| Ok(simulation.time()))?;
         turn.has_reached(time);
         Ok(turn)
@@ -244,7 +244,7 @@ impl Simulation {
         let slowest = run_interruptible(py, move |cancel| {
             call(&inner, |simulation| take_steps(simulation, end, cancel))
         })?;
-        // Other load on the machine may have made it look slow.
+        // It may have seemed slow because of other load on the machine.
         self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
         Ok(())
     }
@@ -259,7 +259,7 @@ impl Simulation {
     }
 }
 
-/// Takes steps up to the time `end` [s], or until `cancel` is asked; returns how long the slowest took.
+/// Takes steps up to the time `end` [s], or until `cancel` is asked; returns the duration of the slowest.
 fn take_steps(
     simulation: &mut crawler2d_core::Simulation,
     end: f64,
@@ -276,7 +276,7 @@ fn take_steps(
     Ok(slowest)
 }
 
-/// Calls the core with the simulation once it is this thread's turn, which Python does not know.
+/// Calls the core with the simulation when it is the turn of this thread, which Python does not know.
 fn call<T>(
     inner: &Inner,
     change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
@@ -301,7 +301,7 @@ fn changed<T>(
     result
 }
 
-/// A valid scenario, with the robot and the ground that were built to check it.
+/// A valid scenario, with the robot and ground that were built to check it.
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct PreparedScenario {
     pub checked: ValidScenario,
@@ -309,7 +309,7 @@ pub(crate) struct PreparedScenario {
 
 #[pymethods]
 impl PreparedScenario {
-    /// Validates a scenario; robot or ground equal to those of `like` are not built again.
+    /// Validates a scenario; a robot or ground equal to that of `like` is not built again.
     #[new]
     #[pyo3(signature = (text, like = None))]
     fn new(py: Python<'_>, text: PyBackedStr, like: Option<PyRef<'_, Self>>) -> PyResult<Self> {
@@ -320,9 +320,9 @@ impl PreparedScenario {
         Ok(Self { checked })
     }
 
-    /// Scenarios that differ from this one in some numbers, one per row; or the error of what breaks a rule.
+    /// Scenarios that differ from this one in some numbers, one per row; or an error instead of an invalid one.
     ///
-    /// `fields` are JSON pointers, each with whether it takes whole numbers; `rows` has shape (n, fields).
+    /// `fields` has pairs of a JSON pointer and whether its values are integers; `rows` has shape (n, fields).
     fn varied<'py>(
         &self,
         py: Python<'py>,
@@ -352,7 +352,7 @@ impl PreparedScenario {
         self.checked.scenario().to_json()
     }
 
-    /// \[m/s\] The speed that it commands.
+    /// \[m/s\] The commanded speed.
     #[getter]
     fn speed(&self) -> f64 {
         self.checked.scenario().drive.speed

@@ -1,4 +1,4 @@
-//! Converts the core's data to dictionaries of `NumPy` columns; values that are not known are None.
+//! Converts the core's data to dictionaries of `NumPy` columns; unknown values are None.
 
 use crawler2d_core::{
     Balance, BodyKind, Certificate, Change, ContactTable, Diagnosis, Edge, Event, ExcludedCell,
@@ -12,7 +12,7 @@ use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use crate::calls;
 
-/// Puts fields of a struct into a dictionary under their names; with an interpreter, as arrays.
+/// Puts fields of a struct into a dictionary under their names; as arrays if an interpreter is given.
 macro_rules! put {
     ($dict:ident, $of:ident: $($field:ident)+) => {
         $($dict.set_item(stringify!($field), $of.$field)?;)+
@@ -23,7 +23,7 @@ macro_rules! put {
 }
 pub(crate) use put;
 
-/// What to record of a run, from the arguments; `trials` are names of what to try at a stop.
+/// Returns what to record of a run; `trials` are names of trials at a stop.
 pub(crate) fn record(sample_interval: f64, record: &str, trials: &[String]) -> PyResult<Record> {
     if !(sample_interval > 0.0 && sample_interval <= 1e5) {
         let rule = "must be > 0 s and <= 100000 s";
@@ -48,13 +48,13 @@ pub(crate) fn record(sample_interval: f64, record: &str, trials: &[String]) -> P
     })
 }
 
-/// The trials of these names.
+/// Returns the trials with these names.
 pub(crate) fn wanted(trials: &[String]) -> PyResult<Wanted> {
     let changes = trials.iter().map(|name| change(name));
     Ok(Wanted::of(changes.collect::<PyResult<Vec<_>>>()?))
 }
 
-/// The change of a name.
+/// Returns the change with this name.
 pub(crate) fn change(name: &str) -> PyResult<Change> {
     Change::of_name(name).ok_or_else(|| {
         let names = Change::ALL.map(Change::name).join("\", \"");
@@ -62,7 +62,7 @@ pub(crate) fn change(name: &str) -> PyResult<Change> {
     })
 }
 
-/// What the tables of sweeps hold of a finished run.
+/// The values of a finished run in the tables of sweeps.
 pub(crate) fn row<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let why = run.diagnosis.as_ref();
@@ -84,7 +84,7 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     Ok(result)
 }
 
-/// A column of a table, with a value of each row.
+/// A column of a table, with one value per row.
 pub(crate) fn column<'py, R, T: Element>(
     py: Python<'py>,
     rows: &[R],
@@ -133,7 +133,7 @@ pub(crate) fn intrusions<'py>(
     Ok(columns)
 }
 
-/// A run of a batch without a result, with its exception.
+/// A run of a batch without result, with its exception.
 pub(crate) fn failure(py: Python<'_>, error: PyErr) -> PyResult<Bound<'_, PyDict>> {
     let result = PyDict::new(py);
     result.set_item("error", error.into_value(py))?;
@@ -170,7 +170,7 @@ fn trace(
     Ok(columns)
 }
 
-/// The columns of a trace from which poses follow.
+/// The columns of a trace that determine the poses.
 pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
     let column = |name: &str| -> PyResult<Vec<f64>> {
         let column = columns.as_any().get_item(name)?;
@@ -191,7 +191,7 @@ pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
     })
 }
 
-/// Names used in tables; the position of a name is its code.
+/// Names used in tables; the index of a name is its code.
 pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let names = PyDict::new(py);
     names.set_item("body_kind", BodyKind::ALL.map(BodyKind::name))?;
@@ -275,7 +275,7 @@ pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(info)
 }
 
-/// A diagnosis; values that are not known are None.
+/// A diagnosis; unknown values are None.
 pub(crate) fn diagnosis<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let trials = d.trials.iter().map(|made| trial(py, made));
@@ -296,7 +296,7 @@ pub(crate) fn diagnosis<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'
     Ok(result)
 }
 
-/// What came of a change at a stop.
+/// The result of a change at a stop.
 pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let [x, y, angle] = trial.pose;
@@ -331,8 +331,8 @@ pub(crate) fn balance<'py>(py: Python<'py>, found: &Balance) -> PyResult<Bound<'
     Ok(result)
 }
 
-/// Poses of jams, the ground inside the track there, and whether they are stable; their contacts, with the index of the jam
-/// that each belongs to.
+/// Poses of jams, the ground inside the track there, and whether they are stable; and contacts, each with the index of
+/// its jam.
 #[allow(clippy::cast_possible_wrap)] // indices are small
 pub(crate) fn jams<'py>(py: Python<'py>, found: &[FoundJam]) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
@@ -366,7 +366,7 @@ pub(crate) fn jams<'py>(py: Python<'py>, found: &[FoundJam]) -> PyResult<Bound<'
     Ok(result)
 }
 
-/// Poses on three contacts, the frictions at which they carry, and the ground inside the track there.
+/// Poses on three contacts, the coefficients of friction at which these hold, and the ground inside the track there.
 pub(crate) fn jam_ranges<'py>(
     py: Python<'py>,
     found: &[(JamRange, Option<Intrusion>)],
@@ -388,8 +388,8 @@ pub(crate) fn jam_ranges<'py>(
     Ok(result)
 }
 
-/// What is known of each region: the count of cells that exclude jams, -1 with where it jams, -2 if it is as a belt, -3 if
-/// nothing is known; and these cells.
+/// The status of each region: the number of cells that exclude jams, -1 with the pose of a jam, -2 if a belt jams, too,
+/// -3 if unknown; and these cells.
 #[allow(clippy::cast_possible_wrap)] // counts are small
 pub(crate) fn certificate<'py>(
     py: Python<'py>,
@@ -434,7 +434,7 @@ pub(crate) fn certificate<'py>(
     Ok(result)
 }
 
-/// Ground inside the track with the force on it, if there is some.
+/// Ground inside the track with the force on it, if any.
 fn loaded_intrusion<'py>(
     py: Python<'py>,
     found: Option<&LoadedIntrusion>,

@@ -54,7 +54,7 @@ mod _core {
         Ok(checked.scenario().identity())
     }
 
-    /// Ground and robot of a scenario as arrays for drawing.
+    /// Arrays of the ground and robot of a scenario, for drawing.
     #[pyfunction]
     fn geometry(py: Python<'_>, text: PyBackedStr) -> PyResult<Bound<'_, PyDict>> {
         let checked = build_interruptible(py, text, ValidScenario::from_json)?;
@@ -84,19 +84,19 @@ mod _core {
             .collect()
     }
 
-    /// Former names of metrics, with those that they have now.
+    /// Former names of metrics, with the present ones.
     #[pyfunction]
     fn renamed_metrics() -> HashMap<&'static str, &'static str> {
         crawler2d_core::Metrics::RENAMED.into()
     }
 
-    /// Settings of the core's own contacts that rapier does not have, with their defaults.
+    /// Settings of the core's own contacts that do not exist in rapier, with their defaults.
     #[pyfunction]
     fn own_settings() -> HashMap<&'static str, f64> {
         crawler2d_core::OWN_SETTINGS.into()
     }
 
-    /// Names that tables use, as text or as codes.
+    /// Names that tables use as text or as codes.
     #[pyfunction]
     fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         convert::kinds(py)
@@ -142,7 +142,7 @@ mod _core {
         }
     }
 
-    /// Warns of what in a batch is legal but unlikely to be meant, once for each field.
+    /// Warns of values in a batch that are unlikely to be meant, once for each field.
     #[pyfunction]
     fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, PreparedScenario>>) -> PyResult<()> {
         calls::warn(
@@ -151,10 +151,10 @@ mod _core {
         )
     }
 
-    /// Simulates many scenarios on several threads; an error spoils only its own run.
+    /// Simulates many scenarios on several threads; an error affects only its own run.
     ///
-    /// `take` is called with what has just been finished, pairs of place and result, about 50 times per second. The
-    /// record "row" has what the tables of sweeps hold. Returns whether Ctrl-C ended the batch.
+    /// `take` is called about 50 times per second with finished runs, as pairs of index and result. The record "row"
+    /// has the values in tables of sweeps. Returns whether Ctrl-C ended the batch.
     #[pyfunction]
     fn simulate_many(
         py: Python<'_>,
@@ -190,7 +190,7 @@ mod _core {
         })?;
         calls::warn(py, &warnings)?;
         match interrupted {
-            // After Ctrl-C, finished runs are kept; any other exception of a callback is passed on unchanged.
+            // After Ctrl-C, finished runs are kept; any other exception of a callback is raised unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {
                 Err(signal)
             }
@@ -198,7 +198,7 @@ mod _core {
         }
     }
 
-    /// Simulates up to a time, and of a trial so many starts later, then continues as another scenario.
+    /// Simulates up to a time, and a number of starts later if that is given, then continues as another scenario.
     #[pyfunction]
     fn branch<'py>(
         py: Python<'py>,
@@ -218,7 +218,7 @@ mod _core {
         convert::run(py, run)
     }
 
-    /// Simulates up to a time at which it has stopped, and makes trials there.
+    /// Simulates up to the time of a stop, and makes trials there.
     #[pyfunction]
     fn trials(
         py: Python<'_>,
@@ -234,7 +234,8 @@ mod _core {
         PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed; also returns how many starts after the stop the reported run began.
+    /// Simulates up to the time of a stop, and tries to continue as another scenario with a push; also returns how many
+    /// starts after the stop the reported run began.
     #[pyfunction]
     fn what_if(
         py: Python<'_>,
@@ -279,7 +280,7 @@ mod _core {
             .transpose()
     }
 
-    /// Simulates up to a time at which it has stopped, and measures the push that moves it on.
+    /// Simulates up to the time of a stop, and measures the push that frees the robot.
     #[pyfunction]
     fn escape_force(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<(f64, f64, bool)> {
         let found = run_interruptible(py, move |cancel| {
@@ -297,8 +298,8 @@ mod _core {
         found.map(|found| convert::tip_over(py, &found)).transpose()
     }
 
-    /// Whether forces could hold a stop: the least imbalance, its tolerance, between which factors of the friction, and by
-    /// how much each contact would have to pull.
+    /// Whether forces can hold a stop: the least imbalance, its tolerance, the range of friction factors, and the pull
+    /// that contacts would need.
     #[pyfunction]
     fn balance(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<Option<Bound<'_, PyDict>>> {
         let found = run_interruptible(py, move |cancel| {
@@ -307,7 +308,7 @@ mod _core {
         found.map(|found| convert::balance(py, &found)).transpose()
     }
 
-    /// All poses in which the robot can stand still while its drives run: columns of the poses and of their contacts.
+    /// All poses in which the robot can stand still with its drives running: columns of poses and of their contacts.
     #[pyfunction]
     fn jams(py: Python<'_>, text: PyBackedStr) -> PyResult<Bound<'_, PyDict>> {
         let found = run_interruptible(py, move |cancel| {
@@ -316,8 +317,8 @@ mod _core {
         convert::jams(py, &found)
     }
 
-    /// The jams on three contacts of several scenarios, at every friction up to one: for each the columns of poses, of the
-    /// least friction and the greatest, and of the ground inside the track.
+    /// The jams on three contacts of several scenarios, at any friction up to a limit: columns of poses, of the
+    /// smallest and largest friction, and of the ground inside the track, for each scenario.
     #[pyfunction]
     fn jam_ranges(
         py: Python<'_>,
@@ -333,10 +334,10 @@ mod _core {
             .collect()
     }
 
-    /// At which shares of the ranges of parameters there are no jams, and what shows it: from the scenarios at the least values
-    /// of all, at the most of each alone, of all, and half way between, on wheels and with a belt round them.
+    /// Regions of the ranges of parameters without jams, with the proof. The scenarios have the smallest values of all
+    /// parameters, the largest of each alone and of all, and the middle of all; `belts` are the same with a belt.
     ///
-    /// The effort is depth, smallest region, cells of each, and whether to return them.
+    /// The effort is the depth, the smallest region, the cells of each region, and whether to return these.
     #[pyfunction]
     #[pyo3(signature = (texts, belts, names, *, effort))]
     fn certify(
@@ -366,7 +367,7 @@ mod _core {
         convert::build_info(py)
     }
 
-    /// Runs everything detached from the interpreter, and hands over what is finished.
+    /// Runs everything detached from the interpreter, and passes finished runs to `take`.
     ///
     /// Returns what interrupted the batch: a signal or an exception of `take`.
     fn run_all(
@@ -381,7 +382,7 @@ mod _core {
             calls::guarded(|| {
                 crawler2d_core::simulate_many(scenarios, threads, record, |finished| {
                     let taken = Python::attach(|py| {
-                        // What is finished is kept even if this is the moment of Ctrl-C.
+                        // Finished runs are kept, even if Ctrl-C comes now.
                         let signal = py.check_signals();
                         take(py, finished).and(signal)
                     });

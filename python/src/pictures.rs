@@ -1,4 +1,4 @@
-//! Arrays of ground and robot that pictures need.
+//! Arrays of ground and robot for pictures.
 
 use crawler2d_core::{Body, Ground, Model, Mount, Part, Poses, Shape, ValidScenario, Vector};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
@@ -7,7 +7,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::convert::{column, edges, rows};
 
-/// Ground, bodies of the robot, and the carriers of the track in front in a side view: of two tracks, the right one.
+/// Ground, bodies of the robot, and carriers of the track that is in front in a side view, the right one of two.
 pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Bound<'py, PyDict>> {
     let (model, ground) = (checked.model(), checked.ground());
     let lanes = PyList::empty(py);
@@ -33,7 +33,7 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &ValidScenario) -> PyResult<Boun
     Ok(result)
 }
 
-/// The bodies as columns; bodies that are not parts have the number -1.
+/// The bodies as columns; those that are not parts have the number -1.
 #[allow(clippy::cast_possible_wrap)] // indices are small
 fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Bound<'py, PyDict>> {
     let found = model.outlines();
@@ -57,13 +57,13 @@ fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Boun
     Ok(columns)
 }
 
-/// A carrier of a track on a lane: the taut belts round its bodies, and what moves along a belt of its own.
+/// A carrier of a track on a lane: the taut belts round its bodies, and everything that moves along its own belt.
 fn carrier<'py>(
     py: Python<'py>,
     model: &Model,
     (mount, lane): (Mount, usize),
 ) -> PyResult<Bound<'py, PyDict>> {
-    /// [rad] Turn between two points on a belt.
+    /// [rad] Change of direction between two points on a belt.
     const BELT_TURN: f64 = 0.05;
 
     let mut circles: Vec<[f64; 3]> = Vec::new();
@@ -107,7 +107,7 @@ fn carrier<'py>(
     Ok(drawn)
 }
 
-/// The poses as arrays; the first axis is that of the samples.
+/// The poses as arrays, whose first axis is the sample.
 pub(crate) fn poses(py: Python<'_>, found: Poses) -> PyResult<Bound<'_, PyDict>> {
     let (n, bodies, arms) = (found.samples, found.count, found.flippers);
     let columns = PyDict::new(py);

@@ -1,5 +1,5 @@
-//! A lock for what Python's threads share: whoever waits for it answers Ctrl-C, and in a fork nobody waits for a thread
-//! that only the parent has.
+//! A lock for values that Python's threads share. Waiting for it answers Ctrl-C, and a forked process does not wait for
+//! threads that exist only in its parent.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
@@ -15,17 +15,17 @@ use crate::calls;
 /// Time between two attempts to take the turn.
 const BETWEEN_ATTEMPTS: Duration = Duration::from_micros(100);
 
-/// A value that one thread has at a time.
+/// A value that one thread at a time can use.
 pub(crate) struct Turns<T> {
-    /// The process whose thread has it; 0 if none has. A fork copies this number, and has another one of its own.
+    /// Id of the process whose thread has the turn; 0 if none. A fork copies this number, but has another id.
     holder: AtomicU32,
-    /// The number of that thread; 0 if none has it.
+    /// The number of that thread; 0 if none.
     thread: AtomicU64,
-    /// Taken by the holder alone.
+    /// Locked only by the holder.
     value: Mutex<T>,
 }
 
-/// The value, until this is dropped.
+/// Access to the value until this is dropped.
 pub(crate) struct Turn<'a, T> {
     value: MutexGuard<'a, T>,
     /// Dropped after the value.
@@ -67,7 +67,7 @@ impl<T> Turns<T> {
     /// Takes the turn, unless another thread has it.
     ///
     /// # Errors
-    /// [`Error::Internal`] if a thread had it that this process was forked without.
+    /// [`Error::Internal`] if it was held, when this process was forked, by a thread that exists only in the parent.
     fn attempt(&self) -> Result<Option<Turn<'_, T>>, Error> {
         let own = process::id();
         let (taken, failed) = (Ordering::Acquire, Ordering::Relaxed);
@@ -87,7 +87,7 @@ impl<T> Turns<T> {
         }
     }
 
-    /// Waits for the turn, in a thread that Python does not know.
+    /// Waits for the turn on a thread that Python does not know.
     ///
     /// # Errors
     /// As [`attempt`](Self::attempt).
@@ -100,8 +100,8 @@ impl<T> Turns<T> {
         }
     }
 
-    /// Waits for the turn; Ctrl-C is answered meanwhile. A signal handler that this thread runs while it has the turn itself
-    /// would wait for ever, and is refused.
+    /// Waits for the turn; Ctrl-C is answered meanwhile. A signal handler on a thread that already has the turn is
+    /// refused, as it would wait for ever.
     pub(crate) fn take(&self, py: Python<'_>) -> PyResult<Turn<'_, T>> {
         loop {
             if let Some(turn) = self.attempt().map_err(calls::to_python)? {
@@ -115,7 +115,8 @@ impl<T> Turns<T> {
         }
     }
 
-    /// Waits for the turn and calls the core with the value, detached from the interpreter; Ctrl-C is answered before that.
+    /// Waits for the turn, during which Ctrl-C is answered; then calls the core with the value, detached from the
+    /// interpreter.
     pub(crate) fn with<R: Send>(
         &self,
         py: Python<'_>,

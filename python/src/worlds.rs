@@ -13,7 +13,7 @@ use crate::classes::PreparedScenario;
 use crate::convert;
 use crate::turns::Turns;
 
-/// Simulations side by side; any thread may use them, one at a time.
+/// Simulations side by side, which one thread at a time may use.
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Worlds {
     inner: Arc<Turns<crawler2d_core::Worlds>>,
@@ -35,7 +35,7 @@ impl Worlds {
         })
     }
 
-    /// Sets some out anew, with other scenarios if some are given.
+    /// Restarts some of them, with other scenarios if these are given.
     fn reset(
         &self,
         py: Python<'_>,
@@ -55,7 +55,7 @@ impl Worlds {
         Ok(())
     }
 
-    /// Commands speeds, angles and rates of flippers, shape (n, 2), of which those that are NaN leave things as they are.
+    /// Commands speeds, shape (n,), and angles and rates of flippers, shape (n, 2); NaN leaves a command as it is.
     fn command(
         &self,
         py: Python<'_>,
@@ -83,7 +83,7 @@ impl Worlds {
         })
     }
 
-    /// Advances some by a duration on some threads.
+    /// Advances some of them by a duration on several threads.
     fn advance(
         &self,
         py: Python<'_>,
@@ -121,7 +121,7 @@ impl Worlds {
         columns(py, &states)
     }
 
-    /// Heights of the ground at distances from each robot, one row each.
+    /// Heights of the ground at distances from each robot, one row per robot.
     fn heights<'py>(
         &self,
         py: Python<'py>,
@@ -133,7 +133,7 @@ impl Worlds {
         rows(py, (count, offsets.len()), flat)
     }
 
-    /// All that one has done since it set out, simulated once more with its history.
+    /// The run of one of them since its start, simulated again with its history.
     fn to_run<'py>(
         &self,
         py: Python<'py>,

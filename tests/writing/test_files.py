@@ -88,8 +88,8 @@ def test_the_text_is_also_written_to_a_path(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("track", "word"),
     [
-        (c2d.SegmentalTrack(), "chain is a loop"),
-        (c2d.SegmentalTrack(mechanism="sprocket"), "chain is a loop"),
+        (c2d.SegmentalTrack(), "chain is a closed loop"),
+        (c2d.SegmentalTrack(mechanism="sprocket"), "chain is a closed loop"),
         (c2d.GrouserBeltTrack(), "grousers that travel"),
         (c2d.ClosedTrack(GEARS), "grousers that travel"),
         (c2d.ForceTrack(), "motor that pushes"),

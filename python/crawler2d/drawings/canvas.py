@@ -33,14 +33,14 @@ __all__ = [
     "set_title",
 ]
 
-# [inch] Width of a new figure, what is left and right of its drawing, least and most height.
+# [inch] Width of a new figure, margins left and right of its drawing, smallest and largest height.
 _WIDTH, _LEFT, _RIGHT, _HEIGHTS = 9.0, 0.9, 0.15, (1.2, 6.0)
-# [inch] Height of ticks and label of the axis below it, and between what is above each other.
+# [inch] Height of ticks and label below the drawing, and of the gap between rows.
 _AXIS, _CLEAR = 0.45, 0.1
 
 # Mean width of a character, as a fraction of the font's size.
 _CHARACTER = 0.56
-# [characters] Narrower titles have room for one paragraph only.
+# [characters] A title narrower than this has only one paragraph.
 _NARROW = 75
 
 _COLOR = "#555555"
@@ -49,7 +49,7 @@ _THIN: Any = {"color": _COLOR, "linestyle": "-", "linewidth": 0.4, "zorder": 1.8
 _ARROW = {"color": _COLOR, "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 7}
 # [point] From a line to its label.
 _OFFSET = 3.0
-# [-] Of a view: its end, where a label beside or over a line would not fit.
+# [-] End of a view, as a fraction of its width, where a label beside or over a line does not fit.
 _LABEL = 0.06
 
 
@@ -59,18 +59,18 @@ class Canvas:
     Parameters
     ----------
     ax : Axes or None
-        Those of the caller; None makes some.
+        The caller's Axes; None makes new ones.
     extent : tuple of 4 floats
         [m] Left, right, bottom and top.
     figure : Figure, optional
-        Where to make them, all of it; None makes a figure of pyplot.
+        The figure that new Axes fill; None makes a figure of pyplot.
 
     Attributes
     ----------
     ax : Axes
         Where to draw.
     title : Text
-        What `caption` wrote above them.
+        The title that `caption` wrote above them.
     """
 
     title: Text
@@ -98,18 +98,18 @@ class Canvas:
 def blank_axes(
     figure: Figure, extent: Extent, count: int = 1, *, side_by_side: bool = False
 ) -> list[Axes]:
-    """Add Axes of the size that drawings of an extent take, for `arrange` to put in their places.
+    """Add Axes of the size that drawings of an extent need, which `arrange` then positions.
 
     Parameters
     ----------
     figure : Figure
-        All of it.
+        The figure, which the Axes fill.
     extent : tuple of 4 floats
         [m] Left, right, bottom and top of each drawing.
     count : int
-        How many.
+        Number of Axes.
     side_by_side : bool
-        Whether they will be side by side, not one above the other.
+        Whether they will be side by side instead of one above the other.
     """
     left, right, bottom, top = extent
     columns, rows = (count, 1) if side_by_side else (1, count)
@@ -140,7 +140,7 @@ def arrange(
 
 
 def draw_legend(ax: Axes, axes: list[Axes]) -> Any:
-    """Explain what is drawn in some Axes, below one of them and in columns no wider than it."""
+    """Draw a common legend of some Axes below one of them, in columns no wider than that."""
     explained: dict[str, Any] = {}
     for each in axes:
         handles, labels = each.get_legend_handles_labels()
@@ -168,14 +168,14 @@ def _inches(artist: Any) -> float:
 
 
 def axes_or_new(ax: Axes | None, size: tuple[float, float]) -> Axes:
-    """Return the Axes of the caller, or those of a new figure of a size [inch]."""
+    """Return the caller's Axes, or Axes of a new figure with this size [inch]."""
     if ax is None:
         _, ax = extra("matplotlib.pyplot", "plot").subplots(figsize=size, layout="constrained")
     return check_axes(ax, "ax")
 
 
 def check_axes(ax: Any, name: str) -> Axes:
-    """Refuse what is no Axes, such as a time or an array of Axes."""
+    """Refuse anything but Axes, such as a time or an array of Axes."""
     if not isinstance(ax, extra("matplotlib.axes", "plot").Axes):
         raise ScenarioError(name, ax, "must be an Axes of matplotlib")
     checked: Axes = ax
@@ -183,20 +183,20 @@ def check_axes(ax: Any, name: str) -> Axes:
 
 
 def below_axis(ax: Axes, distance: float) -> Any:
-    """Measure [inch] from the lower edge of Axes, past ticks and label, which are never scaled."""
+    """Return the transform of the Axes, shifted down by a fixed distance [inch]."""
     move = extra("matplotlib.transforms", "plot").ScaledTranslation
     return ax.transAxes + move(0.0, -distance, ax.figure.dpi_scale_trans)
 
 
 def moved(ax: Axes, aside: float) -> Any:
-    """Measure as the axes do, but move all to the right by a distance [point] on the paper."""
+    """Return the transform of the data, shifted to the right by a distance [point] on paper."""
     move = extra("matplotlib.transforms", "plot").ScaledTranslation
     return ax.transData + move(aside / 72.0, 0.0, ax.figure.dpi_scale_trans)
 
 
 def set_title(ax: Axes, *paragraphs: str) -> Text:
-    """Write a title over Axes, no wider than these; in narrow ones its first paragraph alone."""
-    ax.apply_aspect()  # only then the width is known
+    """Write a title over Axes, no wider than them; over narrow ones only its first paragraph."""
+    ax.apply_aspect()  # before this, the width is unknown
     title = ax.set_title("", loc="left", fontsize="small")
     # A robot's name may hold a $, which must not start a formula.
     title.set_parse_math(False)
@@ -213,7 +213,7 @@ def draw_length(
     start: NDArray[np.float64],
     text: str = "",
 ) -> None:
-    """Draw the distance of two points as an arrow next to them, with its label.
+    """Draw the distance between two points as an arrow next to them, with a label.
 
     Parameters
     ----------
@@ -222,9 +222,9 @@ def draw_length(
     ends : tuple of 2 ndarrays
         [m] The points.
     start : ndarray
-        [m] Where the arrow starts, in place of the first point.
+        [m] Start of the arrow, instead of the first point.
     text : str
-        What it is, before its length.
+        What to write before the length.
     """
     shift = start - ends[0]
     for point in ends:
@@ -234,7 +234,7 @@ def draw_length(
     ax.annotate("", _point(ends[0] + shift), _point(ends[1] + shift), arrowprops=arrow)
     along = ends[1] - ends[0]
     turn = float(np.degrees(np.arctan2(along[1], along[0])))
-    # Read from below or from the right, on the side that is turned away.
+    # Readable from below or from the right, on the far side of the arrow.
     upright = (turn + 89.0) % 180.0 - 89.0
     up = np.array([-np.sin(np.radians(upright)), np.cos(np.radians(upright))])
     side = 1.0 if shift @ up > 0.0 else -1.0
@@ -253,7 +253,7 @@ def draw_length(
 def draw_radius(
     ax: Axes, center: NDArray[np.float64], length: float, foot: NDArray[np.float64]
 ) -> None:
-    """Draw the radius [m] of a circle as an arrow towards a point outside, where its label is."""
+    """Draw the radius [m] of a circle as an arrow towards its label at a point outside."""
     outwards = foot - center
     rim = center + length * outwards / np.hypot(*outwards)
     ax.plot(*np.column_stack([rim, foot]), **_THIN)
@@ -270,12 +270,12 @@ def draw_radius(
 
 
 def draw_height(ax: Axes, x: float, levels: tuple[float, float]) -> None:
-    """Draw a rise or a fall from one level [m] to another at a place [m], its label in the air."""
+    """Draw a rise or fall from one level [m] to another at x [m], with its label in the air."""
     start, end = levels
     ax.annotate("", (x, start), (x, end), arrowprops={**_ARROW, "arrowstyle": "<|-|>"})
     rises = end > start
     left, right = ax.get_xlim()
-    # At the right end of the view a label on the right, or half of it, would be outside.
+    # Near the right end of the view a label on the right would be partly outside.
     is_last = x > right - _LABEL * (right - left)
     beside = -_OFFSET if is_last else 0.0 if rises else _OFFSET
     ax.annotate(

@@ -1,8 +1,8 @@
-"""The colours of all figures, and the looks of their lines, which the colour-blind tell apart, too.
+"""Colours of all figures and styles of their lines, which colour-blind readers can distinguish.
 
-Most are of Okabe and Ito's palette (M. Okabe and K. Ito, Color Universal Design, 2008,
-https://jfly.uni-koeln.de/color/); `tests/pictures/test_palette.py` measures how far apart they stay
-for people who lack one kind of cone. Lines also differ in dashes and markers, for prints without
+Most are from Okabe and Ito's palette (M. Okabe and K. Ito, Color Universal Design, 2008,
+https://jfly.uni-koeln.de/color/); `tests/pictures/test_palette.py` measures how far apart they are
+for people who lack one type of cone. Lines also differ in dashes and markers, for prints without
 colour. The style sheet of pages, `pictures/page/page.css`, has its own shades of them.
 """
 
@@ -33,20 +33,20 @@ BLUE, RED, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 BLACK = "#222222"
 """Theirs is pure, and harder than what is drawn with it."""
 VIOLET = "#A3327B"
-"""PURPLE, dark enough for a thin line on what is filled with it."""
+"""PURPLE, dark enough for a thin line on an area filled with PURPLE."""
 GRAY, GROUND = "#AAAAAA", "#D9D2C5"
 PALE = "#CCCCCC"
-"""A grey for surfaces, lighter than all colours: to the colour-blind GREEN and PURPLE are grey."""
+"""A grey for areas, lighter than all colours: colour-blind readers see GREEN and PURPLE as grey."""
 
 LINES = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK)
-"""Of lines in one figure, by their place; the eighth has the first again, dashed."""
+"""Colours of the lines in one figure, in order; the eighth has the first colour again, dashed."""
 
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "osD^vPX*<>"
 
 
 def look_of(index: int, colors: Sequence[str] = LINES) -> dict[str, Any]:
-    """Return colour, dashes and marker of a line by its place in a figure.
+    """Return colour, dashes and marker of a line by its index in a figure.
 
     Examples
     --------

@@ -35,17 +35,17 @@ Extent = tuple[float, float, float, float]
 """[m] Left, right, bottom and top."""
 
 _SLIVER = 2e-5
-"""[m] Lines that coincide enclose slivers by rounding; anything shallower is not an intrusion."""
+"""[m] Lines that coincide enclose slivers by rounding; anything shallower is no intrusion."""
 
 _MARGIN = 0.05
-"""[m] Round the extent of a run."""
+"""[m] Margin round the extent of a run."""
 
 _ROUND, _ABOVE = 0.03, 0.05
-"""[-] Room round a course, and above it, as a fraction of its width."""
+"""[-] Margin round a course, and above it, as a fraction of its width."""
 
 
 class Look(Enum):
-    """How a body looks, in the order of drawing."""
+    """How a body is drawn, in drawing order."""
 
     BELLY = "belly"
     INSIDE = "inside"
@@ -75,30 +75,30 @@ STYLES = {
     **dict.fromkeys((Look.HULL, Look.WHEEL), Style(BLACK)),
     Look.SHOE: Style(BLACK, fill=0.5, width=0.6),
 }
-"""Of figures and SVG; pages have the colours of their style sheet."""
+"""Styles in figures and SVG; pages have the colours of their style sheet."""
 
 
 def place(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m] Points of a frame, shape (..., 2), moved by the poses of that frame, shape (..., 3)."""
+    """[m] Transform points, shape (..., 2), from the frame with these poses, shape (..., 3)."""
     (x, y), (left, up, angle) = np.moveaxis(points, -1, 0), np.moveaxis(poses, -1, 0)
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.stack([left + cosine * x - sine * y, up + sine * x + cosine * y], axis=-1)
 
 
 def relative(poses: NDArray[np.float64], frames: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m, m, rad] Poses at n samples, shape (n, 3), relative to frames with these poses."""
+    """[m, m, rad] Express the poses at n samples, shape (n, 3), relative to moving frames."""
     (x, y), angle = (poses - frames).T[:2], frames[:, 2]
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.column_stack([cosine * x + sine * y, cosine * y - sine * x, poses[:, 2] - angle])
 
 
 def close_line(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m] A polygon as a line that ends where it began."""
+    """[m] Return a polygon as a closed line, which ends where it began."""
     return np.vstack([polygon, polygon[:1]])
 
 
 def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
-    """[m] A closed convex line, counter-clockwise, offset inwards by a depth."""
+    """[m] Offset a closed convex line, counter-clockwise, inwards by a depth."""
     side = np.roll(belt, -1, axis=0) - belt
     belt = belt[np.hypot(*side.T) > 1e-9]  # drops coincident corners
     side = np.roll(belt, -1, axis=0) - belt
@@ -110,7 +110,7 @@ def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
 
 
 def extent_of(*points: NDArray[np.float64], margin: float = 0.0) -> Extent:
-    """[m] The extent of arrays of points, with a margin round them as a fraction of their width."""
+    """[m] Return the extent of arrays of points, with a margin as a fraction of their width."""
     every = np.concatenate(points)
     (left, bottom), (right, top) = every.min(axis=0).tolist(), every.max(axis=0).tolist()
     room = margin * (right - left)
@@ -126,7 +126,7 @@ class Circuit:
     belt : int
         Index of the belt's body.
     ways : ndarray, shape (k,)
-        [m] Distances along the belt, all the way round; poses between them may be interpolated.
+        [m] Distances along the belt, once round; poses between them may be interpolated.
     poses : ndarray, shape (k, 3)
         [m, m, rad] Poses there, in the carrier's frame; the last is the first after a full turn.
     grousers : ndarray of int
@@ -178,7 +178,7 @@ class Carrier:
 
 
 class Scene:
-    """Everything to draw of a robot and its ground, as provided by the core.
+    """Everything that is drawn of a robot and its ground, as provided by the core.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ class Scene:
     edges : dict of str to ndarray
         Corners of the ground.
     goal : float
-        [m] Position that the rear end has to reach.
+        [m] Position that the robot's rear end has to reach.
     bodies : dict of str to ndarray
         Columns of `Run.bodies`.
     poses : ndarray, shape (n, k, 3)
@@ -240,7 +240,7 @@ class Scene:
 
     @classmethod
     def of_robot(cls, text: str) -> Scene:
-        """Make the same in the chassis frame, for a drawing of the robot alone."""
+        """Make the same scene in the chassis frame, for a drawing of the robot alone."""
         columns = _first_sample(text)
         frame = np.column_stack([columns["position"], columns["chassis_angle"]])
         shoes = relative(columns["shoe_poses"][0], frame)[None]

@@ -1,4 +1,4 @@
-"""Scenes as inline SVG, and the cards that show robots and scenarios in a notebook."""
+"""Scenes as inline SVG, and cards that show robots and scenarios in notebooks."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ __all__ = [
 ]
 
 MARGIN = 0.02
-"""[-] Round a drawing, as a fraction of its width."""
+"""[-] Margin round a drawing, as a fraction of its width."""
 
 _WIDTH, _HEIGHT = 360.0, 220.0
 """[px] Largest drawing of a card."""
 
 
 def escape(text: str) -> str:
-    """Make any text harmless in HTML and valid in UTF-8."""
+    """Escape a text for HTML, and make it valid UTF-8."""
     return html.escape(text.encode("utf-8", "replace").decode())
 
 
 def table(rows: Iterable[tuple[str, str]]) -> str:
-    """Write names with their values, one below the other; nothing if there are none."""
+    """Return HTML with a row for each name and value; empty if there are none."""
     body = "".join(
         f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows
     )
@@ -48,14 +48,14 @@ def table(rows: Iterable[tuple[str, str]]) -> str:
 
 
 class Sheet:
-    """A part of the plane, as large as fits into a width and a height.
+    """A drawing of a part of the plane, as large as fits into a width and a height.
 
     Parameters
     ----------
     extent : tuple of 4 floats
         [m] Left, right, bottom and top.
     width, height : float
-        [px] The most that it may have.
+        [px] Largest size of the drawing.
 
     Examples
     --------
@@ -74,13 +74,13 @@ class Sheet:
         self._drawn: list[str] = []
 
     def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
-        """[px] Return where points are, shape (..., 2), from the upper left corner."""
+        """[px] Return the positions of points, shape (..., 2), from the upper left corner."""
         left, _, _, top = self.extent
         moved: NDArray[np.float64] = self.scale * (np.asarray(points) - (left, top)) * (1.0, -1.0)
         return moved
 
     def line(self, points: ArrayLike, look: str, *, is_closed: bool = True) -> None:
-        """Draw a line through points [m]; `look` are attributes of SVG."""
+        """Draw a line through points [m]; `look` has SVG attributes."""
         self._drawn.append(f'<path d="{_steps(self.pixels(points))}{"Z" * is_closed}" {look}/>')
 
     def circle(self, center: ArrayLike, radius: float, look: str) -> None:
@@ -91,17 +91,17 @@ class Sheet:
         )
 
     def cross(self, place: ArrayLike, look: str) -> None:
-        """Mark a point [m] by a cross."""
+        """Mark a point [m] with a cross."""
         x, y = self.pixels(place)
         self._drawn.append(f'<path d="M{x - 4:.1f} {y:.1f}h8m-4 -4v8" {look}/>')
 
     def label(self, place: ArrayLike, text: str, look: str) -> None:
-        """Write a text, its baseline at a point [m]."""
+        """Write a text with its baseline at a point [m]."""
         x, y = self.pixels(place)
         self._drawn.append(f'<text x="{x:.1f}" y="{y:.1f}" {look}>{escape(text)}</text>')
 
     def svg(self, title: str = "") -> str:
-        """Return one element; `title` says what it shows to those who cannot see it."""
+        """Return one element; `title` describes it to those who cannot see it."""
         width, height = self._size
         label = f' aria-label="{escape(title)}"' if title else ""
         return (
@@ -112,7 +112,7 @@ class Sheet:
 
 
 def _steps(pixels: NDArray[np.float64]) -> str:
-    """Write a line as moves in tenths of a pixel; corners that fall together are left out."""
+    """Write a line as moves in tenths of a pixel, without repeated corners."""
     corners = np.round(pixels, 1)
     moves = np.round(np.diff(corners, axis=0), 1)
     steps = "".join(f"l{x:g} {y:g}" for x, y in moves if x or y)
@@ -141,7 +141,7 @@ def _draw_ground_on(sheet: Sheet, scene: Scene) -> None:
 
 
 def _attributes(look: Look) -> str:
-    """Write a look as attributes; black is the colour of the text, seen on a dark page, too."""
+    """Write a look as attributes; black becomes the text's colour, visible on dark pages, too."""
     style = STYLES[look]
     color = "currentColor" if style.color == BLACK else style.color
     fill = f'fill="{color}" fill-opacity="{style.fill}"' if style.fill else 'fill="none"'
@@ -157,7 +157,7 @@ def robot_card(text: str, title: str) -> str:
     text : str
         A scenario with the robot on level ground.
     title : str
-        What to write over it.
+        The text above it.
 
     Returns
     -------
@@ -177,7 +177,7 @@ def robot_card(text: str, title: str) -> str:
 
 
 def scenario_card(text: str, title: str, terrain: str) -> str:
-    """Show a scenario in JSON, the robot at its start; `terrain` says in words what its ground is.
+    """Show a scenario in JSON with the robot at its start; `terrain` describes the ground in words.
 
     The rest is as for `robot_card`.
     """
@@ -202,7 +202,7 @@ def scenario_card(text: str, title: str, terrain: str) -> str:
 
 
 def _friction_of(lanes: list[dict[str, Any]]) -> str:
-    """Say which coefficients the ground has; of more than two the least and the greatest."""
+    """List the friction coefficients of the ground; of more than two only the range."""
     segments = [lane.get("segment_friction") or [lane["friction"]] for lane in lanes]
     values = {value for each in segments for value in each}
     return _listed(values) if len(values) <= 2 else f"{min(values):.4g} to {max(values):.4g}"

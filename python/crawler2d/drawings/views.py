@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 _ROUND, _BELOW = 0.04, 0.04
-"""[-] Of the width of a robot: room round it, and for each row of dimensions below it."""
+"""[-] Margin round a robot, and for each row of dimensions below it, relative to its width."""
 
 
 class Outlines:
@@ -40,13 +40,13 @@ class Outlines:
     Parameters
     ----------
     scene : Scene
-        The robot and where it is.
+        The robot with its poses.
     ax : Axes
         Where to draw.
     alpha : float
         Opacity.
     inside : bool
-        Whether to draw the wheels inside belts, too.
+        Whether to draw also the wheels inside belts.
     """
 
     def __init__(self, scene: Scene, ax: Axes, *, alpha: float = 1.0, inside: bool = False) -> None:
@@ -96,7 +96,7 @@ def scene_canvas(
 ) -> Canvas:
     """Make Axes for an extent of a scene, with its ground; see `Canvas`.
 
-    Of two lanes the left one shows through behind the right one.
+    If there are two lanes, the left one is visible through the right one.
     """
     canvas = Canvas(ax, extent, figure)
     is_far = has_two = len(scene.lanes) > 1
@@ -116,14 +116,14 @@ def scene_canvas(
 
 
 def draw_goal(goal: float, ax: Axes) -> None:
-    """Mark the place that the rear end of the robot has to reach."""
+    """Mark the position that the rear end of the robot has to reach."""
     ax.axvline(goal, color=GREEN, linestyle=":", label="goal (rear end)")
 
 
 def draw_lines(
     lines: Iterable[NDArray[np.float64]], ax: Axes, label: str | None, **look: Any
 ) -> None:
-    """Draw lines [m] that the legend explains once."""
+    """Draw lines [m] with a single entry in the legend."""
     for line in lines:
         ax.plot(*line.T, label=label, **look)
         label = None
@@ -137,7 +137,7 @@ def draw_scenario(text: str, title: str, ax: Axes | None) -> Axes:
     text : str
         The scenario in JSON.
     title : str
-        What to write over it.
+        The text above it.
     ax : Axes or None
         Where to draw; None makes a figure.
     """
@@ -152,7 +152,7 @@ def draw_scenario(text: str, title: str, ax: Axes | None) -> Axes:
 
 
 def _draw_relief(scene: Scene, sides: tuple[float, float], ax: Axes) -> None:
-    """Draw how far the ground rises or falls from where the robot stands, where it does so most."""
+    """Draw the largest rise or fall of the ground, measured from where the robot stands."""
     start = float(scene.carriers[0].poses[0, 0])
     base = float(np.interp(start, *scene.lanes[-1][1].T))
     extremes = []
@@ -170,7 +170,7 @@ def _explain_cross(ax: Axes) -> None:
 
 
 class _Arm(NamedTuple):
-    """[m] Axles of a flipper, and where its dimension starts: on the free side of its tip."""
+    """[m] Axles of a flipper, and the start of its dimension line, on the free side of its tip."""
 
     pivot: NDArray[np.float64]
     tip: NDArray[np.float64]
@@ -185,7 +185,7 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
     text : str
         A scenario in JSON with the robot on level ground.
     title : str
-        What to write over it.
+        The text above it.
     ax : Axes or None
         Where to draw; None makes a figure.
     """
@@ -195,8 +195,8 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
     left, right, bottom, top = scene.robot_extent()
     width = right - left
     discs, arms = discs_in(robot["outline"]), _arms(scene, robot)
-    # Labels below: radii of discs between the ends if others are equal to none, those of the ends,
-    # and lengths.
+    # Rows of labels below: radii of inner discs, if they differ from those of the ends; radii of
+    # the ends; lengths.
     of_ends = {radius for _, _, radius in end_discs(discs)}
     rows = 2 + any(radius not in of_ends for _, _, radius in discs)
     corners = [(left, bottom - (1 + rows) * _BELOW * width), (right, top)]
@@ -205,7 +205,7 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
     canvas = Canvas(ax, (left - margin, right + margin, below - margin, top + margin))
     ax = canvas.ax
     Outlines(scene, ax, inside=True).show(0)
-    # Wheels of another size, or spaced ones, leave the outline of the real track.
+    # Wheels of other sizes, or with gaps between them, differ from the outline of the real track.
     if not any(_is_same(each, outline) for each in scene.outlines(0)):
         line: Any = {"color": GRAY, "linewidth": 0.8, "linestyle": "--", "zorder": 1.9}
         ax.plot(*outline.T, **line, label="track as built")
@@ -219,7 +219,7 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
 
 
 def _outline(scenario: dict[str, Any]) -> NDArray[np.float64]:
-    """[m] The closed outline of the track as built: that of a belt."""
+    """[m] Return the closed outline of the track as built, that of a belt."""
     drivetrain = {**scenario["robot"]["drivetrain"], "torque_sharing": "track"}
     belt = {"track": {"kind": "belt"}, "drivetrain": drivetrain, "flippers": None}
     robot = {**scenario["robot"], **belt}
@@ -246,16 +246,16 @@ def _arms(scene: Scene, robot: dict[str, Any]) -> list[_Arm]:
 
 
 def _draw_dimensions(ax: Axes, discs: Any, arms: list[_Arm], levels: list[float]) -> None:
-    """Mark the axles, and draw their distances and radii; what is equal on several only once.
+    """Mark the axles, and draw their distances and radii, equal ones only once.
 
-    `levels` [m] are those of the rows of labels, from above.
+    `levels` [m] are the heights of the rows of labels, from above.
     """
     rear, front = end_discs(discs)
     of_arms = [point for arm in arms for point in (arm.pivot, arm.tip)]
     axles = np.array([*(disc[:2] for disc in discs), *of_arms])
     ax.plot(*axles.T, "o", color=BLACK, markersize=2.5, zorder=2.5)
     first, (*_, label, line) = levels[0], levels
-    # At one level, because it is measured along the chassis.
+    # Horizontal, because it is measured along the chassis.
     ends = np.array(rear[:2]), np.array([front[0], rear[1]])
     draw_length(ax, ends, np.array([rear[0], line]), "axle distance")
     middle, inwards = 0.5 * (rear[0] + front[0]), 0.1 * (front[0] - rear[0])

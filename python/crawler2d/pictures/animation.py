@@ -1,4 +1,4 @@
-"""Runs as a video: their side views with the contact forces, as a GIF or an MP4."""
+"""Videos of runs in side view with contact forces, as GIF or MP4."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Film", "animate", "palette_of"]
 
-# [s] How much longer the last frame is shown.
+# [s] Additional time for which the last frame is shown.
 _HOLD = 1.5
 # Few enough for small files, and enough for smooth lines in all colours.
 _COLORS = 63
-# In a wider view than this many lengths of the robot it would be too small.
+# [lengths of the robot] In a wider view the robot would be too small.
 _WIDEST = 5.0
-# In the same lengths: size of a view that follows the robot.
+# [lengths of the robot] Size of a view that follows the robot.
 _WINDOW = (3.0, 1.6)
-# A longer film is a mistake.
+# More frames than this are assumed to be a mistake.
 _MOST_FRAMES = 10_000
 # [inch] Width of the figure, which becomes `width` pixels wide.
 _FIGURE_WIDTH = 9.0
@@ -60,8 +60,8 @@ def animate(
 ) -> Path:
     """Write runs as one video; see `Run.animate` and `crawler2d.animate`.
 
-    Given the number of frames, `counted` opens what is called with the number of frames drawn
-    since its last call. The file appears once it is complete.
+    `counted` takes the number of frames, and returns a context whose value is called with the
+    number of frames drawn since its last call. The file appears once it is complete.
     """
     path = Path(path)
     write = {".gif": _write_gif, ".mp4": _write_mp4}.get(path.suffix.lower())
@@ -77,7 +77,7 @@ def animate(
     times = np.minimum(start + np.arange(count) * speed / fps, end)
     about = "; ".join(run.provenance for run in runs)
     with part_of(path) as part:
-        part.touch()  # here it fails if nothing can be written
+        part.touch()  # fails here if the folder is not writable
         film = Film(
             runs,
             times,
@@ -93,7 +93,7 @@ def animate(
             def show(number: int) -> None:
                 nonlocal shown
                 film.show(number)
-                if number == shown:  # some are drawn twice, for the palette or to be held
+                if number == shown:  # some frames are needed twice, for the palette or to be held
                     shown += 1
                     report(1)
 
@@ -111,7 +111,7 @@ def _in_range(value: float, name: str, bounds: tuple[float, float]) -> float:
 def _write_gif(
     part: Path, figure: Any, show: Callable[[int], None], count: int, fps: float, *, about: str
 ) -> None:
-    """Write a GIF with one palette for all frames, so that what stands still costs nothing."""
+    """Write a GIF with one palette for all frames, so that unchanged parts take no space."""
     images = extra("PIL.Image", "animation")
 
     def shot(number: int) -> Any:
@@ -122,25 +122,25 @@ def _write_gif(
     probes = [np.asarray(shot(number)) for number in {0, count // 2, count - 1}]
     options = {"palette": palette_of(images, np.concatenate(probes)), "dither": images.Dither.NONE}
     frames = (shot(number).quantize(**options) for number in range(count))
-    # A GIF counts in hundredths of a second; rounded like this they add up to the right time.
+    # A GIF counts in hundredths of a second; rounded like this, the total time is right.
     ends = np.round(100.0 * np.arange(1, count + 1) / fps).astype(int)
     durations = 10 * np.diff(ends, prepend=0)
     durations[-1] += round(1e3 * _HOLD)
     first = next(frames)
     timing: Any = {"duration": durations.tolist(), "loop": 0}
-    # Pillow takes a part of a write to a file for all of it.
+    # Pillow assumes that a partial write to a file was complete.
     whole = io.BytesIO()
     first.save(whole, "GIF", save_all=True, append_images=frames, comment=about, **timing)
     part.write_bytes(whole.getvalue())
 
 
 def palette_of(images: Any, pixels: NDArray[np.uint8]) -> Any:
-    """Take the most frequent colours as they are: those of surfaces, then those of most edges."""
+    """Return a palette of the most frequent colours unchanged: of surfaces, then of most edges."""
     weights = np.array([1 << 16, 1 << 8, 1], np.uint32)
     codes, counts = np.unique(pixels.reshape(-1, 3) @ weights, return_counts=True)
     codes = codes[np.argsort(-counts)]
     colors = (codes[:, None] // weights) % 256
-    # Of colours that Pillow takes for one it might choose the wrong one, such as a dirty white.
+    # Of colours that Pillow does not distinguish, it might choose a wrong one, as a dirty white.
     _, first = np.unique(colors // 8 @ weights, return_index=True)
     palette = images.new("P", (1, 1))
     palette.putpalette(colors[np.sort(first)[:_COLORS]].ravel().tolist())
@@ -173,20 +173,20 @@ def _write_mp4(
 
 
 class Film:
-    """The side views of runs in a figure of their own, at one of several instants at a time.
+    """A figure with the side views of runs at one of several instants.
 
-    All are to one scale, those of forces included, and show the same stretch of ground.
+    All have the same scales, also for forces, and show the same stretch of ground.
 
     Parameters
     ----------
     runs : sequence of Run
         Runs with history.
     times : ndarray, shape (k,)
-        [s] The instants; a run stands still before it begins and once it has ended.
+        [s] The instants; before its begin and after its end a run stands still.
     labels : sequence of str
-        What to call each.
+        Name of each run.
     pace : float
-        [-] How many times faster than real time they are shown.
+        [-] Speed of the film relative to real time.
     follow, side_by_side, width
         See `crawler2d.animate`.
     """
@@ -212,7 +212,7 @@ class Film:
         right, top = extents[:, 1::2].max(axis=0).tolist()
         views = _views(scenes, (left, right, bottom, top), follow=follow)
         axes = blank_axes(self.figure, tuple(views[0][0]), len(runs), side_by_side=side_by_side)
-        # Arrows are as long as their robots are, so forces are scaled by that.
+        # The length of arrows is relative to that of their robots, so forces are scaled by it.
         sizes = [run.scenario.robot.outline.axle_distance for run in runs]
         scale = max(usual_force(run) / size for run, size in zip(runs, sizes, strict=True))
         forces = f"contact forces, the longest {scale * max(sizes):.0f} N or more"
@@ -235,7 +235,7 @@ class Film:
 
 
 class _Picture:
-    """One run of a film in Axes, shown in a view [m] for each frame; see `Film`."""
+    """One run of a film in Axes, with a view [m] for each frame; see `Film`."""
 
     def __init__(
         self,
@@ -276,7 +276,7 @@ class _Picture:
 def _views(
     scenes: Sequence[Scene], extent: Extent, *, follow: bool | None
 ) -> list[NDArray[np.float64]]:
-    """[m] Left, right, bottom and top of what each frame of each run shows."""
+    """[m] Return left, right, bottom and top of the view of each frame of each run."""
     left, right, bottom, top = extent
     length = max(end - start for start, end, _, _ in (scene.robot_extent() for scene in scenes))
     if follow is None:
@@ -298,7 +298,7 @@ def _views(
 def _window(
     middle: NDArray[np.float64], whole: tuple[float, float], size: float
 ) -> NDArray[np.float64]:
-    """[m] Ends of windows about some places, none beyond the whole, shape (k, 2)."""
+    """[m] Return the ends of windows round positions, within the whole range, shape (k, 2)."""
     least, most = whole
     size = min(size, most - least)
     starts = np.clip(middle - 0.5 * size, least, most - size)

@@ -1,4 +1,4 @@
-"""A certificate: regions of one field or two, by what is known of each."""
+"""Draw a certificate: regions of one or two fields, coloured by their status."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LOOKS: dict[str, tuple[dict[str, Any], str]] = {
     "jams": ({"facecolor": RED, "hatch": "...."}, "it can jam"),
     "undecided": ({"facecolor": "white", "hatch": None}, "undecided"),
 }
-"""How regions of a status are drawn, and what that is in the legend."""
+"""Style of regions with each status, and its name in the legend."""
 
 
 def plot_regions(
@@ -33,7 +33,7 @@ def plot_regions(
     labels: Sequence[str],
     ax: Axes | None,
 ) -> Axes:
-    """Draw regions of a status, with their least and greatest values of one field or two."""
+    """Draw regions of one status between their smallest and largest values of one or two fields."""
     ax = axes_or_new(ax, (8.0, 6.0))
     patches = extra("matplotlib.patches", "plot")
     handles: dict[str, Any] = {}

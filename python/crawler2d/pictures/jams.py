@@ -24,9 +24,9 @@ _FILL = 0.55
 _LINE = 3.0
 """[point] Width of a region at a single value."""
 _ROOM = 0.1
-"""[-] Beside the only value of a chart."""
+"""[-] Margin beside the only value of a chart."""
 _STRIPES = "////", "....", "xxxx"
-"""Hatches, for those who tell colours badly."""
+"""Hatches, for readers who distinguish colours badly."""
 
 Interval = tuple[float, float]
 Corner = tuple[float, float]
@@ -38,15 +38,15 @@ class JamRegion(NamedTuple):
     Parameters
     ----------
     text : str
-        What is known of it, for a legend.
+        Its description in a legend.
     place : int or None
-        Number of the pair of wheels that the ground is between, from the rear; None if the ground
-        is inside no track.
+        Number of the pair of wheels with the ground between them, from the rear; None if no ground
+        is inside the track.
     is_belt : bool
-        Whether it is of the belt.
+        Whether it is a jam of the belt.
     pieces : list of list of tuple
-        Corners of its pieces: value along the first axis, friction. Those of two are at one value
-        alone.
+        Corners of its pieces as (value along the first axis, friction). A piece with two corners is
+        at a single value.
     """
 
     text: str
@@ -56,7 +56,7 @@ class JamRegion(NamedTuple):
 
 
 def jam_regions(data: xarray.Dataset) -> list[JamRegion]:
-    """Cut the chart of one model into regions: one for each pair of wheels, then the belt's."""
+    """Divide the chart of one model into regions: one for each pair of wheels, then the belt's."""
     at = data[data.attrs["x"]].to_numpy()
     low, high = (data[end].to_numpy() for end in ("low", "high"))
     bodies = np.stack([data["rear"].to_numpy(), data["front"].to_numpy()], axis=-1)
@@ -78,7 +78,7 @@ def jam_regions(data: xarray.Dataset) -> list[JamRegion]:
 
 
 def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Fill where one model can jam, and hatch where a belt can."""
+    """Fill the regions where one model can jam, and hatch those where a belt can."""
     name = data.attrs["x"]
     data = with_dims(one_model(data), name)
     ax = axes_or_new(ax, (8.0, 6.0))
@@ -102,7 +102,7 @@ def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
         if lines := [piece for piece in scaled if len(piece) == 2]:
             color = BLACK if is_belt else style["facecolor"]
             look: dict[str, Any] = {"color": color, "linewidth": 1.0 if is_belt else _LINE}
-            beside = moved(ax, _LINE * len(handles))  # at one value all would cover each other
+            beside = moved(ax, _LINE * len(handles))  # at one value, all would cover each other
             ax.add_collection(segments(lines, transform=beside, **look))
         handles.append(extra("matplotlib.patches", "plot").Patch(label=text, **style))
         top = max(top, *(friction for piece in pieces for _, friction in piece))
@@ -120,7 +120,7 @@ def plot_jam_chart(data: xarray.Dataset, ax: Axes | None) -> Axes:
 def _intervals(
     low: NDArray[np.float64], high: NDArray[np.float64], own: NDArray[np.bool_]
 ) -> list[list[Interval]]:
-    """List the intervals at each value that belong together, joined where they overlap."""
+    """List the intervals at each value, with overlapping ones joined."""
     rows = []
     for lows, highs, of_row in zip(low, high, own, strict=True):
         joined: list[Interval] = []
@@ -134,7 +134,7 @@ def _intervals(
 
 
 def _pieces(at: NDArray[np.float64], rows: list[list[Interval]]) -> list[list[Corner]]:
-    """List what is between overlapping intervals of neighbouring values, and those left alone."""
+    """List the pieces between overlapping intervals of neighbours, and single intervals."""
     pieces: list[list[Corner]] = []
     alone = [set(row) for row in rows]
     for k, (here, there, own, others) in enumerate(zip(at, at[1:], rows, rows[1:], strict=False)):

@@ -25,9 +25,10 @@ _LOST = 2.5
 
 
 def plot_policy(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Write the rates of policy and baseline, and how most others end, green by the policy's rate.
+    """Draw a table of the rates of policy and baseline, and of the commonest other outcome.
 
-    Cells where some of the gain on the first model is lost, with confidence, have a red frame.
+    Cells are greener for a higher rate of the policy. A red frame marks a significant loss of the
+    gain on the first model.
     """
     if data["gain"].ndim != 2 or data.sizes.get("driver") != 2:
         rule = "must have models, obstacles and both drivers"
@@ -67,8 +68,6 @@ def plot_policy(data: xarray.Dataset, ax: Axes | None) -> Axes:
         ax.axvline(edge - 0.5, color=GRAY, linewidth=0.8)
     ax.set(xlabel="obstacle", ylabel="track model")
     repeats = data.sizes["repeat"]
-    text = (
-        f"Rate at which the policy clears, and the baseline ({repeats} runs each); how most others"
-    )
-    set_title(ax, f"{text} end. Red: some of the gain on {models[0]} is lost.")
+    text = f"Clearing rates of policy and baseline ({repeats} runs each), commonest other outcome."
+    set_title(ax, f"{text} Red: some of the gain on {models[0]} is lost.")
     return ax

@@ -1,4 +1,4 @@
-"""Figures of studies: outcomes in bars, maps of them, and measures as dots."""
+"""Figures of studies: outcomes as bars or maps, and measures as dots."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 _SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
-"""Display unit of a quantity, and its factor."""
+"""Display unit of each unit, and its factor."""
 
 LOOKS = {
     "cleared": (GREEN, ""),
@@ -65,10 +65,10 @@ LOOKS = {
 """Colours and hatching of the outcomes, in the order of a bar."""
 
 _ROW, _REST = 0.28, 1.5
-"""[inch] Height of a bar, and of what is above and below all of them."""
+"""[inch] Height of a bar, and of the space above and below all bars."""
 
 _BETWEEN = 1.5
-"""[-] Bars that would fit between one ground and the next."""
+"""[-] Gap between one ground and the next, in bars."""
 
 _LEGEND = 22.0
 """[point] Height of the legend, which stands between bars and title."""
@@ -76,7 +76,7 @@ _LEGEND = 22.0
 _CLEARED, _OTHERWISE = "cleared", "otherwise"
 
 _HATCH, _DOTS = "////", ".."
-"""Marks of what is not certain, and of what was not simulated."""
+"""Hatches of uncertain cells, and of cells that were not simulated."""
 
 _RIM = 2.5
 """[point] Width of the line round areas where most runs have the outcome of a map."""
@@ -85,7 +85,7 @@ _BELOW = 46.0 / 72.0
 """[inch] From the axes to the legend, past ticks and label."""
 
 _MEASURE_ROW, _MEASURE_REST = 0.5, 1.7
-"""[inch] Height of the row of a model, and of what is above and below all of them."""
+"""[inch] Height of the row of a model, and of the space above and below all rows."""
 
 _WIDE = 26
 """Characters of a line of a label."""
@@ -93,10 +93,10 @@ _WIDE = 26
 _UNCHANGED = "unchanged"
 
 _STYLES = ((ORANGE, "D"), (GREEN, "s"), (RED, "^"))
-"""Of the evidence: what was measured with each change."""
+"""Markers of the evidence, which was measured with each change."""
 
 _DOWN = 0.26
-"""[-] How far below its model the evidence is drawn, in rows."""
+"""[-] Distance of the evidence below its model, in rows."""
 
 
 def readable(values: xarray.DataArray) -> tuple[float, str]:
@@ -108,7 +108,7 @@ def readable(values: xarray.DataArray) -> tuple[float, str]:
 
 
 def populations(attributes: Mapping[str, Any], *, banded: bool, what: str = "rates") -> str:
-    """Describe in a title the population of the rates."""
+    """Describe the population of the rates for a title."""
     varied = _field_names(attributes.get("vary", attributes.get("varied", "")))
     text = f"{what} over {varied}" if varied else f"{what} of equal runs"
     unknown = _field_names(attributes.get("unknown", ""))
@@ -179,7 +179,7 @@ def _rank(name: str) -> int:
 
 
 def plot_map(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw the commonest end of every cell: hatched if uncertain, dotted if not simulated."""
+    """Draw the commonest outcome of every cell, hatched if uncertain, dotted if not simulated."""
     data = one_model(data)
     ending = data["ending"]
     if ending.ndim != 2 or min(ending.shape) < 2:
@@ -240,7 +240,7 @@ def _draw_rim(
 
 
 def _edges(middles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return where cells end, halfway between their middles."""
+    """Return the boundaries of cells, halfway between their centres."""
     between = 0.5 * (middles[1:] + middles[:-1])
     return np.concatenate(
         [2.0 * middles[:1] - between[:1], between, 2.0 * middles[-1:] - between[-1:]]
@@ -248,7 +248,7 @@ def _edges(middles: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _certainty(data: xarray.Dataset, *, banded: bool) -> str:
-    """Describe the number of runs behind a cell, and the width of its interval."""
+    """Describe the number of runs per cell, and the widest interval."""
     counts = data["count"].to_numpy()
     counts = counts[counts > 0]
     if not counts.size:
@@ -274,18 +274,18 @@ def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, ba
         for name, color in colors.items()
     ]
     if unsure:
-        why = "of some samples half of the runs or fewer end so"
-        text = why if banded else "not certain, half of the runs or fewer may end so"
+        why = "in some samples half of the runs or fewer end like this"
+        text = why if banded else "uncertain, half of the runs or fewer may end like this"
         text = f"hatched: {text}"
         handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_HATCH, label=text))
     if guessed:
-        text = f"dotted: not simulated; all cells around it {'' if banded else 'certainly '}end so"
+        text = f"dotted: not simulated; all cells around it {'' if banded else 'certainly '}agree"
         handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_DOTS, label=text))
     legend_below(ax, handles=handles)
 
 
 def legend_below(ax: Axes, **options: Any) -> None:
-    """Write the legend below the axes, past ticks and label; no label is a formula."""
+    """Draw the legend below ticks and label of the axes, without parsing labels as formulas."""
     legend = ax.legend(
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
@@ -398,7 +398,7 @@ def _draw_evidence(ax: Axes, data: xarray.Dataset, name: str, factor: float) -> 
 
 
 def _notes(own: xarray.Dataset, name: str) -> list[str]:
-    """Write a note: limit of a model, reason for a missing figure, outcome, or motion."""
+    """Return a note: the limit of a model, reason for a missing figure, outcome, or motion."""
     if "moved" in own:
         ways = own["moved"].to_numpy()[own["motion"].to_numpy() == "driving"]
         return [f"drove {way:.2f} m" for way in ways]
@@ -412,7 +412,7 @@ def _notes(own: xarray.Dataset, name: str) -> list[str]:
 
 
 def _tally(before: str, words: xarray.DataArray) -> str:
-    """Write a word, or the words of all samples with their counts."""
+    """Return a word, or the words of all samples with their counts."""
     counts = Counter(str(word).replace("_", " ") for word in np.atleast_1d(words.to_numpy()))
     if len(counts) == 1:
         return before + next(iter(counts))
@@ -421,7 +421,7 @@ def _tally(before: str, words: xarray.DataArray) -> str:
 
 
 def _set_scale(ax: Axes, data: xarray.Dataset, name: str) -> None:
-    """Take logarithms of a real-time factor, with a line at real time; begin others at 0."""
+    """Use a logarithmic axis for a real-time factor, with a line at 1; start others at 0."""
     if data.attrs["figure"] == "real_time_factor":
         ax.set_xscale("log")
         ax.axvline(1.0, color=GRAY, linewidth=1.0, zorder=0)

@@ -1,4 +1,4 @@
-"""The page of a run as a widget of a notebook. It needs anywidget; imported on first use."""
+"""The page of a run as a widget for notebooks, imported on first use because of anywidget."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Replay(anywidget.AnyWidget):  # type: ignore[misc, name-defined] # untyped
     Attributes
     ----------
     time : float
-        [s] The instant that is shown. It follows the replay, which goes where it is set.
+        [s] The instant that is shown. The replay updates it, and jumps to it when it is set.
     page : str
         The page that is shown.
     """
@@ -42,5 +42,5 @@ class Replay(anywidget.AnyWidget):  # type: ignore[misc, name-defined] # untyped
         super().__init__(page=replay_page(run, time))
 
     def show(self, run: Record) -> None:
-        """Replay another run in its place."""
+        """Replace the run by another one."""
         self.page = replay_page(run)

@@ -1,4 +1,4 @@
-"""The scene of a run at any time, with contact forces, ground in the track, ends of trials."""
+"""Scenes of a run at any time, with contact forces, ground inside the track and ends of trials."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ __all__ = [
 # Arrow length of a contact force equal to the weight, as a fraction of the axle distance; larger
 # forces, as of a wedged robot, shrink the scale so that the largest gets this length.
 _FORCE_LENGTH = 0.6
-# The same for slip velocities, with the commanded speed in place of the weight.
+# The same for slip velocities, relative to the commanded speed.
 _SPEED_LENGTH = 0.22
-# These start this far below the surface, as a fraction of the axle distance, where they hide
-# nothing.
+# Slip arrows start this far below the surface, as a fraction of the axle distance, where they
+# hide nothing.
 _BELOW = 0.03
-# Of their shafts, as a fraction of the width of the Axes.
+# Width of shafts of arrows, as a fraction of the width of the Axes.
 _WIDTH = 0.004
 # Arrows below this fraction of the longest would be mere dots, and are left out.
 _SHORTEST = 0.02
@@ -72,7 +72,7 @@ def scene_of(run: Record, times: NDArray[np.float64] | None = None) -> Scene:
 def _interpolate(
     time: NDArray[np.float64], column: NDArray[np.float64], times: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Interpolate a column of the history; its angles count full turns."""
+    """Interpolate a column of the history, whose angles are not wrapped."""
     values = [np.interp(times, time, each) for each in column.reshape(time.size, -1).T]
     return np.array(values).T.reshape(times.size, *column.shape[1:])
 
@@ -113,18 +113,18 @@ def draw_forces(
     run : Run
         A run with history.
     sample : int
-        Which one.
+        Index of the sample.
     ax : Axes
         Where to draw.
     most : float, optional
-        [N] Force of the longest arrow, also of larger ones; None takes the largest, but at least
-        the weight.
+        [N] Force of the longest arrow; larger forces are drawn equally long. None takes the largest
+        force, but at least the weight.
     color : str
-        Of the arrows.
+        Colour of the arrows.
     width : float
-        [-] Of their shafts, as a fraction of the width of the Axes.
+    [-] Width of their shafts, as a fraction of the width of the Axes.
     where : str
-        What the legend adds, to distinguish them from others.
+        Text added in the legend, to distinguish them from other arrows.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def draw_slip(run: Record, sample: int, ax: Axes) -> list[Any]:
 
 
 def _contacts(run: Record, sample: int) -> tuple[NDArray[Any], ...]:
-    """Find the rows of the contacts of a sample, their places [m], normals and tangents."""
+    """Return the contacts of a sample: rows, positions [m], normals and tangents."""
     contacts = run.contacts
     now = np.flatnonzero(contacts["time"] == run.time[sample])
     places = np.column_stack([contacts["x"][now], contacts["y"][now]])
@@ -177,7 +177,7 @@ def _draw_arrows(
     width: float = _WIDTH,
     label: str,
 ) -> list[Any]:
-    """Draw arrows from the places; `scale` is the largest size and its length [m]."""
+    """Draw arrows from positions; `scale` has the largest size and its length [m]."""
     sizes, (most, length) = np.hypot(*vectors.T), scale
     drawn = sizes > _SHORTEST * most
     if not drawn.any():
@@ -199,12 +199,12 @@ def _draw_arrows(
 
 
 class Envelopes:
-    """The envelopes of wheels, and the ground inside them, at one sample at a time.
+    """Artists for the envelopes of wheels and the ground inside them, at one sample at a time.
 
     Parameters
     ----------
     scene : Scene
-        The robot and where it is.
+        The robot with its poses.
     ax : Axes
         Where to draw.
     """
@@ -219,7 +219,7 @@ class Envelopes:
                 continue
             look: Any = {"color": VIOLET, "linestyle": "--", "linewidth": 0.9, "zorder": 2.5}
             (line,) = ax.plot([], [], label=label, **look)
-            label = None  # once is enough
+            label = None  # a single entry in the legend
             clip = patches.Polygon(carrier.inner, transform=ax.transData)
             fill: Any = {"color": VIOLET, "alpha": 0.5, "linewidth": 0.0, "zorder": 2.6}
             for _, profile in scene.lanes:
@@ -235,7 +235,7 @@ class Envelopes:
 
 
 def draw_edges(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
-    """Mark the edges inside the track at one sample, each where it is deepest."""
+    """Mark the edges inside the track at a sample, each at its deepest point."""
     events, time = run.events, run.time[sample]
     inside = events["kind"] == "intrusion"
     inside &= (events["start"] <= time) & (time <= events["end"])
@@ -263,11 +263,11 @@ def draw_edges(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
 
 
 def _deepest(run: Record, scene: Scene, sample: int, row: int) -> tuple[NDArray[np.float64], float]:
-    """[m] Find the deepest point of the edge of an intrusion at a sample, and how deep it is."""
+    """[m] Find the deepest point of the edge of an intrusion at a sample, and its depth."""
     lane, edge, bodies = (run.events[name][row] for name in ("lane", "edge", "bodies"))
     profile, edges = dict(scene.lanes)[lane], run.edges
     own = np.flatnonzero((edges["id"] == edge) & (edges["lane"] == lane))[0]
-    # A rounded edge is an arc of the ground, as far as this from where the sharp corner would be.
+    # A rounded edge is an arc, which begins this far from where the sharp corner would be.
     reach = edges["radius"][own] * np.tan(0.5 * abs(edges["angle"][own]))
     away = np.hypot(profile[:, 0] - edges["x"][own], profile[:, 1] - edges["y"][own])
     points = profile[away <= (1.0 + 1e-6) * max(reach, away.min())]
@@ -282,7 +282,7 @@ def _depth_inside(polygon: NDArray[np.float64], points: NDArray[np.float64]) -> 
     """[m] Distances of points from the nearest side of a convex polygon, counter-clockwise."""
     sides = np.roll(polygon, -1, axis=0) - polygon
     lengths = np.hypot(*sides.T)
-    long = lengths > 1e-9  # others have no direction
+    long = lengths > 1e-9  # shorter sides have no direction
     sides, corners, lengths = sides[long], polygon[long], lengths[long]
     x, y = np.moveaxis(points[:, None] - corners, -1, 0)
     depths: NDArray[np.float64] = ((sides[:, 0] * y - sides[:, 1] * x) / lengths).min(axis=1)
@@ -296,7 +296,7 @@ class Ghost:
     Parameters
     ----------
     change, result, meaning : str
-        What was changed; the same with its result; what the change is.
+        Name of the change; the same with its result; explanation of the change.
     freed : bool
         Whether it freed the robot.
     from_the_start : bool
@@ -337,7 +337,7 @@ def ghosts(run: Record) -> list[Ghost]:
 
 
 def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
-    """[m] Yield the closed outlines of a ghost: its bodies but shoes, and a belt round them."""
+    """[m] Yield the closed outlines of a ghost: its bodies except shoes, with a belt round them."""
     for carrier, frame in zip(scene.carriers, ghost.frames, strict=True):
         shoes = {body for body in carrier.bodies if scene.looks[body] == Look.SHOE}
         if shoes or (ghost.is_belt and not carrier.closed):
@@ -352,7 +352,7 @@ def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
 def _frames(run: Record, trials: list[TrialResult]) -> NDArray[np.float64]:
     """[m, m, rad] Poses of the carriers at the ends of n trials, shape (n, k, 3)."""
     chassis = np.array([(*tried.position, tried.chassis_angle) for tried in trials]).reshape(-1, 3)
-    # What runs round the carriers moves none of them.
+    # Travel of the tracks does not move the carriers.
     last = {name: getattr(run, name)[-1:] for name in ("drive_positions", "shoe_poses")}
     columns = {
         "position": chassis[:, :2],

@@ -37,17 +37,17 @@ _GHOSTS = (SKY, ORANGE, GREEN, PURPLE)
 """Colours of the ends of trials."""
 
 _MOST_POSES = 7
-"""Of the robot in one side view."""
+"""Opacity of the robot in one side view."""
 
 _PATH: Any = {"linestyle": "-", "linewidth": 1.2, "zorder": 3}
 
 
 def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bool) -> Axes:
-    """Draw the ground, the robot at some instants, the path of the chassis origin, and contacts.
+    """Draw ground and contacts, the robot at some instants, and the path of the chassis origin.
 
-    At the last of the instants it also draws the contact forces on the robot, the slip velocities,
-    the envelopes of its wheels, and the ground and edges inside these; and, if it is the end of the
-    run, where the trials ended that freed the robot. See `Run.plot` for the parameters.
+    At the last instant, also draw the contact forces on the robot, the slip velocities, the
+    envelopes of its wheels, and the ground and edges inside them. If this is the end of the run,
+    also draw the ends of the trials that freed the robot. See `Run.plot` for the parameters.
     """
     times = _drawing_times(run) if time is None else read_instants(time, "time")
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
@@ -77,7 +77,7 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
 
 
 def plot_instant(run: Record, ax: Axes | None) -> Axes:
-    """Draw the only sample of a run: ground, robot, contacts; see `Simulation.plot`."""
+    """Draw ground, robot and contacts at the only sample of a run; see `Simulation.plot`."""
     scene = scene_of(run)
     left, right, _, _ = extent = scene.extent()
     canvas = scene_canvas(scene, extent, ax)
@@ -96,7 +96,7 @@ def _draw_sample(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
 
 
 def _drawing_times(run: Record) -> NDArray[np.float64]:
-    """Choose instants about one robot length of travel apart."""
+    """Choose instants separated by about one robot length of travel."""
     travelled = np.hypot(*np.diff(run.position, axis=0, prepend=run.position[:1]).T).cumsum()
     outline = run.scenario.robot.outline
     length = outline.axle_distance + outline.front_radius + outline.rear_radius
@@ -113,9 +113,9 @@ def plot_both(
     ax: Axes | None,
     caption: str,
 ) -> Axes:
-    """Draw both robots where they ended, with their paths; see `CrossCheck.plot`.
+    """Draw both robots at the ends of their runs, with their paths; see `CrossCheck.plot`.
 
-    The first is drawn in full, the second by its outlines in a colour; of stops the forces, too.
+    The first is drawn in full, the second as coloured outlines; stopped robots have their forces.
     """
     first, second = (scene_of(run) for run in runs)
     corners = np.reshape([scene.extent() for scene in (first, second)], (-1, 2, 2))
@@ -125,7 +125,7 @@ def plot_both(
     Outlines(first, ax).show(runs[0].time.size - 1)
     look: Any = {"color": ORANGE, "linewidth": 1.0, "linestyle": "--", "zorder": 2.5}
     draw_lines(second.outlines(runs[1].time.size - 1), ax, f"robot in {names[1]}", **look)
-    # What is drawn first is broader, so that it is seen where both are the same.
+    # The line that is drawn first is broader, so that it remains visible where both coincide.
     looks: Any = (
         ({"color": BLUE, "linewidth": 2.4}, {"color": RED, "width": 0.007}),
         ({"color": ORANGE, "linestyle": "--"}, {"color": PURPLE}),
@@ -145,7 +145,7 @@ def plot_both(
 
 def plot_history(run: Record, axes: Sequence[Axes] | None) -> tuple[Axes, Axes, Axes]:
     """Draw a run over time; see `Run.plot_history`."""
-    time = run.time  # without a history this says so, before there is a figure
+    time = run.time  # raises an error without a history, before a figure is made
     if axes is None:
         pyplot = extra("matplotlib.pyplot", "plot")
         _, axes = pyplot.subplots(3, sharex=True, figsize=(8.0, 5.6), layout="constrained")

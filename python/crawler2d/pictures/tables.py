@@ -35,29 +35,29 @@ _FAINT = 0.35
 """[-] Opacity of eliminated candidates."""
 
 _GAP = 2.0
-"""[-] Candidates that would fit between one cost and the next."""
+"""[-] Gap between one cost and the next, in candidates."""
 
 _LABELS = 16
-"""Number of costs that fit on the axis."""
+"""Largest number of costs with labels on the axis."""
 
 _ROW, _REST = 0.6, 1.6
-"""[inch] Height of an unknown, and of what is above and below all of them."""
+"""[inch] Height of an unknown, and of the space above and below all unknowns."""
 
 _BAR = 0.36
-"""[-] Of a row, the thickness of each of its two bars."""
+"""[-] Thickness of each of the two bars in a row, as a fraction of its height."""
 
 _ASIDE = 3.5, 6.0
-"""[point] From one line's interval to the next one's at the same place, and the same of bands."""
+"""[point] Distance between the intervals of two lines at the same value, and between bands."""
 
 _LINES = 6
 """Number of distinguishable lines; more are drawn as a map if possible."""
 
 _LARGEST, _LEAST = 8.0, 3.5
-"""[point] Size of the first line's markers; those of later lines are smaller, down to the least."""
+"""[point] Size of the markers of the first line, and the smallest size; each line's are smaller."""
 
 
 def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw every candidate's lowest rate in order of cost, and the fresh runs of two."""
+    """Draw every candidate's lowest rate in order of cost, and the fresh runs of two of them."""
     data = with_dims(data, "candidate")
     ax = axes_or_new(ax, (8.0, 6.0))
     two = [data.attrs["winner"], data.attrs["runner_up"]]
@@ -110,14 +110,14 @@ def plot_search(data: xarray.Dataset, ax: Axes | None) -> Axes:
 
 
 def _lowest(data: xarray.Dataset, *names: str) -> list[NDArray[np.float64]]:
-    """Take each candidate's rate and bounds on its worst terrain."""
+    """Return each candidate's rate with its bounds on its worst terrain."""
     columns = [data[name].to_numpy().reshape(data["candidate"].size, -1) for name in names]
     at = np.where(np.isnan(columns[0]), np.inf, columns[0]).argmin(axis=1)[:, None]
     return [np.take_along_axis(each, at, axis=1)[:, 0] for each in columns]
 
 
 def _places(costs: NDArray[np.float64], chosen: Sequence[bool]) -> NDArray[np.float64]:
-    """Place candidates side by side by their cost, with room next to those that were confirmed."""
+    """Position candidates side by side by cost, with space next to those that were confirmed."""
     at = np.empty(costs.size)
     x, last = 0.0, costs.min()
     for k in np.argsort(costs, kind="stable"):
@@ -128,7 +128,7 @@ def _places(costs: NDArray[np.float64], chosen: Sequence[bool]) -> NDArray[np.fl
 
 
 def _strips(at: NDArray[np.float64], costs: NDArray[np.float64]) -> list[tuple[float, float]]:
-    """List the left and the right end of each cost's strip, from the places of its candidates."""
+    """List the left and right ends of each cost's strip, from the positions of its candidates."""
     ends = [(at[costs == cost].min(), at[costs == cost].max()) for cost in np.unique(costs)]
     between = [0.5 * (one[1] + other[0]) for one, other in itertools.pairwise(ends)]
     edges = [ends[0][0] - _GAP, *between, ends[-1][1] + _GAP]
@@ -136,7 +136,7 @@ def _strips(at: NDArray[np.float64], costs: NDArray[np.float64]) -> list[tuple[f
 
 
 def plot_sensitivity(data: xarray.Dataset, ax: Axes | None, show: str = "indices") -> Axes:
-    """Draw one model: the indices of every unknown, or with ``show="boundary"`` their ranges."""
+    """Draw the indices of every unknown of one model, or with ``show="boundary"`` their ranges."""
     drawings = {"indices": _indices, "boundary": _boundary}
     if show not in drawings:
         raise ScenarioError("show", show, f"must be one of {', '.join(drawings)}")
@@ -155,8 +155,8 @@ def _indices(data: xarray.Dataset, ax: Axes) -> None:
     data = data.isel(unknown=order)
     at = np.arange(order.size)
     for name, label, color, down in (
-        ("total", "total: what remains if all others were known", ORANGE, _BAR / 2.0),
-        ("first", "first order: what goes if it were known", BLUE, -_BAR / 2.0),
+        ("total", "total: what would remain if all others were known", ORANGE, _BAR / 2.0),
+        ("first", "first order: what would vanish if it were known", BLUE, -_BAR / 2.0),
     ):
         own, low, high = (data[key].to_numpy() for key in (name, f"{name}_low", f"{name}_high"))
         ax.barh(at + down, own, _BAR, color=color, label=label)
@@ -238,7 +238,7 @@ def _boundary(data: xarray.Dataset, ax: Axes) -> None:
 
 
 def _parts(row: xarray.Dataset) -> list[tuple[float, float]]:
-    """List the parts of a range where most runs have the outcome, half way to other values."""
+    """List the parts of a range where most runs have the outcome, up to halfway to other values."""
     known = row["tried"].notnull().to_numpy()
     values, often = row["tried"].to_numpy()[known], row["tried_rate"].to_numpy()[known] >= 0.5
     edges = np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1]), values[-1:]])
@@ -267,7 +267,7 @@ def _readable(row: xarray.Dataset) -> tuple[float, str]:
 
 
 def _between(low: float, high: float) -> str:
-    """Write a bracket with enough digits to distinguish its ends."""
+    """Write an interval with enough digits to distinguish its ends."""
     digits = max(0, -int(np.floor(np.log10(high - low))))
     return f"{low:.{digits}f} to {high:.{digits}f}"
 
@@ -289,11 +289,11 @@ def _entitle(data: xarray.Dataset, ax: Axes, *paragraphs: str) -> None:
 
 
 def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw rates over the last dimension of numbers, one line for each of the others.
+    """Draw rates over the last numeric dimension, with a line for each value of the others.
 
-    Bars are intervals; thick ones are the bands of the rates over the unknowns. Those of several
-    lines are side by side around the value tried, which has a tick. Many lines over two dimensions
-    of numbers become a map.
+    Bars are intervals, thick bars the bands of the rates over the unknowns. Bars of several lines
+    stand side by side at the value tried, which has a tick. Many lines over two numeric dimensions
+    become a map.
     """
     banded = "band_low" in data
     numbers = _numbers(data["band_median" if banded else "rate"])
@@ -314,10 +314,11 @@ def plot_rates(data: xarray.Dataset, ax: Axes | None) -> Axes:
         lower, upper = (data[name].sel(place).to_numpy() for name in (low, high))
         known = np.isfinite(own)  # models may have different values
         look = look_of(index)
-        # Where lines meet, the later ones show those below: dashes over lines, small over large.
+        # Where lines coincide, later ones leave earlier ones visible: dashes over lines, small over
+        # large markers.
         size = max(_LARGEST - index, _LEAST)
         ax.plot(x[known], own[known], **look, markersize=size, label=name, zorder=3)
-        # Points stand where they were tried; their intervals, beside each other, hide none.
+        # Points are at the values tried; their intervals are side by side, so that none is hidden.
         style: dict[str, Any] = {"color": look["color"], "linewidth": 4.0 if banded else 1.5}
         beside = moved(ax, aside * (index - 0.5 * (len(lines) - 1)))
         ax.vlines(x[known], lower[known], upper[known], alpha=0.5, transform=beside, **style)
@@ -340,7 +341,7 @@ def _numbers(shown: xarray.DataArray) -> list[str]:
 
 
 def _plot_rate_map(data: xarray.Dataset, dims: Sequence[str], ax: Axes | None) -> Axes:
-    """Draw rates over two dimensions of numbers, hatched where the majority is uncertain."""
+    """Draw rates over two numeric dimensions, hatched where the majority is uncertain."""
     banded = "band_low" in data
     names = ("band_median", "band_low", "band_high") if banded else ("rate", "low", "high")
     rates, low, high = (data[name].transpose(*dims).to_numpy() for name in names)

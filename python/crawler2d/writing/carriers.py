@@ -1,4 +1,4 @@
-"""Wheels and belts of chassis and flippers in side view, masses, widths, and limits of formats."""
+"""Wheels and belts of chassis and flippers, their masses and widths, and what formats support."""
 
 from __future__ import annotations
 
@@ -30,20 +30,21 @@ __all__ = [
     "tensor",
 ]
 
-# Of the gauge, and of the track: those of Absolem's public model are 97 mm wide at a gauge of
-# 397 mm, and those of its flippers half as wide, against the outside of the tracks.
+# Default widths: of a track relative to the gauge, of a flipper relative to the track. The tracks
+# of Absolem's public model are 97 mm wide at a gauge of 397 mm; those of its flippers are half as
+# wide, against the outside of the tracks.
 _TRACK = 0.25
 
 _FLIPPER = 0.5
 
-# A body with less than this share of the mass or the moment of inertia would make a simulation
-# of the whole stiff, if it is possible at all.
+# A body with less than this fraction of the mass or moment of inertia would make the simulation
+# stiff, or be physically impossible.
 _LEAST = 0.01
 
 _REASONS = {
     "belt": "{} has no surface that moves",
     "grouser_belt": "{} has no grousers that travel along a belt",
-    "segmental": "a chain is a loop of links, and {} has trees",
+    "segmental": "a chain is a closed loop of links, and {} has only trees",
     "force": "{} has no motor that pushes the chassis",
 }
 
@@ -55,7 +56,7 @@ class Across:
     Parameters
     ----------
     gauge : float
-        [m] Lateral distance between the middles of the tracks.
+        [m] Lateral distance between the centres of the tracks.
     track_width, chassis_width, flipper_width : float
         [m] Their widths.
     """
@@ -130,19 +131,19 @@ class Carrier:
     Parameters
     ----------
     end : {"", "front", "rear"}
-        Of the robot; empty for the chassis.
+        End of the robot; empty for the chassis.
     surface : {"wheels", "belt", "grouser_belt", "segmental", "force"}
         The contact with the ground; skids and free wheels are "force".
     middle : ndarray, shape (2,)
-        [m] The middle of its frame in the chassis frame, flippers at their angle.
+        [m] Origin of its frame in the chassis frame, with flippers at their angle.
     direction : ndarray, shape (2,)
-        Of the x axis of that frame.
+        Direction of the x axis of that frame.
     wheels : tuple of Wheel
-        None if it carries a belt.
+        Its wheels; empty if it carries a belt.
     discs : ndarray, shape (n, 3)
         [m] Centres in the chassis frame and radii of the discs of a belt; none if it has wheels.
     loop : Part or None
-        The belt as a loop, of 1 kg.
+        The belt as a closed line with a mass of 1 kg; None if it has wheels.
     """
 
     end: str
@@ -156,7 +157,7 @@ class Carrier:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Format:
-    """The abilities of a format.
+    """What a format can represent.
 
     Parameters
     ----------
@@ -165,11 +166,11 @@ class Format:
     moves_surfaces : bool
         Whether it can move the surface of a shape, as a belt needs.
     has_hulls : bool
-        Whether it can represent the corners of a convex hull.
+        Whether it can contain the corners of a convex hull.
     has_rotors : bool
         Whether it can represent the rotor inertia of a motor at its joint, and the gain of a servo.
     reserved : str
-        A pattern of names that it reserves.
+        Regular expression of names that it reserves.
     """
 
     name: str
@@ -180,7 +181,7 @@ class Format:
 
 
 def across_of(gauge: float, track_width: float | None, chassis_width: float | None) -> Across:
-    """Return the given widths, and estimates for the others.
+    """Return the given widths, with estimates for missing ones.
 
     Raises
     ------
@@ -205,11 +206,11 @@ def across_of(gauge: float, track_width: float | None, chassis_width: float | No
 
 
 def tensor(part: Part, *, length: float, height: float, width: float) -> Array:
-    """[kg m^2] Widen a moment of inertia to three axes: x along it, y across, z up.
+    """[kg m^2] Extend a moment of inertia to three axes: x along the part, y lateral, z up.
 
-    The moment about y is that of the part. The others are estimates: the squares of x and of z
-    share it as in a uniform box of this length and height, and the mass is spread evenly over the
-    width. So a body with these three moments exists for any size.
+    The moment about y is that of the part. The others are estimates: mean squares of x and z have
+    the ratio of a uniform box of this length and height, and the mass is spread evenly over the
+    width. A body with these three moments therefore exists for any size.
     """
     along = part.inertia * length**2 / (length**2 + height**2)
     across = part.mass * width**2 / 12.0
@@ -223,9 +224,9 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
     Parameters
     ----------
     robot : dict
-        As in a scenario in JSON.
+        The robot, as in a scenario in JSON.
     text : str
-        That scenario, with the robot on level ground.
+        This scenario, with the robot on level ground.
     """
     scene = Scene.of_robot(text)
     columns = _core.wheels(text)
@@ -262,8 +263,8 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
 def remainder(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Part | None, bool]:
     """Return the whole minus parts and wheels, and whether the wheels are hoops.
 
-    For a given moment of inertia a wheel is lightest as a hoop. Hoops are used only if uniform
-    wheels would leave too little.
+    With a given moment of inertia, a wheel is lightest as a hoop. Hoops are used only if uniform
+    wheels would leave too little mass.
     """
     wheels = list(wheels)
     for is_hoop in (False, True):
@@ -274,7 +275,7 @@ def remainder(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[
 
 
 def track_of(robot: dict[str, Any], end: str) -> tuple[str, dict[str, Any]]:
-    """Return path and model of the track of the chassis, or of the flippers at an end."""
+    """Return path and track model of the chassis, or of the flippers at an end."""
     flippers = robot["flippers"]
     if end and flippers["track"] is not None:
         return "robot.flippers.track", flippers["track"]
@@ -282,12 +283,12 @@ def track_of(robot: dict[str, Any], end: str) -> tuple[str, dict[str, Any]]:
 
 
 def refuse_unsupported(robot: dict[str, Any], carriers: Iterable[Carrier], target: Format) -> None:
-    """Refuse a robot whose tracks or name a format cannot represent.
+    """Refuse a robot if a format cannot represent its tracks or name.
 
     Parameters
     ----------
     robot : dict
-        As in a scenario in JSON.
+        The robot, as in a scenario in JSON.
     carriers : iterable of Carrier
         Its chassis and flippers.
     target : Format
@@ -296,8 +297,8 @@ def refuse_unsupported(robot: dict[str, Any], carriers: Iterable[Carrier], targe
     Raises
     ------
     ScenarioError
-        If the track of chassis or flippers is of a kind that no model file represents, or a belt in
-        a format without moving surfaces; or if the name cannot be written.
+        If the track of chassis or flippers is of a kind that no model file can represent, or a belt
+        in a format without moving surfaces; or if the name cannot be written.
     """
     for carrier in carriers:
         if carrier.surface == "wheels" or (carrier.surface == "belt" and target.moves_surfaces):
@@ -333,9 +334,9 @@ def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
     """Return a wheel, with its exact outline if it is a gear wheel."""
     body = int(np.flatnonzero(scene.bodies["body"] == row["body"])[0])
     outline = None
-    # The core gives radii for discs.
+    # The core has radii for discs.
     if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
-        # A raised flipper has turned the wheels on it, the farther ones more.
+        # Raising a flipper turns the wheels on it, those farther from the pivot more.
         turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
         outline = place(scene.bodies["outline"][body], turned)
     return Wheel(
@@ -349,7 +350,7 @@ def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
 
 
 def _surface(kinds: set[BodyKind], track: str) -> str:
-    """Return the surface of a carrier, by its bodies and the kind of its track."""
+    """Return the kind of surface of a carrier, from its bodies and the kind of its track."""
     if BodyKind.SHOE in kinds:
         return "segmental"
     if BodyKind.BELT in kinds:
@@ -358,7 +359,7 @@ def _surface(kinds: set[BodyKind], track: str) -> str:
 
 
 def _loop(polygon: Array) -> Part:
-    """Return a belt along a polygon with 1 kg spread evenly over its length."""
+    """Return a belt along a polygon, with 1 kg spread evenly over its length."""
     start, end = polygon, np.roll(polygon, -1, axis=0)
     lengths = np.hypot(*(end - start).T)
     shares, middles = lengths / lengths.sum(), 0.5 * (start + end)
@@ -368,7 +369,7 @@ def _loop(polygon: Array) -> Part:
 
 
 def _rest(whole: Part, parts: Iterable[Part]) -> Part | None:
-    """Return the whole minus its parts; None if no body can have the result.
+    """Return the whole minus its parts; None if the result is not physically possible.
 
     Examples
     --------

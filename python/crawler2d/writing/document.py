@@ -1,4 +1,4 @@
-"""An XML text edited in place, and its elements with byte offsets."""
+"""XML text that is edited in place, and its elements with byte offsets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Span:
     tag : str
         Its name.
     attributes : dict of str to str
-        Attributes, without quotes and entities.
+        Values of attributes by name, without quotes and entities.
     parent : Span or None
         The element that contains it.
     start, end : int
@@ -69,7 +69,7 @@ class Span:
             yield from child.within()
 
     def all(self, *tags: str) -> list[Span]:
-        """Return the children of some names."""
+        """Return the children with these names."""
         return [child for child in self.children if child.tag in tags]
 
     def only(self, path: str) -> Span | None:
@@ -84,12 +84,12 @@ class Span:
 
 
 class Document:
-    r"""A text with its elements, and its pending changes.
+    r"""A text with its elements and pending changes.
 
     Parameters
     ----------
     text : str
-        All of it.
+        The XML.
 
     Examples
     --------
@@ -113,7 +113,7 @@ class Document:
         """The text with all changes."""
         parts, at = [], 0
         for start, end, new in sorted(self._changes, key=lambda change: change[:2]):
-            assert start >= at  # no change lies within another
+            assert start >= at  # changes do not overlap
             parts += [self._data[at:start], new]
             at = end
         return b"".join([*parts, self._data[at:]]).decode()
@@ -123,7 +123,7 @@ class Document:
         return self._data[span.start : span.end].decode()
 
     def set_attribute(self, span: Span, name: str, value: str) -> None:
-        """Give an attribute another value, or add it."""
+        """Change the value of an attribute, or add it."""
         new = escape(value, {'"': "&quot;", "'": "&apos;"})
         if name in span.values:
             self._change(*span.values[name], new)
@@ -141,7 +141,7 @@ class Document:
             self._change(span.inner, span.outer, new)
 
     def add_to(self, span: Span, shift: Sequence[float], attribute: str = "") -> None:
-        """Add lengths [m] to the first numbers of a text or attribute, rounded to a micrometre.
+        """Add lengths [m] to the first numbers of a text or attribute, and round to a micrometre.
 
         Missing numbers count as 0.
         """
@@ -158,10 +158,10 @@ class Document:
         *,
         is_exact: bool = False,
     ) -> None:
-        """Multiply the first numbers of a text or an attribute, if there is one, to 12 digits.
+        """Multiply the first numbers of a text or attribute, if present, and round to 12 digits.
 
-        Exact ones keep every bit, so moments of inertia on the limit of their inequality stay
-        valid.
+        Exact products are not rounded, so that moments of inertia on the limit of their inequality
+        remain valid.
         """
         if span is None or set(factors) == {1.0}:
             return
@@ -184,11 +184,11 @@ class Document:
         self._change(span.start - len(self._indent(span)), span.end, "")
 
     def insert_after(self, span: Span, text: str) -> None:
-        """Insert an element behind another one, with the same indent."""
+        """Insert an element after another one, with the same indentation."""
         self._change(span.end, span.end, self._indent(span) + text)
 
     def append(self, span: Span, text: str, *, is_inline: bool = False) -> None:
-        """Insert an element behind the last one in another, on a line of its own unless inline."""
+        """Append a child to an element, on a line of its own unless inline."""
         if span.children and not is_inline:
             self.insert_after(span.children[-1], text)
         elif span.is_closed:
@@ -202,7 +202,7 @@ class Document:
         self._change(span.start, span.end, f"{opening}>{content}</{span.tag}>")
 
     def _indent(self, span: Span) -> str:
-        """Return the space before an element, from the end of the line above."""
+        """Return the white space before an element, from the end of the line above."""
         before = self._data[: span.start]
         bare = before.rstrip(b" \t")
         for end in (b"\r\n", b"\n"):
@@ -215,28 +215,28 @@ class Document:
 
 
 def links_in(scope: Span, names: Collection[str]) -> list[Span]:
-    """Find the links of some names, of URDF and SDF."""
+    """Find the links with these names in URDF and SDF."""
     return [each for each in scope.within() if each.tag == "link" and each.name in names]
 
 
 def joint_in(scope: Span, name: str) -> Span:
-    """Find a joint of URDF and SDF; one of a transmission has no links, and does not count."""
+    """Find a joint in URDF and SDF, except in transmissions, where joints have no links."""
     every = (each for each in scope.within() if each.tag == "joint" and each.only("child"))
     return next(each for each in every if each.name == name)
 
 
 def spans_of(data: bytes) -> Span:
-    """Find the elements of a text that has been parsed before.
+    """Find the elements of a text that is known to be valid XML.
 
     Parameters
     ----------
     data : bytes
-        In UTF-8.
+        The text in UTF-8.
 
     Returns
     -------
     Span
-        The root.
+        The root element.
 
     Examples
     --------
@@ -252,7 +252,7 @@ def spans_of(data: bytes) -> Span:
     def start(tag: str, attributes: dict[str, str]) -> None:
         at = parser.CurrentByteIndex
         opening = _OPENING.match(data, at)
-        assert opening is not None  # expat has seen the whole tag
+        assert opening is not None  # expat has accepted the whole tag
         parent = stack[-1] if stack else None
         span = Span(tag=tag, attributes=attributes, parent=parent, start=at, inner=opening.end())
         for found in _ATTRIBUTE.finditer(data, at + 1 + len(tag.encode()), opening.end()):
@@ -280,7 +280,7 @@ def spans_of(data: bytes) -> Span:
 
 
 def lengths(values: Iterable[float]) -> str:
-    """Write lengths with as many digits as model files have.
+    """Write lengths with the usual number of digits in model files.
 
     Examples
     --------

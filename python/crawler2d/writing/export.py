@@ -50,19 +50,20 @@ _WRITERS: dict[Name, tuple[Format, Callable[[Model, Pose], XML]]] = {
     "mjcf": (MJCF, lambda model, stand: mjcf_of(model.tree, stand)),
 }
 
-# Twice the robot's width: room to drift without falling off the obstacle.
+# Twice the robot's width: the robot may drift without falling off the obstacle.
 _WIDTH = 2.0  # gauges and track widths
 
 _FLAT = 1e-9  # [m] Heights that differ by less are equal.
 _FORMATS: dict[str, Name] = {".sdf": "sdf", ".world": "sdf", ".xml": "mjcf"}
 
-# In lengths of the robot: the visible ground behind its start and beyond the goal.
+# Visible ground behind the start and beyond the goal, in lengths of the robot.
 _BEHIND, _BEYOND = 2.0, 4.0
 
-# In track widths: how far the ground of a track reaches inwards of it, where its rim stood on two.
+# In track widths: how far the ground of a track extends inwards of it. Exactly at its rim, the
+# track would stand on two pieces.
 _BESIDE = 0.1
 
-_BELOW = 0.1  # In gauges: depth of the plane below lanes of unlike friction.
+_BELOW = 0.1  # In gauges: depth of the plane below lanes with different friction.
 
 _PLANE = 100.0  # [m] Visible size of an endless plane.
 
@@ -76,11 +77,11 @@ class Model:
     tree : Tree
         Its links and joints.
     across : Across
-        Widths and lateral places.
+        Widths and lateral positions.
     limits : Limits
         Total limits of the motors.
     comment : str
-        Comment for a file: its origin, and values that are not from the robot.
+        Comment for the file: its origin, and values that are not from the robot.
     """
 
     tree: Tree
@@ -90,7 +91,7 @@ class Model:
 
 
 class ModelText(str):
-    """The text of a model file: a string that consoles show in a short form.
+    """The text of a model file: a string with a short form in consoles.
 
     Examples
     --------
@@ -104,22 +105,22 @@ class ModelText(str):
     __slots__ = ()
 
     def __repr__(self) -> str:
-        """Write the short form."""
+        """Return the short form."""
         return f"<model file, {len(self)} characters; print it to see them>"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Piece:
-    """A convex prism across the robot.
+    """A convex prism that extends laterally.
 
     Parameters
     ----------
     corners : ndarray, shape (n, 2)
         [m] Its outline in side view, counter-clockwise, x forward and y up.
     across, width : float
-        [m] Position of its middle, to the left, and its width.
+        [m] Lateral position of its middle, positive to the left, and its width.
     friction : float
-        [-] Of its surface.
+        [-] Coefficient of friction of its surface.
     """
 
     corners: Array
@@ -143,7 +144,7 @@ class Ground:
     level : float
         [m] Height of a plane at or below the lowest ground.
     friction : float
-        [-] Of the plane.
+        [-] Coefficient of friction of the plane.
     pieces : tuple of Piece
         The obstacles on it.
     """
@@ -201,7 +202,7 @@ def export_world(
     length = right - left
     ends = (left - _BEHIND * length, max(right, scene.goal) + _BEYOND * length)
     ground = _ground_of(lanes, model.across, ends)
-    # A start is level unless it says otherwise.
+    # The start is level unless it has an angle.
     stand = Pose(place=in_space(scene.carriers[0].poses[0], 0.0))
     root = _WRITERS[name][1](model, stand)
     add_ground = _add_to_mjcf if name == "mjcf" else _add_to_sdf
@@ -218,7 +219,7 @@ def _build_model(
     text : str
         The scenario in JSON, with the robot on level ground.
     name : {"sdf", "urdf", "mjcf"}
-        The format, which must be able to represent it.
+        The format, which must be able to represent the robot.
     friction, widths
         See `Robot.to_sdf`.
     """
@@ -249,7 +250,7 @@ def _build_model(
 
 
 def _left_out(robot: dict[str, Any], tree: Tree, target: Format) -> list[str]:
-    """List properties of the motors that the file cannot represent, such as torque of belts."""
+    """List properties of motors that the file cannot represent, such as the torque of belts."""
     wheels = [joint for joint in tree.joints.values() if joint.is_unlimited]
     motors = [joint for joint in wheels if joint.parent == CHASSIS]
     has_motors = target.has_rotors and bool(motors)
@@ -281,7 +282,7 @@ def _save(root: XML, comment: str, path: str | os.PathLike[str] | None) -> Model
 
 
 def _refuse_segments(terrain: dict[str, Any]) -> None:
-    """Refuse segments of different friction: a piece of ground has one for all faces."""
+    """Refuse segments with different friction: all faces of a piece of ground have the same."""
     lanes = {f"terrain.{side}": terrain.get(side) for side in ("left", "right", "middle")}
     for path, lane in {"terrain": terrain, **lanes}.items():
         frictions = (lane or {}).get("segment_friction") or ()
@@ -295,12 +296,12 @@ def _ground_of(
     across: Across,
     ends: tuple[float, float],
 ) -> Ground:
-    """Extrude the profiles of a side view across the robot.
+    """Extrude the profiles of a side view laterally.
 
     Parameters
     ----------
     lanes : list of tuple
-        Each lane with its profile [m], as the core has them, and its friction [-].
+        Lanes from the core, each with its profile [m] and friction [-].
     across : Across
         Widths and lateral positions of the robot.
     ends : tuple of float, shape (2,)
@@ -309,7 +310,7 @@ def _ground_of(
     profiles = [(lane, _between(points, *ends), each) for (lane, points), each in lanes]
     level = min(float(points[:, 1].min()) for _, points, _ in profiles)
     if len({friction for _, friction in lanes}) > 1:
-        level -= _BELOW * across.gauge  # else a lane at that height had the friction of the plane
+        level -= _BELOW * across.gauge  # or else the plane's friction would count for a lane there
     half = 0.5 * _WIDTH * (across.gauge + across.track_width)
     inner = 0.5 * (across.gauge - across.track_width)
     inner -= min(_BESIDE * across.track_width, 0.5 * inner)
@@ -334,16 +335,16 @@ def _ground_of(
 
 
 def _between(points: Array, left: float, right: float) -> Array:
-    """Cut a profile at two places, at which the ground is level or slopes."""
+    """Cut a profile at two positions on level or sloping ground."""
     inner = points[(points[:, 0] > left) & (points[:, 0] < right)]
     first, last = ([x, float(np.interp(x, *points.T))] for x in (left, right))
     return np.array([first, *inner, last])
 
 
 def _convex(points: Array, level: float) -> Iterator[Array]:
-    """Cut the area between a profile and a level into convex polygons.
+    """Divide the area between a profile and a level into convex polygons.
 
-    A cut goes straight down from each inner corner of the ground, where no track can touch it.
+    Cuts go vertically down from concave corners of the ground, where tracks cannot touch them.
     """
     ahead = np.diff(points, axis=0)
     turns = ahead[:-1, 0] * ahead[1:, 1] - ahead[:-1, 1] * ahead[1:, 0]
@@ -352,13 +353,13 @@ def _convex(points: Array, level: float) -> Iterator[Array]:
         run = points[first : last + 1]
         if np.ptp(run[:, 0]) < _FLAT or run[:, 1].max() < level + _FLAT:
             continue
-        # A run that begins or ends on the level, or at a wall, has its foot in line already.
+        # A piece that begins or ends on the level, or at a wall, already has its foot.
         foot = np.array([[run[0, 0], level], [run[-1, 0], level]])
         yield _corners(np.array([foot[0], foot[1], *run[::-1]]))
 
 
 def _corners(points: Array) -> Array:
-    """Return the corners of a convex polygon: no point twice, and none on a side."""
+    """Return the corners of a convex polygon, without repeated points and points on its sides."""
     points = points[np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > _FLAT]
     to, on = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     turns = to[:, 0] * on[:, 1] - to[:, 1] * on[:, 0]
@@ -367,7 +368,7 @@ def _corners(points: Array) -> Array:
 
 
 def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
-    """Put a ground into an MJCF file."""
+    """Add the ground to an MJCF file."""
     parts = {part.tag: part for part in root}
     world = parts["worldbody"]
     parts["option"].set("gravity", numbers((0.0, 0.0, -gravity)))
@@ -380,7 +381,7 @@ def _add_to_mjcf(root: XML, ground: Ground, gravity: float) -> XML:
     for number, piece in enumerate(ground.pieces, 1):
         shapes.append((_mjcf_shape(f"ground_{number}", piece, assets), piece.friction))
     for number, (shape, friction) in enumerate(shapes):
-        # With the higher priority its own friction counts, whatever the robot has.
+        # With the higher priority, its friction counts, whatever the robot has.
         given = {"name": f"ground_{number}", "friction": numbers(friction), "priority": "2"}
         world.insert(number, element("geom", **given, **shape))
     return root
@@ -400,16 +401,16 @@ def _mjcf_shape(name: str, piece: Piece, assets: XML) -> dict[str, str]:
 
 
 def _placed(piece: Piece) -> tuple[Pose, np.ndarray[Any, Any]]:
-    """Return the middle of a piece in the world, and its corners about that."""
+    """Return the pose of the middle of a piece, and its corners relative to that."""
     middle = 0.5 * (piece.corners.min(axis=0) + piece.corners.max(axis=0))
     x, z = middle
     return Pose(place=np.array([x, piece.across, z])), piece.corners - middle
 
 
 def _add_to_sdf(root: XML, ground: Ground, gravity: float) -> XML:
-    """Put the model of an SDF file into a world with a ground and light."""
+    """Put the model of an SDF file into a world with ground and light."""
     (model,) = root
-    # The model may have any name but these.
+    # The model may not have these names.
     ground_name, sun_name = (f"{model.get('name')}_{part}" for part in ("ground", "sun"))
     static = element("model", *texts(static="true"), name=ground_name)
     link = element("link", name="ground")
@@ -432,7 +433,7 @@ def _add_to_sdf(root: XML, ground: Ground, gravity: float) -> XML:
 
 
 def _sdf_shape(piece: Piece) -> tuple[Pose, XML]:
-    """Return a box, or a polygon that is extruded along its own z, which is to the right."""
+    """Return a box, or a polygon extruded along its own z axis, which points to the right."""
     pose, corners = _placed(piece)
     if piece.is_box:
         size = (np.ptp(corners[:, 0]), piece.width, np.ptp(corners[:, 1]))

@@ -39,7 +39,7 @@ SDF = Format(
     has_rotors=False,
     reserved="world|.*::.*|__.*__",
 )
-"""SDF has meshes in separate files only. Only extensions of Drake have a rotor inertia."""
+"""SDF has meshes only in separate files, and rotor inertia only in extensions of Drake."""
 
 # Newer versions add nothing that is needed here, and DART reads none of them.
 _VERSION = "1.6"
@@ -47,16 +47,16 @@ _VERSION = "1.6"
 _KINDS = {"hinge": "revolute", "fixed": "fixed"}
 
 URDF = Format(name="URDF", moves_surfaces=False, has_hulls=False, has_rotors=False)
-"""URDF has meshes in separate files only, and nothing that moves a surface. Only extensions of
-Drake have a rotor inertia."""
+"""URDF has meshes only in separate files, rotor inertia only in extensions of Drake, and no moving
+surfaces."""
 
 _MOMENTS = {f"i{'xyz'[i]}{'xyz'[j]}": (i, j) for i in range(3) for j in range(i, 3)}
 
 MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True, has_rotors=True)
-"""MJCF has the corners of meshes in the file itself, and surfaces that move."""
+"""MJCF has the corners of meshes in the file itself, and moving surfaces."""
 
-# A motor without a controller gives all of its torque where it is off by this fraction of its
-# largest speed, or this angle.
+# A motor without a controller has its full torque at an error of this fraction of its largest
+# speed, or of this angle.
 _OFF_SPEED, _OFF_ANGLE = 0.02, 0.02  # [-] and [rad]
 
 
@@ -69,7 +69,7 @@ def element(tag: str, *children: XML | None, text: str = "", **attributes: str) 
 
 
 def texts(**values: str | float | Iterable[float]) -> list[XML]:
-    """Build an element for each text or number."""
+    """Build an element for each value."""
     return [
         element(tag, text=value if isinstance(value, str) else numbers(value))
         for tag, value in values.items()
@@ -77,10 +77,10 @@ def texts(**values: str | float | Iterable[float]) -> list[XML]:
 
 
 def numbers(values: Iterable[float] | Array | float) -> str:
-    """Write numbers of twelve digits; there is only one zero.
+    """Write numbers with twelve digits, and negative zeros as 0.
 
-    The last four digits of a sum or a rotation are rounding, and only clutter the file. The exact
-    robot is in the comment.
+    The last four digits of a sum or rotation are rounding errors, and would clutter the file. The
+    exact robot is in the comment.
 
     Examples
     --------
@@ -91,9 +91,10 @@ def numbers(values: Iterable[float] | Array | float) -> str:
 
 
 def exactly(values: Iterable[float] | Array | float) -> str:
-    """Write numbers that read back to the same bits.
+    """Write numbers so that they are read back exactly.
 
-    Moments of inertia need that: those of thin bodies just obey their inequality, and still must.
+    Moments of inertia need this: those of thin bodies are on the limit of their inequality, and
+    must not exceed it.
 
     Examples
     --------
@@ -104,14 +105,14 @@ def exactly(values: Iterable[float] | Array | float) -> str:
 
 
 def document(root: XML, comment: str) -> str:
-    """Write an element as a file of its own, with a comment before it.
+    """Write an element as a complete file, with a comment before it.
 
     Parameters
     ----------
     root : Element
         The root.
     comment : str
-        In lines of ASCII.
+        Lines of ASCII.
 
     Returns
     -------
@@ -124,7 +125,7 @@ def document(root: XML, comment: str) -> str:
 
 
 def commented(value: object) -> str:
-    r"""Write plain data as JSON for a comment: in ASCII, and without two hyphens.
+    r"""Write plain data as JSON for a comment: in ASCII, and without two hyphens in a row.
 
     Examples
     --------
@@ -132,12 +133,12 @@ def commented(value: object) -> str:
     '{"name":"a-\\u002db","mass":-1.5}'
     """
     text = json.dumps(value, separators=(",", ":"))
-    # Only a string can have two hyphens in a row, and JSON may write any letter of it like this.
+    # Only strings can have two hyphens in a row, and JSON may escape any of their characters.
     return re.sub("(?<=-)-", r"\\u002d", text)
 
 
 def sdf_of(tree: Tree, across: Across, limits: Limits, stand: Pose) -> XML:
-    """Write a model, its chassis frame where it stands."""
+    """Write a model with its chassis frame at the pose `stand`."""
     model = element("model", *texts(pose=pose_text(stand)), name=tree.name)
     for link in tree.links:
         model.append(_sdf_link(link))
@@ -148,7 +149,7 @@ def sdf_of(tree: Tree, across: Across, limits: Limits, stand: Pose) -> XML:
 
 
 def pose_text(pose: Pose) -> str:
-    """Write a pose: place, then roll, pitch and yaw."""
+    """Write a pose: position, then roll, pitch and yaw."""
     return numbers([*pose.place, *pose.rpy])
 
 
@@ -176,7 +177,7 @@ def urdf_of(tree: Tree) -> XML:
 
 
 def mjcf_of(tree: Tree, stand: Pose) -> XML:
-    """Write a model without a ground, its chassis frame where it stands."""
+    """Write a model without ground, with its chassis frame at the pose `stand`."""
     bodies: dict[str, XML] = {}
     world = element("worldbody")
     links = tree.by_name
@@ -267,16 +268,16 @@ def _sdf_joint(joint: Joint) -> XML:
 
 
 def _limits(joint: Joint, *names: str) -> dict[str, str]:
-    """Return the limits of a joint that are given, as texts."""
+    """Return the limits that a joint has, as texts."""
     given = [name for name in names if not (joint.is_unlimited and name in ("lower", "upper"))]
     values = {name: getattr(joint, name) for name in given}
     return {name: numbers(value) for name, value in values.items() if value is not None}
 
 
 def _plugins(tree: Tree, across: Across, limits: Limits) -> Iterator[XML]:
-    """Yield the drives of the model, commanded by its cmd_vel, and servos of its flippers."""
+    """Yield the drives of the model, which obey its cmd_vel, and servos of its flippers."""
     for radius, joints in wheels_by_radius(tree, limits):
-        # A drive has one radius, and all obey the same command.
+        # Each drive has one radius; all obey the same command.
         yield _plugin(
             "DiffDrive",
             "diff-drive",
@@ -301,7 +302,7 @@ def _plugins(tree: Tree, across: Across, limits: Limits) -> Iterator[XML]:
     for link in belts:
         speeds = texts(link=link.name, min_velocity=-limits.speed, max_velocity=limits.speed)
         yield _plugin("TrackController", "track-controller", *speeds)
-    for joint in flipper_joints(tree):  # turned to the commanded angle, at first where they are
+    for joint in flipper_joints(tree):  # turned to the commanded angle, initially their own
         rate = joint.velocity or 0.0
         names = texts(joint_name=joint.name, use_velocity_commands="true")
         limits_of_rate = texts(cmd_max=rate, cmd_min=-rate)
@@ -396,11 +397,11 @@ def _geom(shape: Shape, link: Link) -> XML:
     else:
         given["mesh"] = shape.name
     if shape.friction is not None:
-        # Of two surfaces the larger friction counts, unless one has the higher priority.
+        # The larger friction of two surfaces counts, unless one has the higher priority.
         given |= {"friction": numbers(shape.friction.first), "priority": "1"}
     if shape.surface_speed:
         given["surfacevel"] = numbers(_surface_velocity(shape))
-    # Parts of the robot touch everything but each other.
+    # Parts of the robot touch everything except each other.
     return element("geom", **given, contype="1", conaffinity="0")
 
 
@@ -409,7 +410,7 @@ def _placed(pose: Pose) -> dict[str, str]:
 
 
 def _surface_velocity(shape: Shape) -> list[float]:
-    """[m/s, rad/s] Return what turns a surface like a wheel that drives forward."""
+    """[m/s, rad/s] Return the velocity of a surface that moves like a wheel driving forward."""
     if shape.kind == "cylinder":
         return [0.0, 0.0, 0.0, 0.0, 0.0, shape.surface_speed / shape.radius]
     return [0.0, 0.0, 0.0, 0.0, 2.0 * shape.surface_speed / float(shape.size[2]), 0.0]
@@ -425,7 +426,7 @@ def _mjcf_joint(joint: Joint, link: Link) -> XML:
 
 
 def _motor(joint: Joint) -> XML | None:
-    """Return a servo of the speed of a wheel, or of the angle of a flipper; None without torque."""
+    """Return a servo for the speed of a wheel or the angle of a flipper; None without torque."""
     if not joint.effort or not joint.velocity:
         return None
     given = {

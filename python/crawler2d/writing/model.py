@@ -1,4 +1,4 @@
-"""From a robot in side view to a tree of links in three dimensions, with motors at its joints."""
+"""Convert a robot in side view to a tree of links in three dimensions, with motors at joints."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ CHASSIS = "chassis"
 
 _SIDES = (("left", 1.0), ("right", -1.0))
 _AXLE = np.array([0.0, 1.0, 0.0])  # A wheel that turns about it by a positive angle drives forward.
-_HALF_TURN = math.pi  # [rad] by which a flipper may turn either way
+_HALF_TURN = math.pi  # [rad] by which a flipper may turn in either direction
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """The limits of all motors of a robot together.
+    """Overall limits of the motors of a robot.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Limits:
     acceleration, deceleration : float
         [m/s^2] Largest rates at which the commanded speed rises and falls.
     track_height : float
-        [m] From the lower to the upper run.
+        [m] Height from the lower to the upper run.
     """
 
     speed: float
@@ -64,20 +64,20 @@ def model_of(
     Parameters
     ----------
     robot : dict
-        As in a scenario in JSON.
+        The robot, as in a scenario in JSON.
     text : str
-        That scenario, with the robot on level ground.
+        This scenario, with the robot on level ground.
     across : Across
-        Widths and lateral places.
+        Widths and lateral positions.
     friction : float
-        [-] Of all surfaces.
+        [-] Coefficient of friction of all surfaces.
     target : Format
         The format.
 
     Raises
     ------
     ScenarioError
-        If the format cannot represent its tracks, or masses are left that no body can have.
+        If the format cannot represent its tracks, or the remaining mass or inertia is impossible.
     """
     carriers = carriers_of(robot, text)
     refuse_unsupported(robot, carriers, target)
@@ -106,7 +106,7 @@ def moved_links(tree: Tree) -> list[Link]:
 
 
 class _Model:
-    """A tree in the making: links and joints are added from the chassis outwards."""
+    """Builds a tree, adding links and joints from the chassis outwards."""
 
     def __init__(
         self,
@@ -118,19 +118,19 @@ class _Model:
     ) -> None:
         self.robot = robot
         self.chassis, *self.arms = carriers
-        self.wheels = sum(len(each.wheels) for each in carriers)  # which share the motor of a side
+        self.wheels = sum(len(each.wheels) for each in carriers)  # share the motor of a side
         self.across = across
         self.friction = friction
         self.target = target
         outline, drivetrain = robot["outline"], robot["drivetrain"]
         self.speed = float(drivetrain["max_speed"])
-        # [N] Of one side; its torque acts at the radius of the belt round the rear end.
+        # [N] Thrust of one side; the torque acts at the radius of the belt round the rear end.
         rear, front = end_discs(discs_in(outline))
         belt_radius = rear[2] - outline["grouser_height"]
         self.force = drivetrain["max_torque"] / belt_radius
-        # [kg] At the surface of one side, as heavy as the rotor of its motor.
+        # [kg] Mass at the surface of one side that is equivalent to the rotor of its motor.
         self.rotor = drivetrain.get("rotor_inertia", 0.0) / belt_radius**2
-        # [N s/m] Of its controller; None: it holds the speed.
+        # [N s/m] Gain of its controller; None if it holds the speed exactly.
         controller = drivetrain.get("controller")
         self.gain = None if controller is None else controller["gain"] / belt_radius**2
         # [m] The end axles, on which flippers pivot, and the size of the track between them.
@@ -154,7 +154,7 @@ class _Model:
         )
 
     def add_chassis(self) -> None:
-        """Add the chassis with the remaining mass, its belly, and the tracks."""
+        """Add the chassis with the remaining mass, its belly and the tracks."""
         robot = self.robot
         whole = Part(
             mass=robot["mass"],
@@ -169,7 +169,7 @@ class _Model:
         tracks = [] if belt is None else [belt, belt]
         left, is_hoop = remainder(whole, [*arms, *tracks], 2 * self.chassis.wheels)
         if left is None:
-            rule = "must, as the mass, be more than that of tracks and flippers where they are"
+            rule = "must exceed that of tracks and flippers at their positions, as must the mass"
             raise ScenarioError("robot.moment_of_inertia", robot["moment_of_inertia"], rule)
         corners = belly_corners(robot["belly"])
         sizes = np.ptp(corners, axis=0) if len(corners) else (self.length, self.radius)
@@ -202,7 +202,7 @@ class _Model:
         return Part(mass=mass, center=center, inertia=mass * length**2 / 12.0)
 
     def add_track(self, name: str, y: float, belt: Part) -> None:
-        """Add a belt: fixed to the chassis, while its surface moves."""
+        """Add a belt, which is fixed to the chassis, with a moving surface."""
         width, height = self.across.track_width, 2.0 * self.radius
         solids = self.solids(name, y, width, self.speed)
         self.add(
@@ -216,13 +216,13 @@ class _Model:
         )
 
     def add_arms(self, arm: Carrier) -> None:
-        """Add the flippers at one end, which are uniform rods with all that they carry."""
+        """Add the flippers at one end: uniform rods, with everything that they carry."""
         flippers, sign = self.robot["flippers"], _sign(arm.end)
         rod = self.rod(arm.end)
         turned = Part(mass=rod.mass, center=arm.middle, inertia=rod.inertia)
         left, is_hoop = remainder(turned, [], arm.wheels)
         if left is None:
-            rule = "must be such that a rod of that length has more inertia than the wheels on it"
+            rule = "must give a uniform rod more inertia than the wheels on it have"
             raise ScenarioError("robot.flippers.length", flippers["length"], rule)
         width = self.across.flipper_width
         radius = max(flippers["root_radius"], flippers["tip_radius"])
@@ -253,9 +253,9 @@ class _Model:
     def add_wheel(
         self, name: str, parent: str, carrier: Carrier, wheel: Wheel, y: float, *, is_hoop: bool
     ) -> None:
-        """Add a wheel with a motor of its own: an equal share of the one of its side."""
+        """Add a wheel with its own motor, an equal share of the motor of its side."""
         part, count = wheel.part(is_hoop=is_hoop), self.wheels
-        # The rotor turns with the belt of the chassis, if there is one.
+        # If the chassis has a belt, the rotor turns with that.
         rotor = 0.0 if self.chassis.loop is not None else self.rotor / count
         width = self.across.flipper_width if carrier.end else self.across.track_width
         self.add(
@@ -296,7 +296,7 @@ class _Model:
         axis: Array = _AXLE,
         **motor: Any,
     ) -> None:
-        """Add a link on a joint at its origin."""
+        """Add a link, with its joint at its origin."""
         self.links.append(
             Link(
                 name=name,

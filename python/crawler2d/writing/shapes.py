@@ -1,4 +1,4 @@
-"""Convex collision shapes in three dimensions: wheels, gear wheels, belts and the belly."""
+"""Build convex collision shapes in three dimensions: wheels, gear wheels, belts and the belly."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ __all__ = [
 _UPRIGHT = from_rpy((-0.5 * math.pi, 0.0, 0.0))
 """Turns the axis of a cylinder, its z, to the left."""
 
-_SAME = 1e-9  # [-] of the radius: what rounding leaves of equal lengths
+_SAME = 1e-9  # [-] relative to the radius: difference of equal lengths by rounding
 _THIN = 0.001  # [m] Depth of the box behind an edge with a corner sharper than a right angle.
-_DEPTH = 0.05  # that depth at most, relative to the height of the belly over the edge
+_DEPTH = 0.05  # largest value of that depth, relative to the height of the belly over the edge
 _LEVELS = 64  # depths that are tried for the largest box
 
 
@@ -36,13 +36,13 @@ class Solids:
     Parameters
     ----------
     name : str
-        The beginning of their names.
+        First part of their names.
     across, width : float
-        [m] Position of the middle, to the left, and width.
+        [m] Lateral position of the middle, positive to the left, and width.
     friction : float
-        [-] Of their surfaces.
+        [-] Coefficient of friction of their surfaces.
     speed : float
-        [m/s] At which their surfaces move; 0: they do not.
+        [m/s] Speed of their surfaces.
     """
 
     name: str
@@ -52,25 +52,25 @@ class Solids:
     speed: float = 0.0
 
     def cylinder(self, number: int, center: Array, radius: float) -> Shape:
-        """Return a disc in side view."""
+        """Return the cylinder of a disc in side view."""
         pose = Pose(place=in_space(center, self.across), turn=_UPRIGHT.turn)
         return self._shape(number, "cylinder", pose, radius=radius, length=self.width)
 
     def box(
         self, number: int, center: Array, direction: Array, length: float, height: float
     ) -> Shape:
-        """Return a rectangle in side view, its length along a direction."""
+        """Return the box of a rectangle in side view, with its length along a direction."""
         (x, z), up = direction, (-direction[1], direction[0])
         turn = np.array([[x, 0.0, up[0]], [0.0, 1.0, 0.0], [z, 0.0, up[1]]])
         pose = Pose(place=in_space(center, self.across), turn=turn)
         return self._shape(number, "box", pose, size=np.array([length, self.width, height]))
 
     def prism(self, number: int, corners: Array) -> Shape:
-        """Return a convex polygon in side view, shape (n, 2)."""
+        """Return the prism of a convex polygon in side view, shape (n, 2)."""
         half = 0.5 * self.width
         sides = [self.across - half, self.across + half]
         points = np.array([in_space(corner, side) for side in sides for corner in corners])
-        # A mesh lies about its own middle.
+        # The origin of a mesh is at its middle.
         pose = Pose(place=points.mean(axis=0))
         return self._shape(number, "hull", pose, points=points)
 
@@ -87,14 +87,14 @@ class Solids:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Run:
-    """A straight run of a belt, from a disc to the next one, counter-clockwise.
+    """A straight run of a belt, from one disc to the next, counter-clockwise.
 
     Parameters
     ----------
     start, end : int
-        Numbers of the discs.
+        Indices of the discs.
     normal : ndarray, shape (2,)
-        Out of the belt.
+        Outward direction.
     """
 
     start: int
@@ -103,7 +103,7 @@ class Run:
 
 
 def in_space(point: Array, across: float) -> Array:
-    """[m] Return a point of the side view in a model: x forward, y to the left, z up."""
+    """[m] Transform a point of the side view to a model: x forward, y to the left, z up."""
     return np.array([point[0], across, point[1]])
 
 
@@ -129,7 +129,7 @@ def grousers_of(outline: Array) -> tuple[float, Array]:
     radii = np.hypot(*outline.T)
     tip = radii.max()
     at_tip = radii >= tip * (1.0 - _SAME)
-    if at_tip.all():  # grousers that rounding cannot tell from the wheel
+    if at_tip.all():  # grousers no higher than rounding errors
         return float(tip), np.zeros((0, 4, 2))
     first = np.flatnonzero(at_tip & ~np.roll(at_tip, 1))
     count = len(outline)
@@ -145,7 +145,7 @@ def gear_shapes(
     Parameters
     ----------
     outline : ndarray, shape (n, 2)
-        [m] About the axle, turned as the wheel starts.
+        [m] Relative to the axle, at the initial angle of the wheel.
     solids : Solids
         Builds the shapes.
     center : ndarray, shape (2,)
@@ -156,7 +156,7 @@ def gear_shapes(
     Returns
     -------
     list of Shape or None
-        None if the grousers taper, and the format has boxes only.
+        None if the grousers taper, but the format has only boxes.
     """
     root, grousers = grousers_of(outline)
     shapes = [solids.cylinder(0, center, root)]
@@ -166,7 +166,7 @@ def gear_shapes(
         if abs(wide - thick) <= _SAME * root:
             low, high = corners[[0, 3]].mean(axis=0), corners[[1, 2]].mean(axis=0)
             middle, height = 0.5 * (low + high), math.hypot(*(high - low))
-            # The outline runs from right to left over the root, and so the box is rotated.
+            # The outline runs from right to left over the root, which the box has to follow.
             shapes.append(solids.box(number, center + middle, -base / wide, thick, height))
         elif hulls:
             shapes.append(solids.prism(number, center + corners))
@@ -176,7 +176,7 @@ def gear_shapes(
 
 
 def runs_round(discs: Array) -> list[Run]:
-    """Find the straight runs of the belt that is taut round discs: centres and radii [m]."""
+    """Find the straight runs of a taut belt round discs, given as centres and radii [m]."""
     centers, radii = discs[:, :2], discs[:, 2]
     tolerance = _SAME * float(np.abs(discs).max())
     runs = []
@@ -188,7 +188,7 @@ def runs_round(discs: Array) -> list[Run]:
             reach = centers @ normal + radii
             if reach.max() > reach[start] + tolerance:
                 continue
-            # Of several discs along one run, the first and the last one are its ends.
+            # If several discs are on one run, the first and the last are its ends.
             touching = np.flatnonzero(reach >= reach[start] - tolerance)
             along = centers[touching] @ np.array([-normal[1], normal[0]])
             if start == touching[along.argmin()] and end == touching[along.argmax()]:
@@ -199,9 +199,9 @@ def runs_round(discs: Array) -> list[Run]:
 def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
     """Return the parts of a belt, whose union has its exact outline.
 
-    The middle of each box lies as deep as its surface is from the axis about which that turns.
+    The middle of each box is as deep as the distance of its surface from the axis of rotation.
     """
-    # The box between two equal discs is that of its upper run, and so is not rotated.
+    # Boxes between two equal discs belong to their upper run, and so are not rotated.
     runs = sorted(runs_round(discs), key=lambda run: -float(run.normal[1]))
     ends = sorted({number for run in runs for number in (run.start, run.end)})
     shapes = [
@@ -211,7 +211,7 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
     middles: list[Array] = []
     for run in runs:
         first, last = discs[run.start], discs[run.end]
-        # Its inner corners still lie within both discs.
+        # Its inner corners are still inside both discs.
         depth = 2.0 * float(min(first[2], last[2]))
         from_, to = (disc[:2] + disc[2] * run.normal for disc in (first, last))
         middle = 0.5 * (from_ + to) - 0.5 * depth * run.normal
@@ -219,7 +219,7 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
             continue  # the box between two equal discs covers both runs
         middles.append(middle)
         length = math.hypot(*(to - from_))
-        # z points out of the belt, and so x against the direction of travel.
+        # z points outwards, so x points against the direction of travel.
         along = np.array([run.normal[1], -run.normal[0]])
         shapes.append(solids.box(len(shapes), middle, along, length, depth))
     return shapes
@@ -228,13 +228,13 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
 def belly_shapes(polygons: Sequence[Array], solids: Solids, *, hulls: bool) -> list[Shape]:
     """Return the parts of the belly.
 
-    Boxes lie inside it and along its edges. A corner sharper than a right angle is cut off to make
-    room for a thin box.
+    Without hulls, boxes along its edges fill it partly. A corner sharper than a right angle is cut
+    off to make room for a thin box.
 
     Parameters
     ----------
     polygons : sequence of ndarray, each of shape (n, 2)
-        [m] Convex, counter-clockwise.
+        [m] Convex polygons, counter-clockwise.
     solids : Solids
         Builds the shapes.
     hulls : bool
@@ -266,7 +266,7 @@ def _bottom(shape: Shape) -> float:
 
 
 def _tangent(start: Array, end: Array) -> Array | None:
-    """Return the normal of the outer tangent from a disc to another, on its right."""
+    """Return the normal of the outer tangent from one disc to another, on its right."""
     (x, y), narrower = end[:2] - start[:2], start[2] - end[2]
     distance = math.hypot(x, y)
     if distance <= abs(narrower):
@@ -278,7 +278,7 @@ def _tangent(start: Array, end: Array) -> Array | None:
 
 
 class _Edge:
-    """An edge of a convex polygon, and the rectangles on it inside the polygon."""
+    """An edge of a convex polygon, with the rectangles on it that are inside the polygon."""
 
     def __init__(self, corners: Array, number: int) -> None:
         self.start = corners[number]
@@ -304,7 +304,7 @@ class _Edge:
 
     @property
     def is_square(self) -> bool:
-        """Whether the rectangle on it is all of a quadrilateral."""
+        """Whether the rectangle on it fills the whole polygon."""
         low, high = self.within(self.height)
         return high - low >= self.length * (1.0 - _SAME) and self.places[:, 0].max() <= (
             self.length * (1.0 + _SAME)
@@ -312,7 +312,7 @@ class _Edge:
 
     @property
     def largest(self) -> tuple[float, float]:
-        """[m^2, m] Area and depth of the largest rectangle on it."""
+        """[m^2, m] Return area and depth of the largest rectangle on it."""
         depths = np.linspace(0.0, self.height, _LEVELS + 1)[1:]
         areas = [(high - low) * d for d in depths for low, high in [self.within(float(d))]]
         best = int(np.argmax(areas))
@@ -320,7 +320,7 @@ class _Edge:
 
     @property
     def depth(self) -> float:
-        """[m] Of the deepest rectangle as long as the edge, or of a thin one that is shorter."""
+        """[m] Depth of the deepest rectangle as long as the edge, or of a thin, shorter one."""
         low, high = 0.0, self.height
         for _ in range(60):
             middle = 0.5 * (low + high)
@@ -331,7 +331,7 @@ class _Edge:
         return max(low, thin)
 
     def box(self, number: int, depth: float, solids: Solids) -> Shape:
-        """Return the rectangle of a depth."""
+        """Return the box of the rectangle with this depth."""
         low, high = self.within(depth)
         middle = self.start + 0.5 * (low + high) * self.along + 0.5 * depth * self.inward
         return solids.box(number, middle, self.along, high - low, depth)
