@@ -1,7 +1,7 @@
-//! Lengths, times and speeds that belong to the method and to no robot.
+//! Lengths, times and speeds that belong to the method, not to a robot.
 //!
-//! Their dimension is in their type, so that a test can scale all of them along with a robot: if others decided anything in its
-//! run, the copy would end elsewhere.
+//! Their dimension is in their type, so that a test can scale all of them along with a robot: if any other length, time
+//! or speed mattered, the run of the scaled copy would differ.
 
 /// A length [m].
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ impl MetresPerSecond {
     }
 }
 
-/// Units of length [m] and time [s]: 1, but for a test.
+/// Units of length [m] and time [s]: 1, except in a test.
 #[cfg(not(test))]
 const fn units() -> [f64; 2] {
     [1.0; 2]
@@ -50,7 +50,7 @@ fn units() -> [f64; 2] {
     UNITS.get()
 }
 
-/// Does something with all lengths and times of the method multiplied.
+/// Calls a function with all lengths and times of the method scaled.
 #[cfg(test)]
 pub(crate) fn with_units<T>(units: [f64; 2], work: impl FnOnce() -> T) -> T {
     UNITS.set(units);

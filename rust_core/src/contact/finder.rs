@@ -1,7 +1,7 @@
-//! Finds the contacts of a robot: by the project's own method, the outline of every part against faces and corners of the
-//! lane, exactly, or by the reference method.
+//! Finds the contacts of a robot, either by our own exact method, with outlines of parts against faces and corners of
+//! the lane, or by the reference method.
 //!
-//! Contacts depend on the current pose only: nothing is kept, and only the list of contacts is allocated.
+//! Contacts depend only on the current pose: nothing is stored, and only the list of contacts is allocated.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -22,11 +22,11 @@ mod tests;
 /// The outlines of one robot and the lanes of one ground.
 pub(crate) struct OwnContact {
     lanes: Vec<Lane>,
-    /// Each with the index of its lane and its mount.
+    /// Outlines, each with the index of its lane and its mount.
     outlines: Vec<(usize, Mount, Outline)>,
 }
 
-/// A part as contacts see it.
+/// The outline of a part for contacts.
 enum Outline {
     Disc(usize, Disc),
     Gear {

@@ -14,7 +14,7 @@ use super::redundant::{Tip, run_yields, thin_out, tip_yields};
 use crate::geometry::{Disc, Gear, Pose, Rotation, Vector, direction, right_of};
 use crate::units::Metres;
 
-/// [m] Ground sinks into a flank by no more than this.
+/// [m] Largest depth of ground in a flank.
 const SUNK: Metres = Metres(1e-3);
 
 /// A gear wheel of a robot.
@@ -31,7 +31,7 @@ pub(super) struct GearContact {
     half_base: f64,
 }
 
-/// A grouser in some pose.
+/// A grouser in a certain pose.
 struct Grouser {
     /// [m] Counter-clockwise, starting at its base.
     corners: [Vector; 4],
@@ -46,7 +46,7 @@ impl Grouser {
         sides.all(|(corner, normal)| (point - *corner).dot(*normal) <= 0.0)
     }
 
-    /// Whether a corner of the ground inside flank 0 or 2 lies less deep in the opposite flank.
+    /// Whether a corner of the ground inside flank 0 or 2 is less deep in the opposite flank.
     fn is_shallower_opposite(&self, lane: &Lane, flank: usize, touch: &Touch) -> bool {
         let opposite = 2 - flank;
         let normal = self.normals[opposite];
@@ -55,7 +55,7 @@ impl Grouser {
         opposite != flank && gap > touch.distance && is_met()
     }
 
-    /// [m] How far above the centre of the wheel its lowest corner is when it points there; it is alike on both sides.
+    /// [m] Height of its lowest corner above the centre of the wheel when it points along `axis`; it is symmetric.
     fn lowest(&self, axis: Vector) -> f64 {
         let [_, _, tip, base] = self.corners;
         let lower = |corner: Vector| corner.x * axis.y - corner.y * axis.x.abs();
@@ -112,7 +112,7 @@ impl GearContact {
         }
         let turned = pose.rotation * Rotation::new(-drive / radius);
         if room <= self.gear.root_radius {
-            // If the centre is past a face, that face is the far side of something thin.
+            // If the centre is behind a face, that face is the far side of something thin.
             let (reach, radius) = ((prediction, 0.0), self.gear.root_radius);
             let first = contacts.len();
             lane.touches_of_disc(&region, center, radius, reach, |touch| {
@@ -154,7 +154,7 @@ impl GearContact {
         for tip in [grouser.tip(1), grouser.tip(2)] {
             let (reach, first) = ((prediction, self.height()), contacts.len());
             lane.touches_of_disc(region, tip.place, 0.0, reach, |touch| {
-                // Behind a face is ground, but beyond thin ground it is open again.
+                // There is ground behind a face, but behind thin ground there is air again.
                 let is_real = touch.distance >= 0.0
                     || lane.contains(tip.place)
                     || grouser.contains(touch.place);
@@ -175,7 +175,7 @@ impl GearContact {
         contacts: &mut Vec<Contact>,
     ) {
         let thickness = self.gear.base_thickness;
-        // Ground deeper than this has come in through another side.
+        // Deeper ground has entered through another side.
         for (i, depth) in [thickness, self.height(), thickness]
             .into_iter()
             .enumerate()
@@ -205,7 +205,7 @@ impl GearContact {
         let angle = libm::atan2(outward.y, outward.x) - self.gear.phase;
         let pitch = self.gear.angle();
         let off = (angle / pitch - (angle / pitch).round()) * pitch;
-        // Ground sunk into the foot of a flank also bears on the root circle.
+        // Ground inside the foot of a flank also bears on the root circle.
         off.abs() >= self.half_base - SUNK.value() / self.gear.root_radius
     }
 }
@@ -297,7 +297,7 @@ mod tests {
         }
     }
 
-    /// The tip of a needle in a grouser, 1 cm to the right of its middle, to the left of it or in it.
+    /// The tip of a needle in a grouser, 1 cm to the right or left of its middle, or in the middle.
     #[test]
     fn a_corner_in_a_grouser_is_shallower_in_the_flank_that_is_nearer() {
         let points = [

@@ -1,8 +1,8 @@
 //! Contacts of a convex hull of discs, such as a belt or a polygon, with a lane: exact, however deep the
 //! ground reaches inside.
 //!
-//! A hull meets the ground in two ways only: an arc or a corner of the hull bears on a face, or a corner
-//! of the ground bears on the hull.
+//! A hull meets the ground in only two ways: an arc or a corner of the hull bears on a face, or a corner of
+//! the ground bears on the hull.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -26,7 +26,7 @@ struct Arc {
     disc: Disc,
     /// Its outward directions.
     sector: Sector,
-    /// These and all directions within `NEARLY_PARALLEL` of one: with them, an arc reaches less than 0.1 mm out of the hull.
+    /// The same, extended by `NEARLY_PARALLEL` at both ends; there an arc protrudes from the hull by less than 0.1 mm.
     widened: Sector,
     /// Outward normals of the two runs that it joins, counter-clockwise.
     runs: [Vector; 2],
@@ -90,11 +90,11 @@ impl HullContact {
             return;
         }
         let first = contacts.len();
-        // A part that is fast enough to be found from far away may be this deep in the middle of a step.
+        // A part fast enough to have a large prediction may be this deep in the middle of a step.
         let reach = (prediction, SHALLOW.value().max(prediction));
         for arc in &self.arcs {
             lane.touches_of_disc(&region, center(arc), arc.disc.radius, reach, |touch| {
-                // Behind a face is ground, but beyond thin ground it is open again.
+                // There is ground behind a face, but behind thin ground there is air again.
                 let is_real = touch.distance >= -SHALLOW.value().min(prediction)
                     || lane.contains(center(arc) - touch.normal * arc.disc.radius);
                 let on_face = is_real && matches!(touch.on, On::Face(_));
@@ -165,7 +165,7 @@ impl HullContact {
         }
         let (outward, is_run) = self.outward_at(place, inside);
         let normal = -(pose.rotation * outward);
-        // Deep inside, every corner bears on the hull by itself.
+        // Deep inside, every corner bears on the hull independently.
         if depth > SHALLOW.value()
             || corner.has_normal(normal)
             || (is_run && corner.nearly_has_normal(normal))
@@ -176,8 +176,8 @@ impl HullContact {
         Some(corner.touch(i, normal, -depth))
     }
 
-    /// Depth and normal of the run through which a corner of the ground has entered, if the corner does
-    /// not face the nearest run; none if the hull is less deep below a face next to the corner.
+    /// Depth and normal of the run through which a corner of the ground has entered, if the corner does not
+    /// face the nearest run; `None` if the hull is less deep below a face next to the corner.
     fn entered_run(&self, corner: &Corner, place: Vector, pose: Pose) -> Option<(f64, Vector)> {
         let of_run = |arc: &Arc| {
             let [outward, _] = arc.runs;
@@ -205,10 +205,10 @@ impl HullContact {
         is_met.then_some((inside + corner.radius, normal))
     }
 
-    /// The outward normal where the hull is nearest to a place that is `depth` [m] inside, and whether that is on a
-    /// run.
+    /// The outward normal of the hull at the point nearest to a place `depth` [m] inside, and whether that point is on
+    /// a run.
     fn outward_at(&self, place: Vector, depth: f64) -> (Vector, bool) {
-        // Near the end of an arc its run is equally near within rounding, but has another normal.
+        // Near the end of an arc, its run is equally near within rounding, but has a different normal.
         let of_arc = |arc: &Arc| {
             let spoke = place - arc.disc.center;
             let is_nearest =

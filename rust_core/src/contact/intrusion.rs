@@ -17,7 +17,7 @@ use crate::units::Metres;
 /// [m] A contact this close to a piece of the ground bears on it.
 const BEARS: Metres = Metres(5e-4);
 
-/// [m] Of edges that are equally deep within this, the leftmost counts, whatever the rounding.
+/// [m] If edges are equally deep within this, the leftmost counts, regardless of rounding.
 const SAME_DEPTH: Metres = Metres(1e-6);
 
 /// The taut belts round a track's bodies, in the frame of their carrier.
@@ -39,7 +39,7 @@ pub(crate) struct TrackEnvelope {
     margin: f64,
 }
 
-/// A taut belt and the point deepest inside it, which takes long to find and is seldom asked for.
+/// A taut belt and the deepest point inside it, which is computed on request.
 #[derive(Clone, Debug)]
 struct Belt {
     hull: Envelope,
@@ -91,8 +91,8 @@ pub struct Intrusion {
 impl TrackEnvelope {
     /// The envelope of the parts that `mount` carries on a lane.
     ///
-    /// Wheels sink into the ground by micrometres, and a belt along their lowest points would join all the
-    /// ground under the robot into one piece; `margin` [m] keeps the belt inside of that.
+    /// Wheels penetrate the ground by micrometres, and a belt along their lowest points would join all ground under the
+    /// robot into one piece; `margin` [m] is an inward offset that avoids this.
     pub(crate) fn new(parts: &[Part], (lane, mount): (usize, Mount), margin: f64) -> Self {
         let of_track: Vec<(usize, Disc, Disc)> = parts
             .iter()
@@ -146,7 +146,7 @@ impl TrackEnvelope {
         let polyline: Vec<Vector> = under.iter().map(place).collect();
         let chords = cut::chords(&self.tips.hull, &polyline);
         if chords.is_empty() {
-            // All of the envelope is on one side of the ground, and so is each of its points.
+            // The whole envelope is on one side of the ground, so any of its points decides.
             let some_point = self.discs.first().map(|disc| disc.center);
             let buried = some_point.is_some_and(|point| below_ground(profile, pose, point));
             let buried = buried.then(|| self.buried(profile.side, pose));
@@ -158,7 +158,7 @@ impl TrackEnvelope {
             .collect()
     }
 
-    /// Indices of the points of the profile that bound all its straight pieces under the envelope.
+    /// Indices of the points of the profile at the ends of its straight pieces under the envelope.
     fn points_under<'a>(&self, profile: &'a Profile, pose: Pose) -> &'a [u32] {
         let sides = |disc: &Disc| {
             let x = pose.transform_point(disc.center).x;
@@ -179,7 +179,7 @@ impl TrackEnvelope {
 
     /// Whether a point inside the envelope lies in a piece.
     fn contains(&self, profile: &Profile, pose: Pose, piece: &Piece, point: Vector) -> bool {
-        // Straight down from a point in the ground everything is ground, so the rim below it bounds its piece.
+        // Everything below a point in the ground is ground, so the rim below it belongs to its piece.
         let down = pose.rotation.inverse() * -Vector::Y;
         let far = point + down * self.tips.hull.length();
         let hull = &self.tips.hull;
@@ -276,8 +276,8 @@ fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
 }
 
 impl Intrusion {
-    /// Whether a contact is one of the track with the ground of the intrusion, for a robot of these parts. The belly is
-    /// no part of a track: what it rests on jams nothing.
+    /// Whether a contact is between the track and the ground of the intrusion, for a robot with these parts. The belly
+    /// is not part of a track: ground under it jams nothing.
     pub(crate) fn bears(&self, lanes: &[Profile], parts: &[Part], contact: &Contact) -> bool {
         let part = &parts[contact.part];
         let of_track = part.kind != BodyKind::Belly && part.mount.carrier() == self.mount;

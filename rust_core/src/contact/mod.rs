@@ -24,7 +24,7 @@ pub(crate) use intrusion::TrackEnvelope;
 pub(crate) use penetration::{Dents, depth};
 pub(crate) use reference::solids_of;
 
-/// A place where a part is on the ground or about to be, and what a step has found there.
+/// A place where a part touches the ground or is about to, with the results of the last step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Contact {
     /// Index of the part.
@@ -41,13 +41,13 @@ pub(crate) struct Contact {
     pub distance: f64,
     /// Unique number that stays the same from step to step while the contact lasts; 0 when just found.
     pub number: u64,
-    /// [m] The point at which it closed.
+    /// [m] The point at which the contact closed.
     pub began: Vector,
-    /// [N] Mean normal force over the step; 0 when just found, as all that follows.
+    /// [N] Mean normal force over the step; 0 when just found, like all following values.
     pub normal_force: f64,
     /// [N] Mean friction on the robot over the step, along the normal turned by -90 degrees.
     pub friction_force: f64,
-    /// [m/s] Velocity of the surface over the ground in the same direction.
+    /// [m/s] Velocity of the surface relative to the ground in the same direction.
     pub surface_speed: f64,
     /// [N] Normal force from which the next step starts.
     pub normal_guess: f64,
@@ -88,7 +88,7 @@ impl Contact {
         self.normal * self.normal_force + right_of(self.normal) * self.friction_force
     }
 
-    /// Whether a robot and its lanes have the part and the ground of this contact, and its forces are plausible.
+    /// Whether its part and ground exist in a robot and its lanes, and its forces are plausible.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         let lane = model.parts.get(self.part).and_then(|p| lanes.get(p.lane));
         lane.is_some_and(|lane| {

@@ -1,5 +1,5 @@
-//! How deep parts are in the ground: by their outline alone, also where no contact was found that would show it, and in
-//! dents, which the ground made when one track replaced another.
+//! Depths of parts in the ground: from outlines alone, even where no contact was found, and in dents, which the ground
+//! made when one track replaced another.
 //!
 //! The equations: docs/physics.md, "Softness", and of dents: docs/physics.md, "Contacts".
 
@@ -15,8 +15,8 @@ use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
 use crate::units::Metres;
 
-/// [m] How deep a part at a place is in a lane, at most; 0 above it, and at the ends of the ground: they have no faces,
-/// and what hangs over one may fall beside it.
+/// [m] Largest depth of a part at a place in a lane; 0 above it and at the ends of the ground, which have no faces:
+/// what hangs over them may fall beside the ground.
 pub(crate) fn depth(part: &Part, place: Pose, lane: &Profile) -> f64 {
     let (middle, bound) = part.bound();
     let center = place.transform_point(middle);
@@ -57,7 +57,7 @@ fn arcs_and_corners(part: &Part) -> Vec<Disc> {
 fn depth_of_disc(center: Vector, radius: f64, lane: &Profile) -> f64 {
     let below = lane.height_under_disc(center.x, 0.0) - center.y;
     let is_inside = below > 0.0;
-    // Inside, the nearest ground is no farther than that right above.
+    // Inside, the surface is no farther than its point right above.
     let far = if is_inside { below } else { radius };
     let distance = |facet: usize| {
         let face = Segment::new(lane.points[facet], lane.points[facet + 1]);
@@ -72,7 +72,7 @@ fn depth_of_disc(center: Vector, radius: f64, lane: &Profile) -> f64 {
     }
 }
 
-/// [m] Ground that comes to bear this close to a dent was inside it.
+/// [m] Ground that begins to bear this close to a dent was inside it.
 const BESIDE: Metres = Metres(0.01);
 
 /// The dents that remain.
@@ -102,7 +102,7 @@ impl Dents {
         }
     }
 
-    /// Whether a step that ended with these contacts can have left the dents.
+    /// Whether these dents can remain after a step that ended with these contacts.
     pub(crate) fn fits(&self, contacts: &[Contact]) -> bool {
         let numbers: HashSet<u64> = contacts.iter().map(|c| c.number).collect();
         let fits = |d: &Dent| plausible(&[d.depth]) && numbers.contains(&d.contact);
@@ -111,7 +111,7 @@ impl Dents {
 
     /// Measures gaps from the bottom of the dents; `last` holds the contacts of the last step.
     ///
-    /// If ground in a dent also comes to bear on another face of the part, that face is dented as deep.
+    /// If ground in a dent begins to bear on another face of the part, that face gets an equally deep dent.
     pub(crate) fn forgive(&mut self, contacts: &mut [Contact], last: &[Contact]) {
         if self.dents.is_empty() {
             return;
@@ -133,7 +133,7 @@ impl Dents {
         }
     }
 
-    /// Lets the dents heal by the actual motion of the robot; the contacts are those after a step.
+    /// Reduces the dents by the actual motion of the robot; the contacts are those after a step.
     pub(crate) fn heal(&mut self, contacts: &[Contact]) {
         if self.dents.is_empty() {
             return;
@@ -219,7 +219,7 @@ mod tests {
         for x in [-0.91, 0.91, -1.5, 1.5] {
             assert_eq!(at(x), 0.0);
         }
-        // In numbers without rounding, one that ends where the ground ends does not hang over.
+        // In numbers without rounding: a wheel that ends where the ground ends does not hang over.
         let flush = |x: f64| depth(&wheel(0.25), Pose::new(Vector::new(x, 0.125), 0.0), &lane);
         assert_eq!([-0.75, 0.75].map(flush), [0.125; 2]);
     }
@@ -281,7 +281,7 @@ mod tests {
             let mut contacts = [last[0], closed];
             dents.forgive(&mut contacts, &last);
             dents.heal(&contacts);
-            // From then on its dent is as deep as the ground was inside it. In micrometres:
+            // Its dent is then as deep as the ground was inside it. In micrometres:
             let mut deeper = [contact(2, x, -0.05)];
             dents.forgive(&mut deeper, &contacts);
             [contacts[1].distance, deeper[0].distance].map(|gap| (gap * 1e6).round())

@@ -1,8 +1,8 @@
-//! Contacts that others make redundant.
+//! Removes redundant contacts.
 //!
-//! Of the up to four ways out of an overlap of two corners, one along the normal of each face that meets there, the
-//! shortest is the contact. On finely divided ground, a disc bears on few of the places that it is near to. A rigid part
-//! comes down on the outer ones of several contacts with the same normal.
+//! An overlap of two corners has up to four ways out, one along the normal of each face that meets there; the shortest
+//! is the contact. On finely divided ground, a disc bears on few of the places near it. A rigid part comes down on the
+//! outer ones of several contacts with the same normal.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -12,10 +12,10 @@ use crate::geometry::{Disc, Vector, is_between, right_of};
 use crate::terrain::STRAIGHT;
 use crate::units::Metres;
 
-/// Cosine of the angle within which two normals of an overlap both count: faces that are nearly parallel
-/// bear at both ends of their overlap.
+/// Cosine of the angle within which two normals of an overlap both count: nearly parallel faces bear at both ends
+/// of their overlap.
 const ALIKE_COSINE: f64 = 0.94;
-/// [rad] If a face is parallel to a run of a part within this angle, both ends of the run bear on it.
+/// [rad] If a face and a run of a part are parallel within this angle, both ends of the run bear on it.
 pub(super) const NEARLY_PARALLEL: f64 = 0.05;
 
 /// A sharp corner of a part.
@@ -33,7 +33,7 @@ impl Tip {
         is_between(direction, self.normals, ROUNDING)
     }
 
-    /// Whether it can bear there until the part has turned on: above a face whichever way it points now, and in a face
+    /// Whether it can bear there until the part has turned further: above a face in any orientation, and inside a face
     /// if the part lies nearly flat on it.
     pub(super) fn may_bear(&self, touch: &Touch) -> bool {
         match touch.on {
@@ -65,8 +65,7 @@ pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
     })
 }
 
-/// The convex corners at both ends of a face that something is inside of, each with the normal of the
-/// adjacent face.
+/// The convex corners at both ends of a face behind which something is, each with the normal of the adjacent face.
 fn outer_ends<'a>(lane: &'a Lane, touch: &Touch) -> impl Iterator<Item = (&'a Corner, Vector)> {
     let face = match touch.on {
         On::Face(face) if touch.distance < 0.0 => Some(face),
@@ -104,24 +103,24 @@ pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch)
             .any(|n| shorter(touch, *n, beyond(*n), || tip.has_normal(-*n)))
 }
 
-/// Whether two corners this far apart [m] have not met, because one lies outside a face of the other by more than rounding
-/// may turn that face.
+/// Whether two corners `apart` [m] have not met, because one is outside a face of the other by more than rounding of
+/// its normal explains.
 fn is_gap(depth: f64, apart: f64) -> bool {
     depth < -ROUNDING * apart
 }
 
-/// Whether a way out of length `depth` along `normal` is shorter than that of `touch`, and open.
+/// Whether a way out of length `depth` along `normal` is open, and shorter than that of `touch`.
 fn shorter(touch: &Touch, normal: Vector, depth: f64, open: impl Fn() -> bool) -> bool {
     0.0 < depth && depth < -touch.distance && normal.dot(touch.normal) < ALIKE_COSINE && open()
 }
 
 /// [m] A contact whose normal passes this close to the centre of a disc is one of the disc.
 const ON_DISC: Metres = Metres(1e-9);
-/// So few contacts need no thinning out.
+/// So few contacts are not thinned out.
 const FEW: usize = 4;
 
-/// Leaves, of the contacts of a disc from number `first` on, those that it can reach within `prediction` [m], if
-/// the ground there is finely divided. A corner of a part is a disc of radius 0.
+/// Keeps, among the contacts of a disc from number `first` on, those that it can reach within `prediction` [m], if the
+/// ground there is finely divided. A corner of a part is a disc of radius 0.
 ///
 /// The normals of all contacts of a disc pass through its centre, so only the displacement of its centre matters.
 pub(super) fn thin_out(
@@ -142,7 +141,8 @@ pub(super) fn thin_out(
     contacts.extend(reachable(own, prediction));
 }
 
-/// The contacts of a disc that keep it out of all of them, within `STRAIGHT`, wherever it goes by up to `far` [m].
+/// A subset of a disc's contacts that, after any displacement of up to `far` [m], keeps it out of all contacts within
+/// `STRAIGHT`.
 fn reachable(contacts: Vec<Contact>, far: f64) -> Vec<Contact> {
     let Some(first) = deepest(&contacts, Vector::ZERO) else {
         return contacts;
@@ -207,7 +207,8 @@ impl Displacements {
         }
     }
 
-    /// Leaves the displacements at which the gap of a contact is open. parry's clipping does not say which corners are new.
+    /// Keeps the displacements at which the gap of a contact is open. parry's clipping does not say which corners are
+    /// new.
     fn cut(&mut self, contact: &Contact) {
         let old = std::mem::take(&mut self.corners);
         let gaps: Vec<f64> = old.iter().map(|c| gap_after(contact, c.at)).collect();
@@ -227,9 +228,8 @@ impl Displacements {
     }
 }
 
-/// Removes redundant contacts: duplicates on the same part, and contacts that lie between two others with
-/// the same normal and are no deeper than these, since a rigid part comes down on its outer contacts
-/// first.
+/// Removes redundant contacts: duplicates on the same part, and contacts between two others with the same normal
+/// that are no deeper than these, since a rigid part comes down on its outer contacts first.
 pub(super) fn without_redundant(contacts: &mut Vec<Contact>) {
     /// Normals closer than this count as equal; f64 resolves about 1e-16.
     const SAME_DIRECTION: f64 = 1e-12;

@@ -1,7 +1,7 @@
 //! The reference contact method: parry's queries on one oriented polyline per lane, and our own for hulls.
 //!
-//! One-sided segments and exact vertex normals make flat ground flat however it is divided. Nothing is
-//! kept from step to step, so contacts depend on the current pose only.
+//! One-sided segments and exact vertex normals make flat ground flat, however it is divided. Nothing is
+//! stored between steps, so contacts depend only on the current pose.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -30,7 +30,7 @@ pub(crate) struct ReferenceContact {
 struct Ground {
     line: Polyline,
     profile: Profile,
-    /// For the hulls.
+    /// The same lane for hulls.
     lane: Lane,
 }
 
@@ -39,9 +39,9 @@ struct Body {
     part: Part,
     /// [m] A disc that contains it, in its own frame.
     bound: (Vector, f64),
-    /// Our own contact method, for what is neither a disc nor a gear.
+    /// Our own contact method, for parts that are neither discs nor gears.
     hull: Option<HullContact>,
-    /// In its own frame.
+    /// Its shapes in its own frame.
     solids: Vec<SharedShape>,
 }
 
@@ -115,7 +115,7 @@ impl ReferenceContact {
     ) {
         let (part, shape) = (&self.bodies[body].part, &self.bodies[body].solids[solid]);
         let Ground { line, profile, .. } = &self.lanes[part.lane];
-        // A manifold that is kept would be reused until the pose changes by a degree.
+        // parry would reuse a stored manifold until the pose changes by a degree.
         self.manifolds.clear();
         DefaultQueryDispatcher
             .contact_manifolds(
@@ -140,7 +140,7 @@ impl ReferenceContact {
     }
 }
 
-/// [m] Grousers are no thinner to the engine, to which a polygon as thin as a rounding error is none.
+/// [m] Smallest thickness of grousers for the engine, which rejects polygons as thin as a rounding error.
 const THINNEST: f64 = 1e-9;
 
 /// The convex pieces of a part in its own frame; hulls use our own contacts and have none.
@@ -163,7 +163,7 @@ pub(crate) fn solids_of(part: &Part) -> Vec<SharedShape> {
     }
 }
 
-/// A polygon of exactly these corners, however flat; none if it is as thin as a rounding error.
+/// A polygon with exactly these corners, however flat; `None` if it is as thin as a rounding error.
 fn polygon(mut corners: Vec<Vector>) -> Option<SharedShape> {
     corners.dedup();
     SharedShape::convex_polyline_unmodified(corners)
@@ -178,7 +178,7 @@ mod tests {
     use crate::robot::Model;
     use crate::scenario::{Scenario, Surface};
 
-    /// The nearest contact: its distance [m], its place and the edge that it is on.
+    /// The nearest contact: its distance [m], position and edge.
     fn nearest(contacts: &[Contact]) -> Option<(f64, Vector, i32)> {
         let least = contacts
             .iter()

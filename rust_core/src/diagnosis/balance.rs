@@ -1,32 +1,32 @@
-//! Is a stop an equilibrium of rigid bodies with Coulomb friction, whatever engine came to it?
+//! Is a stop, in whatever engine, an equilibrium of rigid bodies with Coulomb friction?
 //!
-//! Only the pose counts, the places where the ground bears, and which surfaces slide on it. The forces are computed again:
-//! sliding contacts have friction at its limit against their slip, sticking ones any within it, motors any force within
-//! theirs, gears that lock themselves any at rest, and the ground only pushes.
+//! Only the pose, the places where the ground bears, and the surfaces that slide on it count. Forces are computed anew:
+//! sliding contacts have friction at its limit against their slip, sticking contacts any friction within it, motors any
+//! force within their limits, self-locking gears any force at rest, and the ground only pushes.
 
 use super::scene::Scene;
 use crate::geometry::Vector;
 use crate::observe::Stance;
 
-/// Factors of the friction between which it is searched for balance, and how many.
+/// Range of factors of the friction in which a balance is searched, and their number.
 const FACTORS: (f64, f64) = (0.02, 5.0);
 const TRIED: u32 = 80;
-/// Share of the weight up to which a pull is only rounding.
+/// Fraction of the weight up to which a pull is a rounding error.
 const LEAST_PULL: f64 = 1e-6;
-/// Halvings of an interval between two factors: to a few in ten thousand.
+/// Bisections of an interval between two factors, which leave an error of some parts in ten thousand.
 const HALVINGS: u32 = 8;
 
-/// Whether forces could hold a stop.
+/// Whether forces can hold a stop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Balance {
-    /// Smallest residual that any choice of forces leaves, as a share of the weight.
+    /// Smallest residual for any choice of forces, as a fraction of the weight.
     pub imbalance: f64,
-    /// The share of the weight up to which it counts as none.
+    /// The fraction of the weight up to which it counts as none.
     pub tolerance: f64,
-    /// Factors of the friction, the nearest interval in which forces could hold the pose; none if they could at no friction
-    /// that was tried.
+    /// The interval of friction factors, nearest to 1, in which forces can hold the pose; `None` if they can at none of
+    /// those tried.
     pub holds_between: Option<[f64; 2]>,
-    /// The contacts that would have to pull, in the balance in which they pull the least; none in an equilibrium.
+    /// The contacts that would have to pull, in the balance with the smallest total pull; none in an equilibrium.
     pub pulls: Vec<Pull>,
 }
 
@@ -74,7 +74,7 @@ pub(crate) fn balance(scene: &Scene, stance: &Stance, tolerance: f64) -> Option<
     })
 }
 
-/// The interval nearest to 1 in which something holds.
+/// The interval nearest to 1 in which a condition is true.
 fn around(holds: &dyn Fn(f64) -> bool) -> Option<[f64; 2]> {
     let (first, last) = FACTORS;
     let at = |k: u32| first * libm::pow(last / first, f64::from(k) / f64::from(TRIED));
@@ -94,7 +94,7 @@ fn around(holds: &dyn Fn(f64) -> bool) -> Option<[f64; 2]> {
     Some([end(from, low, 0.0), end(to, high, f64::INFINITY)])
 }
 
-/// The edge of what holds, between a factor within and one beyond.
+/// The end of that interval, between a factor inside and one outside.
 fn edge(holds: &dyn Fn(f64) -> bool, mut within: f64, mut beyond: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (within + beyond);

@@ -1,4 +1,5 @@
-//! What is known of a stop, how the ground inside the track is held, and what came of trials: of changing one thing.
+//! Findings about a stop: how the ground inside the track is held, and results of trials, each of which changes one
+//! thing.
 
 use crate::contact::Intrusion;
 use crate::geometry::Vector;
@@ -11,11 +12,11 @@ use crate::terrain::Side;
 /// Why a robot stopped although commanded to move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
-    /// Which kind of stop it is, after what was tried.
+    /// The kind of stop, after trials.
     pub outcome: Outcome,
-    /// What is seen of it, before anything is tried: cycling, hung up, stalled or slipping.
+    /// Its symptom, before any trials: cycling, hung up, stalled or slipping.
     pub symptom: Outcome,
-    /// What was tried, and what came of it.
+    /// Trials and their results.
     pub trials: Vec<Trial>,
     /// Ground between two bodies of a track, deeper than their root circles, bears on that track.
     pub jammed: bool,
@@ -29,7 +30,7 @@ pub struct Diagnosis {
     pub position: [f64; 2],
     /// [rad] Mean chassis angle.
     pub chassis_angle: f64,
-    /// The most loaded ground inside the track: where it is jammed, or else anywhere.
+    /// The most loaded ground inside the track: among jammed ground if there is any, else anywhere.
     pub intrusion: Option<LoadedIntrusion>,
     /// The contacts that bear, averaged over the last one to two stop windows.
     pub contacts: Vec<StopContact>,
@@ -45,12 +46,12 @@ pub struct Diagnosis {
     pub stationary: bool,
     /// Smallest residual that any choice of forces leaves, as a share of the weight; `None` if it is unknown.
     pub imbalance: Option<f64>,
-    /// The imbalance is within the criteria: the pose may be an equilibrium.
+    /// Whether the imbalance is within the criteria, so that the pose may be an equilibrium.
     pub certified: bool,
 }
 
 impl Diagnosis {
-    /// Whether the stop would not have lasted: a control left it.
+    /// Whether the stop would not have lasted: a trial without a change left it.
     pub fn is_transient(&self) -> bool {
         let left =
             |trial: &Trial| trial.freed && Change::CONTROLS.iter().any(|c| c.name() == trial.name);
@@ -94,7 +95,7 @@ pub struct StopContact {
     pub normal_force: f64,
     /// [N] Friction on the robot, along the normal turned by -90 degrees.
     pub friction_force: f64,
-    /// [m/s] Slip velocity: that of the robot's surface relative to the ground, in that direction.
+    /// [m/s] Slip velocity of the robot's surface relative to the ground, in that direction.
     pub surface_speed: f64,
     /// It slides at its friction limit.
     pub slides: bool,
@@ -114,9 +115,9 @@ named! {
         Blocked = "blocked",
         /// The motors are at their limit, with the flank of a grouser against it.
         Interlocked = "interlocked",
-        /// It is in the gap between two shoes of a chain, which closes as they move on.
+        /// It is in the gap between two shoes of a chain, which closes as they move.
         Pinched = "pinched",
-        /// It has got through a chain of shoes to the guide or wheels that the chain runs on.
+        /// It has got through a chain of shoes to the guide or wheels inside.
         Fouled = "fouled",
     }
 }
@@ -176,23 +177,23 @@ named! {
     /// What a trial changes in the pose of a stop.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Change {
-        /// Nothing: the run goes on.
+        /// Nothing: the run continues.
         Nothing = "unchanged",
-        /// Nothing, but the track is built again, as for other changes.
+        /// Nothing, but the track is rebuilt, as for other changes.
         Rebuilt = "rebuilt",
-        /// A closed track, with the grousers of the model where it has some.
+        /// A closed track, with the model's grousers if it has any.
         ClosedTrack = "closed track",
         /// The same, at rest in the nearest pose in which no ground is inside it.
         ClosedTrackClear = "closed track, clear of the ground",
         /// A closed track without grousers.
         ClosedSmoothTrack = "closed smooth track",
-        /// A belt along the outlines of the robot and its arms, wherever the model has its bodies.
+        /// A belt along the outlines of the robot and its arms, wherever the model's bodies are.
         Belt = "belt",
         /// The same from the start of the run on.
         BeltFromStart = "belt, from the start",
-        /// A closed track, with the grousers of the model, from the start of the run on.
+        /// A closed track, with the model's grousers, from the start of the run on.
         ClosedTrackFromStart = "closed track, from the start",
-        /// One motor for each track in place of one for each wheel.
+        /// One motor for each track instead of one for each wheel.
         OneMotor = "one motor",
         /// Twice the torque.
         TwiceTheTorque = "torque x 2",
@@ -211,12 +212,12 @@ impl Change {
     /// Trials that change nothing.
     pub const CONTROLS: [Self; 2] = [Self::Nothing, Self::Rebuilt];
 
-    /// Whether the robot starts again where its run began, in place of going on from the stop.
+    /// Whether the robot starts again at the beginning of its run instead of continuing from the stop.
     pub fn is_from_the_start(self) -> bool {
         matches!(self, Self::ClosedTrackFromStart | Self::BeltFromStart)
     }
 
-    /// The change of this name.
+    /// The change with this name.
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|change| change.name() == name)
     }
@@ -230,7 +231,7 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Not even those: the outcome is the symptom, sooner.
+    /// None at all: the outcome is the symptom, which takes less time.
     pub const NOTHING: Self = Self {
         changes: [false; Change::ALL.len()],
         nothing: true,
@@ -255,32 +256,33 @@ impl Wanted {
     }
 }
 
-/// What came of a change.
+/// The result of a trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// What was changed: the name of a [`Change`], or "changed".
     pub name: &'static str,
-    /// It freed the robot, which was not lost afterwards; of one from the start: the robot got past the stop.
+    /// Whether it freed the robot, which was not lost afterwards; or in a trial from the start, the robot got past the
+    /// stop.
     pub freed: bool,
-    /// From how many instants it was tried.
+    /// Number of instants from which it was tried.
     pub starts: u32,
-    /// From how many of these it freed the robot.
+    /// Number of these from which it freed the robot.
     pub freeing: u32,
-    /// [m] How far the robot got ahead of its greatest x before, in the commanded direction; less than 0 if it did not
-    /// come so far.
+    /// [m] Advance beyond the farthest position before, in the commanded direction; negative if the robot did not get
+    /// that far.
     pub distance: f64,
-    /// [s] How long that took; infinite if it was not freed.
+    /// [s] Time until it was free; infinite if it was not freed.
     pub time: f64,
-    /// How it ended: an outcome without a stop, or what is seen of the stop.
+    /// How it ended: an outcome other than a stop, or the symptom of a stop.
     pub outcome: Outcome,
-    /// It ended in a stop with ground jammed between two bodies of a track.
+    /// Whether it ended in a stop with ground jammed between two bodies of a track.
     pub jammed: bool,
-    /// The most loaded ground inside the track in that stop: where it is jammed, or else anywhere.
+    /// The most loaded ground inside the track in that stop: among jammed ground if there is any, else anywhere.
     pub intrusion: Option<LoadedIntrusion>,
-    /// [s] For how long it was tried, unless it ended before.
+    /// [s] Duration of the trial, unless it ended earlier.
     pub duration: f64,
     /// [m, m, rad] Pose of the chassis frame at its end.
     pub pose: [f64; 3],
-    /// [rad] Angles of the flippers then, the front first; not a number where there are none.
+    /// [rad] Angles of the flippers at its end, the front first; not a number where there are none.
     pub flipper_angles: [f64; 2],
 }

@@ -1,8 +1,8 @@
-//! What kind of stop is it, and what holds the ground inside the track? From what was observed only.
+//! Classifies a stop, and how the ground inside the track is held, from observations only.
 //!
 //! No track model is known here: contacts, forces, surface speeds, torques and the geometry of the envelope decide.
-//! Whether the ground inside is the reason is tried afterwards (`run/trials`). docs/decisions/0012 explains how,
-//! docs/conventions.md defines the words.
+//! Trials find out later whether the ground inside is the reason (`run/trials`). docs/decisions/0012 explains how,
+//! docs/conventions.md defines the terms.
 
 mod balance;
 mod findings;
@@ -28,7 +28,7 @@ pub(crate) struct StopTimes {
     pub progress: f64,
 }
 
-/// The share of the weight up to which an imbalance counts as none.
+/// The fraction of the weight up to which an imbalance counts as none.
 pub(crate) fn tolerance(criteria: &SeizureCriteria, stationary: bool) -> f64 {
     if stationary {
         criteria.imbalance
@@ -37,7 +37,7 @@ pub(crate) fn tolerance(criteria: &SeizureCriteria, stationary: bool) -> f64 {
     }
 }
 
-/// Examines a stop; its outcome is the symptom until something has been tried.
+/// Examines a stop; its outcome is the symptom until trials have been made.
 pub(crate) fn examine(scene: &Scene, stance: &Stance, times: &StopTimes) -> Diagnosis {
     let criteria = scene.criteria;
     let inside = scene.loaded_intrusions(stance);

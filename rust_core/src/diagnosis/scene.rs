@@ -1,8 +1,8 @@
-//! A stop in its surroundings: ground inside the track, contacts that bear, how drives move the surfaces there, and forces
+//! A stop in its surroundings: ground inside the track, contacts that bear, motion of the surfaces there, and forces
 //! that could hold it.
 //!
-//! Belts with grousers and chains keep running while a robot is stopped: the part that bore at a place may be
-//! elsewhere when the stop is examined. The part that is there now then gives the motion.
+//! Belts with grousers and chains keep running while a robot is stopped, so the part that bore at a place may be
+//! elsewhere when the stop is examined. Then the motion is that of the part at this place now.
 
 use super::findings::{Facts, LoadedIntrusion, StopContact};
 use super::statics::{Hinge, Statics, Support};
@@ -33,8 +33,8 @@ pub(crate) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Ground inside the track that carries weight, with the force on it. Inside a single smooth body there is none:
-    /// a robot that moves has only been there at different times.
+    /// Ground inside the track that carries weight, with the force on it. There is none inside a single smooth body,
+    /// which a moving robot only touched at different times.
     pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
         let least = self.criteria.intrusion_load * self.model.mass * self.gravity;
         let found = self.envelopes.iter().flat_map(|envelope| {
@@ -63,7 +63,7 @@ impl Scene<'_> {
     }
 
     /// Whether an intrusion is in a pocket: between two bodies, and deeper than their root circles. Between two
-    /// grousers of one wheel it is grip; inside a single surface it is a dent.
+    /// grousers of one wheel, it is grip; inside a single surface, it is a dent.
     pub(super) fn is_pocket(&self, intrusion: &LoadedIntrusion) -> bool {
         let [before, after] = intrusion.place.bodies;
         before != after && intrusion.place.root_depth > self.criteria.intrusion_depth
@@ -86,7 +86,7 @@ impl Scene<'_> {
     }
 
     fn slides(&self, contact: &Contact) -> bool {
-        /// Share of the friction cone that a rattling contact must use, on average.
+        /// Fraction of the friction cone that a rattling contact must use on average.
         const WHILE_RATTLING: f64 = 0.95;
 
         let limit = self.friction(contact) * contact.normal_force;
@@ -94,7 +94,7 @@ impl Scene<'_> {
             && contact.friction_force.abs() >= WHILE_RATTLING * limit
     }
 
-    /// The facts from which the mechanism follows.
+    /// The facts that determine the mechanism.
     pub(super) fn facts(&self, stance: &Stance, inside: Option<&LoadedIntrusion>) -> Facts {
         let of_stop = |Bearing { contact, .. }: &Bearing| {
             let part = &self.model.parts[contact.part];
@@ -149,7 +149,7 @@ impl Scene<'_> {
     /// Whether a surface in the pocket would move into the ground if its drive turned as commanded: the flank of a
     /// grouser.
     fn bears_on_a_flank(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
-        /// Share of the surface speed that is along the normal; zero for a round wheel, except for rounding.
+        /// Fraction of the surface speed along the normal; zero for a round wheel, except for rounding.
         const INTO_GROUND: f64 = 0.05;
 
         stance.loaded().zip(contacts).any(|(bearing, contact)| {
@@ -178,7 +178,7 @@ impl Scene<'_> {
         self.statics_where(stance, &|contact| self.slides(contact))
     }
 
-    /// The same by the motion of the surfaces alone: what moves on the ground slides, whatever force was found there.
+    /// The same from the motion of the surfaces alone: whatever moves on the ground slides, regardless of its force.
     pub(super) fn statics_of_surfaces(&self, stance: &Stance) -> Option<Statics> {
         self.statics_where(stance, &|contact| self.is_moving(contact.surface_speed))
     }
@@ -208,8 +208,8 @@ impl Scene<'_> {
         ))
     }
 
-    /// [N] Least and most force of a motor whose drive moves like this, if that was seen. A gear that locks itself bears any load
-    /// at rest, and holds back what moves without limit.
+    /// [N] Smallest and largest force of a motor whose drive moves like this, if known. A self-locking gear bears any
+    /// load at rest, and brakes without limit.
     fn bounds(&self, drive: Option<&DriveMean>) -> [f64; 2] {
         let motor = &self.model.motor;
         if !motor.self_locking {
@@ -269,8 +269,8 @@ impl Scene<'_> {
         }
     }
 
-    /// As the chain runs, each shoe takes the place of the next one. The places of its neighbours give its motion,
-    /// including the travel of the tensioner.
+    /// As the chain runs, each shoe moves to the place of the next one. So the places of its neighbours give its
+    /// motion, including the travel of the tensioner.
     fn motion_of_shoe(&self, shoe: usize, point: Vector) -> Motion {
         /// Distance from its middle, in pitches, within which a contact belongs to the shoe.
         const OWN: f64 = 0.75;
@@ -296,11 +296,11 @@ impl Scene<'_> {
     }
 }
 
-/// The motion from one place to another while a chain runs so far [m].
+/// The motion from one place to another while a chain runs by a distance [m].
 fn between(from: Pose, to: Pose, run: f64) -> Motion {
     let turn = (from.rotation.inverse() * to.rotation).angle();
     let half = 0.5 * turn;
-    // Share of the displacement that remains as translation when the turn is about the midpoint.
+    // Fraction of the displacement that remains as translation if the turn is about the midpoint.
     let share = if half.abs() < 1e-6 {
         1.0
     } else {
@@ -331,8 +331,8 @@ impl Scene<'_> {
         .collect()
     }
 
-    /// The hinge of a mount, and a direction with its lever about that hinge. A turning arm runs its belt along
-    /// itself, because the sprocket stands still.
+    /// The hinge of a mount, and a direction with its lever about that hinge. The belt of a turning arm runs along the
+    /// arm, because the sprocket stands still.
     pub(super) fn hung(
         &self,
         mount: Mount,
@@ -352,9 +352,9 @@ impl Scene<'_> {
     }
 }
 
-/// [rad] Smallest angle between two pinching shoes; on a straight run it is less.
+/// [rad] Smallest angle between two pinching shoes; on a straight run, the angle is less.
 const BENT: f64 = 0.05;
-/// Share of the time for which each shoe must bear, so that both do so at once. Shoes that slip past one after
+/// Fraction of the time during which each shoe must bear, so that both do so at once. Shoes that slip past one after
 /// another hold nothing.
 const STAYS: f64 = 0.5;
 

@@ -1,4 +1,4 @@
-//! Plane statics of a stop: which forces within friction and torque limits could balance it?
+//! Plane statics of a stop: can forces within friction and torque limits balance it?
 //!
 //! Every contact has a normal force and friction: anywhere in the friction cone while it sticks, against the slip
 //! on the edge of the cone while it slides. Forces, the moment about the centre of mass and the torque of each
@@ -26,14 +26,14 @@ const MOMENT: usize = 2;
 #[derive(Clone, Debug)]
 pub(super) struct Statics {
     supports: Vec<Support>,
-    /// For each drive: whether its motor acts on the ground.
+    /// For each drive, whether its motor acts on the ground.
     motors: Vec<bool>,
-    /// Least and most force of the motor of each drive, in weights.
+    /// Smallest and largest force of the motor of each drive, in weights.
     bounds: Vec<[f64; 2]>,
     /// [m] Lever arm that converts moments to forces.
     lever: f64,
     radius: f64,
-    /// Force along the chassis, of a model that pushes the chassis: its drive, direction and lever.
+    /// Force of a model that pushes the chassis along its axis: drive, direction and lever.
     push: Option<(usize, (f64, f64, f64))>,
     /// Pivots of the arms.
     hinges: Vec<Hinge>,
@@ -54,7 +54,7 @@ pub(super) struct Support {
 }
 
 impl Support {
-    /// The edges of its friction cone between which its force lies: one while it slides.
+    /// The edges of the friction cone between which its force lies; only one while it slides.
     fn sides(&self) -> &'static [f64] {
         if self.slides == 0.0 {
             &[-1.0, 1.0]
@@ -76,8 +76,8 @@ pub(super) struct Hinge {
 }
 
 impl Statics {
-    /// `bounds` are the least and the most force of the motor of each drive in weights; `lever` [m] converts moments to
-    /// forces.
+    /// `bounds` are the smallest and largest force of the motor of each drive in weights; `lever` [m] converts moments
+    /// to forces.
     pub(super) fn new(
         model: &Model,
         angle: f64,
@@ -104,8 +104,8 @@ impl Statics {
         }
     }
 
-    /// Smallest residual that any choice of forces leaves, as a share of the weight; `None` if the linear program has
-    /// no solution.
+    /// Smallest residual for any choice of forces, as a fraction of the weight; `None` if the linear program has no
+    /// solution.
     pub(super) fn imbalance(&self) -> Option<f64> {
         let forces = self.forces();
         let mut cost = vec![0.0; forces.len()];
@@ -114,7 +114,7 @@ impl Statics {
         found.last().map(|residual| residual.max(0.0))
     }
 
-    /// The same with all friction times a factor.
+    /// The same with all friction multiplied by a factor.
     pub(super) fn with_friction(&self, factor: f64) -> Self {
         let supports = self.supports.iter().map(|support| Support {
             friction: factor * support.friction,
@@ -126,8 +126,8 @@ impl Statics {
         }
     }
 
-    /// By how much each support would have to pull, in weights, in the balance in which they pull the least in all; `None` if
-    /// forces balance in none, up to a residual.
+    /// The pull that each support would need, in weights, in the balance with the smallest total pull; `None` if there
+    /// is no balance up to a residual.
     pub(super) fn least_pulls(&self, residual: f64) -> Option<Vec<f64>> {
         let pushes = self.forces();
         let count: usize = self.supports.iter().map(|s| s.sides().len()).sum();
@@ -257,25 +257,25 @@ struct Force {
 }
 
 impl Force {
-    /// A force of one direction.
+    /// A force in one direction only.
     fn pushing(effect: Vec<f64>) -> Self {
         let bounds = [0.0, f64::INFINITY];
         Self { effect, bounds }
     }
 
-    /// A force of the same line the other way.
+    /// The same force in the opposite direction.
     fn reversed(&self) -> Self {
         Self::pushing(self.effect.iter().map(|share| -share).collect())
     }
 
-    /// A force of both directions.
+    /// A force in either direction.
     fn within(effect: Vec<f64>, most: f64) -> Self {
         let bounds = [-most, most];
         Self { effect, bounds }
     }
 }
 
-/// The solver ends when no constraint is violated, and no cost can be reduced, by more than this.
+/// The solver ends when no constraint is violated, and the cost cannot be reduced, by more than this.
 const ACCURACY: f64 = 1e-9;
 
 /// Rows `a x <= b`.

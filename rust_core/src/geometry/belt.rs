@@ -1,4 +1,4 @@
-//! A belt that runs along an envelope: how it moves what it carries, and its grousers.
+//! A belt that runs along an envelope: the motion of points on it, and its grousers.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use super::hull::{Curve, Stretch};
 use super::{Pose, Rotation, Vector, right_of};
 use crate::scenario::{MAX_GROUSERS, ScenarioError, TrackOutline};
 
-/// How a belt along the hull moves what it carries, per metre of belt travel.
+/// Motion of anything on a belt along the hull, per metre of belt travel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
     /// [m] Centre of the clockwise turn.
@@ -20,7 +20,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// The same motion, seen from a frame in which its own frame is at `pose`.
+    /// The same motion in a frame where its own frame has this `pose`.
     pub(crate) fn seen_from(self, pose: Pose) -> Self {
         Self {
             center: pose.transform_point(self.center),
@@ -34,7 +34,7 @@ impl Motion {
         right_of(point - self.center) * self.turn + self.along
     }
 
-    /// Mixes in a fraction of another motion; at most one of the two turns.
+    /// Interpolates between this motion and another one, of which at most one turns.
     fn mixed(self, other: Self, fraction: f64) -> Self {
         Self {
             center: if self.turn == 0.0 {
@@ -49,7 +49,7 @@ impl Motion {
 }
 
 impl Stretch {
-    /// How a belt moves what it carries on this stretch.
+    /// Motion of anything on a belt on this stretch.
     fn motion(&self) -> Motion {
         match self.curve {
             Curve::Arc(arc) => Motion {
@@ -81,7 +81,7 @@ impl Envelope {
     /// [rad] Direction of belt travel at a position [m] along the hull; it counts full turns.
     pub(crate) fn angle_at(&self, position: f64) -> f64 {
         let inside = position.rem_euclid(self.length());
-        // Not the floor of the quotient, which rounding may lift to the next round.
+        // Not the floor of the quotient, which rounding may raise to the next round.
         let rounds = ((position - inside) / self.length()).round();
         let turned = |stretch: &Stretch| match stretch.curve {
             Curve::Arc(arc) if inside > stretch.start => {
@@ -97,13 +97,13 @@ impl Envelope {
         outward - FRAC_PI_2 - turns - TAU * rounds
     }
 
-    /// Mean motion of what a belt carries within `reach` [m] of a position along the hull; averaged because the
-    /// motion of a tip would jump where an arc joins a run.
+    /// Motion of a belt, averaged within `reach` [m] of a position along the hull: otherwise the motion of a tip would
+    /// jump where an arc joins a run.
     pub(crate) fn motion_at(&self, position: f64, reach: f64) -> Motion {
         let position = position.rem_euclid(self.length());
         let (number, count) = (self.number_at(position), self.stretches.len());
         let here = &self.stretches[number];
-        // The nearer joint of the stretch, and how much of the span lies beyond it.
+        // The nearer joint of the stretch, and the fraction of the span beyond it.
         let (behind, ahead) = (position - here.start, here.start + here.length - position);
         let (gap, beyond) = if behind < ahead {
             (behind, number + count - 1)
@@ -131,10 +131,10 @@ pub struct Grouser {
 }
 
 impl Grouser {
-    /// A grouser of a height and thickness [m] that starts at a position [m] of the belt's line.
+    /// A grouser with a height and thickness [m] that starts at a position [m] on the belt's line.
     pub(crate) fn new(belt: &Arc<Envelope>, position: f64, height: f64, thickness: f64) -> Self {
         let half = 0.5 * thickness;
-        // It reaches into the belt, so that no corner of the ground can slip under it where the belt bends.
+        // It extends into the belt, so that no corner of the ground can get under it where the belt bends.
         let corner = |x: f64, y: f64| Vector::new(x, y);
         Self {
             belt: Arc::clone(belt),
@@ -148,10 +148,10 @@ impl Grouser {
         }
     }
 
-    /// The grousers of a belt, evenly spaced: as many as given, or closest to the outline's pitch.
+    /// The evenly spaced grousers of a belt: the given number, or the one closest to the outline's pitch.
     ///
     /// # Errors
-    /// The pitch makes more grousers than a belt may have.
+    /// The pitch requires more grousers than a belt may have.
     pub(crate) fn along(
         line: &Arc<Envelope>,
         count: Option<u32>,
@@ -173,7 +173,7 @@ impl Grouser {
         &self.corners
     }
 
-    /// Its frame in the chassis frame when the belt has run so far [m].
+    /// Its frame in the chassis frame when the belt has run by `run` [m].
     pub fn place(&self, run: f64) -> Pose {
         let (point, outward) = self.belt.place_at(self.position + run);
         // Turns +y outwards.
@@ -191,8 +191,8 @@ impl Grouser {
         self.belt.angle_at(self.position + run)
     }
 
-    /// How the belt moves a point [m] of the chassis frame when it has run so far [m]: as part of this grouser, unless
-    /// that is elsewhere.
+    /// Motion of a point [m] of the chassis frame with the belt when that has run by `run` [m]: as part of this
+    /// grouser, unless the grouser is elsewhere.
     pub(crate) fn motion_where(&self, run: f64, point: Vector) -> Motion {
         let reach = self
             .corners
@@ -205,7 +205,7 @@ impl Grouser {
         self.belt.motion_at(self.belt.position_of(point), 0.0)
     }
 
-    /// How the belt moves it there, averaged while it runs from `reach` [m] before to `reach` behind.
+    /// Its motion there, averaged while the belt runs from `reach` [m] before to `reach` after.
     pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
         self.belt.motion_at(self.position + run, reach)
     }
@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Averaged over where it comes from and goes to, of which a share lies on an arc and the rest on a run.
+    /// The motion is averaged over a span, part of which is on an arc and the rest on a run.
     #[test]
     fn a_grouser_moves_as_its_motion_says() {
         let discs = [(0.0, 0.1), (0.4, 0.06)].map(|(x, radius)| Disc {

@@ -1,4 +1,4 @@
-//! The part of a solid, bounded above by a polyline, that lies inside an envelope: connected pieces, area and depth.
+//! The part of a solid below a polyline that lies inside an envelope: its connected pieces, area and depth.
 
 use super::Envelope;
 use super::search::maximise;
@@ -66,7 +66,7 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
 
 /// Joins the chords that bound the same piece.
 pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>> {
-    // Where a chord leaves, the rim of the solid follows the envelope clockwise to the next chord that enters.
+    // Where a chord leaves the envelope, the rim of the solid follows that clockwise to the next chord that enters.
     let next = |chord: &Chord| {
         let travel = |other: &Chord| travel_between(belt, chord.leaves, other.enters);
         let order = |i: &usize, j: &usize| travel(&chords[*i]).total_cmp(&travel(&chords[*j]));
@@ -91,7 +91,7 @@ pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>>
 /// [m] Distance along the envelope from one position to another.
 fn travel_between(belt: &Envelope, from: f64, to: f64) -> f64 {
     let travel = (to - from).rem_euclid(belt.length());
-    // Positions in the wrong order by rounding are the same.
+    // Positions that are in the wrong order because of rounding are the same.
     if travel > belt.length() - TOUCHES.value() {
         0.0
     } else {
@@ -148,8 +148,8 @@ impl Piece<'_> {
             for ends in of_chord.windows(2) {
                 let [(of_a, a), (of_b, b)] = [ends[0], ends[1]];
                 let at = |fraction: f64| a + (b - a) * fraction;
-                // Depth changes by no more than the distance moved, so most segments cannot have the deepest
-                // point; on others it is that of one straight run all along.
+                // Depth changes by no more than the distance moved, so most segments cannot contain the deepest
+                // point. On others, the depth may be that below a single straight run.
                 let most = 0.5 * (of_a + of_b + (b - a).length());
                 if most > deepest.0 && belt.depth_below_runs([a, b]) > deepest.0 {
                     // The depth below a convex rim is concave along a line.

@@ -10,7 +10,7 @@ use super::search::maximise;
 use super::{Disc, Vector};
 use crate::units::Metres;
 
-/// [m] Stretches whose distances differ by less count as equally near, whatever the rounding.
+/// [m] Stretches whose distances differ by less count as equally near, regardless of rounding.
 const AS_NEAR: Metres = Metres(1e-8);
 
 /// The convex hull of discs, as arcs and straight runs.
@@ -19,7 +19,7 @@ pub(crate) struct Envelope {
     pub(super) stretches: Vec<Stretch>,
 }
 
-/// Where the hull lies nearest to a point inside it.
+/// The part of the hull nearest to a point inside it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
     /// [m] Depth of the point inside the hull.
@@ -87,7 +87,7 @@ impl Envelope {
         &self.stretches[self.number_at(position)]
     }
 
-    /// Its place in the list of stretches.
+    /// Its index in the list of stretches.
     pub(super) fn number_at(&self, position: f64) -> usize {
         let next = self.stretches.partition_point(|p| p.start <= position);
         next.saturating_sub(1)
@@ -127,7 +127,7 @@ impl Envelope {
         depths.fold(f64::INFINITY, f64::min)
     }
 
-    /// [m] No point of a segment is deeper than this: the depth of its deeper end below a straight run.
+    /// [m] An upper bound for the depth of points of a segment: the depth of its deeper end below a straight run.
     pub(crate) fn depth_below_runs(&self, ends: [Vector; 2]) -> f64 {
         let is_run = |s: &&Stretch| matches!(s.curve, Curve::Run(_));
         let runs = self.stretches.iter().filter(is_run);
@@ -155,7 +155,7 @@ impl Envelope {
             })
     }
 
-    /// The arcs of the hull: disc, outward direction [rad] at the start, and how far it turns clockwise.
+    /// The arcs of the hull: disc, outward direction at the start, and clockwise turn [rad].
     pub(crate) fn arcs(&self) -> Vec<(Disc, f64, f64)> {
         let disc = |&Arc { center, radius, .. }: &Arc| Disc { center, radius };
         let arcs = self.curved().map(|arc| (disc(arc), arc.from, arc.sweep));
@@ -170,8 +170,8 @@ impl Envelope {
         self.stretches.iter().filter(is_run).map(ends)
     }
 
-    /// [rad] The angle at which a body of this hull, with its centre of mass there, stands on level ground: on the run that is
-    /// turned least; 0 if it stands on none.
+    /// [rad] The angle at which a body with this hull and centre of mass stands on level ground, on the run that needs
+    /// the smallest turn; 0 if it can stand on none.
     pub(crate) fn standing_angle(&self, center_of_mass: Vector) -> f64 {
         let stands = self.runs().filter_map(|[a, b]| {
             // Clockwise, its lower runs lead to the rear.
@@ -183,7 +183,7 @@ impl Envelope {
         least.unwrap_or(0.0)
     }
 
-    /// [rad] How far the hull bends round each of the first `count` discs; 0 if it does not touch it.
+    /// [rad] Angle by which the hull bends round each of the first `count` discs; 0 for a disc that it does not touch.
     pub(crate) fn bends(&self, count: usize) -> Vec<f64> {
         let mut bends = vec![0.0; count];
         for arc in self.curved() {
@@ -198,7 +198,7 @@ impl Envelope {
         points.map(|(s, inner)| s.point_at(inner)).collect()
     }
 
-    /// [m] Ways along the hull to these points.
+    /// [m] Positions of these points along the hull.
     pub(crate) fn positions(&self, turn: f64) -> impl Iterator<Item = f64> {
         self.cuts(turn)
             .map(|(stretch, inner)| stretch.start + inner)
@@ -214,7 +214,7 @@ impl Envelope {
         })
     }
 
-    /// The outward normal of the hull at the place nearest to a point.
+    /// The outward normal of the hull at its point nearest to a given point.
     pub(crate) fn outward_at(&self, point: Vector) -> Vector {
         match self.stretches[self.nearest(point).stretch].curve {
             Curve::Arc(arc) => (point - arc.center).normalize_or(Vector::NEG_Y),
@@ -283,7 +283,7 @@ impl Envelope {
             Curve::Arc(arc) => {
                 let spoke = point - arc.center;
                 let turn = (arc.from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
-                // An angle just before the start of the arc means its start, not a whole turn further.
+                // An angle just before the start of the arc means its start, not a full turn later.
                 let turn = if turn > 0.5 * (arc.sweep + TAU) {
                     0.0
                 } else {

@@ -3,7 +3,7 @@
 use super::{Vector, cross, direction};
 use crate::scenario::{GearWheel, ScenarioError, TrackOutline};
 
-/// A wheel with grousers, with all sizes resolved for its place on a robot.
+/// A wheel with grousers, with all sizes resolved for its position on a robot.
 ///
 /// A grouser stands on a chord of the root circle; the two corners of its tip lie on the
 /// circumscribed circle.
@@ -24,7 +24,7 @@ pub struct Gear {
 }
 
 impl Gear {
-    /// The wheel of number `index` (0 is the rearmost); sizes that are not given follow from the outline.
+    /// Builds wheel number `index` (0 is the rearmost); missing sizes follow from the outline.
     ///
     /// The paper gives the size of grousers for large wheels only. Our rules for small wheels: the height is at most
     /// a quarter of the radius, the thickness shrinks with the height, and a wheel has 8 grousers if the robot's
@@ -155,7 +155,7 @@ impl Gear {
         self.directions().flat_map(of_grouser).collect()
     }
 
-    /// [m^2] Area of the outline. parry has areas and moments of polygons only; here the root arcs are exact.
+    /// [m^2] Area of the outline, with exact root arcs; parry has only areas and moments of polygons.
     pub fn area(&self) -> f64 {
         let root = self.root_radius;
         let arc = 0.5 * root * root * self.arc();
@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// The outline as a fine polygon, from the distance of its points alone.
+    /// The outline as a fine polygon, computed only from the distance of its points.
     fn polygon(gear: &Gear, points: usize) -> Vec<Vector> {
         // A flank runs from (x0, y0) on the root circle to (x1, y1) on the circumscribed one.
         let (y0, y1) = (0.5 * gear.base_thickness, 0.5 * gear.tip_thickness);
@@ -243,7 +243,7 @@ mod tests {
         let gear = gear(0.1, 0.02, 9, 0.006, 0.012);
         let whole = gear.area();
         let [coarse, fine] = [8, 80].map(|points| whole - moments(&gear.outline(points)).0);
-        // Chords cut off what falls with the square of their number.
+        // The area that chords cut off is inversely proportional to the square of their number.
         assert!(
             0.0 < fine && fine < 1e-5 * whole,
             "{fine} m^2 of {whole} m^2"
@@ -324,7 +324,7 @@ mod tests {
         }
     }
 
-    /// Grousers of a small wheel are lower than the outline's, and as much thinner.
+    /// Grousers of a small wheel are lower than the outline's, and thinner by the same factor.
     #[test]
     fn sizes_that_are_not_given_follow_from_the_outline() {
         for (radius, index, height, thickness) in [
@@ -353,7 +353,8 @@ mod tests {
         assert!((found.tip_thickness - 0.008).abs() < 1e-15);
     }
 
-    /// Of 8 grousers on a root circle of 0.08 m, 0.02 m high: each has 61 mm, and flanks to the root circle are 79 mm apart.
+    /// Of 8 grousers on a root circle of 0.08 m, 0.02 m high: each has 61 mm, and flanks to the root circle are 79 mm
+    /// apart.
     #[test]
     fn a_wheel_whose_grousers_have_no_room_or_no_size_is_refused() {
         let with = |height: f64, tip: f64, base: f64, count: u32| GearWheel {

@@ -1,11 +1,11 @@
-//! The convex hull of discs: found by rolling a tangent once round, and made of arcs and straight runs. parry's hulls are of
+//! The convex hull of discs as arcs and straight runs, found by rolling a tangent once round; parry has only hulls of
 //! points.
 
 use std::f64::consts::TAU;
 
 use super::{Disc, Vector, cross, direction};
 
-/// [rad, m] Smaller turns are rounding errors of collinear tangents, and shorter ways those of discs that touch.
+/// [rad, m] Smaller turns are rounding errors of collinear tangents, and smaller distances those of discs that touch.
 pub(super) const SAME_TURN: f64 = 1e-12;
 
 /// The arc of the hull round one disc.
@@ -35,7 +35,7 @@ impl Arc {
         }
     }
 
-    /// Whether a vector from the centre points through it, with a margin at its ends.
+    /// Whether a vector from the centre points to the arc, with a margin at its ends.
     fn holds(&self, spoke: Vector, margin: f64) -> bool {
         let [first, last] = self.ends;
         let (after_first, before_last) = (cross(spoke, first), cross(last, spoke));
@@ -84,7 +84,7 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
             .iter()
             .filter_map(|other| Some((*other, turn_to(&discs[disc], &discs[*other], from)?)))
             .reduce(|best, other| {
-                // Of several discs on one tangent take the farthest, so that a run is one piece.
+                // If several discs are on one tangent, take the farthest, so that a run is one piece.
                 let same = (best.1 - other.1).abs() < SAME_TURN;
                 let nearer = distance(other.0) < distance(best.0);
                 if (same && nearer) || (!same && best.1 < other.1) {
@@ -96,7 +96,7 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
         let (to, turn) = next.unwrap_or((disc, TAU));
         let left = TAU - turned;
         if turn > left + SAME_TURN && !arcs.is_empty() {
-            // Once round: the rest belongs to the first arc, which began half-line.
+            // Once round: the rest belongs to the first arc.
             let Arc {
                 disc, from, sweep, ..
             } = arcs[0];
@@ -112,7 +112,7 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
     arcs
 }
 
-/// Whether a disc reaches out of another one by no more than rounding; of equal ones, all but the first are inside.
+/// Whether a disc lies inside another one, up to rounding; of equal discs, all but the first are inside.
 fn is_inside(discs: &[Disc], i: usize) -> bool {
     let inner = &discs[i];
     let mut others = discs.iter().enumerate();
@@ -127,7 +127,7 @@ fn is_inside(discs: &[Disc], i: usize) -> bool {
     })
 }
 
-/// [rad] How far the outward direction turns clockwise on `disc` until `other` reaches as far out.
+/// [rad] Clockwise turn of the outward direction on `disc` until `other` reaches equally far out.
 fn turn_to(disc: &Disc, other: &Disc, outward: f64) -> Option<f64> {
     let axis = other.center - disc.center;
     let distance = axis.length();
@@ -140,7 +140,7 @@ fn turn_to(disc: &Disc, other: &Disc, outward: f64) -> Option<f64> {
     Some(if turn > TAU - SAME_TURN { 0.0 } else { turn })
 }
 
-/// [m, rad] Stretches overlap by this, so that no line can slip between two of them.
+/// [m, rad] Stretches overlap by this, so that no line can pass between two of them.
 const JOINT: f64 = 1e-9;
 
 /// One stretch of the hull.
@@ -278,7 +278,7 @@ mod tests {
         }
     }
 
-    /// Wherever it touches it, and in whatever order they come.
+    /// Wherever they touch, and in any order of the discs.
     #[test]
     fn a_disc_that_touches_a_larger_one_from_inside_leaves_no_trace() {
         let at = |angle: f64, apart: f64, radius: f64| Disc {

@@ -1,4 +1,4 @@
-//! Discs and their tangents, bounds of what is plausible, and the engine's vectors and poses under names that only this file
+//! Discs and their tangents, bounds of plausible numbers, and the engine's vectors and poses, which only this file
 //! imports.
 
 use crate::scenario::TrackOutline;
@@ -22,8 +22,8 @@ pub(crate) fn right_of(v: Vector) -> Vector {
     Vector::new(v.y, -v.x)
 }
 
-/// Whether a vector points between two directions, counter-clockwise and less than half a turn apart, or past one of them by
-/// an angle of at most this sine.
+/// Whether a vector points between two directions, counter-clockwise and less than half a turn apart, or beyond one of
+/// them by an angle whose sine is at most `sine`.
 pub(crate) fn is_between(v: Vector, [first, last]: [Vector; 2], sine: f64) -> bool {
     cross(first, v) >= -sine && cross(v, last) >= -sine && v.dot(first + last) > 0.0
 }
@@ -40,7 +40,7 @@ pub(crate) fn turned_by(angle: f64) -> impl Fn(Vector) -> Vector + Copy {
     move |p| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y)
 }
 
-/// In any SI unit: a thousand times the weight of the heaviest robot. What is formed of such numbers is finite.
+/// In any SI unit: a thousand times the weight of the heaviest robot. Results computed from such numbers are finite.
 const MOST: f64 = 1e18;
 
 /// Whether a run can have produced these numbers; NaN is implausible.
@@ -71,7 +71,7 @@ impl Disc {
         }
     }
 
-    /// The concentric disc with a radius larger by a length [m], or smaller if that is below 0.
+    /// The concentric disc with its radius increased by a length [m], which may be negative.
     pub(crate) fn grown(self, by: f64) -> Self {
         Self {
             radius: self.radius + by,

@@ -1,9 +1,9 @@
 //! Searches along a line.
 
-/// The zero of an increasing function with a change of sign between two places, to rounding.
+/// The zero of an increasing function with a change of sign between two arguments, up to rounding.
 ///
 /// The Illinois method (Dowell and Jarratt 1971): false position, with the value at one end halved when the
-/// other end moves twice. A dozen calls do what takes bisection fifty.
+/// other end moves twice. It takes a dozen calls where bisection takes fifty.
 pub(crate) fn zero(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = ((low, f(low)), (high, f(high)));
     let rounding = f64::EPSILON * (low.0.abs() + high.0.abs());
@@ -35,7 +35,7 @@ pub(crate) fn zero(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// Where a concave function is largest, by golden section.
+/// The argument at which a concave function is largest, by golden section.
 pub(crate) fn maximise(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     const SHARE: f64 = 0.618_033_988_749_894_9;
     let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
@@ -84,7 +84,7 @@ mod tests {
         }
     }
 
-    /// Of a function without a change of sign it is the end that is nearer to one.
+    /// Without a change of sign, the result is the end that is closer to one.
     #[test]
     fn a_zero_beyond_the_ends_is_sought_no_farther_than_the_nearer_end() {
         assert_eq!(zero(1.0, 2.0, |x| x).to_bits(), 1.0_f64.to_bits());

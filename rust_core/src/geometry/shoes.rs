@@ -15,8 +15,8 @@ use super::{Pose, Rotation, Vector, right_of};
 const PHASES: u32 = 16;
 /// Largest ratio of the length of a polygon of shoes to that of the belt round the same discs.
 const LENGTHENED: f64 = 1.1;
-/// Share of the radial motion of pins on a sprocket by which the sprocket is raised above the lower run; otherwise
-/// shoes that it turns down would lift the robot.
+/// Fraction of the radial motion of pins on a sprocket by which the sprocket is raised above the lower run; otherwise
+/// shoes that it turns downwards would lift the robot.
 const LIFT: f64 = 0.5;
 
 /// The closed path of a chain, and the chain on it.
@@ -33,9 +33,9 @@ pub struct ShoeLoop {
 }
 
 impl ShoeLoop {
-    /// A chain of `count` shoes that is taut round the discs, of which the first two are the rear and the front end,
-    /// averaged over its positions. `None` if a shoe would be longer than half the distance of the ends, than the
-    /// diameter of the smallest disc or than a straight run, because it could not go round.
+    /// A chain of `count` shoes that is taut round the discs, on average over its positions; the first two discs are
+    /// the rear and front ends. `None` if a shoe would be longer than half the distance of the ends, the diameter of
+    /// the smallest disc or a straight run, because it could not go round.
     pub(crate) fn new(discs: Vec<Disc>, count: usize) -> Option<Self> {
         let least = Envelope::new(&discs).length() / count as f64;
         let most = LENGTHENED * least;
@@ -53,8 +53,8 @@ impl ShoeLoop {
         chain.taut_between(least, most)
     }
 
-    /// The same chain round a sprocket in place of the rear end, with the number of teeth closest to it; `None` if
-    /// that leaves no run as long as a shoe.
+    /// The same chain round a sprocket at the rear end, with the number of teeth that fits this best; `None` if no run
+    /// is as long as a shoe then.
     pub(crate) fn on_sprocket(self) -> Option<Self> {
         let half = 0.5 * self.pitch;
         let teeth = PI / libm::atan(half / self.discs[0].radius);
@@ -63,13 +63,13 @@ impl ShoeLoop {
         Self { teeth, ..self }.taut_between(least, most)
     }
 
-    /// The chain with the pitch, between these, at which it is taut on average; `None` if its runs are too short.
+    /// The chain with a pitch between two limits at which it is taut on average; `None` if its runs are too short.
     fn taut_between(self, least: f64, most: f64) -> Option<Self> {
         if ![least, most].into_iter().all(|pitch| self.has_runs(pitch)) {
             return None;
         }
         let fraction = |phase: u32| f64::from(phase) / f64::from(PHASES);
-        // Shoes that bend round many small discs may make it longer still.
+        // Shoes that bend round many small discs may make it even longer.
         let is_between = |phase: u32| {
             let excess = |p: f64| self.excess(p, fraction(phase) * p, 0.0);
             excess(least) < 0.0 && 0.0 < excess(most)
@@ -122,8 +122,8 @@ impl ShoeLoop {
 
     /// Discs to whose hull the pin lines are tangent, with shoes of a pitch [m].
     ///
-    /// A sprocket is as large as its teeth need, and its axle is where the lower run stays in place, apart from the
-    /// room for its polygon.
+    /// The size of a sprocket follows from its teeth, and its axle is placed so that the lower run stays in place,
+    /// apart from the clearance for its polygon.
     pub(crate) fn ends(&self, pitch: f64) -> Vec<Disc> {
         let Some(teeth) = self.teeth else {
             return self.discs.clone();
@@ -137,15 +137,15 @@ impl ShoeLoop {
         vec![Disc { center, radius }, front]
     }
 
-    /// [m] How far out the front end must be to keep the chain taut when it has run so far [m].
+    /// [m] Extension of the front end that keeps the chain taut when it has run by a distance [m].
     pub(crate) fn travel(&self, run: f64) -> f64 {
         let phase = run.rem_euclid(self.pitch);
         let reach = 0.5 * self.pitch;
         zero(-reach, reach, |out| -self.excess(self.pitch, phase, out))
     }
 
-    /// Frames of the shoes in the chassis frame when the chain has run so far [m] and is taut: x along its travel, y
-    /// outwards, the origin halfway between the pins.
+    /// Frames of the shoes in the chassis frame when the chain is taut and has run by a distance [m]: x along its
+    /// travel, y outwards, the origin halfway between the pins.
     pub(crate) fn places(&self, run: f64) -> Vec<Pose> {
         let phase = run.rem_euclid(self.pitch);
         let path = self.path(self.pitch, self.travel(run));
@@ -165,13 +165,13 @@ impl ShoeLoop {
             .collect()
     }
 
-    /// How the chain moves a shoe whose origin is there, per metre of chain travel, averaged while the shoe passes.
+    /// Motion of a shoe with its origin at a point, per metre of chain travel, averaged while the shoe passes.
     pub(crate) fn motion_at(&self, origin: Vector) -> Motion {
         let path = Envelope::new(&self.ends(self.pitch));
         path.motion_at(path.position_of(origin), 0.5 * self.pitch)
     }
 
-    /// [m] By how much a chain of a pitch is too long, with the front end so far out and a pin so far from the
+    /// [m] Excess length of a chain with this pitch, extension of the front end, and distance of a pin from the
     /// beginning of the path.
     fn excess(&self, pitch: f64, phase: f64, out: f64) -> f64 {
         let path = self.path(pitch, out);
@@ -180,7 +180,7 @@ impl ShoeLoop {
         last - first - path.length()
     }
 
-    /// [m] Position on the path of a pin that has run so far from its beginning; a sprocket turns its pins evenly.
+    /// [m] Position on the path of a pin at a distance from its beginning; a sprocket turns its pins evenly.
     fn first_position(&self, phase: f64) -> f64 {
         match self.teeth {
             Some(teeth) => {
@@ -202,7 +202,7 @@ impl ShoeLoop {
         std::iter::successors(Some(phase), next).take(self.count + 1)
     }
 
-    /// The path of the pins, with the front end so far out [m].
+    /// The path of the pins, with the front end extended by `out` [m].
     fn path(&self, pitch: f64, out: f64) -> Envelope {
         let mut discs = self.ends(pitch);
         discs[1].center.x += out;
@@ -327,7 +327,7 @@ mod tests {
         chain.on_sprocket().expect("they fit on a sprocket")
     }
 
-    /// The pin circle is that of chords of a pitch, and the drum touches their middles.
+    /// Chords of the pin circle are one pitch long, and the drum touches their middles.
     #[test]
     fn a_sprocket_has_as_many_teeth_as_fit_and_turns_its_pins_evenly() {
         let chain = on_sprocket();
@@ -391,7 +391,7 @@ mod tests {
         }
     }
 
-    /// Half a pitch before a joint it begins to turn, and in the middle of a run it does not.
+    /// It begins to turn half a pitch before a joint, and does not turn in the middle of a run.
     #[test]
     fn a_shoe_moves_along_its_run_and_turns_about_its_disc() {
         let chain = ShoeLoop::new(ends(0.0505, 0.0505), 22).expect("its shoes fit");

@@ -56,7 +56,7 @@ impl Teeth {
         }
     }
 
-    /// [m] Radius at which one turn moves the chain by as many pitches as there are teeth.
+    /// [m] Radius at which one turn moves the chain by one pitch per tooth.
     pub fn drive_radius(&self) -> f64 {
         self.count as f64 * self.pitch / TAU
     }
@@ -213,7 +213,7 @@ mod tests {
         }
     }
 
-    /// The load of a driven pin is along the shoe behind it, that of a braked one along the shoe ahead.
+    /// The load on a driven pin is along the shoe behind it, and on a braked pin along the shoe ahead.
     #[test]
     fn a_flank_pushes_along_the_shoe() {
         let teeth = Teeth::new(7, 0.0486, 0.064);
@@ -273,7 +273,7 @@ mod tests {
         assert!((teeth.drive_radius() * TAU - 0.44).abs() < 1e-15);
     }
 
-    /// Their own seats are half the play away on either side.
+    /// The seats are half the play away on either side.
     #[test]
     fn flanks_of_a_picture_are_where_a_pin_swings_past_and_radial_below_its_seat() {
         for (count, most) in [(7, 0.0), (11, 0.0), (14, 1.0)] {

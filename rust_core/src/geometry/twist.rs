@@ -30,7 +30,7 @@ impl Twist {
         }
     }
 
-    /// The sum with a share of a change.
+    /// The sum with a fraction of a change.
     pub(crate) fn plus(self, change: Self, share: f64) -> Self {
         Self {
             velocity: self.velocity + change.velocity * share,

@@ -7,8 +7,8 @@ use crate::geometry::{Disc, Vector, left_of};
 
 /// Whether no part reaches into the ground by more than a tolerance [m].
 ///
-/// Faces and the arcs of corners together are all of the surface. A part that is off all of it is outside the ground, unless
-/// it lies wholly inside; so one of its points must be over the ground.
+/// Faces and the arcs of corners are the whole surface. A part that touches none of it is outside the ground, unless it
+/// is entirely inside; so one of its points must be above the ground.
 pub(super) fn is_clear(
     layout: &Layout,
     places: &[Place],
@@ -61,10 +61,10 @@ pub(super) fn is_clear(
     })
 }
 
-/// [m] Distance of a part from a segment grown by a radius; below 0 only if they overlap.
+/// [m] Distance of a part from a segment grown by a radius; negative only if they overlap.
 ///
-/// Two convex bodies are apart by the most that any direction separates them, and that direction is normal to a straight
-/// run, to the segment, or leads from the centre of an arc to an end.
+/// The distance of two convex bodies is their largest separation along any direction; that direction is normal to a
+/// straight run or to the segment, or leads from the centre of an arc to an end.
 pub(super) fn distance(
     solid: &Solid,
     discs: &[Disc],

@@ -1,4 +1,4 @@
-//! A surface of the robot on a place of the ground, as a condition on the robot's pose.
+//! A surface of the robot on a place of the ground, as a condition for the robot's pose.
 
 use super::layout::{Layout, Outline};
 use super::places::{Facing, Place};
@@ -7,7 +7,7 @@ use crate::geometry::{Disc, Vector, cross, left_of};
 /// Sine of the angle below which two lines are parallel.
 pub(super) const PARALLEL: f64 = 1e-9;
 
-/// Where the robot's chassis frame is.
+/// The pose of the robot's chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Posture {
     /// [m] Its origin.
@@ -54,12 +54,12 @@ pub(super) enum Kind {
     OnFace(Disc, Vector, f64),
     /// A disc on a corner with this centre and radius [m].
     OnCorner(Disc, Vector, f64),
-    /// A straight run, with this unit vector out of the robot and this distance [m] from its origin, on a corner with this
-    /// centre and radius [m].
+    /// A straight run, with this unit vector out of the robot and this distance [m] from its origin, on a corner with
+    /// this centre and radius [m].
     Across(Vector, f64, Vector, f64),
 }
 
-/// Where the robot's origin can be at one angle: on a line `normal . p = offset`, or on a circle.
+/// Positions of the robot's origin at one angle: on a line `normal . p = offset`, or on a circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Locus {
     Line(Vector, f64),
@@ -69,7 +69,7 @@ pub(super) enum Locus {
 /// A contact in a pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
-    /// [m] Distance from the ground, which is below 0 inside.
+    /// [m] Distance from the ground, negative inside.
     pub gap: f64,
     /// Unit vector from the ground to the robot, where the gap is 0.
     pub normal: Vector,
@@ -78,8 +78,8 @@ pub(super) struct Touch {
 }
 
 impl Contact {
-    /// Every surface on every place of its lane, but for points on points, which have no normal: these are the ends of what
-    /// runs and faces beside them can do.
+    /// Every surface on every place of its lane, except points on points, which have no normal and are limits of
+    /// contacts with the runs and faces beside them.
     pub(super) fn all(layout: &Layout, places: &[Place]) -> Vec<Self> {
         let mut contacts = Vec::new();
         for (i, surface) in layout.surfaces.iter().enumerate() {
@@ -113,7 +113,7 @@ impl Contact {
         contacts
     }
 
-    /// The same, seen from another origin of the ground.
+    /// The same, relative to another origin of the ground.
     pub(super) fn seen_from(mut self, origin: Vector) -> Self {
         match &mut self.kind {
             Kind::OnFace(_, normal, height) => *height -= normal.dot(origin),
@@ -130,7 +130,7 @@ impl Contact {
         }
     }
 
-    /// Where the robot's origin can be when it is turned.
+    /// Positions of the robot's origin at an orientation.
     pub(super) fn locus(&self, turn: Turn) -> Locus {
         match self.kind {
             Kind::OnFace(disc, normal, height) => {
@@ -147,12 +147,12 @@ impl Contact {
         }
     }
 
-    /// How it touches in a pose.
+    /// The touch in a pose.
     pub(super) fn touch(&self, posture: &Posture) -> Touch {
         self.touch_turned(posture.position, Turn::by(posture.angle))
     }
 
-    /// The same for a position [m] and a turn.
+    /// The same for a position [m] and an orientation.
     pub(super) fn touch_turned(&self, position: Vector, turn: Turn) -> Touch {
         match self.kind {
             Kind::OnFace(disc, normal, height) => {
@@ -185,13 +185,14 @@ impl Contact {
         }
     }
 
-    /// How the gap changes with position and angle; a force of 1 N along the normal has this moment about the origin.
+    /// Derivatives of the gap with respect to position and angle; the latter is the moment about the origin of a force
+    /// of 1 N along the normal.
     pub(super) fn gradient(touch: &Touch, position: Vector) -> [f64; 3] {
         let moment = cross(touch.point - position, touch.normal);
         [touch.normal.x, touch.normal.y, moment]
     }
 
-    /// Whether the piece of the outline really meets the place in a pose in which line and circle touch.
+    /// Whether the piece of the outline really touches the place in a pose in which the extended line or circle does.
     pub(super) fn is_real(
         &self,
         layout: &Layout,
@@ -225,13 +226,14 @@ impl Contact {
         }
     }
 
-    /// Whether both are never at the same time, or are one then, within a tolerance [m]: a disc on a face and on the corner at
-    /// its end, a run and the disc at its end on one corner, faces in one plane, a corner between discs that touch.
+    /// Whether two contacts never occur together, or coincide then, within a tolerance [m]: a disc on a face and on the
+    /// corner at its end, a run and the disc at its end on one corner, faces in one plane, a corner between discs that
+    /// touch.
     pub(super) fn is_one_with(&self, other: &Self, tolerance: f64) -> bool {
         if self.surface != other.surface && self.place != other.place {
             return false;
         }
-        // How line and circle lie to each other does not depend on the angle.
+        // The relative position of line and circle does not depend on the angle.
         let turn = Turn::by(0.3);
         match [self, other].map(|contact| contact.locus(turn)) {
             [Locus::Line(normal, offset), Locus::Circle(center, radius)]
@@ -242,8 +244,8 @@ impl Contact {
             [Locus::Line(..), Locus::Line(..)] => {
                 self.surface == other.surface && self.is_parallel_to(other)
             }
-            // Wheels that touch have a corner between them only at that point, where it would have to be a needle; discs of
-            // which one lies within the other and touches it have one normal there.
+            // A corner can be between wheels that touch only at that point, if it is a needle; if one disc is inside
+            // the other and touches it, both have the same normal there.
             [Locus::Circle(one, r), Locus::Circle(other, s)] => {
                 let distance = (one - other).length();
                 (distance - r - s).abs() < tolerance || distance < (r - s).abs() + tolerance
@@ -252,7 +254,7 @@ impl Contact {
     }
 }
 
-/// The line through both points in which two circles meet; without a direction if they are about one centre.
+/// The line through both intersections of two circles; without a direction if they are concentric.
 pub(super) fn radical(one: (Vector, f64), other: (Vector, f64)) -> (Vector, f64) {
     let between = other.0 - one.0;
     let offset = 0.5
@@ -260,7 +262,7 @@ pub(super) fn radical(one: (Vector, f64), other: (Vector, f64)) -> (Vector, f64)
     (between, offset)
 }
 
-/// Where two lines meet, times the last number.
+/// The intersection of two lines, multiplied by the last number.
 pub(super) fn meeting(one: (Vector, f64), other: (Vector, f64)) -> (Vector, f64) {
     let point = left_of(one.0) * other.1 - left_of(other.0) * one.1;
     (point, cross(one.0, other.0))

@@ -1,8 +1,8 @@
 //! All poses that three contacts fix.
 //!
-//! Three contacts make three equations for position and angle. At one angle each keeps the robot's origin on a line or on a
-//! circle, and two circles share a line, too; so two lines give the origin, and what is left is one polynomial in cosine
-//! and sine of the angle, of degree 6 at most.
+//! Three contacts are three equations for position and angle. At one angle, each keeps the robot's origin on a line or
+//! on a circle, and two circles give a line, too. So two lines give the origin, and one polynomial in cosine and sine
+//! of the angle remains, of degree at most 6.
 
 use super::contact::{Contact, Locus, PARALLEL, Posture, Turn, meeting, radical};
 use super::setting::{Setting, TOUCHING, is_same};
@@ -46,7 +46,7 @@ impl Setting {
     }
 }
 
-/// Adds the poses in which three contacts meet, whether or not the pieces are there.
+/// Adds the poses in which three contacts touch if their lines and circles are extended.
 pub(super) fn meet(
     three: &[Contact; 3],
     ranges: impl Iterator<Item = [f64; 2]>,
@@ -99,7 +99,7 @@ pub(super) fn apart(one: (Vector, f64), other: (Vector, f64)) -> Difference {
     [value, one.1.abs() + other.1.abs()]
 }
 
-/// A line; of a circle, nothing that matters.
+/// The normal and offset of a line; for a circle the pair is not a line.
 pub(super) fn line(locus: Locus) -> (Vector, f64) {
     match locus {
         Locus::Line(normal, offset) | Locus::Circle(normal, offset) => (normal, offset),
@@ -109,7 +109,7 @@ pub(super) fn line(locus: Locus) -> (Vector, f64) {
 /// A line as its normal and its offset, or a circle as its centre and its radius.
 type Pair = (Vector, f64);
 
-/// Lines that hold the origin at one angle, own ones first, and a circle, if there is one.
+/// Lines through the origin's position at one angle, those of contacts first, and a circle if there is one.
 fn lines(loci: &[Locus; 3]) -> ([Pair; 3], Option<Pair>) {
     let mut lines = [(Vector::ZERO, 0.0); 3];
     let mut count = 0;
@@ -134,7 +134,7 @@ fn lines(loci: &[Locus; 3]) -> ([Pair; 3], Option<Pair>) {
     (lines, first)
 }
 
-/// What is zero if three lines, or two lines and a circle, have a point in common.
+/// A function that is zero if three lines, or two lines and a circle, meet in a point.
 fn residual(loci: &[Locus; 3]) -> Difference {
     let (lines, circle) = lines(loci);
     let (point, scale) = meeting(lines[0], lines[1]);
@@ -148,7 +148,7 @@ fn residual(loci: &[Locus; 3]) -> Difference {
     }
 }
 
-/// Where the origin can be at an angle at which that is zero.
+/// Positions of the origin at a zero of this function.
 fn positions(loci: &[Locus; 3]) -> Vec<Vector> {
     let (lines, circle) = lines(loci);
     let count = if circle.is_some() { 2 } else { 3 };
@@ -164,7 +164,7 @@ fn positions(loci: &[Locus; 3]) -> Vec<Vector> {
     match (best, circle) {
         (Some((_, point)), None) => vec![point],
         (Some((sine, point)), Some(_)) if sine > 1e-6 => vec![point],
-        // Lines that are one: where it meets the circle. Two circles that are one have none.
+        // If the lines coincide, the intersections with the circle; two circles that coincide have none.
         (_, Some(circle)) => {
             let length = |line: &(Vector, f64)| line.0.length_squared();
             let line = if length(&lines[0]) > length(&lines[1]) {
@@ -178,7 +178,7 @@ fn positions(loci: &[Locus; 3]) -> Vec<Vector> {
     }
 }
 
-/// Where a line meets a circle, or comes nearest to it.
+/// The intersections of a line and a circle, or the nearest point of the line.
 pub(super) fn on_circle(
     (normal, offset): (Vector, f64),
     (center, radius): (Vector, f64),
@@ -214,7 +214,7 @@ fn polished(three: &[Contact; 3], near: Posture) -> Option<Posture> {
         posture.position -= Vector::new(step[0], step[1]);
         posture.angle -= step[2];
     }
-    // Where contacts come together without crossing, steps are halves: their sum is near enough.
+    // At double zeros, each step halves the error; the sum of steps is close enough.
     let gap = |contact: &Contact| contact.touch(&posture).gap.abs();
     three
         .iter()

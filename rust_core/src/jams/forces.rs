@@ -15,10 +15,10 @@ pub(super) struct Push {
     pub slope: f64,
 }
 
-/// What carries the robot: the normal force and the friction of each contact, in weights.
+/// The load of each contact: normal force and friction, in weights.
 pub(super) type Loads = Vec<[f64; 2]>;
 
-/// Share of the weight below which a pull is rounding.
+/// Fraction of the weight below which a pull is a rounding error.
 const LEAST: f64 = 1e-9;
 
 impl Setting {
@@ -43,7 +43,8 @@ impl Setting {
         let center = self.layout.center_of_mass;
         let force = touch.normal + right_of(touch.normal) * push.slope;
         let moment = match contact.kind {
-            // About the axle, friction has the radius for its lever: so this is linear in the position, off the circle, too.
+            // About the axle, friction has the radius as its lever, so this is linear in the position, even off the
+            // circle.
             Kind::OnCorner(disc, ..) => {
                 cross(turn.apply(disc.center - center), force) + disc.radius * push.slope
             }
@@ -56,8 +57,8 @@ impl Setting {
 
     /// Loads of contacts that balance the weight in a pose; `None` if none do.
     ///
-    /// Where more than one choice does, the mean of those that use three pushes at most: by Carathéodory's theorem, these
-    /// span all of them.
+    /// If several choices do, the result is the mean of those that use at most three pushes; by Carathéodory's theorem,
+    /// these span all choices.
     pub(super) fn loads(&self, contacts: &[usize], posture: &Posture) -> Option<Loads> {
         let turn = Turn::by(posture.angle);
         let pushes: Vec<Push> = contacts.iter().flat_map(|i| self.pushes(*i)).collect();
@@ -86,7 +87,7 @@ impl Setting {
     }
 }
 
-/// Calls for every choice of three, two or one wrenches with shares of at least 0 that carry a weight of 1.
+/// Calls a function for every choice of one to three wrenches whose multiples, of at least 0, carry a weight of 1.
 pub(super) fn for_each_choice(wrenches: &[[f64; 3]], take: &mut impl FnMut(&[(usize, f64)])) {
     let n = wrenches.len();
     let weight = [0.0, 1.0, 0.0];
@@ -105,15 +106,15 @@ pub(super) fn for_each_choice(wrenches: &[[f64; 3]], take: &mut impl FnMut(&[(us
             }
         }
     }
-    // Fewer than three that carry it are no choice of three where the third has no share of its own.
+    // If fewer than three carry it, choices of three with a third one that carries nothing do not count.
     if n < 3 {
         for_each_pair(wrenches, take);
     }
 }
 
-/// The same for two, or one, which carry it only in particular poses: up to rounding.
+/// The same, up to rounding, for one or two wrenches, which carry it only in particular poses.
 fn for_each_pair(wrenches: &[[f64; 3]], take: &mut impl FnMut(&[(usize, f64)])) {
-    /// Share of the weight that may be left.
+    /// Fraction of the weight that may remain.
     const LEFT: f64 = 1e-7;
     for (i, a) in wrenches.iter().enumerate() {
         if a[0].abs() <= LEFT * a[1] && a[2].abs() <= LEFT * a[1] {

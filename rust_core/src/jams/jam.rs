@@ -1,4 +1,4 @@
-//! A jam, and what carries the robot there.
+//! A jam, with the contacts that carry the robot.
 
 use super::contact::{Posture, Turn};
 use super::forces::Loads;
@@ -6,14 +6,14 @@ use super::setting::Setting;
 use crate::geometry::Vector;
 use crate::robot::BodyKind;
 
-/// A pose in which a robot can stand still while its drives run.
+/// A pose in which a robot can stand still with its drives running.
 #[derive(Clone, Debug)]
 pub struct Jam {
-    /// [m] Where its chassis frame is.
+    /// [m] Position of the chassis frame.
     pub position: Vector,
     /// [rad] Its angle.
     pub angle: f64,
-    /// What carries it.
+    /// The contacts that carry it.
     pub contacts: Vec<JamContact>,
 }
 

@@ -1,4 +1,4 @@
-//! A robot as one rigid body: what of it can touch the ground, and how the ground rubs there while the drives run.
+//! A robot as one rigid body: its surfaces that can touch the ground, and the friction there while the drives run.
 
 use crate::geometry::{Disc, Envelope, Pose, Vector, left_of};
 use crate::robot::{BodyKind, Model, Part, Shape};
@@ -9,7 +9,7 @@ use crate::scenario::ScenarioError;
 pub(super) struct Layout {
     /// [m] Centre of mass of all of it.
     pub center_of_mass: Vector,
-    /// [m] No point of it is farther from the centre of mass.
+    /// [m] Largest distance of its points from the centre of mass.
     pub reach: f64,
     pub surfaces: Vec<Surface>,
     pub solids: Vec<Solid>,
@@ -25,7 +25,7 @@ pub(super) struct Surface {
     pub lane: usize,
     pub shape: Outline,
     pub grip: Grip,
-    /// Its own friction; the smaller of this and that of the ground counts.
+    /// Its own coefficient of friction; the smaller of this and that of the ground counts.
     pub friction_limit: f64,
 }
 
@@ -46,11 +46,12 @@ pub(super) enum Outline {
 /// How friction acts on a surface of a robot at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Grip {
-    /// It slides on the ground, driven, so friction pushes the robot this way along it: +1 as when driving forwards.
+    /// It is driven and slides on the ground, so friction pushes the robot in this direction along it: +1 as when
+    /// driving forwards.
     Driven(f64),
-    /// It rolls without a motor: there is none.
+    /// It rolls without a motor: no friction.
     Free,
-    /// It stands still: any within the cone.
+    /// It stands still: any friction within the cone.
     Still,
 }
 
@@ -68,7 +69,8 @@ impl Layout {
     /// A robot whose drives run forwards or backwards.
     ///
     /// # Errors
-    /// A part whose shape turns with its drive, such as a gear wheel, a grouser or a shoe; a drive that pushes the chassis.
+    /// A part whose shape turns with its drive, such as a gear wheel, a grouser or a shoe; a drive that pushes the
+    /// chassis.
     pub(super) fn new(model: &Model, forwards: bool) -> Result<Self, ScenarioError> {
         check(model)?;
         let running = model.running_at_start(0.0);
@@ -103,7 +105,7 @@ impl Layout {
     }
 }
 
-/// Refuses what has no outline of its own at rest, or is moved by no surface.
+/// Refuses parts without a fixed outline, and robots that are not driven by their surfaces.
 fn check(model: &Model) -> Result<(), ScenarioError> {
     let turning = |part: &Part| match &part.shape {
         Shape::Gear { .. } => Some("gear wheels"),
@@ -158,7 +160,7 @@ impl Solid {
     fn outlines(&self) -> Vec<Outline> {
         let hull = Envelope::new(&self.discs);
         let round = hull.arcs().into_iter().map(|(disc, ..)| disc);
-        // A disc that the hull touches in two places is one circle.
+        // A disc that the hull touches at two places is one circle.
         let mut circles: Vec<Disc> = Vec::new();
         for disc in round {
             if !circles.contains(&disc) {

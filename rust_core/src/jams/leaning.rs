@@ -1,8 +1,9 @@
-//! All poses in which one or two contacts carry a robot: it leans at a wall, or balances on a corner.
+//! All poses in which one or two contacts carry a robot: it leans against a wall, or balances on a corner.
 //!
-//! Two contacts leave one freedom of the pose, and two forces for three balances: where the lines of both forces and that
-//! of the weight meet in a point is one more equation. Where a circle is met, the product of both branches has no square
-//! root: it is a polynomial in cosine and sine of the angle, of degree 10 at most, over a power of a distance.
+//! Two contacts leave one degree of freedom of the pose, and two forces for three balances. One more equation is that
+//! the lines of both forces and of the weight meet in a point. Where the origin is on a circle, the product of both
+//! branches has no square root: it is a polynomial in cosine and sine of the angle, of degree at most 10, over a power
+//! of a distance.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +20,7 @@ use crate::limits::Cancel;
 const FOUND: f64 = 1e-11;
 
 impl Setting {
-    /// Every pose in which one contact or two carry the robot.
+    /// Every pose in which one or two contacts carry the robot.
     pub(super) fn leaning(&self, cancel: &Cancel) -> Result<Vec<Posture>, Error> {
         let mut found = Vec::new();
         for i in 0..self.contacts.len() {
@@ -53,7 +54,7 @@ impl Setting {
         let center_of_mass = self.layout.center_of_mass;
         let up = Vector::new(-push.slope, 1.0).normalize();
         match contact.kind {
-            // On a level face it is vertical only without friction, and then anywhere on it.
+            // On a level face it is vertical only without friction, and then anywhere on the face.
             Kind::OnFace(..) => {}
             Kind::OnCorner(disc, center, radius) => {
                 let arm = center_of_mass - disc.center;
@@ -107,7 +108,7 @@ fn within_half_a_turn(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// Two contacts, seen from a point of the ground, and two forces of theirs.
+/// Two contacts, relative to a point of the ground, and one force of each.
 struct Both<'a> {
     setting: &'a Setting,
     pair: [Contact; 2],
@@ -116,8 +117,8 @@ struct Both<'a> {
 }
 
 impl Both<'_> {
-    /// What is zero if the two forces and the weight have a point in common, or are parallel: a polynomial of the position of
-    /// degree 2 at most.
+    /// A polynomial of the position, of degree at most 2, that is zero if the two forces and the weight meet in a point
+    /// or are parallel.
     fn imbalance(&self, position: Vector, turn: Turn) -> f64 {
         let [value, _] = self.difference(position, turn);
         value
@@ -130,7 +131,7 @@ impl Both<'_> {
         [one - other, one.abs() + other.abs()]
     }
 
-    /// Poses near all in which that is zero.
+    /// Poses near all zeros of this function.
     fn candidates(&self, bins: u128) -> Vec<Posture> {
         let ranges = self.setting.bins.ranges(bins);
         let [one, other] = &self.pair;
@@ -159,8 +160,8 @@ impl Both<'_> {
         angles.into_iter().flat_map(on).collect()
     }
 
-    /// Of two discs on two corners: the angle at which both circles are closest to being one, and within which of it [rad] the
-    /// places where they meet turn sharply.
+    /// For two discs on two corners, the angle at which both circles almost coincide, and the range about it [rad] in
+    /// which their intersections move fast.
     fn closest(&self) -> Option<(f64, f64)> {
         let [Kind::OnCorner(one, p, _), Kind::OnCorner(other, q, _)] =
             self.pair.map(|contact| contact.kind)
@@ -180,7 +181,8 @@ impl Both<'_> {
         self.pair.map(|contact| contact.locus(turn))
     }
 
-    /// The imbalance: times its denominator where two lines meet, and of both places where a circle is met, their product.
+    /// The imbalance, multiplied by its denominator where two lines meet; for a circle, the product of both
+    /// intersections.
     fn equation(&self, turn: Turn) -> Difference {
         let (line, circle) = match self.loci(turn) {
             [Locus::Line(n, k), Locus::Line(m, l)] => {
@@ -199,8 +201,8 @@ impl Both<'_> {
         let ((normal, offset), (center, radius)) = (line, circle);
         let square = normal.length_squared();
         let off = offset - normal.dot(center);
-        // On the circle it is center + foot +- root along, where the root may be that of a number below 0. A polynomial of
-        // degree 2 in the root has an even part and an odd one, known from three places.
+        // On the circle it is center + foot +- root along, where the root may be imaginary. A polynomial of degree 2 in
+        // the root has an even and an odd part, known from three values.
         let foot = center + normal * (off / square);
         let along = left_of(normal) * (radius / square.sqrt());
         let root = 1.0 - off * off / (radius * radius * square);
@@ -213,7 +215,7 @@ impl Both<'_> {
         [even * even - slope * slope * root, size * size]
     }
 
-    /// Where the origin is at an angle: up to two places.
+    /// The positions of the origin at an angle, up to two.
     fn positions(&self, turn: Turn) -> Vec<Vector> {
         match self.loci(turn) {
             [Locus::Line(n, k), Locus::Line(m, l)] => {
@@ -226,7 +228,7 @@ impl Both<'_> {
             [Locus::Circle(o, r), Locus::Circle(q, s)] if (o - q).length() > 1e-9 * r => {
                 on_circle(radical((o, r), (q, s)), (o, r)).to_vec()
             }
-            // Two circles that are one: both forces are parallel, and so vertical.
+            // The circles coincide: both forces are parallel, and so vertical.
             [Locus::Circle(o, r), _] => {
                 let up = |push: Push| Vector::new(-push.slope, 1.0).normalize();
                 self.pushes.map(|push| o + up(push) * r).to_vec()
@@ -234,7 +236,7 @@ impl Both<'_> {
         }
     }
 
-    /// The pose on two lines that are one at an angle.
+    /// The pose on two lines that coincide at an angle.
     fn along_line(&self, angle: f64) -> Option<Posture> {
         let turn = Turn::by(angle);
         let [Locus::Line(normal, offset), _] = self.loci(turn) else {

@@ -1,8 +1,9 @@
-//! All poses in which a robot can stand still while its drives run: where a model of its track can jam, computed, not sampled.
+//! All poses in which a robot can stand still with its drives running, which is where a model of its track can jam:
+//! computed, not sampled.
 //!
-//! Surfaces that are driven slide at every contact, in a direction that is known, so each contact has one unknown, its
-//! normal force. Three contacts fix the pose and their forces, two or one leave as many freedoms as they lack forces: all
-//! equilibria are isolated, and each is a zero of a polynomial. docs/studies/jams.md, "Theory".
+//! Driven surfaces slide at every contact in a known direction, so each contact has one unknown, its normal force.
+//! Three contacts fix the pose and their forces; two or one leave as many degrees of freedom as they lack forces. So
+//! all equilibria are isolated, and each is a zero of a polynomial. docs/studies/jams.md, "Theory".
 
 pub(crate) mod certify;
 mod clear;
@@ -32,12 +33,12 @@ use crate::robot::Model;
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::Ground;
 
-/// All jams of the robot of a scenario, built on its ground, from the rear; torque is ample, and flippers stay as they are at
-/// the start.
+/// All jams of the robot of a scenario, built on its ground, from the rear. Torque is not limited, and flippers stay as
+/// at the start.
 ///
 /// # Errors
-/// [`Error::Scenario`] for a robot whose shape turns with its drives, one that is not driven, a ground that differs between
-/// the tracks; [`Error::Interrupted`] once `cancel` is asked.
+/// [`Error::Scenario`] for a robot whose shape turns with its drives, one that is not driven, a ground that differs
+/// between the tracks; [`Error::Interrupted`] once `cancel` is asked.
 pub(crate) fn jams(
     scenario: &Scenario,
     built: (&Model, &Ground),
@@ -63,18 +64,18 @@ pub(crate) fn jams(
     Ok(jams)
 }
 
-/// A pose that three contacts fix, and at which frictions they carry the robot there.
+/// A pose that three contacts fix, and the friction at which they carry the robot there.
 #[derive(Clone, Copy, Debug)]
 pub struct JamRange {
-    /// [m] Where its chassis frame is.
+    /// [m] Position of the chassis frame.
     pub position: Vector,
     /// [rad] Its angle.
     pub angle: f64,
-    /// The least friction and the greatest.
+    /// The smallest and the largest friction.
     pub friction: [f64; 2],
 }
 
-/// The jams on three contacts at every friction up to `most`, that of the ground aside; as [`jams`].
+/// The jams on three contacts at any friction up to `most`, regardless of the ground's own; see [`jams`].
 ///
 /// # Errors
 /// As [`jams`].
@@ -109,7 +110,7 @@ fn setting(
     Setting::new(layout, Place::of(ground), [-most, most], cancel)
 }
 
-/// Refuses what has no isolated jams.
+/// Refuses scenarios without isolated jams.
 fn check(scenario: &Scenario, ground: &Ground) -> Result<(), ScenarioError> {
     if ground.tracks > 1 {
         let rule = "must be the same under both tracks";

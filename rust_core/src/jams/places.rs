@@ -59,7 +59,7 @@ impl Place {
         let at = |place: usize| profile.points[place];
         let faces: Vec<[Vector; 2]> = from.zip(to).map(|(a, b)| [at(a), at(b)]).collect();
         let normal = |face: [Vector; 2]| left_of(face[1] - face[0]).normalize_or(Vector::Y);
-        // Ground whose faces differ in friction is refused before.
+        // Ground whose faces differ in friction is refused earlier.
         let friction = profile.friction.most().coefficient;
         for face in &faces {
             if face[0] == face[1] {
@@ -80,7 +80,7 @@ impl Place {
                 continue;
             }
             let Edge { center, radius, .. } = *edge;
-            // An arc that takes up a whole face leaves no direction of it: the cone is that of the arc.
+            // An arc that takes up a whole face leaves no direction of that face: the cone is that of the arc.
             let before = outwards(around[0], at(edge.span[0] as usize), edge, normal);
             let behind = outwards(around[1], at(edge.span[1] as usize), edge, normal);
             places.push(Self {
@@ -113,7 +113,8 @@ fn outwards(
 }
 
 impl Facing {
-    /// Whether it is touched from a point above it whose nearest point on the line or circle is `foot`, `normal` away.
+    /// Whether a point above it touches it, where `foot` is the nearest point on the line or circle in the direction
+    /// `normal`.
     pub(super) fn is_touched(&self, foot: Vector, normal: Vector, tolerance: f64) -> bool {
         match self {
             Self::Face { ends: [a, b], .. } => {

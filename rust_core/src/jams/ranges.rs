@@ -1,15 +1,16 @@
-//! At which frictions a robot can stand in a pose that three contacts fix: the pose does not depend on it, the forces do.
+//! At which friction a robot can stand in a pose that three contacts fix; the forces depend on the friction, the pose
+//! does not.
 
 use super::contact::{Posture, Turn};
 use super::forces::{Push, for_each_choice};
 use super::setting::Setting;
 use super::zeros::{Difference, zeros};
 
-/// A range that zeros are sought on in one piece.
+/// A range that is searched for zeros in one piece.
 const ONE_PIECE: f64 = 0.08;
 
 impl Setting {
-    /// The same on a ground whose friction is 1 everywhere, and limited by no part.
+    /// The same on ground with a friction of 1 everywhere, which no part limits.
     pub(super) fn with_unit_friction(mut self) -> Self {
         for place in &mut self.places {
             place.friction = 1.0;
@@ -20,7 +21,8 @@ impl Setting {
         self
     }
 
-    /// The frictions up to one at which these contacts can carry the robot, as intervals; on ground of unit friction.
+    /// The intervals of friction, up to a limit, at which these contacts can carry the robot; on ground of unit
+    /// friction.
     pub(super) fn carried_at(
         &self,
         contacts: &[usize],
@@ -50,7 +52,8 @@ impl Setting {
             let found = zeros(range, |share| f(most * share / ONE_PIECE));
             ends.extend(found.iter().map(|share| most * share / ONE_PIECE));
         };
-        // What pushes can carry is bounded by planes through two of them, or all of it turns over where three lie in one.
+        // The loads that pushes can carry are bounded by planes through two of them, or change where three lie in one
+        // plane.
         for (i, a) in lines.iter().enumerate() {
             for (j, b) in lines.iter().enumerate().skip(i + 1) {
                 add_zeros(&|mu| determinant([0.0, 1.0, 0.0], along(*a, mu), along(*b, mu)));
@@ -103,7 +106,7 @@ mod tests {
     use super::*;
     use crate::draw::Draw;
 
-    /// It is the volume that three vectors span, with a sign for their order.
+    /// The result is the volume that three vectors span, with a sign for their order.
     #[test]
     fn a_determinant_is_0_for_vectors_of_one_plane_and_a_product_of_sides_for_a_box() {
         let mut draw = Draw(1);

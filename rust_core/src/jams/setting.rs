@@ -1,4 +1,4 @@
-//! A robot over a ground: what of it can touch where, and which contacts can be together at which angles.
+//! A robot over a ground: possible contacts, and the angles at which pairs of them can occur together.
 
 use super::clear::is_clear;
 use super::contact::{Contact, Posture, Turn};
@@ -14,7 +14,7 @@ use crate::units::Metres;
 pub(super) const TOUCHING: Metres = Metres(1e-9);
 /// [m] and [rad] Poses that differ by less are the same.
 const SAME: Metres = Metres(1e-7);
-/// So many contacts are sorted into pairs in a few seconds.
+/// Largest number of contacts; so many are sorted into pairs in a few seconds.
 const MOST_CONTACTS: usize = 20_000;
 
 /// A robot over a ground.
@@ -22,16 +22,16 @@ const MOST_CONTACTS: usize = 20_000;
 pub(super) struct Setting {
     pub layout: Layout,
     pub places: Vec<Place>,
-    /// All that could touch.
+    /// All possible contacts.
     pub contacts: Vec<Contact>,
-    /// For each contact, those of higher index that it can be together with.
+    /// For each contact, those with a higher index that can occur together with it.
     pub partners: Vec<Vec<Partner>>,
-    /// Angles at which poses are sought.
+    /// Angles at which poses are searched.
     pub bins: Bins,
 }
 
 impl Setting {
-    /// Poses are sought between two angles [rad].
+    /// Builds it for a search of poses between two angles [rad].
     ///
     /// # Errors
     /// [`Error::Scenario`] for a ground of too many pieces, [`Error::Interrupted`] once `cancel` is asked.
@@ -76,14 +76,14 @@ impl Setting {
         })
     }
 
-    /// The bins of angles at which two contacts, the first of lower index, can be together.
+    /// The bins of angles at which two contacts, the one with the lower index first, can occur together.
     pub(super) fn together(&self, one: usize, other: usize) -> u128 {
         let partners = &self.partners[one];
         let found = partners.binary_search_by_key(&other, |partner| partner.contact);
         found.map_or(0, |k| partners[k].angles)
     }
 
-    /// The contacts in place in a pose; `None` if the robot overlaps with the ground there.
+    /// The contacts in a pose; `None` if the robot overlaps with the ground.
     pub(super) fn touching(&self, posture: &Posture) -> Option<Vec<usize>> {
         let touches = |contact: &Contact| {
             contact.touch(posture).gap.abs() <= TOUCHING.value() && self.is_real(contact, posture)
@@ -100,7 +100,7 @@ impl Setting {
         is_clear(&self.layout, &self.places, posture, TOUCHING.value())
     }
 
-    /// Whether what touches is a piece of the outline and a piece of the ground.
+    /// Whether the touching points belong to the piece of the outline and the piece of the ground.
     pub(super) fn is_real(&self, contact: &Contact, posture: &Posture) -> bool {
         contact.is_real(&self.layout, &self.places, posture, TOUCHING.value())
     }
@@ -112,7 +112,7 @@ pub(super) fn is_same(one: &Posture, other: &Posture) -> bool {
         && (one.angle - other.angle).abs() < SAME.value()
 }
 
-/// The box in which a point of the robot lies while a surface touches a place: the centre of a disc, the middle of a run.
+/// The box that contains a point of the robot, the centre of a disc or the middle of a run, while it touches a place.
 struct Reach {
     point: Vector,
     low: Vector,
@@ -177,7 +177,7 @@ impl Reach {
     }
 }
 
-/// A contact that another can be together with.
+/// A contact that can occur together with another one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Partner {
     pub contact: usize,
@@ -214,7 +214,7 @@ impl Bins {
                 return None;
             }
             let skipped = left.trailing_zeros();
-            // All bins together leave nothing to shift.
+            // If all bins are set, a shift would overflow.
             left = left.checked_shr(skipped).unwrap_or(0);
             let count = left.trailing_ones();
             left = left.checked_shr(count).unwrap_or(0);
@@ -272,7 +272,8 @@ mod tests {
         Reach::of(&layout, &[place], &contact)
     }
 
-    /// A disc of 0.1 m, and a run of 0.4 m, at a face, at the corner of a step and at one that opens downwards by 60 degrees.
+    /// A disc of 0.1 m, and a run of 0.4 m, at a face, at the corner of a step and at one that opens downwards by 60
+    /// degrees.
     #[test]
     fn a_surface_at_a_piece_of_ground_lies_in_a_box() {
         let center = Vector::new(2.0, 1.0);
@@ -317,7 +318,7 @@ mod tests {
         }
     }
 
-    /// Of two points 0.5 m apart, one stays at the origin and the other in a box.
+    /// One of two points 0.5 m apart stays at the origin, the other in a box.
     #[test]
     fn two_surfaces_can_be_together_at_the_angles_that_bring_both_into_their_boxes() {
         let bins = Bins::between([-0.5 * TAU, 0.5 * TAU]);

@@ -1,8 +1,8 @@
 //! All zeros of a smooth function on ranges of an angle.
 //!
-//! On pieces some degrees wide the functions of this module, polynomials in cosine and sine of the angle of degree 10 at most,
-//! are polynomials of degree 11 to rounding. A series of Chebyshev's polynomials bounds value, slope and curvature of
-//! such a piece, so that none of its zeros is passed over: a piece is left out only if these exclude one.
+//! The functions of this module are polynomials of degree at most 10 in cosine and sine of the angle. On pieces some
+//! degrees wide they are polynomials of degree 11, up to rounding. A series of Chebyshev polynomials bounds value,
+//! slope and curvature of such a piece, so that no zero is missed: a piece is left out only if these exclude one.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -11,16 +11,16 @@ use std::sync::LazyLock;
 const TERMS: usize = 12;
 /// [rad] Widest piece: the terms left out are 1e-16 of a polynomial of degree 10.
 const WIDEST: f64 = 0.09;
-/// [rad] Narrowest piece, for functions that are no polynomials.
+/// [rad] Narrowest piece, for functions that are not polynomials.
 const NARROWEST: f64 = 1e-6;
-/// Share of a series that its last two terms may have, and below which a value is rounding.
+/// Largest fraction of a series in its last two terms; smaller values are rounding errors.
 const RESOLVED: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
-/// Share of a piece below which zeros come out as one, and to which they are known.
+/// Fraction of a piece below which zeros are merged, and to which they are known.
 const NEAREST: f64 = 1e-6;
 const ACCURACY: f64 = 1e-14;
 
-/// Where a piece is sampled, from -1 to 1, and the share of each sample in each term.
+/// Points at which a piece is sampled, from -1 to 1, and the weight of each sample in each term.
 struct Table {
     nodes: [f64; TERMS],
     shares: [[f64; TERMS]; TERMS],
@@ -38,11 +38,11 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
     }
 });
 
-/// A value that is a difference, and the size of what it is the difference of.
+/// A value that is a difference, and the size of its terms.
 pub(super) type Difference = [f64; 2];
 
-/// All zeros of a function in ranges of angles; two that coincide come out once or twice. Where it is nothing but rounding
-/// errors it says nothing of any angle.
+/// All zeros of a function in ranges of angles; two that coincide are returned once or twice. Where the function
+/// consists only of rounding errors, it has no zeros.
 pub(super) fn zeros(
     ranges: impl Iterator<Item = [f64; 2]>,
     f: impl Fn(f64) -> Difference,
@@ -59,7 +59,8 @@ pub(super) fn zeros(
     found
 }
 
-/// A range in pieces that grow away from an angle, for a function that turns sharply within `least` of it.
+/// Divides a range into pieces that grow with the distance from an angle, for a function that bends sharply within
+/// `least` of it.
 pub(super) fn graded([low, high]: [f64; 2], at: f64, least: f64) -> Vec<[f64; 2]> {
     let far = [low, high].map(|end| (end - at).abs());
     let steps = libm::log2(far[0].max(far[1]) / least).ceil().max(0.0) as i32;
@@ -92,13 +93,13 @@ fn zeros_of_piece(piece: [f64; 2], f: &impl Fn(f64) -> Difference, found: &mut V
     found.extend(series.zeros(slack).into_iter().map(angle));
 }
 
-/// A sum of Chebyshev's polynomials on [-1, 1].
+/// A sum of Chebyshev polynomials on [-1, 1].
 struct Series {
     terms: [f64; TERMS],
 }
 
 impl Series {
-    /// The series with these values, and the largest size of any.
+    /// The series with these values, and the largest of their sizes.
     fn of(f: impl Fn(f64) -> Difference) -> (Self, f64) {
         let table = &*TABLE;
         let values = table.nodes.map(f);
@@ -133,7 +134,7 @@ impl Series {
         sum
     }
 
-    /// A curvature that it never exceeds: that of the k-th polynomial is largest at the ends, k^2 (k^2 - 1) / 3.
+    /// A bound for the curvature: that of the k-th polynomial is largest at the ends, k^2 (k^2 - 1) / 3.
     fn curvature(&self) -> f64 {
         let of = |(k, term): (usize, &f64)| {
             let square = (k * k) as f64;
@@ -177,7 +178,7 @@ impl Series {
         }
         let rises = at_low < at_high;
         let mut t = 0.5 * (low + high);
-        // Newton's steps, and halving where they leave the piece.
+        // Newton's steps, or bisection where they leave the piece.
         for _ in 0..60 {
             let (value, slope) = self.at(t);
             if (value > 0.0) == rises {
@@ -214,7 +215,7 @@ mod tests {
         found
     }
 
-    /// A polynomial in cosine and sine of half as high a degree, with these zeros.
+    /// A polynomial in cosine and sine with these zeros, of half their number as its degree.
     fn product(roots: &[f64]) -> impl Fn(f64) -> f64 + '_ {
         |x| roots.iter().map(|r| libm::sin(0.5 * (x - r))).product()
     }
@@ -292,7 +293,7 @@ mod tests {
         }
     }
 
-    /// On the widest pieces no series of 12 terms is near it.
+    /// On the widest pieces, no series of 12 terms is close to it.
     #[test]
     fn what_turns_sharply_is_divided_until_its_series_is_near() {
         let width = 1e-3;

@@ -99,7 +99,7 @@ impl Stance {
 }
 
 impl Signals {
-    /// Takes a part of a step, `dt` [s] long; `window` [s] is the stop window.
+    /// Adds a part of a step, `dt` [s] long; `window` [s] is the stop window.
     pub(crate) fn add(
         &mut self,
         (now, dt): (&Reading, f64),
@@ -114,7 +114,7 @@ impl Signals {
         self.newer.add((now, dt), loaded, drives);
     }
 
-    /// Whether a robot on these lanes can have produced them.
+    /// Whether they can come from a robot on these lanes.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         [&self.older, &self.newer].into_iter().all(|block| {
             let numbers = [block.place, block.low, block.high].concat();
@@ -235,7 +235,7 @@ impl ContactSums {
     }
 
     fn new(l: &Contact, dt: f64) -> Self {
-        /// [N] Less than any force that counts: a contact without one has a position all the same.
+        /// [N] Less than any force that counts, so that contacts without force have a mean position, too.
         const FAINT: f64 = 1e-30;
 
         let weight = l.normal_force.max(FAINT) * dt;
@@ -282,7 +282,7 @@ impl ContactSums {
 pub(crate) struct Loads {
     /// [s] Length of the interval so far.
     time: f64,
-    /// Each with its last state and with the sums over the interval as its forces.
+    /// Contacts, each with its last state and with sums over the interval as its forces.
     contacts: Vec<Contact>,
 }
 
@@ -330,7 +330,7 @@ impl Loads {
         })
     }
 
-    /// Whether a robot on these lanes can have produced them.
+    /// Whether they can come from a robot on these lanes.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         plausible(&[self.time])
             && self.time >= 0.0

@@ -1,4 +1,5 @@
-//! The outcome of a run, and its events that have a beginning and an end: stops, and intrusions of edges into the track.
+//! The outcome of a run, and its events that have a beginning and an end: stops, and intrusions of edges into the
+//! track.
 
 #[cfg(test)]
 mod tests;
@@ -96,7 +97,7 @@ pub(crate) struct IntrusionWatch {
     past: Vec<Event>,
 }
 
-/// An intrusion that is going on.
+/// An intrusion that has not ended.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct OngoingIntrusion {
     event: Event,
@@ -107,7 +108,7 @@ struct OngoingIntrusion {
 }
 
 impl IntrusionWatch {
-    /// Takes the intrusions at `time`, each with the force [N] on it.
+    /// Processes the intrusions at `time`, each with the force [N] on it.
     pub(crate) fn look(&mut self, time: f64, inside: impl Iterator<Item = (Intrusion, f64)>) {
         for (intrusion, force) in inside {
             let same = |p: &&mut OngoingIntrusion| {
@@ -143,7 +144,7 @@ impl IntrusionWatch {
                 .all(|e| e.fits(parts, lanes))
     }
 
-    /// The most loaded intrusion that is going on.
+    /// The most loaded intrusion that has not ended.
     pub(crate) fn most_loaded(&self) -> Option<&Event> {
         let present = self.present.iter().map(|p| &p.event);
         present.reduce(|most, other| {
@@ -203,7 +204,7 @@ named! {
         LeftTerrain = "left_terrain",
         /// The robot is past the goal.
         Cleared = "cleared",
-        /// Stopped by ground in a pocket of the track: a closed track gets free.
+        /// Stopped by ground in a pocket of the track: with a closed track, the robot gets free.
         Seized = "seized",
         /// The robot moves to and fro without progress.
         Cycling = "cycling",

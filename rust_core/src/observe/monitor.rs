@@ -1,4 +1,4 @@
-//! Monitors a run for goal, tip-over and stops: it only reads, and ends a run once its outcome is certain.
+//! Monitors a run for goal, tip-over and stops. It only reads, and ends a run once its outcome is certain.
 
 #[cfg(test)]
 mod tests;
@@ -20,7 +20,7 @@ pub(crate) struct Monitor {
     criteria: SeizureCriteria,
     ground: Arc<Ground>,
     goal: f64,
-    /// [m] Height one metre below all of the ground.
+    /// [m] Height one metre below the lowest ground.
     floor: f64,
     half_length: f64,
     /// End axles in the chassis frame, the rear one first.
@@ -33,7 +33,7 @@ pub(crate) struct Monitor {
     parts: Vec<Part>,
     /// Envelopes of the tracks, each with its lane.
     envelopes: Vec<TrackEnvelope>,
-    /// Whether a driver may still do something that changes everything, or a controller, which adds up errors.
+    /// Whether a driver, or a controller that integrates errors, may still change everything.
     may_change: bool,
     /// Whether a turning grouser may change the contacts while the pose stays the same.
     has_grousers: bool,
@@ -70,13 +70,13 @@ impl Monitor {
         }
     }
 
-    /// [s] When it checks the progress next; a step is taken in parts that end there.
+    /// [s] Time of the next check of progress; steps are processed in parts that end there.
     pub(crate) fn next_look(&self) -> f64 {
         self.observed.looks as f64 * LOOK.value()
     }
 
-    /// Takes a step, or a part of one: the state of the robot at its end, and during it the mean speed [m/s] along the
-    /// chassis, the contact forces, and the drives with their mean speeds; and the flipper positions.
+    /// Processes a step or a part of one: the state of the robot at its end, the flipper positions, and during it the
+    /// mean speed [m/s] along the chassis, the contact forces, and the drives with their mean speeds.
     pub(crate) fn observe(
         &mut self,
         (now, forward_speed): (&Reading, f64),
@@ -110,7 +110,7 @@ impl Monitor {
             self.observed.ended = self.ended(now, dt);
         }
         if now.time >= self.next_look() {
-            // The first step is not cut at looks: those within it are left out.
+            // The first step is not cut at checks: those within it are skipped.
             while now.time >= self.next_look() {
                 self.observed.looks += 1;
             }
@@ -123,12 +123,12 @@ impl Monitor {
         }
     }
 
-    /// Takes the solver's work in the same step.
+    /// Adds the solver's work in the same step.
     pub(crate) fn observe_effort(&mut self, effort: Effort) {
         self.observed.effort = self.observed.effort.plus(effort);
     }
 
-    /// Takes the state of the chains in the same step.
+    /// Processes the state of the chains in the same step.
     pub(crate) fn observe_chains(&mut self, chains: ChainReading) {
         let observed = &mut self.observed;
         observed.max_track_tension = observed.max_track_tension.max(chains.tension);
@@ -175,7 +175,7 @@ impl Monitor {
         None
     }
 
-    /// [m] How far the robot is beyond the goal, by the x of its rear axle [m].
+    /// [m] Distance of the robot beyond the goal, from the x of its rear axle [m].
     fn beyond(&self, rear: f64) -> f64 {
         rear - self.goal - self.rear_radius
     }
@@ -186,7 +186,7 @@ impl Monitor {
         -self.beyond((now.position + turned_by(now.chassis_angle)(rear)).x)
     }
 
-    /// Tracks what is inside the track.
+    /// Follows the ground inside the track.
     fn look_inside(&mut self, now: &Reading, running: &Running) {
         let pose = Pose::new(now.position, now.chassis_angle);
         let lanes = &self.ground.lanes;
@@ -234,7 +234,7 @@ impl Monitor {
         }
     }
 
-    /// Where neither pose nor contacts change, and nothing else can, the run may end.
+    /// If neither pose nor contacts change, and nothing else can, the run may end.
     fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[Contact]) {
         let here = Anchor {
             since: now.time,
@@ -267,12 +267,12 @@ impl Monitor {
         self.observed.ended
     }
 
-    /// +1 or -1 as commanded in the last step; 0 in a pause, and while it brakes from the other direction.
+    /// +1 or -1 as commanded in the last step; 0 in a pause, and while braking from the other direction.
     pub(crate) fn direction(&self) -> f64 {
         self.observed.progress.direction
     }
 
-    /// [s] Since when the robot has been stopped, if it is.
+    /// [s] When the robot stopped, if it is stopped.
     pub(crate) fn stop_since(&self) -> Option<f64> {
         self.observed.progress.stop_since
     }
@@ -328,7 +328,7 @@ impl Monitor {
 pub(super) fn signature(loaded: &[Contact]) -> u64 {
     let bearing = loaded.iter().filter(|l| l.normal_force > 0.0);
     sum_mixed(bearing.map(|l| {
-        // Nor does it matter on which side of a vertex an edge was found.
+        // The side of a vertex on which an edge was found does not matter either.
         let place = if l.edge >= 0 {
             l.edge as u64 + (1 << 32)
         } else {
@@ -338,7 +338,7 @@ pub(super) fn signature(loaded: &[Contact]) -> u64 {
     }))
 }
 
-/// Part and place are mixed before they are summed: otherwise two parts could swap places unnoticed.
+/// Part and place are hashed before they are summed: otherwise two parts could swap places unnoticed.
 fn sum_mixed(bearing: impl Iterator<Item = (u64, u64)>) -> u64 {
     let mixed = bearing.map(|(part, place)| mix(mix(part) ^ place));
     mixed.fold(0, u64::wrapping_add)

@@ -1,4 +1,5 @@
-//! What a monitor has observed of a run; part of a snapshot. Progress over a sliding window, and the stops where there is none.
+//! Observations of a monitor, which are part of a snapshot: progress over a sliding window, and stops, where there is
+//! none.
 
 #[cfg(test)]
 mod tests;
@@ -16,10 +17,10 @@ use crate::units::Seconds;
 /// [s] Time between two checks of the progress; far shorter than any stop window.
 pub(super) const LOOK: Seconds = Seconds(0.01);
 
-/// Share of the time between two checks by which a window may be longer than some of them, as it is rounded.
+/// Fraction of the time between two checks by which a window may exceed a whole number of them, because of rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What a monitor has observed of a run.
+/// Observations of a run by a monitor.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Observations {
     /// [m] The x of the chassis frame and the track position where these observations begin.
@@ -33,7 +34,7 @@ pub(crate) struct Observations {
     pub(super) intrusions: IntrusionWatch,
     pub(super) anchor: Option<Anchor>,
     pub(super) goal_since: Option<f64>,
-    /// [m] How far the robot was beyond the goal at the last reading.
+    /// [m] Distance of the robot beyond the goal at the last reading.
     pub(super) beyond: f64,
     pub(super) ended: Option<Outcome>,
     pub(super) stays: bool,
@@ -49,7 +50,7 @@ pub(crate) struct Observations {
     pub drive_work: f64,
     /// [m] Distance that the chassis frame has moved along its own axis so far.
     pub path_length: f64,
-    /// Shaking of the chassis so far.
+    /// Vibration of the chassis so far.
     pub shaking: Shaking,
     /// [N] Largest force in a pin of a chain so far.
     pub max_track_tension: f64,
@@ -79,7 +80,7 @@ impl Observations {
     /// Whether these can be the observations of a robot on these lanes up to a time [s].
     pub(crate) fn fits(&self, time: f64, model: &Model, lanes: &[Profile]) -> bool {
         let parts = model.parts.len();
-        // Checks are counted; if the count were ahead of time, there would be none for a while.
+        // Checks are counted; a count ahead of time would suppress them for a while.
         let next_look = self.looks as f64 * LOOK.value();
         let numbers = [
             self.time_to_clear,
@@ -112,11 +113,11 @@ pub(super) struct Anchor {
     pub(super) x: f64,
     pub(super) y: f64,
     pub(super) angle: f64,
-    /// Signature of what bears there.
+    /// Signature of the contacts that bear there.
     pub(super) bearing: u64,
 }
 
-/// How far the robot has come, and since when it has been stopped.
+/// The progress of the robot, and when it stopped.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// +1 or -1 as commanded; 0 in a pause, and while the drives brake from the other direction.
@@ -126,7 +127,7 @@ pub(super) struct Progress {
     best_angle: f64,
     commanded: f64,
     falters: bool,
-    /// [s] Since when the robot has been stopped, if it is.
+    /// [s] When the robot stopped, if it is stopped.
     pub stop_since: Option<f64>,
     /// Stops that have ended.
     pub stops: Vec<Event>,
@@ -175,7 +176,7 @@ impl Default for Progress {
 }
 
 impl Progress {
-    /// Whether a robot with this number of parts on these lanes can have made it.
+    /// Whether a robot with this number of parts on these lanes can have produced it.
     pub(super) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
         let looks = self.history.iter();
         let known = |look: &Look| {
@@ -192,16 +193,16 @@ impl Progress {
             && self.stops.iter().all(|stop| stop.fits(parts, lanes))
     }
 
-    /// Takes one step of `dt` [s] of a robot whose end axles are `length` [m] apart.
+    /// Processes one step of `dt` [s] of a robot whose end axles are `length` [m] apart.
     pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
-        // While it still brakes from the other direction it cannot follow.
+        // While braking from the other direction, it cannot follow.
         let direction = if command == 0.0 || command * now.commanded_speed < 0.0 {
             0.0
         } else {
             command.signum()
         };
         if direction * self.direction <= 0.0 {
-            // Distance covered in the other direction or before a pause is no reference for the new command.
+            // Distance covered in the other direction, or before a pause, does not count for the new command.
             self.direction = direction;
             self.history.clear();
             (self.best_advance, self.best_angle) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
@@ -211,8 +212,8 @@ impl Progress {
         self.commanded += now.commanded_speed.abs() * dt;
     }
 
-    /// Compares with one window ago, at checks `every` [s]; less than `least` of the commanded distance is a
-    /// stop. Returns the beginning of a stop that has just ended.
+    /// Compares with the state one window ago, at checks `every` [s]; progress below `least` of the commanded distance
+    /// is a stop. Returns the beginning of a stop that has just ended.
     pub(super) fn look(
         &mut self,
         time: f64,
@@ -240,11 +241,11 @@ impl Progress {
         let recently = half.then(|| &self.history[self.history.len() - 1 - span / 2]);
         let stopped = commanded && whole && self.share < least;
         if stopped && self.stop_since.is_none() {
-            // What came before the end of the last stop belongs to that.
+            // Times before the end of the last stop belong to that.
             let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.end);
             self.stop_since = Some(last.max(time - window));
         }
-        // A slower command has a longer window: until that is whole, nothing has changed.
+        // A slower command has a longer window; until that is complete, nothing has changed.
         let moves_on = whole && !stopped;
         let ended = self.stop_since.take_if(|_| is_anew || moves_on);
         if let Some(start) = ended.filter(|_| moves_on) {

@@ -1,4 +1,4 @@
-//! The state at an instant as users see it, and the shaking of the chassis as an inertial sensor would measure it.
+//! The state at an instant as users see it, and the vibration of the chassis as an inertial sensor would measure it.
 
 #[cfg(test)]
 mod tests;
@@ -37,7 +37,7 @@ impl Reading {
 
 #[cfg(test)]
 impl Reading {
-    /// That of a robot at rest.
+    /// The state of a robot at rest.
     pub(super) fn at_rest(time: f64, position: Vector) -> Self {
         Self {
             time,
@@ -52,7 +52,7 @@ impl Reading {
     }
 }
 
-/// Sums over the checks of a run.
+/// Sums over all checks of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Shaking {
     last: Option<(f64, f64)>,
@@ -62,7 +62,7 @@ pub(crate) struct Shaking {
 }
 
 impl Shaking {
-    /// Takes one check.
+    /// Adds one check.
     pub(crate) fn look(&mut self, now: &Reading) {
         if let Some((time, speed)) = self.last {
             let dt = now.time - time;

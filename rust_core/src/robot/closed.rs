@@ -1,4 +1,4 @@
-//! A closed belt in place of a track, to see what a track without gaps would do in the same pose.
+//! A closed belt instead of a track, to find out what a track without gaps would do in the same pose.
 
 use super::track::with_grousers;
 use super::{BodyKind, Model, Mount, Part, Shape};
@@ -7,10 +7,10 @@ use crate::scenario::{ClosedSurface, ScenarioError, TrackOutline};
 
 impl Model {
     /// The same robot with a closed belt, taut round the circumscribed circles of each track's bodies, with all their
-    /// motor force and mass. Grousers are as high as the track's, where it has some, and within the same circles.
+    /// motor force and mass. Grousers are as high as the track's, if it has any, and within the same circles.
     ///
     /// # Errors
-    /// The outline's pitch makes more grousers than a belt may have.
+    /// The outline's pitch requires more grousers than a belt may have.
     pub(super) fn closed(
         &self,
         surface: ClosedSurface,
@@ -19,7 +19,7 @@ impl Model {
         let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
         let has_belt = self.has_track(Mount::Chassis);
         let belt = has_belt.then(|| Envelope::new(&round(Mount::Chassis)));
-        // A closed belt covers what of the belly lies inside it.
+        // A closed belt covers the part of the belly inside it.
         let is_bare = |part: &&Part| match (&part.shape, &belt) {
             (Shape::Polygon { corners }, Some(belt)) => {
                 corners.iter().any(|corner| belt.depth(*corner) < 0.0)
@@ -28,7 +28,7 @@ impl Model {
         };
         let tracks = self.tracks();
         let belly = self.belly().filter(is_bare).cloned();
-        // Wheels that no track runs round stay, all of a side on its motor.
+        // Wheels without a track round them stay, all of a side on its motor.
         let wheels = self
             .track_parts()
             .filter(|part| !self.has_track(part.mount));
@@ -54,7 +54,7 @@ impl Model {
         }
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
-        // A chain has all of the force by itself: what belts on arms beside it have is not the track's.
+        // A chain has all of the force: that of belts on arms is separate.
         let sharers = if self.chains.is_empty() {
             self.motors
         } else {
@@ -71,8 +71,8 @@ impl Model {
         })
     }
 
-    /// [m] Height of the grousers of the track on a mount: gears have their own, chains and belts those of the
-    /// outline. A belt has none if the outline gives no thickness.
+    /// [m] Height of the grousers of the track on a mount: gears have their own, chains and belts those of the outline.
+    /// A belt has none if the outline has no thickness of grousers.
     fn grouser_height(&self, mount: Mount, outline: &TrackOutline) -> f64 {
         if outline.grouser_thickness <= 0.0 {
             return 0.0;

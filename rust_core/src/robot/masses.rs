@@ -5,7 +5,7 @@ use crate::geometry::{Pose, Vector};
 use crate::scenario::End;
 
 impl Model {
-    /// Takes the mass of the arms off the chassis.
+    /// Subtracts the mass of the arms from the chassis.
     pub(crate) fn with_flippers(mut self, arms: Vec<Flipper>) -> Self {
         if arms.is_empty() {
             return self;
@@ -26,7 +26,7 @@ impl Model {
         self
     }
 
-    /// Takes the mass of the chains off the chassis.
+    /// Subtracts the mass of the chains from the chassis.
     pub(crate) fn with_chains(mut self, chains: Vec<ChainOfShoes>) -> Self {
         if chains.is_empty() {
             return self;
@@ -78,7 +78,7 @@ impl Model {
         self.chains.is_empty() && self.flippers.is_empty()
     }
 
-    /// The same, with all parts that move relative to the chassis fixed where they are.
+    /// The same, with all moving parts fixed at their positions.
     pub(crate) fn as_one_body(&self, running: &Running) -> Self {
         let (mass, center_of_mass) = self.mass_center(running);
         Self {
@@ -88,7 +88,7 @@ impl Model {
         }
     }
 
-    /// [kg] Mass of chassis, chains and flippers and [m] centre of it in the chassis frame.
+    /// [kg] Mass of chassis, chains and flippers, and [m] its centre in the chassis frame.
     pub(crate) fn mass_center(&self, running: &Running) -> (f64, Vector) {
         if self.is_one_body() {
             return (self.mass, self.center_of_mass);
@@ -229,7 +229,7 @@ impl Model {
         }
     }
 
-    /// The robot as an engine of bodies and joints would model it: chassis and wheels, without the wheels of flippers.
+    /// The robot as bodies and joints of other engines: chassis and wheels, without the wheels of flippers.
     ///
     /// Together they have the robot's mass, centre of mass and moment of inertia, and the wheels have the inertia of
     /// its track.

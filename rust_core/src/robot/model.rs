@@ -9,7 +9,7 @@ use crate::scenario::{Robot, ScenarioError, Track};
 /// Everything about a robot that does not change during a run.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// [kg] Mass of all but chains and flippers; `total_mass` has these, too.
+    /// [kg] Mass without chains and flippers, which `total_mass` includes.
     pub mass: f64,
     /// [m] Its centre in the chassis frame.
     pub center_of_mass: Vector,
@@ -25,16 +25,16 @@ pub struct Model {
     pub drive_masses: Vec<f64>,
     /// [m] Radius that relates surface speed and spin of a drive.
     pub drive_radius: f64,
-    /// What each motor can do.
+    /// The limits of each motor.
     pub motor: MotorRule,
-    /// A drive, `push_drive`, pushes the chassis along its axis, whether it touches the ground or not.
+    /// Whether a drive, `push_drive`, pushes the chassis along its axis, even in the air.
     pub pushes_chassis: bool,
     /// Chains of shoes, each with the drive of the same number. If there are any, `mass`, `center_of_mass` and
     /// `moment_of_inertia` are those of the chassis without them.
     pub chains: Vec<ChainOfShoes>,
-    /// Arms that pivot on it; their mass is not included in those figures either.
+    /// Arms that pivot on it; those figures do not include their mass either.
     pub flippers: Vec<Flipper>,
-    /// No track runs round the wheels on the chassis, and on the flippers.
+    /// Whether no track runs round the wheels on the chassis, and on the flippers.
     pub wheels_alone: [bool; 2],
 }
 
@@ -43,7 +43,7 @@ impl Model {
     /// robot for every track model.
     ///
     /// # Errors
-    /// Wheels that do not fit the robot; shoes and arms that leave nothing for the chassis.
+    /// Wheels that do not fit the robot; shoes and arms that leave no mass for the chassis.
     pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
         let track = track::build(robot)?;
         let belly = robot.belly_polygons().map(|corners| {
@@ -53,7 +53,7 @@ impl Model {
         let parts = Self::in_order(track.parts, belly);
         let radius = robot.outline.rear_radius();
         let flippers = Flipper::of(robot);
-        // A chain has all of the track's mass and force; only flippers have drives besides.
+        // A chain has all of the track's mass and force; only flippers have other drives.
         let has_chain = !track.chains.is_empty();
         let (sharers, of_track) = if has_chain {
             (1, 1)
@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// Parts in their order: the belly is the last, so that without it the others keep their numbers.
+    /// The order of parts: the belly is the last, so that the others keep their numbers without it.
     pub(super) fn in_order(
         of_tracks: Vec<Part>,
         belly: impl IntoIterator<Item = Part>,
@@ -109,7 +109,7 @@ impl Model {
         parts
     }
 
-    /// The parts but the belly.
+    /// The parts except the belly.
     pub(super) fn track_parts(&self) -> impl Iterator<Item = &Part> {
         self.parts
             .iter()
@@ -143,12 +143,12 @@ impl Model {
         self.pushes_chassis.then_some(0)
     }
 
-    /// Places of the drives in a list of all motors.
+    /// Indices of the drives in a list of all motors.
     pub(crate) fn drive_motors(&self) -> Range<usize> {
         0..self.drives
     }
 
-    /// Places of the flippers in a list of all motors.
+    /// Indices of the flippers in a list of all motors.
     pub(crate) fn flipper_motors(&self) -> Range<usize> {
         self.drives..self.drives + self.flippers.len()
     }
@@ -164,8 +164,8 @@ impl Model {
         running
     }
 
-    /// The same for drives at these positions [m], shoes with these frames in that of the chassis, and flippers
-    /// at these angles [rad] relative to it, counter-clockwise: at the start, in a step, at a sample of a trace.
+    /// The same with given positions of drives [m], frames of shoes in that of the chassis, and angles of flippers
+    /// [rad] relative to it, counter-clockwise: at the start, in a step, or at a sample of a trace.
     pub(crate) fn set_running(
         &self,
         running: &mut Running,
@@ -188,7 +188,7 @@ impl Model {
         self.drive_masses[drive] * self.drive_radius * self.drive_radius
     }
 
-    /// [kg m^2] Moment of inertia of the rotor of one drive, as far as that turns over the chassis.
+    /// [kg m^2] Moment of inertia of the rotor of one drive, for its rotation relative to the chassis.
     pub(crate) fn rotor_inertia(&self, drive: usize) -> f64 {
         if self.has_motor(drive) {
             self.motor.rotor_mass * self.drive_radius * self.drive_radius
@@ -214,7 +214,7 @@ impl Model {
         lanes.max().unwrap_or(1)
     }
 
-    /// What carries bodies of tracks or wheels: the chassis and the flippers.
+    /// The mounts that carry bodies of tracks or wheels: the chassis and the flippers.
     pub fn mounts(&self) -> impl Iterator<Item = Mount> + use<> {
         let flippers = (0..self.flippers.len()).map(Mount::Flipper);
         std::iter::once(Mount::Chassis).chain(flippers)
@@ -256,8 +256,8 @@ impl Model {
         })
     }
 
-    /// Speed of the fastest tip that a drive carries, relative to its carrier and in units of the surface speed; 0
-    /// if surfaces only run along themselves.
+    /// Speed of the fastest tip that a drive moves, relative to its carrier and in units of the surface speed; 0 if
+    /// surfaces only move tangentially.
     pub(crate) fn tip_speed(&self) -> f64 {
         let of_part = |part: &Part| match &part.shape {
             Shape::Gear { .. } => 1.0,
@@ -277,7 +277,7 @@ impl Model {
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
-            // Shoes and arms: at most a corner beyond the hull that they travel round.
+            // Shoes and arms reach at most a corner beyond the hull that they travel round.
             _ if part.mount != Mount::Chassis => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
             // Grousers have no discs: they are never beyond the circles of the belt's hull.

@@ -1,21 +1,22 @@
-//! What the motors of a robot can do at a speed, and how they correct it.
+//! The force of motors at a speed, and how they control the speed.
 //!
 //! The equations: docs/physics.md, "Motors".
 
 use crate::scenario::{Drivetrain, TrackOutline};
 
-/// One of the equal motors of a robot, as its surface feels it.
+/// One of the equal motors of a robot, with all quantities at its surface.
 #[derive(Clone, Debug)]
 pub struct MotorRule {
-    /// [N] Its largest force, which it has at rest.
+    /// [N] Its largest force, at rest.
     pub force: f64,
-    /// [kg] Mass at the surface that would be as hard to speed up as its rotor.
+    /// [kg] Mass at the surface that is equivalent to the inertia of its rotor.
     pub rotor_mass: f64,
-    /// [m/s] Speeds of the surface, from 0, and shares of the largest force there; none if that is there at any speed.
+    /// [m/s] Speeds of the surface, from 0, and fractions of the largest force there; empty if the force does not
+    /// depend on speed.
     pub(crate) curve: Vec<[f64; 2]>,
-    /// How it corrects its speed; `None` if it holds that.
+    /// How it corrects its speed; `None` if it holds the speed exactly.
     pub(crate) correction: Option<Correction>,
-    /// Its gear locks itself: the load turns it neither back nor faster than it turns by itself.
+    /// Whether its gear is self-locking: the load turns it neither back nor faster than the motor.
     pub(crate) self_locking: bool,
 }
 
@@ -28,7 +29,7 @@ pub(crate) struct Correction {
     pub integral: f64,
 }
 
-/// A force that falls in a line with the speed.
+/// A force that decreases linearly with the speed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     /// [N]
@@ -37,7 +38,7 @@ pub(crate) struct Line {
     pub slope: f64,
 }
 
-/// A largest force near a speed: that of one piece of a curve.
+/// The largest force near a speed, from one piece of a curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     pub line: Line,
@@ -46,7 +47,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// The same of a motor that turns the other way.
+    /// The same for a motor that turns in the other direction.
     fn reversed(self) -> Self {
         let [low, high] = self.ends;
         let at_rest = -self.line.at_rest;
@@ -61,7 +62,8 @@ impl Piece {
 }
 
 impl Correction {
-    /// Its force at a speed, a `time` [s] after the error of that was `error` [m/s] and the sum of errors made `integral` [N].
+    /// Its force at a speed, a `time` [s] after the error of the speed was `error` [m/s] and the integral term
+    /// `integral` [N].
     pub(crate) fn force(&self, target: f64, error: f64, integral: f64, time: f64) -> Line {
         let later = 0.5 * time * self.integral;
         let slope = self.gain + later;
@@ -72,8 +74,7 @@ impl Correction {
     }
 }
 
-/// The speed or rate that a motor holds where one is commanded: without a force or torque to give, a gear that locks
-/// itself stays at rest.
+/// The speed or rate that a motor holds for a command: without force or torque, a self-locking gear stays at rest.
 pub(crate) fn held_speed(commanded: f64, most: f64, self_locking: bool) -> f64 {
     if most > 0.0 || !self_locking {
         commanded
@@ -86,7 +87,7 @@ impl MotorRule {
     /// Both tracks' motors together.
     pub(super) fn of(drivetrain: &Drivetrain, outline: &TrackOutline) -> Self {
         let radius = outline.belt_radius();
-        // Of what one sprocket feels, a share of its radius acts at the belt; a rate is a speed over the radius.
+        // Forces at the belt are torques over the radius, and a rate is a speed over the radius.
         let at_belt = 2.0 / (radius * radius);
         let most = drivetrain.max_torque;
         let line = drivetrain
@@ -111,7 +112,7 @@ impl MotorRule {
         }
     }
 
-    /// One of so many motors that do together what some motors like this one do.
+    /// One of several motors that together replace a number of motors like this one.
     pub(super) fn shared(&self, now: usize, among: usize) -> Self {
         let share = |of_one: f64| of_one * now as f64 / among as f64;
         Self {
@@ -125,8 +126,8 @@ impl MotorRule {
         }
     }
 
-    /// [m/s] The speed of the surface that it holds where that is commanded: behind a gear that locks itself none at which it
-    /// has no force left.
+    /// [m/s] The speed of the surface that it holds for a command; with a self-locking gear, no speed at which it has
+    /// no force.
     pub(crate) fn target(&self, commanded: f64) -> f64 {
         let held = held_speed(commanded, self.force, self.self_locking);
         let spent = self.curve.iter().find(|[_, share]| *share <= 0.0);
@@ -141,7 +142,7 @@ impl MotorRule {
         [self.limit(speed), self.limit(-speed).reversed()]
     }
 
-    /// Its largest force forwards near a speed. Against its motion it has the force that it has at rest.
+    /// Its largest forward force near a speed. Against its motion, it has the same force as at rest.
     fn limit(&self, speed: f64) -> Piece {
         let level = |share: f64, ends: [f64; 2]| Piece {
             line: Line {
@@ -170,7 +171,7 @@ impl MotorRule {
         }
     }
 
-    /// Whether its force depends on its speed, but for its limits where it holds that.
+    /// Whether its force depends on its speed, apart from the limits within which it holds the speed.
     pub(crate) fn depends_on_speed(&self) -> bool {
         !self.curve.is_empty() || self.correction.is_some()
     }
@@ -186,7 +187,7 @@ mod tests {
         }
     }
 
-    /// Whether two forces [N] are the same but for rounding.
+    /// Whether two forces [N] are the same except for rounding.
     fn is(found: f64, expected: f64) -> bool {
         (found - expected).abs() < 1e-12
     }

@@ -1,4 +1,5 @@
-//! What moves over the chassis besides wheels: chains of shoes, and flippers, which are arms that pivot on the end axles.
+//! Parts that move on the chassis besides wheels: chains of shoes, and flippers, which are arms that pivot on the end
+//! axles.
 
 use std::ops::Range;
 
@@ -8,17 +9,17 @@ use crate::scenario::{End, LineOfWheels, Robot, Track};
 /// A closed chain of shoes round a guide, or round sprocket and idler.
 #[derive(Clone, Debug)]
 pub struct ChainOfShoes {
-    /// Its own number.
+    /// Its number.
     pub number: usize,
     /// Numbers of its shoes.
     pub shoes: Range<usize>,
     /// The path of its pins, and their pitch.
     pub path: ShoeLoop,
-    /// The ends of the guide that the plates slide on, or sprocket drum and idler; rear first.
+    /// The ends of the guide on which the plates slide, or sprocket drum and idler; rear first.
     pub ends: [Disc; 2],
     /// The other discs of the guide, or road wheels and return rollers.
     pub between: Vec<Disc>,
-    /// What drives it; `None`: the drive pulls on the shoes at the rear end of a guide.
+    /// Its sprocket; `None` if the drive pulls on the shoes at the rear end of a guide.
     pub sprocket: Option<Sprocket>,
     /// [m] Thickness of the plates; the pins lie in their middle.
     pub plate_thickness: f64,
@@ -26,9 +27,9 @@ pub struct ChainOfShoes {
     pub shoe_mass: f64,
     /// [kg m^2] Its moment of inertia about the middle of its pins.
     pub shoe_inertia: f64,
-    /// What holds the front end out.
+    /// The tensioner, which pushes the front end out.
     pub tensioner: Tensioner,
-    /// What turns the shoes of each pin against each other, but for the pin that closes the chain.
+    /// The bushing between the shoes at each pin, except the pin that closes the chain.
     pub bushing: Bushing,
     /// The guide, or the hull of sprocket and idler.
     pub(crate) hull: Envelope,
@@ -46,7 +47,7 @@ pub struct Sprocket {
 }
 
 impl Sprocket {
-    /// [rad] Angle relative to the chassis when it has moved the chain so far [m]; forwards is clockwise.
+    /// [rad] Angle relative to the chassis when it has moved the chain by a distance [m]; forwards is clockwise.
     pub fn angle(&self, run: f64) -> f64 {
         self.first_seat - run / self.teeth.drive_radius()
     }
@@ -65,7 +66,7 @@ pub struct Tensioner {
     pub stop: f64,
 }
 
-/// A bushing of a pin: a spring that is at rest where its shoes are in line, and a damper.
+/// A bushing of a pin: a spring that is relaxed when its shoes are in line, and a damper.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bushing {
     /// [N m/rad] Stiffness.
@@ -75,7 +76,7 @@ pub struct Bushing {
 }
 
 impl Bushing {
-    /// As many of them side by side.
+    /// Several of them side by side.
     pub(crate) fn times(self, count: f64) -> Self {
         Self {
             stiffness: count * self.stiffness,
@@ -110,9 +111,9 @@ pub struct Flipper {
     pub rate_limit: f64,
     /// [N m] Largest torque of its motor.
     pub torque_limit: f64,
-    /// [kg m^2] Moment of inertia of its motors' rotors, as far as they turn over the chassis.
+    /// [kg m^2] Moment of inertia of its motors' rotors, for rotation relative to the chassis.
     pub rotor_inertia: f64,
-    /// Its gear locks itself.
+    /// Whether its gear is self-locking.
     pub self_locking: bool,
     /// [rad] Angle at time 0, upwards > 0.
     pub start_angle: f64,
@@ -176,7 +177,7 @@ impl Flipper {
         self.end.sign()
     }
 
-    /// [kg] Mass that moves at the speed of its track if that has its own drive: a tenth of its mass, our assumption.
+    /// [kg] Mass that moves with its track, if that has its own drive: a tenth of its mass, our assumption.
     pub(crate) fn mass_of_track(&self) -> f64 {
         0.1 * self.mass
     }
@@ -198,7 +199,7 @@ impl Flipper {
         }
     }
 
-    /// [m] How far a belt has run along it because it has turned by `angle` [rad] over the chassis.
+    /// [m] Travel of a belt along it because it has turned by `angle` [rad] relative to the chassis.
     pub(crate) fn run(angle: f64, drive_radius: f64) -> f64 {
         // The sprocket turns with the chassis; relative to the arm it turns back.
         drive_radius * angle

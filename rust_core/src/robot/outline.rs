@@ -1,4 +1,4 @@
-//! The bodies of a robot for pictures: the outline of each, what carries it and what turns it.
+//! The bodies of a robot for pictures: their outlines, mounts and motion.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ const BELT_TURN: f64 = 0.05;
 /// A body with its outline.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Index of its part; none for the wheels inside a belt or a guide, which never touch the ground.
+    /// Index of its part; `None` for wheels inside a belt or a guide, which never touch the ground.
     pub part: Option<usize>,
     /// What it represents.
     pub kind: BodyKind,
@@ -42,7 +42,7 @@ enum Turning {
     Sprocket(usize),
 }
 
-/// The path of a belt, all the way round.
+/// The closed path of a belt.
 #[derive(Clone, Debug)]
 pub struct Circuit {
     /// [m] Distances along the belt; between two of them it is straight enough to interpolate poses.
@@ -122,7 +122,7 @@ impl Model {
 }
 
 impl Body {
-    /// A body without an outline yet, over the lane and on the mount of a part.
+    /// A body without outline, over the lane and on the mount of a part.
     fn beside(part: &Part, kind: BodyKind, turning: Turning) -> Self {
         Self {
             part: None,

@@ -13,7 +13,7 @@ pub struct Part {
     pub shape: Shape,
     /// The drive that moves its surface.
     pub drive: Option<usize>,
-    /// Its own friction; the smaller of this and that of the ground counts.
+    /// Its own coefficient of friction; the smaller of this and that of the ground counts.
     pub friction_limit: f64,
     /// Index of the lane under it.
     pub lane: usize,
@@ -55,7 +55,7 @@ pub enum Shape {
 }
 
 impl Part {
-    /// A part on the chassis over one lane, whose friction is that of the ground.
+    /// A part on the chassis over one lane, without its own limit of friction.
     pub(super) fn new(kind: BodyKind, shape: Shape, drive: Option<usize>) -> Self {
         Self {
             kind,
@@ -67,7 +67,7 @@ impl Part {
         }
     }
 
-    /// Circumscribed and root circle of each disc whose hull it fills; none for a polygon.
+    /// Circumscribed and root circles of the discs whose hull it fills; none for a polygon.
     pub(crate) fn discs(&self) -> impl Iterator<Item = (Disc, Disc)> {
         let round = |center, radius| {
             let disc = Disc { center, radius };
@@ -112,7 +112,7 @@ impl Part {
         self.drive.map_or(0.0, |k| running.run(self.mount, k))
     }
 
-    /// [rad] Its rotation relative to its mount when its surface has run this far [m]; full turns count.
+    /// [rad] Its rotation relative to its mount when its surface has run by this distance [m]; full turns count.
     pub(crate) fn turn(&self, run: f64) -> f64 {
         match &self.shape {
             Shape::Disc { radius, .. } => -run / radius,
@@ -122,7 +122,7 @@ impl Part {
         }
     }
 
-    /// Its own frame in that of its mount; that of a disc does not turn, which makes no visible difference.
+    /// Its own frame in that of its mount; the frame of a disc does not turn, which is invisible.
     pub(crate) fn place(&self, running: &Running) -> Pose {
         let run = self.run(running);
         match &self.shape {
@@ -133,8 +133,8 @@ impl Part {
         }
     }
 
-    /// How its drive moves its shape relative to its mount when the surface has run by `run` [m], as a mean over
-    /// `reach` [m] in both directions. A surface that only moves tangentially does not move the shape.
+    /// Motion of its shape relative to its mount when the surface has run by `run` [m], as a mean over `reach` [m] in
+    /// both directions. A surface that only moves tangentially does not move the shape.
     pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
         match &self.shape {
             Shape::Gear { center, gear } if self.drive.is_some() => Motion {
@@ -206,7 +206,7 @@ pub enum Mount {
 }
 
 impl Mount {
-    /// What carries the track that it belongs to: the chassis carries chains.
+    /// The mount that carries its track: for shoes it is the chassis.
     pub(crate) fn carrier(self) -> Self {
         match self {
             Self::Chassis | Self::Shoe(_) => Self::Chassis,

@@ -5,8 +5,8 @@ use crate::scenario::{Robot, ScenarioError};
 use crate::terrain::Ground;
 
 impl Model {
-    /// The model of a robot on a ground: both tracks lumped if they meet the same profile, else side by side, each
-    /// with half of mass and force.
+    /// The model of a robot on a ground: both tracks lumped if they meet the same profile, else side by side, each with
+    /// half of the mass and force.
     ///
     /// # Errors
     /// Wheels that do not fit the robot.
@@ -29,7 +29,8 @@ impl Model {
         model
     }
 
-    /// Parts of the left track, then of the right; drives in the same order, those with a motor first. A force along the chassis has no side and stays one.
+    /// Parts of the left track, then of the right; drives in the same order, those with a motor first. A force along
+    /// the chassis has no side and is not divided.
     fn side_by_side(self) -> Self {
         let shared = self.push_drive().into_iter().count();
         let (motors, free) = (self.motors - shared, self.drives - self.motors);

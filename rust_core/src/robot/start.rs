@@ -25,7 +25,7 @@ pub(crate) fn start_position(
         touching[part.lane].add(part, part.run(&running), placed);
         touching[part.lane].add_runs(part, placed);
     }
-    // The outline counts for where the robot begins, even if the model does not touch there.
+    // The start depends on the outline, even if the model does not touch there.
     let outline = outline_discs(&scenario.robot.outline).into_iter();
     let tips = model.parts.iter().flat_map(|part| {
         let mount = running.mounted(part.mount, Pose::IDENTITY);
@@ -76,7 +76,7 @@ struct Touching {
 }
 
 impl Touching {
-    /// Adds a part whose surface has run by `run` [m]; `placed` takes points of its mount's frame to this one.
+    /// Adds a part whose surface has run by `run` [m]; `placed` transforms points of its mount's frame to this one.
     fn add(&mut self, part: &Part, run: f64, placed: impl Fn(Vector) -> Vector) {
         let Self { discs, segments } = self;
         discs.extend(part.discs().map(|(_, root)| Disc {
@@ -92,7 +92,7 @@ impl Touching {
                         .windows(2)
                         .map(|pair| lower_tangent(pair[0], pair[1])),
                 );
-                // An arm that is folded back has its other side below.
+                // An arm that is folded back is upside down.
                 if let [root, tip] = placed {
                     segments.push(lower_tangent(*tip, *root));
                 }
@@ -116,7 +116,7 @@ impl Touching {
         }
     }
 
-    /// Adds the straight runs of a hull of more than two discs: they need not join neighbours in its list.
+    /// Adds the straight runs of a hull of more than two discs, which need not join neighbours in the list.
     fn add_runs(&mut self, part: &Part, placed: impl Fn(Vector) -> Vector) {
         match &part.shape {
             Shape::Hull { discs, .. } if discs.len() > 2 => {

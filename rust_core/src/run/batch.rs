@@ -22,7 +22,7 @@ pub enum Progress {
     Stop,
 }
 
-/// A finished run: its place in the batch, and what came of it.
+/// A finished run: its index in the batch, and its result.
 pub type Finished = (usize, Result<Run, Error>);
 
 /// Data shared by the threads of a batch.
@@ -40,10 +40,10 @@ struct Work {
 
 /// Simulates every scenario on `threads` threads.
 ///
-/// Meanwhile the calling thread hands the runs that have just been finished, often none, to `take`, about 50 times
-/// per second, and `take` says whether to continue. If not, it hands over what else is finished and returns at
-/// once; threads that are within a step, or build something, end soon after. Whatever happens in one run, a panic
-/// included, does not affect the others. The results do not depend on the number of threads, only their order does.
+/// About 50 times per second, the calling thread passes newly finished runs, often none, to `take`, which says
+/// whether to continue. If not, it passes all others that are finished and returns at once; threads that are within a
+/// step, or build something, end soon after. Errors in one run, including panics, do not affect the others. The results
+/// do not depend on the number of threads, only their order does.
 ///
 /// # Errors
 /// The batch needs more memory than it may have; nothing has been run.
@@ -82,8 +82,8 @@ pub fn simulate_many(
     Ok(())
 }
 
-/// Starts as many threads as the system allows, and returns how many; none is no problem, because the calling
-/// thread can work, too.
+/// Starts as many threads as the system allows, and returns their number; it may be 0, because the calling thread can
+/// work, too.
 fn start(work: &Arc<Work>, threads: usize) -> usize {
     let caller = std::thread::current();
     let spawn = |_| {

@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-/// Runs from when it was started.
+/// Measures time since it was started.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock(Option<Instant>);
 
 impl Clock {
     pub(super) fn start() -> Self {
-        // The standard library has no clock in a web page, and panics if it is asked for one.
+        // The standard library has no clock in a web page, where asking for one panics.
         let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
         Self(has_clock.then(Instant::now))
     }

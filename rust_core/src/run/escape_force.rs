@@ -1,4 +1,4 @@
-//! The push that moves a robot on from a stop.
+//! The push that frees a robot from a stop.
 
 use super::{Simulation, ValidScenario};
 use crate::error::Error;
@@ -6,35 +6,35 @@ use crate::limits::Cancel;
 use crate::observe::Outcome;
 use crate::scenario::ScenarioError;
 
-/// First level of the push and the last, in weights, and from one to the next.
+/// First and last level of the push, in weights, and the ratio of consecutive levels.
 const LEVELS: (f64, f64, f64) = (0.01, 10.0, 1.1);
-/// [s] For how long a level is held at least, and how long it takes to rise to it.
+/// [s] Shortest time for which a level is held, and duration of the rise to it.
 const HOLD: f64 = 0.5;
 const RISE: f64 = 0.1;
-/// [m] A robot that moves by more in the last half of a hold is still on its way, and the level is held again, as
-/// often as this: just beyond what it can bear, it takes seconds to leave.
+/// [m] A robot that moves by more in the last half of a hold is still moving, and the level is held again, at most
+/// this many times: just beyond its limit, a robot takes seconds to leave.
 const SETTLED: f64 = 5e-5;
 const HOLDS: usize = 10;
-/// [s] How long the push goes on once the robot is on its way, to see whether it tips over.
+/// [s] Duration of the push after the robot is free, to see whether it tips over.
 const AFTERWARDS: f64 = 2.0;
 
 /// A measured escape force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EscapeForce {
-    /// [N] The last level that did not move the robot on; 0 if the first did.
+    /// [N] The last level that did not free the robot; 0 if the first did.
     pub low: f64,
-    /// [N] The first level that moved it on, by `criteria.escape_distance` beyond where it had come before; infinite if
-    /// none did.
+    /// [N] The first level that freed it: it got `criteria.escape_distance` farther than before; infinite if none did.
     pub high: f64,
     /// That push tipped it over.
     pub tips: bool,
 }
 
-/// Simulates `scenario` up to the time `at` [s], where it has stopped, and measures the push that moves it on, along the
-/// command.
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and measures the push along the command that
+/// frees the robot.
 ///
 /// # Errors
-/// As [`simulate`](crate::simulate), [`Error::Interrupted`] once `cancel` is asked, and [`Error::Scenario`] without gravity.
+/// As [`simulate`](crate::simulate), [`Error::Interrupted`] once `cancel` is asked, and [`Error::Scenario`] without
+/// gravity.
 pub fn escape_force(
     scenario: &ValidScenario,
     at: f64,
@@ -84,7 +84,7 @@ pub fn escape_force(
     })
 }
 
-/// Goes on for a time [s], or until something is so; returns whether it is.
+/// Advances by a time [s], or until a condition is true; returns whether it is.
 fn advance_until(
     robot: &mut Simulation,
     time: f64,
@@ -121,8 +121,8 @@ mod tests {
         ValidScenario::new(&scenario).expect("it is valid")
     }
 
-    /// Of its weight, 21.2 kg x 9.81 m/s^2 = 207.972 N, the first level is a hundredth, and each is 1.1 times the one before:
-    /// 1.1^16 / 100 = 0.0459, 1.1^17 / 100 = 0.0505.
+    /// Of its weight, 21.2 kg x 9.81 m/s^2 = 207.972 N, the first level is a hundredth, and each is 1.1 times the one
+    /// before: 1.1^16 / 100 = 0.0459, 1.1^17 / 100 = 0.0505.
     #[test]
     fn the_force_lies_between_two_levels_from_a_hundredth_of_the_weight_on() {
         for (friction, low, high) in [(0.0, 0.0, 2.079_72), (0.048, 9.556_26, 10.511_88)] {

@@ -1,4 +1,4 @@
-//! The jams of a scenario, and whether a robot stays in one.
+//! The jams of a scenario, and whether a robot stays in them.
 
 use std::panic::resume_unwind;
 use std::thread::Builder;
@@ -13,31 +13,31 @@ use crate::robot::Model;
 use crate::terrain::Ground;
 use crate::units::{Metres, Seconds};
 
-/// [s] For how long it is left alone, then pushed forwards, pushed back, and left alone again.
+/// [s] Duration of each phase: without a push, pushed forwards, pushed back, and again without a push.
 const SPELL: Seconds = Seconds(0.5);
-/// The push, as a share of the weight.
+/// The push as a fraction of the weight.
 const PUSH: f64 = 0.01;
 /// [m] Largest displacement of a robot that stays.
 const FAR: Metres = Metres(1e-3);
 /// [rad] Largest rotation of a robot that stays.
 const TURNED: f64 = 0.01;
 
-/// A jam, and what a simulation that begins there shows.
+/// A jam, with the result of a simulation that begins there.
 #[derive(Clone, Debug)]
 pub struct FoundJam {
     /// The pose and its forces.
     pub jam: Jam,
     /// The ground deepest inside the track.
     pub intrusion: Option<Intrusion>,
-    /// Whether the robot stays there: for two seconds in which it is pushed forwards and back by 1 % of its weight.
+    /// Whether the robot stays there for two seconds in which it is pushed forwards and back with 1 % of its weight.
     pub stable: bool,
 }
 
-/// All poses in which the robot of a scenario can stand still while its drives run at the speed that is commanded first.
+/// All poses in which the robot of a scenario can stand still while its drives run at the first commanded speed.
 ///
 /// # Errors
-/// [`Error::Scenario`] for a robot or a ground whose jams are not known, [`Error::Interrupted`] once `cancel` is asked, and
-/// what a simulation may end with.
+/// [`Error::Scenario`] for a robot or a ground whose jams are not known, [`Error::Interrupted`] once `cancel` is asked,
+/// and what a simulation may end with.
 pub fn find_jams(scenario: &ValidScenario, cancel: &Cancel) -> Result<Vec<FoundJam>, Error> {
     let built = (scenario.model(), &**scenario.ground());
     let found = jams::jams(scenario.scenario(), built, cancel)?;
@@ -75,7 +75,7 @@ pub fn jam_ranges(
     std::thread::scope(|scope| {
         let thread = || Builder::new().stack_size(STACK);
         let start = |part| thread().spawn_scoped(scope, move || all(part));
-        // A system that gives no thread has this one do it.
+        // If the system gives no thread, this one does the work.
         let others: Vec<_> = parts.map(|part| (part, start(part))).collect();
         let mut found = all(first)?;
         for (part, thread) in others {
@@ -99,8 +99,9 @@ fn ranges_of(scenario: &ValidScenario, most: f64, cancel: &Cancel) -> Result<Jam
     Ok(seen.collect())
 }
 
-/// Which values of parameters there are no jams at that a belt does not have, from the scenarios at the least values of all
-/// parameters, then at the most of each alone, of all, and half way between; `belts` with a belt round the same wheels.
+/// Certifies at which values of parameters there are no jams that a belt does not have. The scenarios have the smallest
+/// values of all parameters, the largest of each alone, the largest of all, and the middle of all; `belts` are the same
+/// with a belt round the wheels.
 ///
 /// # Errors
 /// As [`find_jams`], and for parameters that move anything but corners of the ground, friction and the centre of mass.

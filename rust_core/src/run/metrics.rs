@@ -1,4 +1,4 @@
-//! Figures of a whole run, and a warning where it has sunk deeper into the ground than softness explains.
+//! Figures of a whole run, and a warning if it penetrated the ground deeper than softness explains.
 //!
 //! The equations: docs/physics.md, "Softness".
 
@@ -8,19 +8,19 @@ use crate::observe::{Event, EventKind};
 use crate::scenario::{Engine, Warning};
 use crate::units::{Metres, Seconds};
 
-/// What one metric is.
+/// Description of one metric.
 #[derive(Clone, Copy, Debug)]
 pub struct Metric {
     /// Its name in tables and files.
     pub name: &'static str,
     /// Its unit; "1" if it has none.
     pub unit: &'static str,
-    /// What it says.
+    /// Its meaning.
     pub meaning: &'static str,
     value: fn(&Metrics) -> f64,
 }
 
-/// Makes the fields of [`Metrics`], and what is said of them elsewhere, of one table.
+/// Makes the fields of [`Metrics`] and their descriptions from one table.
 macro_rules! metrics {
     ($($name:ident [$unit:literal] $meaning:literal)*) => {
         /// Metrics of a whole run; counts, too, are `f64`, as in the tables of sweeps.
@@ -128,22 +128,22 @@ impl Metrics {
     }
 }
 
-/// [s] Time between two looks at how deep the robot is: what has sunk in does not come out at once.
+/// [s] Time between two checks of the depth: penetration does not disappear at once.
 const BETWEEN_LOOKS: Seconds = Seconds(0.05);
-/// [m] How deep something may get in a step that the search for contacts did not see: 0.5 mm by its middle.
+/// [m] Depth that something outside the search for contacts may reach in a step: 0.5 mm by its middle.
 const UNSEEN_DEPTH: Metres = Metres(1e-3);
 /// Effective mass at the end of a rod, in units of its mass.
 const ROD_END: f64 = 0.25;
 
-/// What was seen of a run.
+/// Observations of a run.
 pub(super) struct Sinkage {
-    /// Whether the robot was set down on the ground: a track that is closed in the middle of a run has ground inside.
+    /// Whether the robot started on the ground; a track that is closed in the middle of a run may have ground inside.
     is_anew: bool,
-    /// [m] How deep it has been.
+    /// [m] Largest depth so far.
     pub deepest: f64,
-    /// [m/s] The highest speed at which anything may have met the ground.
+    /// [m/s] Upper bound for the speed at which anything met the ground.
     fastest: f64,
-    /// [m] No point of the robot is farther from its centre of mass.
+    /// [m] Largest distance of a point of the robot from its centre of mass.
     reach: f64,
     looks: u64,
 }
@@ -160,7 +160,7 @@ impl Sinkage {
         }
     }
 
-    /// Takes the state after a step.
+    /// Processes the state after a step.
     pub(super) fn step(&mut self, simulation: &Simulation) {
         self.fastest = self.fastest.max(speed(simulation, self.reach));
         if simulation.time() >= self.looks as f64 * BETWEEN_LOOKS.value() {
@@ -169,7 +169,7 @@ impl Sinkage {
         }
     }
 
-    /// A warning about a run that sank deeper than its softness explains; an engine in place of ours has its own.
+    /// A warning about a run that penetrated deeper than its softness explains; another engine has its own warning.
     pub(super) fn warning(&self, simulation: &Simulation) -> Option<Warning> {
         let most = explained(simulation, self.fastest);
         let is_own = simulation.scenario().solver.engine == Engine::Own;
@@ -184,7 +184,7 @@ impl Sinkage {
     }
 }
 
-/// [m] How deep the robot is in the ground now.
+/// [m] Present depth of the robot in the ground.
 fn deepest(simulation: &Simulation) -> f64 {
     let (model, running, pose) = simulation.placed();
     let depths = model.parts.iter().map(|part| {
@@ -194,7 +194,7 @@ fn deepest(simulation: &Simulation) -> f64 {
     depths.fold(0.0, f64::max)
 }
 
-/// [m/s] No point of the robot is faster now.
+/// [m/s] Upper bound for the present speed of points of the robot.
 fn speed(simulation: &Simulation, reach: f64) -> f64 {
     let reading = simulation.reading();
     let drives = (0..simulation.drives()).map(|k| simulation.drive_speed(k));
@@ -203,12 +203,12 @@ fn speed(simulation: &Simulation, reach: f64) -> f64 {
     reading.velocity.length() + reading.angular_velocity.abs() * reach + own
 }
 
-/// [m] The depth that soft contacts explain: all of the load on one of them, and an impact of the whole robot.
+/// [m] The depth that soft contacts explain, with the whole load on one of them, and an impact of the whole robot.
 fn explained(simulation: &Simulation, speed: f64) -> f64 {
     let model = simulation.model();
     let omega = std::f64::consts::TAU * simulation.scenario().solver.contact_frequency;
     let mass = model.total_mass();
-    // The mass that a contact is as stiff as.
+    // The mass from which the stiffness of a contact follows.
     let of_shoes = model.chains.iter().map(|chain| ROD_END * chain.shoe_mass);
     let own = of_shoes.fold(mass, f64::min);
     let load = simulation.weight() + model.motors as f64 * model.motor.force;
@@ -281,9 +281,9 @@ mod tests {
         assert!((found - 0.4).abs() < 1e-12, "{found} m/s");
     }
 
-    /// The contacts have 1000 Hz: 6283.2 /s. On a belt one is as stiff as for 21.2 kg, and bears 207.97 N of weight and
-    /// 2 x 6 N m / 0.052 m = 230.77 N of force: 0.52 um. On a chain it is as stiff as for 15 g, and an impact of 1 m/s goes
-    /// deeper by the square root of 21.2 / 0.015 = 37.59: 5.98 mm in place of 0.16 mm.
+    /// The contacts have 1000 Hz: 6283.2 /s. On a belt, a contact has the stiffness for 21.2 kg, and bears 207.97 N of
+    /// weight and 2 x 6 N m / 0.052 m = 230.77 N of force: 0.52 um. On a chain it has the stiffness for 15 g, and an
+    /// impact of 1 m/s is deeper by the square root of 21.2 / 0.015 = 37.59: 5.98 mm instead of 0.16 mm.
     #[test]
     fn what_softness_and_impacts_explain_depends_on_the_mass_that_a_contact_is_as_stiff_as() {
         let depths = |on_chain| [0.0, 1.0].map(|speed| explained(&simulation(on_chain), speed));

@@ -104,7 +104,7 @@ pub fn poses(checked: &ValidScenario, trace: &Trace, cancel: &Cancel) -> Result<
     Ok(found)
 }
 
-/// Bytes of the poses of so many samples, of a robot with so many bodies and ends with flippers.
+/// Bytes of the poses for a number of samples, of a robot with numbers of bodies and of ends with flippers.
 fn bytes_of([samples, bodies, flippers]: [usize; 3]) -> u64 {
     let numbers = samples * (4 * bodies + 3 * flippers + 2);
     8 * numbers as u64

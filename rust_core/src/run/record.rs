@@ -1,4 +1,4 @@
-//! What is kept of a run: the history of its state and contacts as columns, and the memory that this takes.
+//! The record of a run: the history of its state and contacts as columns, and the memory that this takes.
 
 #[cfg(test)]
 mod tests;
@@ -73,7 +73,7 @@ impl Columns {
     }
 }
 
-/// Makes a table of its columns; each has a type, and a number of entries per row of a robot.
+/// Makes a table from its columns, each with a type and a number of entries per row of a robot.
 macro_rules! table {
     ($(#[$about:meta])* pub struct $Table:ident for $robot:ident {
         $($(#[$meaning:meta])* $column:ident: $Number:ty [$entries:expr],)*
@@ -221,7 +221,7 @@ impl<'a> Recorder<'a> {
             contact_rows: Rows::new(budget, ContactTable::bytes(columns)),
             state: simulation.now().state.clone(),
         };
-        // A beginning that is off its multiple by rounding is that sample.
+        // A beginning that misses its multiple by rounding is that sample.
         recorder.taken = ((recorder.until + SAME_TIME.value()) / recorder.every).floor() as u64;
         recorder.sample(simulation, simulation.time())?;
         Ok(recorder)
@@ -404,7 +404,7 @@ pub(crate) fn batch_budget(
     Ok(budget)
 }
 
-/// Bytes of a batch on grounds of so many corners, without its records: each thread builds one ground at a time.
+/// Bytes of a batch on grounds with these numbers of corners, without records: each thread builds one ground at a time.
 fn bytes_besides(corners: impl Iterator<Item = u64> + Clone, threads: usize) -> u64 {
     let largest = corners.clone().max().unwrap_or(0);
     let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);

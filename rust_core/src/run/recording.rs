@@ -22,7 +22,7 @@ pub struct Run {
     pub diagnosis: Option<Diagnosis>,
     /// Figures of the whole run.
     pub metrics: Metrics,
-    /// [m] How deep the robot was in the ground, by its outline alone, at some instants.
+    /// [m] Largest depth of the robot's outline in the ground, at some instants.
     pub depth: f64,
     /// Results that are unlikely to be right.
     pub warnings: Vec<Warning>,
@@ -44,7 +44,7 @@ pub struct Run {
     pub wall_time: f64,
 }
 
-/// What is kept of a run while it is simulated.
+/// The results of a run while it is simulated.
 pub(super) struct Recording<'a> {
     record: Record,
     clock: Clock,
@@ -72,7 +72,7 @@ impl<'a> Recording<'a> {
         })
     }
 
-    /// Takes in the last step.
+    /// Processes the last step.
     pub(super) fn step(&mut self, simulation: &Simulation) -> Result<(), Error> {
         self.sinkage.step(simulation);
         if let Some(recorder) = &mut self.recorder {
@@ -81,7 +81,7 @@ impl<'a> Recording<'a> {
         Ok(())
     }
 
-    /// The results, with what is tried if the robot has stopped.
+    /// The results, with trials if the robot has stopped.
     pub(super) fn finish(self, simulation: &Simulation, cancel: &Cancel) -> Result<Run, Error> {
         let recorded = self.recorder.map(|recorder| recorder.finish(simulation));
         let (trace, contacts) = recorded.transpose()?.unwrap_or_default();
@@ -91,7 +91,7 @@ impl<'a> Recording<'a> {
         let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
         let mut metrics = Metrics::of(simulation, &events);
         let warnings = Vec::from_iter(self.sinkage.warning(simulation));
-        // Where contacts were not found they do not tell how deep it was.
+        // Contacts that were not found say nothing about depth.
         for warning in &warnings {
             metrics.max_penetration = metrics.max_penetration.max(warning.value);
         }

@@ -1,4 +1,4 @@
-//! What a simulation was asked to do, step by step, from which the same run is made again with its history.
+//! The log of a simulation's commands and steps, from which the same run is repeated with its history.
 
 use super::clock::Clock;
 use super::record::{Record, batch_budget};
@@ -8,17 +8,17 @@ use crate::error::Error;
 use crate::limits::Cancel;
 use crate::scenario::Scenario;
 
-/// All that a simulation was asked to do since its start or a snapshot; the same steps give the same bits.
+/// All commands and steps of a simulation since its start or a snapshot; the same steps give the same bits.
 #[derive(Clone, Debug, Default)]
 pub struct Log {
-    /// Where it began; `None` is the start of its scenario.
+    /// The snapshot where it began; `None` is the start of its scenario.
     snapshot: Option<Vec<u8>>,
     entries: Vec<Entry>,
 }
 
 #[derive(Clone, Debug)]
 enum Entry {
-    /// Steps that were to end at one time [s], and how far they came.
+    /// Steps that were to end at one time [s], and the time reached.
     Steps {
         end: f64,
         reached: f64,
@@ -27,7 +27,7 @@ enum Entry {
 }
 
 impl Log {
-    /// Of a simulation that goes on from a snapshot.
+    /// The log of a simulation that continues from a snapshot.
     pub fn after(snapshot: Vec<u8>) -> Self {
         Self {
             snapshot: Some(snapshot),
@@ -35,24 +35,24 @@ impl Log {
         }
     }
 
-    /// Notes steps that are to end at a time [s].
+    /// Records steps that are to end at a time [s].
     pub fn note_steps(&mut self, end: f64) {
         self.entries.push(Entry::Steps { end, reached: end });
     }
 
-    /// Notes the time [s] at which the last steps ended.
+    /// Records the time [s] at which the last steps ended.
     pub fn has_reached(&mut self, time: f64) {
         if let Some(Entry::Steps { reached, .. }) = self.entries.last_mut() {
             *reached = time;
         }
     }
 
-    /// Notes commands that were taken.
+    /// Records accepted commands.
     pub fn note_commands(&mut self, commands: ByHand) {
         self.entries.push(Entry::ByHand(Box::new(commands)));
     }
 
-    /// Simulates it once more, and keeps what `record` says.
+    /// Simulates it again, and records what `record` says.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate), and [`Error::Interrupted`] once `cancel` is asked.

@@ -1,4 +1,4 @@
-//! Runs of a scenario: to its end, to a stop of which something is asked, or until it tips over.
+//! Runs of a scenario: to its end, to a stop that is examined, or until it tips over.
 
 use super::clock::Clock;
 use super::record::{Record, batch_budget};
@@ -35,8 +35,8 @@ pub(crate) fn simulate_within(
 }
 
 /// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration, with a push that
-/// rises to a force [N] in a time [s]. A run of a trial begins so many starts later as [`what_if`](crate::what_if) says, a
-/// fifth of a stop window each, and like the trial it ignores the schedules.
+/// rises to a force [N] in a time [s]. A run of a trial begins later by the number of starts that
+/// [`what_if`](crate::what_if) returns, each a fifth of a stop window; like the trial, it ignores the schedules.
 ///
 /// # Errors
 /// As [`simulate`], [`Error::Scenario`] if the push is out of range, and [`Error::Interrupted`] once `cancel` is asked.
@@ -62,8 +62,8 @@ pub fn branch(
     advance(&mut simulation, end, record, (&budget, cancel), clock)
 }
 
-/// The scenario of a trial made at a stop of `scenario` at the time `at` [s], and its run; `None` if the change makes no
-/// sense for the robot.
+/// The scenario of a trial made at a stop of `scenario` at the time `at` [s], and its run; `None` if the change makes
+/// no sense for the robot.
 ///
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
@@ -85,8 +85,8 @@ pub fn run_of_trial(
     Ok(Some((started.scenario().clone(), run)))
 }
 
-/// Simulates `scenario` up to the time `at` [s], where it has stopped, and says whether forces could hold it there; `None`
-/// if it has not stopped, or has no weight.
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and says whether forces can hold it there;
+/// `None` if it has not stopped, or has no weight.
 ///
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
@@ -98,7 +98,7 @@ pub fn balance(
     Ok(Simulation::replayed(scenario, at, cancel)?.balance())
 }
 
-/// Limits of a run: memory, and a request to end.
+/// Limits of a run: memory and cancellation.
 type Limits<'a> = (&'a Budget, &'a Cancel);
 
 /// Simulates up to the time `end` [s], or until the outcome is certain.
@@ -121,7 +121,7 @@ fn advance(
 /// The last instant at which a robot that tipped over stood over its contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipOver {
-    /// It went over its rear, nose up.
+    /// Whether it tipped over its rear, nose up.
     pub backwards: bool,
     /// [s] The instant.
     pub time: f64,
@@ -141,7 +141,7 @@ pub struct TipOver {
 /// [`Error::Simulation`] if the state became non-finite, [`Error::Interrupted`] once `cancel` is asked.
 pub fn tip_over(scenario: &ValidScenario, cancel: &Cancel) -> Result<Option<TipOver>, Error> {
     let (mut robot, end) = (Simulation::new(scenario), scenario.scenario().duration);
-    // The last instants of standing ahead of the rearmost contact, and behind the foremost one.
+    // The last instants at which it stood ahead of the rearmost contact, and behind the foremost one.
     let mut stood = [None; 2];
     while robot.time() < end && !robot.is_over() {
         robot.step_until(end)?;
@@ -195,7 +195,7 @@ mod tests {
         let found = tip_over(&checked, &Cancel::default()).expect("the state stays finite");
         let found = found.expect("it tips over");
         assert!(found.backwards && found.chassis_angle > 0.5);
-        // The weight acts through the pivot, up to the way of one step: of 16 ms at the most, at the 0.4 m/s of the tracks.
+        // The weight acts through the pivot, up to the travel of one step: at most 16 ms, at 0.4 m/s.
         let [lever, height] = [0, 1].map(|i| found.center_of_mass[i] - found.pivot[i]);
         assert!((0.0..6.4e-3).contains(&lever), "{lever} m");
         assert!(height > 0.1 && found.pivot[1].abs() < 0.01);

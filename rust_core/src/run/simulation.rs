@@ -37,7 +37,7 @@ pub struct Simulation {
     ground: Arc<Ground>,
     contact: ContactFinder,
     dynamics: Dynamics,
-    /// What moves the robot in place of the dynamics, if the scenario says so.
+    /// Another engine that moves the robot instead of our dynamics, if the scenario says so.
     engine: Option<EngineWorld>,
     step_rule: StepRule,
     /// [m] Distance of the robot's farthest point from its centre of mass.
@@ -80,7 +80,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// The same on a ground given by the caller in place of the scenario's.
+    /// The same on a given ground instead of the scenario's.
     ///
     /// # Errors
     /// [`Error::Scenario`] if the robot does not fit on it.
@@ -142,7 +142,7 @@ impl Simulation {
         simulation
     }
 
-    /// Has its observations begin in this pose.
+    /// Restarts the observations in the current pose.
     fn observe_from_here(&mut self) {
         let now = self.reading();
         let observed = &mut self.monitor.observed;
@@ -150,7 +150,7 @@ impl Simulation {
         (observed.min_angle, observed.max_angle) = (now.chassis_angle, now.chassis_angle);
     }
 
-    /// Whether another engine than our own dynamics moves it.
+    /// Whether another engine instead of our own dynamics moves it.
     pub(crate) fn is_in_an_engine(&self) -> bool {
         self.engine.is_some()
     }
@@ -226,7 +226,7 @@ impl Simulation {
 
     /// Whether the outcome is certain, so that a run may end.
     pub fn is_over(&self) -> bool {
-        // A robot that stands may still leave under a push that has just risen.
+        // A robot at rest may still leave under a push that has just risen.
         let may_leave = || {
             let windows = f64::from(self.scenario.criteria.stationary_windows);
             self.time < self.commands.push.end() + windows * self.stop_window()
@@ -234,24 +234,24 @@ impl Simulation {
         self.monitor.is_over() && (self.monitor.ended_as().is_some() || !may_leave())
     }
 
-    /// How it ended, if not in a stop or by time; nothing is tried.
+    /// How it ended, if neither in a stop nor by time; no trials are made.
     pub fn ended_as(&self) -> Option<Outcome> {
         self.monitor.ended_as()
     }
 
-    /// [s] Since when the robot has been stopped under the present command, if it is: another one may have come since the
-    /// last check.
+    /// [s] When the robot stopped under the present command, if it has; the command may have changed since the last
+    /// check.
     fn stop_since(&self) -> Option<f64> {
         let is_of_it = self.monitor.direction() * self.commands.speed > 0.0;
         self.monitor.stop_since().filter(|_| is_of_it)
     }
 
-    /// Whether the robot is stopped; nothing is tried.
+    /// Whether the robot is stopped; no trials are made.
     pub fn is_stopped(&self) -> bool {
         self.stop_since().is_some()
     }
 
-    /// What is seen of a stop, before anything is tried; `None` if the robot is not stopped.
+    /// Diagnosis of a stop before any trials; `None` if the robot is not stopped.
     pub(crate) fn examine(&self) -> Option<Diagnosis> {
         let since = self.stop_since()?;
         if self.monitor.ended_as().is_some() {
@@ -289,7 +289,7 @@ impl Simulation {
         })
     }
 
-    /// Whether it has done what the scenario says from time 0 on: no branch, no command by hand, no push.
+    /// Whether it has followed the scenario from time 0 on: no branch, no command by hand, no push.
     pub(crate) fn follows_scenario(&self) -> bool {
         self.commands.follow_scenario
     }
@@ -411,7 +411,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Decides what the drives and the flippers are to do from now on.
+    /// Decides the commands of drives and flippers from now on.
     pub(super) fn decide(&mut self) {
         let (drive, time) = (&self.scenario.drive, self.time);
         if let Some(speed) = self.commands.driver.speed(drive, time) {

@@ -7,21 +7,21 @@ use crate::robot::Part;
 use crate::scenario::Scenario;
 use crate::units::Seconds;
 
-/// [s] Longest step: the accuracy of rates gains nothing from a limit, but what is looked at between two steps does.
+/// [s] Longest step. Rates do not become more accurate by this limit, but observations between steps do.
 const LONGEST: Seconds = Seconds(0.016);
 /// [s] Length of the first step.
 const FIRST: Seconds = Seconds(1e-3);
-/// [rad] Farthest that anything may turn in a step: it would pass over corners without contact.
+/// [rad] Largest turn of anything in a step: larger turns would pass over corners without contact.
 pub(super) const FARTHEST_TURN: f64 = 0.7;
 /// Exponents of the controller, on the last error and on the one before (Gustafsson 1991), and the order of the
 /// error.
 const PROPORTIONAL: f64 = 0.7;
 const MEMORY: f64 = 0.4;
 const ORDER: f64 = 2.0;
-/// By how much a step may grow or shrink over the one before.
+/// Smallest and largest ratio of a step to the previous one.
 const GROWTH: f64 = 2.5;
 const SHRINKAGE: f64 = 0.1;
-/// Share of the accuracy that the next step aims at.
+/// Fraction of the accuracy that the next step aims at.
 const AIM: f64 = 0.8;
 /// A step is taken again if its error exceeds the accuracy by this factor.
 const TOO_MUCH: f64 = 1.5;
@@ -30,17 +30,17 @@ const LEAST: f64 = 1e-3;
 /// [s] Times closer than this are the same.
 pub(super) const SAME_TIME: Seconds = Seconds(1e-9);
 
-/// How long steps are.
+/// How the length of steps is chosen.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum StepRule {
-    /// [s] As long as given.
+    /// [s] Fixed.
     Fixed(f64),
-    /// [m] Such that their local error is this.
+    /// [m] Such that the local error has this value.
     Accuracy { accuracy: f64, longest: f64 },
 }
 
 impl StepRule {
-    /// That of a scenario, whose robot has these parts.
+    /// The choice of a scenario whose robot has these parts.
     pub(super) fn of(scenario: &Scenario, parts: &[Part]) -> Self {
         match (scenario.solver.accuracy, scenario.solver.time_step) {
             (Some(accuracy), _) => Self::Accuracy {
@@ -54,7 +54,7 @@ impl StepRule {
     }
 }
 
-/// Decides how long the next step is.
+/// Decides the length of the next step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct StepControl {
     /// [s] Length that the last errors suggest.
@@ -73,7 +73,7 @@ impl Default for StepControl {
 }
 
 impl StepControl {
-    /// [s] Length of the next step, which is to end at `limit` at the latest.
+    /// [s] Length of the next step, which has to end at `limit` at the latest.
     pub(super) fn next(&self, rule: StepRule, time: f64, limit: f64) -> f64 {
         let (limit, wanted) = match rule {
             StepRule::Fixed(step) => {
@@ -86,12 +86,12 @@ impl StepControl {
         if left <= wanted + SAME_TIME.value() {
             left
         } else {
-            // Leaves no short step for the end.
+            // Avoids a short step at the end.
             wanted.min(0.5 * left)
         }
     }
 
-    /// Whether a step of `h` [s] with this error [m] will do; if not, how long to try instead.
+    /// Whether a step of `h` [s] with this error [m] is accepted; if not, the length to try instead.
     pub(super) fn judge(&mut self, rule: StepRule, h: f64, error: f64) -> Result<(), f64> {
         let StepRule::Accuracy { accuracy, .. } = rule else {
             return Ok(());
@@ -110,7 +110,7 @@ impl StepControl {
         }
         let factor = libm::pow(share, PROPORTIONAL / ORDER) * libm::pow(self.last, MEMORY / ORDER);
         let next = (h * factor.clamp(SHRINKAGE, GROWTH)).max(SHORTEST.value());
-        // A step that was cut short says nothing against a longer one.
+        // A step that was cut short does not mean that a longer one fails.
         self.wanted = if factor >= 1.0 {
             next.max(self.wanted)
         } else {
@@ -121,7 +121,7 @@ impl StepControl {
         Ok(())
     }
 
-    /// One that no step leaves behind.
+    /// A state that no step leaves behind.
     #[cfg(test)]
     pub(super) fn never() -> Self {
         Self {
@@ -130,7 +130,7 @@ impl StepControl {
         }
     }
 
-    /// Whether steps can have led to it.
+    /// Whether steps can have led to this state.
     pub(super) fn fits(&self) -> bool {
         (SHORTEST.value()..=LONGEST.value()).contains(&self.wanted)
             && self.last.is_finite()
@@ -138,7 +138,7 @@ impl StepControl {
     }
 }
 
-/// [s] The time after a step that is to end at `limit` if it comes near it.
+/// [s] The time after a step, which is exactly `limit` if it is close to that.
 pub(super) fn arrive(time: f64, limit: f64) -> f64 {
     if (limit - time).abs() < SAME_TIME.value() {
         limit
@@ -171,7 +171,7 @@ mod tests {
         longest: 0.01,
     };
 
-    /// After a step of `h` [s] with an error of so many times the accuracy.
+    /// After a step of `h` [s] with an error that is a multiple of the accuracy.
     fn after(h: f64, ratio: f64) -> (StepControl, Result<(), f64>) {
         let mut control = StepControl {
             wanted: h,

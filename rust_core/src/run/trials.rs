@@ -1,4 +1,4 @@
-//! Judges a stop by doing: one thing is changed in its pose, and the robot drives on.
+//! Judges a stop by trials: one thing is changed in the pose of the stop, and the robot drives on.
 //!
 //! docs/decisions/0012 explains why, docs/conventions.md defines the words.
 
@@ -15,11 +15,11 @@ use crate::scenario::{
     Track, scaled_friction,
 };
 
-/// From how many instants a stop that rattles is tried.
+/// Number of instants from which trials of a rattling stop start.
 const STARTS: u32 = 5;
-/// In how many of these a change must free the robot.
+/// Number of these from which a change must free the robot.
 const ENOUGH: u32 = 4;
-/// [s] A trial takes no longer, however slow the command is.
+/// [s] Longest duration of a trial, however slow the command is.
 const LONGEST: f64 = 1e3;
 
 /// Diagnoses a simulation's stop; `None` if it has not stopped.
@@ -43,20 +43,20 @@ pub fn diagnose(
     if is_transient || leaves && !stop.is_in_an_engine() {
         found.outcome = Outcome::TimedOut;
     } else {
-        // Where our own dynamics do not hold the stop of another engine, they cannot say what would end it.
+        // If our own dynamics do not stop where another engine did, they cannot say what would end that stop.
         if found.jammed && !leaves {
             let in_pose = series.frees(Change::ClosedTrack)?;
             let from_clear = series.frees(Change::ClosedTrackClear)?;
-            // The model's bodies need not be where its track is,
+            // The model's bodies need not be at its track,
             if !in_pose {
                 series.frees(Change::Belt)?;
             }
-            // and no track need come to this pose.
+            // and a track need not get to this pose.
             if !series.frees(Change::BeltFromStart)? {
                 series.frees(Change::ClosedTrackFromStart)?;
             }
             if in_pose || from_clear {
-                // What one motor for all wheels ends was want of torque at some of them.
+                // If one motor for all wheels frees the robot, some of them lacked torque.
                 let lacks_torque = series.frees(Change::OneMotor)?;
                 found.outcome = if lacks_torque {
                     Outcome::Stalled
@@ -92,8 +92,8 @@ pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, E
     Ok(found.map_or(Outcome::TimedOut, |found| found.outcome))
 }
 
-/// Simulates `scenario` up to the time `at` [s], where it has stopped, and makes trials there; those that make no sense
-/// for the robot are left out.
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and makes trials there, except those that make
+/// no sense for the robot.
 ///
 /// # Errors
 /// As [`simulate`](crate::simulate), and [`Error::Interrupted`] once `cancel` is asked.
@@ -115,8 +115,8 @@ pub fn make_trials(
 }
 
 /// Simulates `scenario` up to the time `at` [s], where it has stopped, and tries to continue as `variant` with a push
-/// that rises to a force [N] in a time [s]; `None` if it has not stopped. Also returns how many starts after the stop the
-/// run began that the trial tells of: see [`branch`](crate::branch).
+/// that rises to a force [N] in a time [s]; `None` if it has not stopped. Also returns how many starts after the stop
+/// the reported run began: see [`branch`](crate::branch).
 ///
 /// # Errors
 /// As [`branch`](crate::branch).
@@ -139,7 +139,7 @@ pub fn what_if(
     series.attempt("changed", (STARTS, pose_duration(&stop)), &start)
 }
 
-/// The next instant from which a stop is tried: a fifth of a stop window later.
+/// The next instant from which trials of a stop start: a fifth of a stop window later.
 pub(super) fn next_start(last: &Simulation, cancel: &Cancel) -> Result<Simulation, Error> {
     let mut next = last.copy();
     next.advance(last.stop_window() / f64::from(STARTS))?;
@@ -147,7 +147,7 @@ pub(super) fn next_start(last: &Simulation, cancel: &Cancel) -> Result<Simulatio
     Ok(next)
 }
 
-/// The start of the run that a trial tells of: of a robot that rattles it may be a later one than the stop. `None` if the
+/// The start of the run that a trial reports, which for a rattling robot may be later than the stop. `None` if the
 /// change makes no sense for the robot.
 pub(super) fn shown_start(
     stop: &Simulation,
@@ -164,7 +164,7 @@ pub(super) fn shown_start(
     }
 }
 
-/// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
+/// A simulation with a change that starts from a stop; `None` if the change makes no sense for the robot.
 pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulation>, Error> {
     if change == Change::Nothing {
         return Ok(Some(stop.copy()));
@@ -174,7 +174,7 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
     };
     let start = Start::of(change);
     if start == Start::Anew {
-        // Only the run of a scenario can be had again: nothing is known of commands by hand, or of a trunk.
+        // Only the run of a scenario can be repeated: commands by hand, or before a branch, are not known here.
         let again = stop
             .follows_scenario()
             .then(|| ValidScenario::new(&scenario));
@@ -187,7 +187,7 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
     Ok(Some(started))
 }
 
-/// [s] For how long a change is tried.
+/// [s] Duration of the trial of a change.
 pub(super) fn duration(stop: &Simulation, change: Change) -> f64 {
     if change.is_from_the_start() {
         stop.scenario().duration
@@ -196,20 +196,20 @@ pub(super) fn duration(stop: &Simulation, change: Change) -> f64 {
     }
 }
 
-/// [s] The same of a change in the pose of the stop.
+/// [s] The same for a change in the pose of the stop.
 fn pose_duration(stop: &Simulation) -> f64 {
     let criteria = &stop.scenario().criteria;
     let time = criteria.escape_time + criteria.escape_distance / stop.command().abs();
     time.min(LONGEST)
 }
 
-/// A stop, and the trials that have been made of it.
+/// A stop, with the trials made of it.
 struct TrialSeries<'a> {
-    /// The instants from which it is tried; those after the first follow when they are needed.
+    /// The instants from which trials start; those after the first are computed on request.
     starts: Vec<Simulation>,
     rattles: bool,
     direction: f64,
-    /// [m] How far the robot had come, in the commanded direction.
+    /// [m] Greatest position of the robot in the commanded direction.
     greatest: f64,
     trials: Vec<Trial>,
     cancel: &'a Cancel,
@@ -227,13 +227,13 @@ impl<'a> TrialSeries<'a> {
         }
     }
 
-    /// Whether a change frees the robot; it is tried once.
+    /// Whether a change frees the robot; the trial is made once.
     fn frees(&mut self, change: Change) -> Result<bool, Error> {
         let name = change.name();
         if let Some(made) = self.trials.iter().find(|trial| trial.name == name) {
             return Ok(made.freed);
         }
-        // A robot that cannot be built, or whose state becomes non-finite, tells nothing of the stop.
+        // A robot that cannot be built, or whose state becomes non-finite, says nothing about the stop.
         let made = match self.attempt_change(change) {
             Err(Error::Scenario(_) | Error::Simulation(_)) => None,
             made => made?,
@@ -243,17 +243,17 @@ impl<'a> TrialSeries<'a> {
         Ok(freed)
     }
 
-    /// Tries a change; returns which start the trial tells of, too.
+    /// Tries a change; also returns the index of the start that the trial reports.
     fn attempt_change(&mut self, change: Change) -> Result<Option<(Trial, usize)>, Error> {
-        // A run that goes on passes through all the other starts, and a run has one beginning.
+        // A run that continues passes through all other starts, and a run from the start has only one.
         let is_single = change == Change::Nothing || change.is_from_the_start();
         let most = if is_single { 1 } else { STARTS };
         let duration = duration(&self.starts[0], change);
         self.attempt(change.name(), (most, duration), &|stop| start(stop, change))
     }
 
-    /// Tries a change for a time [s] from as many starts as it takes to decide, `most` of them if the robot rattles;
-    /// returns the first that ended as most of them, and its place.
+    /// Tries a change for a time [s] from as many starts as it takes to decide, at most `most`, and only if the robot
+    /// rattles; returns the first trial that ended like most of them, and its index.
     fn attempt(
         &mut self,
         name: &'static str,
@@ -289,7 +289,7 @@ impl<'a> TrialSeries<'a> {
         }))
     }
 
-    /// The instants from which a stop is tried, from the stop on.
+    /// The instant number `i` from which trials start; 0 is the stop.
     fn start(&mut self, i: usize) -> Result<&Simulation, Error> {
         while self.starts.len() <= i {
             let next = next_start(&self.starts[self.starts.len() - 1], self.cancel)?;
@@ -298,7 +298,8 @@ impl<'a> TrialSeries<'a> {
         Ok(&self.starts[i])
     }
 
-    /// Lets one start run for a time [s]. That, and which way is ahead, are those of the stop, whatever a change commands.
+    /// Simulates from one start for a time [s]. Time and forward direction are those of the stop, whatever a change
+    /// commands.
     fn follow(
         &self,
         mut simulation: Simulation,
@@ -324,7 +325,7 @@ impl<'a> TrialSeries<'a> {
         }
         let ended = simulation.monitor().ended_as();
         if ended.is_some_and(|outcome| outcome != Outcome::Cleared) {
-            // A robot that falls over, off the ground or out of its track has not got free.
+            // A robot that falls over, off the ground or out of its track is not free.
             time = f64::INFINITY;
         }
         let stop = simulation.examine();
@@ -356,7 +357,7 @@ impl<'a> TrialSeries<'a> {
 enum Start {
     /// With all of the state.
     Continued,
-    /// With pose and speeds; ground inside is let out.
+    /// With pose and speeds; ground inside is let out without a push.
     Rebuilt,
     /// At rest, in the nearest pose in which no ground is inside.
     Clear,
@@ -365,7 +366,7 @@ enum Start {
 }
 
 impl Start {
-    /// That of a change.
+    /// The kind of start for a change.
     fn of(change: Change) -> Self {
         match change {
             Change::Nothing
@@ -388,7 +389,7 @@ impl Start {
 /// The variant that a change makes of a scenario; `None` if it makes no sense for its robot.
 fn variant_of(scenario: &Scenario, change: Change) -> Option<Scenario> {
     let mut variant = scenario.clone();
-    // Trials of another engine's stops are made by our own dynamics, at its time step.
+    // Trials of another engine's stops use our own dynamics, with the other engine's time step.
     variant.solver.engine = Engine::Own;
     let robot = &mut variant.robot;
     match change {
@@ -435,7 +436,7 @@ fn variant_of(scenario: &Scenario, change: Change) -> Option<Scenario> {
     Some(variant)
 }
 
-/// The robot's track, closed; `None` if it has no pockets that could be closed.
+/// The robot's track, closed; `None` if it has no pockets to close.
 fn closed(robot: &Robot, surface: ClosedSurface) -> Option<Track> {
     any_track(robot, Track::has_pockets).then(|| {
         Track::Closed(ClosedTrack {
@@ -445,7 +446,7 @@ fn closed(robot: &Robot, surface: ClosedSurface) -> Option<Track> {
     })
 }
 
-/// Whether something is so of the robot's track or of its arms'.
+/// Whether a condition is true for the robot's track or that of its arms.
 fn any_track(robot: &Robot, is_so: fn(&Track) -> bool) -> bool {
     let arms = robot.flippers.as_ref().and_then(|f| f.track.as_ref());
     is_so(&robot.track) || arms.is_some_and(is_so)

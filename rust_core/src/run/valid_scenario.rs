@@ -17,7 +17,7 @@ use crate::terrain::Ground;
 /// Longest text that is read, in bytes; three lanes with the largest number of points take half of it.
 const LONGEST_TEXT: usize = 64 << 20;
 
-/// Where the discs of an outline are.
+/// JSON pointer to the discs of an outline.
 const DISCS: &str = "/robot/outline/discs";
 
 /// A valid scenario, with the robot and the ground that were built to check it.
@@ -53,7 +53,7 @@ impl ValidScenario {
         Self::from_json_like(text, None)
     }
 
-    /// The same; a robot or a ground equal to that of another scenario is not built again.
+    /// The same, but a robot or ground equal to that of another scenario is not built again.
     ///
     /// # Errors
     /// As [`Self::from_json`].
@@ -72,7 +72,7 @@ impl ValidScenario {
 
     /// Scenarios that differ from this one in some numbers: one per row, which has a number for each field.
     ///
-    /// A field is a JSON pointer such as `/robot/center_of_mass/0`, and whether it takes whole numbers.
+    /// A field is a JSON pointer such as `/robot/center_of_mass/0`, with whether its values are integers.
     ///
     /// Each may break a rule, as in [`Self::from_json`].
     ///
@@ -85,7 +85,7 @@ impl ValidScenario {
         cancel: &Cancel,
     ) -> Result<Vec<Result<Self, Error>>, Error> {
         let mut value = to_value(&self.scenario);
-        // Texts have another form for two discs.
+        // Two discs have another form in JSON.
         if fields.iter().any(|(pointer, _)| pointer.starts_with(DISCS)) {
             value["robot"]["outline"] = self.scenario.robot.outline.with_discs();
         }
@@ -196,7 +196,7 @@ fn to_value(scenario: &Scenario) -> Value {
     serde_json::to_value(scenario).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
 }
 
-/// A number as JSON has it; what is not finite is a text, for which there is a rule.
+/// A number as in JSON; a non-finite one becomes a string, which breaks a rule.
 fn to_number(number: f64, whole: bool) -> Value {
     if whole && number >= 0.0 && number.fract() == 0.0 {
         return Value::from(number as u64);
@@ -215,7 +215,7 @@ impl Scenario {
     }
 }
 
-/// Checks that what is to bounce can: contacts of chains are springs that give nothing back.
+/// Checks that restitution is possible: contacts of chains are damped springs that return no energy.
 fn check_impacts(scenario: &Scenario) -> Result<(), ScenarioError> {
     let share = scenario.solver.restitution;
     if share > 0.0 && matches!(scenario.robot.track, Track::Segmental(_)) {
@@ -248,7 +248,7 @@ fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError>
     Ok(())
 }
 
-/// The place of a field in a text, also of one that is left out because it has its default.
+/// A field of a JSON value, also one that is left out because it has its default.
 fn place_of<'a>(text: &'a mut Value, pointer: &str) -> Option<&'a mut Value> {
     if text.pointer(pointer).is_some() {
         return text.pointer_mut(pointer);
@@ -258,8 +258,7 @@ fn place_of<'a>(text: &'a mut Value, pointer: &str) -> Option<&'a mut Value> {
     Some(members.entry(name).or_insert(Value::Null))
 }
 
-/// Bytes per corner of the ground and its index during a run; measured: 250, and as much again while they are
-/// built.
+/// Bytes per corner of the ground and its index during a run; measured: 250, and the same again while they are built.
 pub(super) const BYTES_A_CORNER: u64 = 600;
 /// Bytes per corner of a ground that is kept for a run.
 const BYTES_A_KEPT_CORNER: u64 = 300;

@@ -13,7 +13,7 @@ use crate::limits::memory::ask;
 use crate::observe::{Outcome, Reading};
 use crate::scenario::{End, Flippers};
 
-/// Simulations that are independent of each other. One that fails stands still, and the others go on.
+/// Independent simulations. If one fails, it stands still, and the others continue.
 pub struct Worlds {
     worlds: Vec<Mutex<World>>,
 }
@@ -22,11 +22,11 @@ struct World {
     scenario: ValidScenario,
     simulation: Simulation,
     log: Log,
-    /// Why it cannot go on.
+    /// Why it cannot continue.
     error: Option<Error>,
 }
 
-/// What is seen of a world at an instant.
+/// The state of a world at an instant.
 #[derive(Clone, Debug)]
 pub struct WorldState {
     /// Position, speeds and time.
@@ -41,11 +41,11 @@ pub struct WorldState {
     pub to_goal: f64,
     /// \[J\] Work of the motors of its tracks so far.
     pub drive_work: f64,
-    /// How it ended, without trials: not of a stop, nor by time.
+    /// How it ended, unless in a stop or by time; no trials are made.
     pub ended: Option<Outcome>,
     /// Whether it is stopped.
     pub is_stopped: bool,
-    /// Why it cannot go on.
+    /// Why it cannot continue.
     pub error: Option<String>,
 }
 
@@ -70,12 +70,12 @@ impl Worlds {
         Ok(Self { worlds: worlds? })
     }
 
-    /// How many there are.
+    /// Number of worlds.
     pub fn count(&self) -> usize {
         self.worlds.len()
     }
 
-    /// Sets a world out anew, with another scenario if one is given.
+    /// Restarts a world, with another scenario if one is given.
     pub fn reset(&mut self, index: usize, scenario: Option<ValidScenario>) {
         let world = self.worlds[index]
             .get_mut()
@@ -84,7 +84,7 @@ impl Worlds {
         *world = World::new(scenario);
     }
 
-    /// Gives each world its commands; those that cannot go on take none. If one is invalid, none takes effect.
+    /// Gives each world its commands, unless it cannot continue. If one command is invalid, none takes effect.
     ///
     /// # Errors
     /// The first error of [`Simulation::command_all`].
@@ -106,10 +106,10 @@ impl Worlds {
         })
     }
 
-    /// Advances those at some places by a duration \[s\], each on one of some threads.
+    /// Advances the worlds with these indices by a duration \[s\], on several threads.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] once `cancel` is asked; then they stand at different times.
+    /// [`Error::Interrupted`] once `cancel` is asked; then they are at different times.
     pub fn advance(
         &self,
         places: &[usize],
@@ -131,7 +131,7 @@ impl Worlds {
         std::thread::scope(|scope| {
             let thread = || Builder::new().stack_size(STACK);
             let start = |_| thread().spawn_scoped(scope, work);
-            // A system that gives no thread has this one do it.
+            // If the system gives no thread, this one does the work.
             let others: Vec<_> = (1..threads.min(places.len()))
                 .map_while(|k| start(k).ok())
                 .collect();
@@ -143,17 +143,17 @@ impl Worlds {
         })
     }
 
-    /// Has one set out for a duration \[s\]; returns the time at which it is to be at the end.
+    /// Starts an advance of one world by a duration \[s\]; returns the time at its end.
     pub fn set_out(&self, place: usize, duration: f64) -> f64 {
         lock(&self.worlds[place]).set_out(duration)
     }
 
-    /// Has it go on to that time \[s\], or until `cancel` is asked; returns whether it will come no further.
+    /// Advances it to that time \[s\], or until `cancel` is asked; returns whether it is finished or has failed.
     pub fn go_on(&self, place: usize, end: f64, cancel: &Cancel) -> bool {
         lock(&self.worlds[place]).go_on(end, cancel)
     }
 
-    /// What is seen of each.
+    /// The state of each world.
     pub fn states(&self) -> Vec<WorldState> {
         self.worlds
             .iter()
@@ -166,7 +166,7 @@ impl Worlds {
     /// # Errors
     /// They need more memory than there may be.
     pub fn heights(&self, offsets: &[f64]) -> Result<Vec<f64>, Error> {
-        // While rows are joined there are up to two copies.
+        // While rows are joined, there are up to two copies.
         let bytes = 2 * size_of::<f64>() * self.worlds.len() * offsets.len();
         ask("heights of the ground", bytes as u64)?;
         let of = |world: &Mutex<World>| {
@@ -189,7 +189,7 @@ impl Worlds {
         lock(&self.worlds[index]).scenario.clone()
     }
 
-    /// What a world was asked to do since it set out.
+    /// The commands and advances of a world since its start.
     pub fn log(&self, index: usize) -> Log {
         lock(&self.worlds[index]).log.clone()
     }
@@ -218,7 +218,7 @@ impl World {
         }
     }
 
-    /// Notes an advance by a duration [s]; returns the time at its end.
+    /// Records an advance by a duration [s]; returns the time at its end.
     fn set_out(&mut self, duration: f64) -> f64 {
         let end = self.simulation.time() + duration;
         if self.error.is_none() {
@@ -227,7 +227,8 @@ impl World {
         end
     }
 
-    /// Takes steps up to a time [s], unless it cannot go on, or until `cancel` is asked; returns whether it will come no further.
+    /// Takes steps up to a time [s], unless it cannot continue, or until `cancel` is asked; returns whether it is
+    /// finished or has failed.
     fn go_on(&mut self, end: f64, cancel: &Cancel) -> bool {
         if self.error.is_some() {
             return true;

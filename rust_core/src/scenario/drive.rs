@@ -1,4 +1,4 @@
-//! What a driver commands: the speed of the tracks, and how the flippers move.
+//! Commands of a driver: the speed of the tracks, and the motion of the flippers.
 
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ object! {
         speed: f64 = number(SPEED),
         /// [s], [m/s] Increasing times and the speeds that apply from then on; `None` keeps the speed.
         schedule: Option<Vec<[f64; 2]>> = schedule(("speed", SPEED)),
-        /// How the flippers move; `None` holds them where they start.
+        /// The motion of the flippers; `None` holds them at their initial angle.
         gait: Option<Gait> = optional_object(),
     }
 }

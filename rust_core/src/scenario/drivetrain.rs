@@ -1,4 +1,4 @@
-//! What drives the tracks.
+//! The drivetrain of the tracks.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ const FASTEST: Range = Range::above(0.0, 100.0, "m/s");
 const MOST: usize = 1000;
 
 object! {
-    /// What drives the tracks, and its limits.
+    /// The drivetrain of the tracks, and its limits.
     pub struct Drivetrain {
         /// [m/s] Largest track speed.
         max_speed: f64 = number(FASTEST),
@@ -23,28 +23,28 @@ object! {
         max_torque: f64 = number(TORQUE),
         /// How the torque is shared.
         torque_sharing: TorqueSharing = choice(),
-        /// [kg m^2] Moment of inertia of one sprocket's motor as that feels it: the rotor's own times the square of the gear's
+        /// [kg m^2] Moment of inertia of one motor at its sprocket: that of the rotor times the square of the gear
         /// ratio.
         #[serde(skip_serializing_if = "is_zero")]
         rotor_inertia: f64 = number_or_zero(ROTOR),
-        /// [m/s] Track speed at which the torque of a motor, which falls in a line from its largest at rest, is used up; `None`
-        /// if it has that at any speed.
+        /// [m/s] Track speed at which the torque of a motor, which decreases linearly from its largest at rest, is 0;
+        /// `None` if the torque does not depend on speed.
         #[serde(skip_serializing_if = "Option::is_none")]
         no_load_speed: Option<f64> = if_given(|f, name| f.optional_number(name, FASTEST)),
-        /// [m/s], [N m] Track speeds and torques of one sprocket there, which fall from the largest at rest.
+        /// [m/s], [N m] Track speeds and torques of one sprocket, which decrease from the largest at rest.
         #[serde(skip_serializing_if = "Option::is_none")]
         torque_curve: Option<Vec<[f64; 2]>> = if_given(read_curve),
-        /// How a motor corrects its speed; `None` if it holds that as long as its torque suffices.
+        /// How a motor corrects its speed; `None` if it holds the speed as long as its torque suffices.
         #[serde(skip_serializing_if = "Option::is_none")]
         controller: Option<Pi> = if_given(Fields::optional_object),
-        /// The gear locks itself: the load turns no motor back, nor faster than that turns by itself.
+        /// Whether the gear is self-locking: the load turns a motor neither back nor faster than it turns by itself.
         #[serde(skip_serializing_if = "is_false")]
         self_locking: bool = flag_or_false(),
     }
     then check
 }
 
-/// A controller of the speed of a sprocket, whose torque is in proportion to the error, and to the error's sum.
+/// A controller of the speed of a sprocket, whose torque is proportional to the error and to its integral.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename = "pi")]
 pub struct Pi {
@@ -70,7 +70,7 @@ impl Drivetrain {
         2.0 * self.max_torque / outline.belt_radius()
     }
 
-    /// Multiplies the torque that the motors have at any speed, as far as it may be.
+    /// Multiplies the torque of the motors at any speed, up to the largest allowed.
     pub(crate) fn scale_torque(&mut self, factor: f64) {
         let of_curve = self.torque_curve.iter_mut().flatten();
         for torque in of_curve
@@ -107,7 +107,7 @@ impl FromJson for Pi {
     }
 }
 
-/// Reads torques at track speeds, which start at rest with the largest and fall.
+/// Reads torques at track speeds, which begin at rest with the largest and decrease.
 fn read_curve(f: &mut Fields, name: &'static str) -> Checked<Option<Vec<[f64; 2]>>> {
     let columns = [
         ("speed", Range::between(0.0, 100.0, "m/s")),

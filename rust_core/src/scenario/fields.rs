@@ -35,7 +35,7 @@ impl Range {
         (self.low..=self.high).contains(&x) && (self.low_included || x > self.low)
     }
 
-    /// The nearest number in it, if it has all its ends.
+    /// The nearest number in it, if the interval is closed.
     pub(super) fn cut(self, x: f64) -> f64 {
         debug_assert!(self.low_included);
         x.clamp(self.low, self.high)
@@ -55,21 +55,21 @@ impl Range {
 
 /// [kg] Lightest and heaviest mass.
 ///
-/// Masses have no size of their own in the equations of motion: robots whose masses, forces and torques all differ by
-/// the same power of two move alike to the last bit, until a number leaves float64. Of the numbers with a mass in them
-/// the largest is then a stiffness, 1e22: it takes a product of fourteen to reach 1e308, and no formula has nearly as
-/// many. `tests/physics/test_scale.py` has robots near both ends.
+/// The equations of motion have no scale of mass: robots whose masses, forces and torques all differ by the same power
+/// of two move alike to the last bit, until a number leaves the range of float64. The largest number with a mass in it
+/// is a stiffness, 1e22; it takes a product of fourteen to reach 1e308, and no formula has nearly so many.
+/// `tests/physics/test_scale.py` has robots near both ends.
 const LIGHTEST: f64 = 1e-12;
 const HEAVIEST: f64 = 1e12;
-/// Least mass of a moving part as a fraction of the robot's.
+/// Smallest mass of a moving part, as a fraction of the robot's.
 ///
-/// Forces on light parts are found beside those on heavy ones, and as many of the sixteen digits of float64 are lost as
-/// the ratio has: eleven are left. At a ratio of 1e-13 the Engineer slips where it otherwise climbs.
+/// Forces on light parts are computed together with those on heavy ones, which costs as many of the sixteen digits of
+/// float64 as the ratio has: eleven remain. At a ratio of 1e-13, the Engineer slips where it otherwise climbs.
 pub(super) const LEAST_FRACTION: f64 = 1e-5;
 /// [m] Smallest and largest size of a part, and where it may be.
 ///
-/// Contacts overlap by a fraction of a micrometre, and a step may be off by 0.3 um at the default accuracy: for parts of
-/// less than some hundred times that, shape means nothing.
+/// Contacts overlap by a fraction of a micrometre, and the error of a step is up to 0.3 um at the default accuracy. For
+/// parts smaller than some hundred times that, shape has no meaning.
 pub(super) const SMALLEST: f64 = 1e-4;
 const LARGEST: f64 = 100.0;
 
@@ -84,30 +84,31 @@ pub(super) const FORCE: Range = Range::above(0.0, 1e15, "N");
 pub(super) const TORQUE: Range = Range::between(0.0, 1e17, "N m");
 /// [kg m^2] From the lightest mass on the shortest lever to the heaviest on the longest.
 pub(super) const INERTIA: Range = Range::between(1e-20, 1e16, "kg m^2");
-/// [kg m^2] Of a motor as its gear shows it; none where that is neglected.
+/// [kg m^2] Inertia of a motor behind its gear; 0 if it is neglected.
 pub(super) const ROTOR: Range = Range::between(0.0, 1e16, "kg m^2");
-/// [N/m], [N s/m] Up to a spring on the heaviest mass that swings once, or a damper that stops it, in the shortest step.
+/// [N/m], [N s/m] Up to a spring on the heaviest mass that swings once, or a damper that stops it, in the shortest
+/// step.
 pub(super) const STIFFNESS: Range = Range::above(0.0, 1e22, "N/m");
 pub(super) const DAMPING: Range = Range::between(0.0, 1e17, "N s/m");
-/// [N m/rad], [N m s/rad] The same of what turns.
+/// [N m/rad], [N m s/rad] The same for rotation.
 pub(super) const PIN_STIFFNESS: Range = Range::between(0.0, 1e22, "N m/rad");
 pub(super) const PIN_DAMPING: Range = Range::between(0.0, 1e17, "N m s/rad");
 /// [s] Shortest step.
 pub(super) const SHORTEST: f64 = 1e-5;
 
-/// Whether a number is left out of texts: see [`Fields::number_or_zero`].
+/// Whether a number is left out of JSON: see [`Fields::number_or_zero`].
 #[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
 pub(super) fn is_zero(number: &f64) -> bool {
     number.to_bits() == 0
 }
 
-/// Whether a flag is left out of texts: see [`Fields::flag_or_false`].
+/// Whether a flag is left out of JSON: see [`Fields::flag_or_false`].
 #[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
 pub(super) fn is_false(flag: &bool) -> bool {
     !flag
 }
 
-/// What keeps its rules, or the first that is broken.
+/// A value that obeys its rules, or the first rule that is broken.
 pub(super) type Checked<T> = Result<T, ScenarioError>;
 
 /// A JSON object being read: every known field is read once; the others are errors.
@@ -149,7 +150,7 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn value(&mut self, name: &'static str) -> Checked<&'a Value> {
-        // A field is read twice where null has a meaning of its own.
+        // A field is read twice if null has its own meaning.
         if !self.known.contains(&name) {
             self.known.push(name);
         }
@@ -159,7 +160,7 @@ impl<'a> Fields<'a> {
 
     fn missing(&self, name: &str) -> ScenarioError {
         let keys = self.map.keys().map(String::as_str);
-        // A name may have megabytes; one that is twice as long is not meant.
+        // A name may have megabytes; names twice as long are not compared.
         let unread = keys.filter(|key| key.len() < 2 * name.len() && !self.known.contains(key));
         let rule = match nearest(name, unread) {
             Some(key) => format!("must be given (is {key} a misspelling of it?)"),
@@ -178,7 +179,7 @@ impl<'a> Fields<'a> {
         in_range(&self.path(name), value, range)
     }
 
-    /// A number that texts leave out if it is 0, as those do that are older than the field.
+    /// A number that JSON leaves out if it is 0, as do files older than the field.
     pub(crate) fn number_or_zero(&mut self, name: &'static str, range: Range) -> Checked<f64> {
         self.if_given(name, |f, name| f.number(name, range))
     }
@@ -219,7 +220,7 @@ impl<'a> Fields<'a> {
         flag.ok_or_else(|| self.error(name, value, "must be true or false"))
     }
 
-    /// A flag that texts leave out if it is false, as those do that are older than the field.
+    /// A flag that JSON leaves out if it is false, as do files older than the field.
     pub(crate) fn flag_or_false(&mut self, name: &'static str) -> Checked<bool> {
         self.if_given(name, Self::flag)
     }
@@ -236,7 +237,7 @@ impl<'a> Fields<'a> {
         read(self, name).map(Some)
     }
 
-    /// Reads a field by a function, or takes the default, as texts do that are older than the field.
+    /// Reads a field by a function, or takes the default, as for files older than the field.
     pub(super) fn if_given<T: Default>(
         &mut self,
         name: &'static str,
@@ -341,7 +342,7 @@ impl<'a> Fields<'a> {
         };
         let rule = one_of(Some(name), &self.known);
         let rule = rule.replacen("must be one of", "must be a known field:", 1);
-        // A path that ends in nothing would name no field.
+        // A path with an empty last part would name no field.
         let name = if name.is_empty() {
             "\"\""
         } else {

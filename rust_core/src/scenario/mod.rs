@@ -39,7 +39,7 @@ pub use warnings::Warning;
 
 /// Version of the format.
 pub const SCHEMA: u32 = 2;
-/// What a file of version 1 lacks.
+/// Fields that are missing in files of version 1.
 const OF_VERSION_1: &str = "must be 2; in a file of version 1, solver.accuracy takes the place of solver.substeps, and \
                             is null where solver.time_step is kept";
 
@@ -83,7 +83,7 @@ impl Scenario {
             .fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
     }
 
-    /// Reads all of it; rules that need the built robot and ground are checked elsewhere.
+    /// Reads a whole scenario; rules that need the built robot and ground are checked elsewhere.
     pub(crate) fn of_value(value: &Value) -> Checked<Self> {
         let mut f = Fields::new("", value)?;
         if value.get("schema").is_some_and(|version| version == 1) {
@@ -105,7 +105,7 @@ pub(crate) fn parse(text: &str) -> Checked<Value> {
     tree(&Place::Root, whole, 0)
 }
 
-/// Where a value is; turned into a path only for an error, because there may be hundreds of thousands.
+/// Position of a value, which becomes a path only for an error, because there may be hundreds of thousands.
 enum Place<'a> {
     Root,
     Field(&'a Place<'a>, &'a str),
@@ -169,7 +169,7 @@ fn tree(place: &Place, raw: &RawValue, depth: usize) -> Checked<Value> {
     }
 }
 
-/// Whether a number is written as 0; another one may be read as 0 if it is too small for a float64.
+/// Whether a number is written as 0; others may be read as 0 if they are too small for a float64.
 fn is_zero(number: &str) -> bool {
     let digits = number.split(['e', 'E']).next().unwrap_or_default();
     !digits.contains(|c| matches!(c, '1'..='9'))

@@ -1,18 +1,18 @@
-//! Structs and enums of a scenario: each is made, together with how it is read from JSON, of one table.
+//! Macros that make structs and enums of a scenario, together with their readers from JSON, from one table each.
 //!
 //! In the tables, `= method(rule)` after a field is the method of [`Fields`] that reads it.
 
 use super::fields::{Checked, Fields, one_of};
 
-/// What a JSON object says.
+/// A value that is read from a JSON object.
 pub(super) trait FromJson: Sized {
-    /// Reads its fields; that there are no others is for the caller to check.
+    /// Reads its fields; the caller checks that there are no others.
     fn read(f: &mut Fields) -> Checked<Self>;
 }
 
 /// One of a fixed set of names.
 pub(super) trait Choice: Copy + 'static {
-    /// All of them, by name.
+    /// All values by name.
     const ALL: &'static [(&'static str, Self)];
 }
 
@@ -43,7 +43,7 @@ macro_rules! object {
     };
 }
 
-/// Makes an enum of objects of several kinds, and reads the one that "kind" names.
+/// Makes an enum of several kinds of objects, and reads the one named by "kind".
 macro_rules! kinds {
     (
         $(#[$about:meta])*

@@ -7,7 +7,7 @@ use super::ScenarioError;
 use super::fields::{COORDINATE, Checked, Fields, SIZE, SIZE_OR_ZERO, SMALLEST};
 use super::objects::FromJson;
 
-/// What texts have in place of two discs.
+/// Fields of the short form of two discs in JSON.
 const SHORT: [&str; 3] = ["axle_distance", "front_radius", "rear_radius"];
 /// Largest number of discs.
 const MOST: usize = 64;
@@ -29,7 +29,7 @@ pub struct TrackOutline {
 }
 
 impl TrackOutline {
-    /// [m] Two discs with their axles so far apart, the rear one first; the chassis frame is midway between them.
+    /// [m] Two discs at an axle distance, the rear one first; the chassis frame is midway between them.
     pub fn two_discs(axle_distance: f64, [rear, front]: [f64; 2]) -> Vec<[f64; 3]> {
         let half = 0.5 * axle_distance;
         vec![[-half, 0.0, rear], [half, 0.0, front]]
@@ -118,7 +118,7 @@ impl TrackOutline {
         Err(ScenarioError::new(path, self.grouser_pitch, rule))
     }
 
-    /// Whether the numbers of [`Self::two_discs`] say all of its discs; then texts have these.
+    /// Whether [`Self::two_discs`] describes all of its discs; then JSON has the short form.
     fn is_short(&self) -> bool {
         match self.discs[..] {
             [[rear, rear_y, _], [front, front_y, _]] => {
@@ -128,7 +128,7 @@ impl TrackOutline {
         }
     }
 
-    /// As JSON with its discs, even where texts have the short form.
+    /// JSON with all discs, never in the short form.
     pub(crate) fn with_discs(&self) -> Value {
         json!({
             "discs": self.discs,
@@ -254,7 +254,7 @@ fn read_discs(f: &mut Fields) -> Checked<Vec<[f64; 3]>> {
     Ok(discs)
 }
 
-/// A disc as a text has it.
+/// A disc in JSON.
 fn written([x, y, radius]: &[f64; 3]) -> String {
     format!("[{x}, {y}, {radius}]")
 }

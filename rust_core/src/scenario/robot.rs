@@ -42,7 +42,7 @@ object! {
 }
 
 impl Robot {
-    /// [N] Its weight on Earth, by which springs are meant; the scenario's gravity may be 0.
+    /// [N] Its weight on Earth, for defaults of springs; the scenario's gravity may be 0.
     pub(crate) fn earth_weight(&self) -> f64 {
         const EARTH: f64 = 9.81;
         self.mass * EARTH
@@ -98,7 +98,7 @@ impl Robot {
         }
     }
 
-    /// Checks that the digits of the chassis are not lost beside a motor's rotor.
+    /// Checks that the inertia of the chassis is not lost in rounding beside that of a motor's rotor.
     fn check_rotor(&self, of: &str, inertia: f64) -> Checked<()> {
         let most = self.moment_of_inertia / LEAST_FRACTION;
         if inertia <= most {
@@ -181,7 +181,7 @@ fn read_belly(f: &mut Fields, name: &'static str) -> Checked<Vec<[f64; 2]>> {
             return Err(f.error(&corner, format!("[{bx}, {by}]"), rule));
         }
     }
-    // A polygon with left turns only may still go round more than once, as a pentagram does.
+    // A polygon with left turns only may still go round more than once, like a pentagram.
     let is_up = |i: usize| {
         let ([ax, ay], [bx, by]) = (points[i % n], points[(i + 1) % n]);
         (by, bx) > (ay, ax)
@@ -214,11 +214,11 @@ object! {
         rate_limit: f64 = number(Range::above(0.0, 100.0, "rad/s")),
         /// [N m] Largest torque of the motor of one arm.
         torque_limit: f64 = number(TORQUE),
-        /// [kg m^2] Moment of inertia of the motor of one arm as the pivot feels it: the rotor's own times the square of the
-        /// gear's ratio.
+        /// [kg m^2] Moment of inertia of the motor of one arm at the pivot: that of the rotor times the square of the
+        /// gear ratio.
         #[serde(skip_serializing_if = "is_zero")]
         rotor_inertia: f64 = number_or_zero(ROTOR),
-        /// The gear locks itself: no load turns an arm back.
+        /// Whether the gear is self-locking: no load turns an arm back.
         #[serde(skip_serializing_if = "is_false")]
         self_locking: bool = flag_or_false(),
         /// How their tracks are modelled; `None` takes the robot's model.

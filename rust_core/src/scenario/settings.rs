@@ -40,7 +40,7 @@ choice! {
 }
 
 impl Engine {
-    /// Texts leave it out, as those have it that are older than the choice.
+    /// JSON leaves it out if it is the engine of files older than this choice.
     #[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
     fn is_own(&self) -> bool {
         *self == Self::Own
@@ -59,8 +59,8 @@ object! {
         accuracy: Option<f64> = optional_number(Range::between(1e-10, 1e-2, "m")),
         /// [s] Length of a step; `None` if its accuracy is given.
         time_step: Option<f64> = optional_number(Range::between(SHORTEST, 1.0 / 30.0, "s")),
-        /// Largest number of rounds in the search for forces that satisfy all constraints of a step; each is a few
-        /// guesses, and a lowering if none is right. `None` takes the solver's own.
+        /// Largest number of rounds in the search for forces that satisfy all constraints of a step; each round pivots
+        /// until the states of all contacts and motors fit. `None` takes the solver's default.
         iterations: Option<u32> = optional_integer(1, 1000),
         /// [Hz] Natural frequency of the contact softness.
         contact_frequency: f64 = number(Range::between(1.0, 1e5, "Hz")),
@@ -70,7 +70,7 @@ object! {
         max_push_speed: f64 = number(Range::above(0.0, 100.0, "m/s")),
         /// [m] Gap up to which contacts are searched for.
         prediction_distance: f64 = number(Range::between(1e-5, 0.1, "m")),
-        /// Share of the impulses of an impact that contacts give back.
+        /// Coefficient of restitution: fraction of the impulses of an impact that contacts return.
         #[serde(skip_serializing_if = "is_zero")]
         restitution: f64 = number_or_zero(Range::between(0.0, 1.0, "")),
     }
@@ -88,9 +88,9 @@ object! {
         stop_progress: f64 = number(Range::above(0.0, 1.0, "")),
         /// [m] Largest change of pose that still counts as stationary.
         stationary_distance: f64 = number(Range::above(0.0, 1.0, "m")),
-        /// Stop windows for which a state must be stationary to end the run early.
+        /// Number of stop windows for which a state must be stationary to end the run early.
         stationary_windows: u32 = integer(1, 1000),
-        /// [s] How long the robot must stay beyond the goal.
+        /// [s] Time that the robot must stay beyond the goal.
         clear_time: f64 = number(Range::between(0.0, 1e4, "s")),
         /// [rad] Largest angle between chassis and ground at which the goal counts.
         clear_angle: f64 = number(Range::above(0.0, 3.15, "rad")),

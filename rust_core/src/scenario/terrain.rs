@@ -13,7 +13,7 @@ const HEIGHT: Range = Range::above(0.0, 100.0, "m");
 const YAW: Range = Range::between(-1.396_263, 1.396_263, "rad");
 const LENGTH: Range = Range::between(SMALLEST, 1e4, "m");
 
-/// How a terrain resists a robot that slides on it: all that the law of a contact takes from the ground.
+/// Resistance of a terrain against sliding: everything that the contact law takes from the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Friction {
     /// Coulomb's coefficient.
@@ -24,7 +24,7 @@ pub struct Friction {
 pub(super) const COEFFICIENT: Range = Range::between(0.0, 100.0, "");
 
 impl Friction {
-    /// Dry, as Coulomb has it.
+    /// Dry friction (Coulomb's law).
     pub const fn dry(coefficient: f64) -> Self {
         Self { coefficient }
     }
@@ -34,7 +34,7 @@ impl Friction {
         self.coefficient > 0.0
     }
 
-    /// That on a part whose own coefficient may be smaller.
+    /// The friction on a part, whose own coefficient may be smaller.
     #[must_use]
     pub const fn at_most(mut self, limit: f64) -> Self {
         self.coefficient = self.coefficient.min(limit);
@@ -58,7 +58,7 @@ impl FromJson for Friction {
 }
 
 object! {
-    /// What the robot touches of a terrain.
+    /// The surface of a terrain.
     #[derive(Copy)]
     pub struct Surface {
         /// [m] Radius of every convex edge; 0 is sharp.
@@ -163,7 +163,7 @@ kinds! {
             #[serde(flatten)]
             friction: Friction = flat(),
         },
-        /// A barrier whose front face is turned about the vertical, so that the tracks meet it one after the other.
+        /// A barrier whose front face is turned about the vertical, so that the tracks reach it one after the other.
         "diagonal_barrier" DiagonalBarrier {
             /// [rad] Turn, counter-clockwise seen from above; above 0 the left track meets it first.
             yaw: f64 = number(YAW),
@@ -242,7 +242,7 @@ object! {
 }
 
 impl Terrain {
-    /// Path of the first lane's friction of each segment, if any has them.
+    /// Path of the friction of each segment in the first lane that has it, if any.
     pub(crate) fn path_of_segments(&self, path: &str) -> Option<String> {
         match self {
             Self::Points {
@@ -264,7 +264,7 @@ impl Terrain {
         }
     }
 
-    /// The friction of its surface; lanes have one each.
+    /// The friction of its surface; each lane has its own.
     pub(crate) fn friction(&self) -> Option<f64> {
         let friction = match self {
             Self::Flat { friction, .. } | Self::HalfRound { friction, .. } => friction,
@@ -282,7 +282,7 @@ impl Terrain {
         Some(friction.coefficient)
     }
 
-    /// Multiplies the friction of all its lanes, as far as it may be.
+    /// Multiplies the friction of all its lanes, up to the largest allowed.
     pub(crate) fn scale_friction(&mut self, factor: f64) {
         let scale = |coefficient: &mut f64| *coefficient = scaled_friction(*coefficient, factor);
         match self {
@@ -320,7 +320,7 @@ impl Terrain {
     }
 }
 
-/// A coefficient of friction times a factor, as far as it may be.
+/// A coefficient of friction times a factor, up to the largest allowed.
 pub(crate) fn scaled_friction(coefficient: f64, factor: f64) -> f64 {
     COEFFICIENT.cut(coefficient * factor)
 }

@@ -51,7 +51,7 @@ object! {
         wheel_radius: Option<f64> = optional_number(SIZE),
         /// The shape of each wheel.
         wheel: Wheel = object(),
-        /// They stand for a track; else nothing runs round them.
+        /// Whether they represent a track; otherwise nothing runs round them.
         as_track: bool = flag(),
     }
 }
@@ -103,11 +103,11 @@ object! {
         plate_thickness: Option<f64> = optional_number(SIZE),
         /// [N] Force of the tensioner of one track; `None` takes 1/40 of the weight.
         pre_tension: Option<f64> = optional_number(FORCE),
-        /// [N/m] Its stiffness; `None`: a tenth of the pitch takes up its whole force.
+        /// [N/m] Its stiffness; `None` takes the one at which a tenth of the pitch relieves its whole force.
         tensioner_stiffness: Option<f64> = optional_number(STIFFNESS),
-        /// [N s/m] Its damping; `None`: critical for the mass of one track.
+        /// [N s/m] Its damping; `None` takes critical damping for the mass of one track.
         tensioner_damping: Option<f64> = optional_number(DAMPING),
-        /// [N m/rad] Stiffness of the bushing of each pin of one track, which is at rest where its shoes are in line.
+        /// [N m/rad] Stiffness of the bushing of each pin of one track, which is relaxed when its shoes are in line.
         #[serde(skip_serializing_if = "is_zero")]
         pin_stiffness: f64 = number_or_zero(PIN_STIFFNESS),
         /// [N m s/rad] Its damping.
@@ -164,8 +164,7 @@ choice! {
 }
 
 object! {
-    /// A belt taut round the bodies of another model, on the chassis and on every arm: what that model would be without
-    /// pockets.
+    /// A belt taut round the bodies of another model, on the chassis and on every arm: that model without pockets.
     pub struct ClosedTrack {
         /// The model round whose bodies it runs.
         of: Box<Track> = open_track(),
@@ -177,7 +176,7 @@ object! {
 choice! {
     /// The surface of a closed track.
     pub enum ClosedSurface {
-        /// Grousers where the model has some: as high as the model's, as thick and as far apart as the outline's.
+        /// Grousers, if the model has any, as high as the model's, and with the outline's thickness and spacing.
         "own" Own,
         /// No grousers.
         "smooth" Smooth,
@@ -201,7 +200,7 @@ impl Track {
         !matches!(self.open(), Self::Line(line) if !line.as_track)
     }
 
-    /// Whether ground can get in between its bodies.
+    /// Whether ground can get between its bodies.
     pub(crate) fn has_pockets(&self) -> bool {
         match self {
             Self::Belt(_) | Self::GrouserBelt(_) | Self::Closed(_) => false,
@@ -223,7 +222,7 @@ impl Track {
         }
     }
 
-    /// The model itself, or the one round which it is closed.
+    /// The model itself, or the one inside a closed track.
     pub(crate) fn open(&self) -> &Self {
         match self {
             Self::Closed(closed) => &closed.of,
@@ -231,7 +230,7 @@ impl Track {
         }
     }
 
-    /// Checks that it can stand at `path` for a track round so many discs.
+    /// Checks that it is possible at `path`, for a track round a number of discs.
     pub(super) fn check_discs(&self, path: &str, count: usize) -> Checked<()> {
         let refused = |field: &str, value: &str, [instead, why]: [&str; 2]| {
             let rule =
@@ -337,13 +336,13 @@ object! {
     pub struct GearWheel {
         /// Grousers on the wheel.
         grouser_count: Option<u32> = optional_integer(3, MAX_GROUSERS),
-        /// [m] Radial height: the wheel's radius less that of its root circle.
+        /// [m] Radial height: the wheel's radius minus that of its root circle.
         grouser_height: Option<f64> = optional_number(PART),
         /// [m] Thickness of a grouser at its tip.
         tip_thickness: Option<f64> = optional_number(PART),
         /// [m] Thickness of a grouser at the root circle; `None` takes that at the tip: parallel flanks.
         base_thickness: Option<f64> = optional_number(PART),
-        /// Share of the angle between two grousers by which each wheel starts ahead of the previous one.
+        /// Fraction of the angle between two grousers by which each wheel starts ahead of the previous one.
         phase_fraction: f64 = number(Range::between(0.0, 1.0, "")),
     }
 }

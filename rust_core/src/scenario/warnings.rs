@@ -10,22 +10,23 @@ use super::{
     SegmentalTrack, Terrain, Track,
 };
 
-/// Obstacles larger than this many robot lengths are probably mistakes; so is a goal this many times farther than a run gets.
+/// Obstacles larger than this many robot lengths are probably mistakes, as is a goal this many times farther than a run
+/// gets.
 const FAR: f64 = 3.0;
-/// Share of the robot's length by which it sinks visibly into the ground.
+/// Fraction of the robot's length that is visible as penetration of the ground.
 const SUNK: f64 = 1e-3;
-/// [kg/m^3] Densities that no robot comes near.
+/// [kg/m^3] Densities far from those of any robot.
 const AIR: f64 = 1.2;
 const GOLD: f64 = 19_300.0;
 /// Friction that no ground has: rubber on dry concrete has about 1.
 const MOST_FRICTION: f64 = 3.0;
 
-/// A warning about a field; the scenario is accepted all the same.
+/// A warning about a field; the scenario is accepted nevertheless.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     /// Dotted path of the field, for example `terrain.height`.
     pub path: String,
-    /// The value found there.
+    /// Its value.
     pub value: f64,
     /// Why it is probably a mistake: "is usually ...".
     pub reason: String,
@@ -45,7 +46,7 @@ impl Warnings {
         });
     }
 
-    /// Warns of a magnitude beyond `most`; `what` says in words what that is.
+    /// Warns of a magnitude beyond `most`; `what` describes that limit in words.
     fn at_most(
         &mut self,
         path: impl Into<String>,
@@ -68,8 +69,8 @@ impl Warnings {
 }
 
 impl Scenario {
-    /// All warnings about a scenario whose goal is `to_goal` [m] away, on ground that ends at `end` [m]; costs only a few
-    /// comparisons.
+    /// All warnings about a scenario whose goal is `to_goal` [m] away, on ground that ends at `end` [m]; takes only a
+    /// few comparisons.
     pub(crate) fn warnings(&self, to_goal: f64, end: f64) -> Vec<Warning> {
         let mut warnings = Warnings::default();
         self.robot.add_warnings(&mut warnings);
@@ -83,7 +84,8 @@ impl Scenario {
         warnings.0
     }
 
-    /// An error about where the robot starts, with the first warning about the robot itself, which is the likely reason.
+    /// An error about the start of the robot, with the first warning about the robot itself, which is the likely
+    /// reason.
     pub(crate) fn explained(&self, mut error: ScenarioError) -> ScenarioError {
         let mut warnings = Warnings::default();
         self.robot.add_warnings(&mut warnings);
@@ -94,8 +96,8 @@ impl Scenario {
         error
     }
 
-    /// Warns of a goal that no robot clears, as it must be all past it while both end axles are over the ground, and one that
-    /// it is past from the start.
+    /// Warns of a goal that no robot reaches, since it must be entirely past it with both end axles over the ground,
+    /// and of a goal that is behind the robot at the start.
     fn warn_of_goal(&self, to_goal: f64, end: f64, warnings: &mut Warnings) {
         let outline = &self.robot.outline;
         let last = end - outline.axle_distance() - outline.rear_radius();
@@ -116,10 +118,11 @@ impl Scenario {
         }
     }
 
-    /// Warns of contacts in which the robot sinks visibly under its own weight.
+    /// Warns of contacts so soft that the robot visibly penetrates the ground under its own weight.
     ///
-    /// A contact is a spring of the stiffness m (2 pi f)^2, with m the robot's mass: its weight on one presses it in by
-    /// g / (2 pi f)^2, whatever it weighs, and how long that takes is for its damper. The contacts of shoes are softer.
+    /// A contact is a spring of stiffness m (2 pi f)^2, where m is the robot's mass. Its weight on one contact presses
+    /// it in by g / (2 pi f)^2, whatever its mass; the damper decides how long that takes. The contacts of shoes are
+    /// softer.
     fn warn_of_softness(&self, warnings: &mut Warnings) {
         let frequency = self.solver.contact_frequency;
         let sinkage = self.gravity / (TAU * frequency).powi(2);
@@ -159,7 +162,7 @@ impl Scenario {
         }
         let (time, reach) = (self.duration, fastest * self.duration);
         let gets = format!("{fastest} m/s takes the robot {reach:.3} m in {time} s");
-        // A short run may be just a look, and a run on a ready-made terrain may stop before its goal, but not far
+        // A short run may be just for viewing, and a run on a ready-made terrain may stop before its goal, but not far
         // before.
         if reach > FAR * self.robot.length() {
             let way = format!("it is {to_goal:.3} m away, and {gets}");
@@ -196,7 +199,7 @@ impl Robot {
             let path = format!("robot.center_of_mass[{i}]");
             warnings.at_most(path, value, (length, "m"), "the robot's length");
         }
-        // Limits of mass are those of the arithmetic; a robot in grams or tonnes is recognised by its density.
+        // Limits of mass come from floating-point numbers; a robot in grams or tonnes is recognised by its density.
         let box_round = length * 2.0 * o.largest_radius() * length.max(self.gauge);
         let [least, most] = [AIR, GOLD].map(|density| density * box_round);
         let what = "the mass of gold of its length and height";
@@ -221,8 +224,8 @@ impl Robot {
         }
     }
 
-    /// Round an end of radius r shoes of pitch p are bent by p/r: a spring k presses them off it with k/r. At a speed v they are
-    /// bent with v/r, and a damper d takes about d v/r^2 of the traction.
+    /// Round an end of radius r, shoes of pitch p bend by p/r, and a spring k presses them off it with k/r. At a speed
+    /// v they bend at a rate v/r, and a damper d reduces the traction by about d v/r^2.
     fn warn_of_pins(&self, chain: &SegmentalTrack, warnings: &mut Warnings) {
         let (half, radius) = (0.5 * self.earth_weight(), self.outline.smallest_radius());
         let most = (half * radius, "N m/rad");

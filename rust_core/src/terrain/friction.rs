@@ -4,18 +4,18 @@ use crate::geometry::Vector;
 use crate::scenario::Friction;
 use crate::units::Metres;
 
-/// [m] A contact whose distances from two segments differ by less touches both: by its overlap with the ground, which is
-/// less, it may be off their corner.
+/// [m] A contact whose distances from two segments differ by less touches both: its overlap with the ground, which is
+/// smaller, may shift it off their corner.
 const AT_BOTH: Metres = Metres(1e-5);
 
-/// How a lane resists a robot that slides on it.
+/// Resistance of a lane against sliding.
 #[derive(Clone, Debug)]
 pub struct GroundFriction {
-    /// Of the whole lane; the largest, where it differs.
+    /// Friction of the whole lane; the largest, if it differs between segments.
     most: Friction,
-    /// From left to right, if it differs.
+    /// Segments from left to right, if friction differs.
     segments: Vec<Segment>,
-    /// [m] No point of the lane is farther from the segment that it belongs to.
+    /// [m] Largest distance of a point of the lane from its segment.
     reach: f64,
 }
 
@@ -37,7 +37,7 @@ impl GroundFriction {
         }
     }
 
-    /// That of each segment between described points, in either direction, whose edges are rounded by a radius [m].
+    /// The friction of each segment between described points, in either direction, with edges rounded by a radius [m].
     pub(super) fn of_segments(points: &[[f64; 2]], frictions: &[f64], radius: f64) -> Self {
         let points = points.iter().map(|p| Vector::new(p[0], p[1]));
         let points: Vec<Vector> = points.collect();

@@ -25,8 +25,8 @@ pub struct Ground {
     pub tracks: usize,
     /// [m] The x that the whole robot must pass.
     pub goal: f64,
-    /// [m] Where the obstacle begins: the first edge at or beyond x = 0, or where a field begins before that; else the first
-    /// of all, else 0.
+    /// [m] The x at which the obstacle begins: the first edge at or beyond x = 0, or an earlier beginning of a field;
+    /// otherwise the first edge of all, otherwise 0.
     pub first_edge: f64,
 }
 
@@ -95,7 +95,7 @@ impl Ground {
     /// Level tops and vertical faces under the left track, the right one and the belly.
     fn skylines(lanes: &[Skyline; 3], surface: Surface) -> Result<Self, ScenarioError> {
         let end = lanes[2].end();
-        // A barrier that is longer than its field begins before it.
+        // A barrier longer than its field begins before that.
         let begin = lanes[2].begin().min(0.0);
         let profile = |skyline: &Skyline| {
             let points = skyline.points(begin - RUN_OUT.value(), end + RUN_OUT.value());
@@ -134,7 +134,7 @@ impl Ground {
         ];
         let mut ground = Self::of(lanes, 2, goal);
         if !is_given {
-            // The envelope has corners where lanes cross, and all along their arcs.
+            // The envelope also has corners where lanes cross, and all along their arcs.
             ground.first_edge = first_edge_of_tracks;
         }
         Ok(ground)
@@ -193,8 +193,8 @@ impl Ground {
         points.fold(f64::NEG_INFINITY, |high, point| high.max(point.y))
     }
 
-    /// [m] The height under the first track at an x; at a vertical face that of its upper end, beyond the ends of the ground
-    /// that of the end.
+    /// [m] The height under the first track at an x: of the upper end at a vertical face, and of the end of the ground
+    /// beyond that.
     pub(crate) fn height(&self, x: f64) -> f64 {
         let profile = &self.lanes[0];
         let [first, last] = [0, profile.points.len() - 1].map(|i| profile.points[i].x);
@@ -202,13 +202,13 @@ impl Ground {
         before.max(behind)
     }
 
-    /// [m] The scenario's goal, or else the terrain's.
+    /// [m] The goal of the scenario, or else of the terrain.
     pub fn goal_of(&self, scenario: &Scenario) -> f64 {
         scenario.goal.unwrap_or(self.goal)
     }
 }
 
-/// [m] The first edge of lanes whose obstacle begins at an x [m], else the first of all, else 0.
+/// [m] The first edge at or beyond the x [m] where an obstacle begins, else the first of all, else 0.
 fn first_edge<'a>(lanes: impl IntoIterator<Item = &'a Profile>, begin: f64) -> f64 {
     let first = |profile: &Profile| {
         let edges = &profile.edges;
@@ -250,8 +250,8 @@ fn described(path: &str, terrain: &Terrain) -> Result<(Profile, f64), ScenarioEr
     Ok((profile, goal))
 }
 
-/// The upper envelope of two profiles over their common stretch of x. Arcs become polylines as fine as theirs;
-/// friction is the larger of the two, at each place if it differs along one of them.
+/// The upper envelope of two profiles over their common range of x. Arcs become equally fine polylines. Friction is
+/// the larger of the two, at each point if it varies along one of them.
 ///
 /// # Errors
 /// They have no common stretch of x.
@@ -305,7 +305,7 @@ fn upper_envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, Scena
     Ok(profile)
 }
 
-/// The larger coefficient of two profiles at a piece of their envelope, below it if they lie there.
+/// The larger coefficient of two profiles on a piece of their envelope, including profiles below it.
 fn larger_friction(profiles: [&Profile; 2], ends: [[f64; 2]; 2]) -> f64 {
     let [x, y] = [0, 1].map(|i| 0.5 * (ends[0][i] + ends[1][i]));
     let is_face = (ends[1][0] - ends[0][0]).abs() < COLLINEAR.value();

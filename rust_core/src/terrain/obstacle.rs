@@ -215,8 +215,8 @@ pub(super) fn stepfield(field: &Stepfield, gauge: f64) -> Lanes {
     std::array::from_fn(|i| rows[i].higher(&barriers[i]))
 }
 
-/// Level of a post, 0 to `levels`: random, or on a slope up to a ridge and down again, plus or minus one level at
-/// random. The ridge lies across the field, or askew.
+/// Level of a post, 0 to `levels`: random, or on a slope up to a ridge and down again, with a random deviation of at
+/// most one level. The ridge is transverse or oblique.
 fn level(field: &Stepfield, lane: u32, post: u32) -> u32 {
     let draw = bits(field.seed, lane, post);
     let ridge = match field.pattern {
@@ -393,7 +393,7 @@ mod tests {
         assert_eq!((stairs.points[7][1], stairs.goal), (0.375, 0.5));
     }
 
-    /// With as many levels, one level more or less at random is little.
+    /// With so many levels, a random deviation of one level is small.
     #[test]
     fn a_hill_rises_to_its_ridge_and_falls_behind_it() {
         for (pattern, lane, ridge) in [
@@ -415,7 +415,7 @@ mod tests {
         }
     }
 
-    /// Between level ground 100 m long before and behind.
+    /// Each obstacle lies between 100 m of level ground before and behind.
     #[test]
     fn each_parametric_terrain_has_its_corners_and_its_goal() {
         let surface = Surface::sharp(0.9);

@@ -1,4 +1,4 @@
-//! One lane as a polyline with edges, and places along it.
+//! One lane as a polyline with edges, and positions along it.
 
 use std::ops::Range;
 
@@ -12,10 +12,10 @@ use crate::units::Metres;
 
 /// [rad] Turn of one facet of a rounded edge; at a radius of 20 mm, it is 0.8 um below its true arc.
 const FACET_TURN: f64 = 0.0175;
-/// Largest number of facets of a lane, which are built in well under a second.
+/// Largest number of facets of a lane; so many are built in well under a second.
 const MAX_FACETS: f64 = 1e6;
 
-/// The part of the robot that a profile is under; the code is the `lane` of the tables.
+/// The part of the robot above a profile; the code is the `lane` of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
     /// Under both tracks, and the belly unless it has its own.
@@ -54,7 +54,7 @@ pub struct Profile {
     pub edge_of_point: Vec<i32>,
     /// Corners of the described ground.
     pub edges: Vec<Edge>,
-    /// With the robot.
+    /// Friction with the robot.
     pub friction: GroundFriction,
     /// Number of points left out because they repeat or continue their neighbours.
     pub merged: usize,
@@ -79,7 +79,7 @@ pub struct Edge {
     pub radius: f64,
     /// [m] Centre of the arc, or the corner itself if sharp.
     pub center: Vector,
-    /// Its first and its last point; an arc that takes up a whole face shares one with the edge at its other end.
+    /// Its first and last points; an arc that takes up a whole face shares one with the edge at its other end.
     pub(crate) span: [u32; 2],
 }
 
@@ -146,7 +146,7 @@ impl Profile {
         if radius > 0.0 {
             check_facets(path, corners, radius)?;
         }
-        let mut taken = 0.0; // [m] what the arc before takes of the segment between both
+        let mut taken = 0.0; // [m] length of the segment that the previous arc takes up
         self.push(corners[0], -1);
         for i in 1..corners.len() - 1 {
             let (before, corner, behind) = (corners[i - 1], corners[i], corners[i + 1]);
@@ -179,7 +179,7 @@ impl Profile {
                 let path = format!("{path}.edge_radius");
                 return Err(ScenarioError::new(path, radius, rule));
             }
-            // What an arc leaves of a face has no direction if it is no longer than this.
+            // The rest of a face beside an arc has no direction if it is no longer than this.
             let is_joined = taken + tangent > 0.0 && to_last - tangent < COLLINEAR.value();
             taken = tangent;
             let outward = left_of(d1);
@@ -220,7 +220,7 @@ impl Profile {
         Ok(())
     }
 
-    /// Adds a point and returns its index; one of two edges that meet in a point is enough.
+    /// Adds a point and returns its index; of two edges that meet in it, one is stored.
     fn push(&mut self, point: Vector, edge: i32) -> u32 {
         let is_it = |last: &Vector| (*last - point).length() < 1e-12;
         if !self.points.last().is_some_and(is_it) {
@@ -239,8 +239,8 @@ impl Profile {
         self
     }
 
-    /// Indices of the points at which it bends, both ends included: between them it is straight, for contacts
-    /// and for what is inside a track.
+    /// Indices of the points at which it bends, including both ends; in between it is straight, for contacts
+    /// and for ground inside a track.
     pub(crate) fn bends(&self) -> &[u32] {
         &self.bends
     }
@@ -276,7 +276,7 @@ impl Profile {
         libm::atan2(d.y, d.x)
     }
 
-    /// Whether a disc lies above all the ground beside and below it.
+    /// Whether a disc is above all ground beside and below it.
     pub(crate) fn is_clear_of(&self, center: Vector, radius: f64) -> bool {
         let under = self.facets(center.x - radius, center.x + radius);
         let below = center.y - radius;
@@ -331,7 +331,7 @@ fn facets(angle: f64) -> f64 {
     (angle / FACET_TURN).ceil().max(1.0)
 }
 
-/// Checks that the arcs do not need more facets in all than a ground may have.
+/// Checks that all arcs together do not need more facets than a ground may have.
 fn check_facets(path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
     let turns = corners.windows(3).map(|c| turn(c[0], c[1], c[2]).1);
     let all: f64 = turns.filter(|turn| *turn > 0.0).map(facets).sum();

@@ -1,21 +1,22 @@
-//! Where the ground bends: finely divided ground that is straight but for a fraction of a micrometre is straight.
+//! Where the ground bends: finely divided ground counts as straight if it is straight within a fraction of a
+//! micrometre.
 //!
-//! What is left out changes no contact by more than the contacts of a robot at rest sink in.
+//! Leaving out points changes contacts by less than the penetration of a robot at rest.
 
 use crate::geometry::{Vector, cross, is_between, left_of};
 use crate::units::Metres;
 
 /// [m] Points closer than this to the line through their neighbours do not make an edge.
 pub(super) const COLLINEAR: Metres = Metres(1e-9);
-/// [m] Ground within this of a straight line is straight: less than the 0.3 um that a robot at rest sinks in.
+/// [m] Ground within this of a straight line is straight: less than the 0.3 um of penetration of a robot at rest.
 pub(crate) const STRAIGHT: Metres = Metres(0.25e-6);
-/// [m] Ground in pieces shorter than this is finely divided; described ground has larger ones.
+/// [m] Ground in pieces shorter than this is finely divided; ground described by hand has larger pieces.
 pub(crate) const FINE: Metres = Metres(1e-3);
 
-/// The points at which a polyline bends, both ends included; `is_arc` says which belong to a rounded edge.
+/// The points at which a polyline bends, including both ends; `is_arc` says which belong to a rounded edge.
 pub(super) fn bends(points: &[Vector], is_arc: impl Fn(usize) -> bool) -> Vec<u32> {
     let last = points.len() - 1;
-    // An arc goes on in the direction of the piece beside it.
+    // An arc continues in the direction of the piece beside it.
     let is_fine = |i: usize| {
         (points[i + 1] - points[i]).length() < FINE.value() && !is_arc(i) && !is_arc(i + 1)
     };
@@ -33,12 +34,12 @@ pub(super) fn bends(points: &[Vector], is_arc: impl Fn(usize) -> bool) -> Vec<u3
     bends
 }
 
-/// The lines from one point that pass close enough to all the points so far: a range of directions.
+/// The range of directions of lines from one point that pass close enough to all points so far.
 #[derive(Default)]
 struct Lines(Option<[Vector; 2]>);
 
 impl Lines {
-    /// Leaves the lines that pass close to a point.
+    /// Keeps only the lines that pass close to a point.
     fn pass(&mut self, point: Vector) {
         let far = point.length();
         if far <= STRAIGHT.value() {
@@ -58,13 +59,13 @@ impl Lines {
         self.0 = Some([right, left]);
     }
 
-    /// Whether one of the lines leads to a point.
+    /// Whether one of the lines passes through a point.
     fn reach(&self, point: Vector) -> bool {
         self.0.is_none_or(|lines| is_between(point, lines, 0.0))
     }
 }
 
-/// Leaves out every point on the line through the last one kept and the next.
+/// Removes every point on the line through the last one kept and the next.
 pub(super) fn without_collinear(points: &[Vector]) -> Vec<Vector> {
     let mut kept = vec![points[0]];
     for pair in points[1..].windows(2) {
@@ -82,7 +83,7 @@ pub(super) fn without_collinear(points: &[Vector]) -> Vec<Vector> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::print_stdout)] // the printed counts say what was joined
+    #![allow(clippy::print_stdout)] // prints how many points were joined
 
     use super::*;
     use crate::draw::Draw;
@@ -105,7 +106,7 @@ mod tests {
         }
     }
 
-    /// A metre of ground in pieces of this length [m], each end off its line by up to `jitter` [m].
+    /// A metre of ground in pieces of this length [m], whose ends are off a straight line by up to `jitter` [m].
     fn rough(length: f64, jitter: f64, draw: &mut Draw) -> Vec<Vector> {
         let (slope, curvature) = (draw.between(-1.0, 1.0), draw.between(-5.0, 5.0));
         let line = |x: f64| slope * x + 0.5 * curvature * x * x;

@@ -1,4 +1,4 @@
-//! Faces and corners of a lane, and touches: where something bears on one of them.
+//! Faces and corners of a lane, and touches, where something bears on one of them.
 //!
 //! Two faces meet at a corner, which is an arc, of radius 0 if the corner is sharp.
 //!
@@ -10,8 +10,8 @@ use crate::contact::Contact;
 use crate::geometry::{Vector, cross, is_between, left_of};
 use crate::terrain::{Edge, Profile};
 
-/// Sine of the angle by which a side of the robot may turn in a step: beyond its last normal by this angle, the arc of
-/// a rounded corner reaches out of the ground by less than 4 um.
+/// Sine of the angle by which a side of the robot may turn in a step. By this angle beyond its last normal, the arc of
+/// a rounded corner protrudes from the ground by less than 4 um.
 pub(super) const TURN_IN_A_STEP: f64 = 0.02;
 
 /// Where two faces meet.
@@ -44,8 +44,8 @@ impl Corner {
         self.has_normal_within(direction, ROUNDING)
     }
 
-    /// Whether a straight side with this opposite normal bears on the corner, or would after a small turn: at an edge,
-    /// where no other ground would bear in its place.
+    /// Whether a straight side with this opposite normal bears on the corner, or would after a small turn at an edge,
+    /// where no other ground would bear instead.
     pub(crate) fn nearly_has_normal(&self, direction: Vector) -> bool {
         let is_edge = self.edge >= 0;
         self.has_normal_within(direction, if is_edge { TURN_IN_A_STEP } else { ROUNDING })
@@ -85,13 +85,13 @@ fn turn(from: Vector, to: Vector) -> f64 {
     libm::atan2(cross(to, from), from.dot(to))
 }
 
-/// The corners of a profile from left to right, both ends included. Two that share a point have no face between them.
+/// The corners of a profile from left to right, including both ends. Two that share a point have no face between them.
 pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
     let bends = profile.bends();
     let mut edges = profile.edges.iter().peekable();
     let mut corners = Vec::new();
     for (i, bend) in bends.iter().enumerate() {
-        // On straight ground, edges do not bend it.
+        // Edges that do not bend straight ground are skipped.
         while edges.next_if(|edge| edge.span[0] < *bend).is_some() {}
         if profile.edge_of_point[*bend as usize] < 0 {
             corners.push(sharp(profile, i, -1));
@@ -104,7 +104,7 @@ pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
             });
         }
     }
-    // An arc leaves a point that it shares along its own tangent, not along its first facet.
+    // An arc leaves a shared point along its own tangent, not along its first facet.
     for i in 1..corners.len() {
         let (before, behind) = (corners[i - 1], corners[i]);
         if before.facet + before.facets < behind.facet {
@@ -125,7 +125,7 @@ fn sharp(profile: &Profile, bend: usize, edge: i32) -> Corner {
     let last = bends.len() - 1;
     let point = |i: usize| profile.points[bends[i] as usize];
     let normal_of = |a: usize, b: usize| left_of((point(b) - point(a)).normalize());
-    // Each end of the ground has one normal only, and so is not convex.
+    // Each end of the ground has only one normal, and so is not convex.
     let normals = [
         normal_of(bend.saturating_sub(1), bend.max(1)),
         normal_of(bend.min(last - 1), (bend + 1).min(last)),
@@ -170,7 +170,7 @@ pub(super) struct Face {
     pub normal: Vector,
     /// [m] Length; 0 where an arc takes up all of it.
     pub length: f64,
-    /// [m] The same with the arcs that take up the rest of the described face.
+    /// [m] Length including the arcs that take up the rest of the described face.
     pub extent: f64,
     /// Facets of the profile that make it up.
     pub facets: Range<usize>,

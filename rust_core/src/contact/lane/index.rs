@@ -1,9 +1,9 @@
-//! An index of the ground: finds what is near a place in a time that does not grow with the length of
-//! the lane or, for finely divided ground, with the number of its pieces.
+//! An index of the ground: finds the pieces near a place in a time that depends neither on the length of the
+//! lane nor, for finely divided ground, on the number of its pieces.
 //!
-//! A table over x leads to the pieces under a place. If there are many, a hierarchy above them knows how
-//! high each stretch reaches and which way it faces, so that on flat ground only the pieces right below
-//! a part are visited. parry's hierarchy bounds places only, this one normals and roofs, too.
+//! A table over x leads to the pieces under a place. If there are many, a hierarchy above them has bounds for
+//! the height and normals of each stretch, so that on flat ground only the pieces right below a part are
+//! visited. parry's hierarchy has only bounds for positions, this one also for normals and roofs.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -20,7 +20,7 @@ use crate::terrain::{FINE, Profile};
 
 /// Pieces per stretch of the lowest level.
 const BLOCK: usize = 8;
-/// Up to this many pieces are visited one by one.
+/// At most this many pieces are visited one by one.
 const FEW: usize = 2 * BLOCK;
 /// Largest number of cells in the table over x.
 const MOST_CELLS: usize = 1 << 18;
@@ -32,10 +32,10 @@ pub(super) struct Index {
     /// Number of pieces that begin before each cell of the table.
     cells: Vec<u32>,
     cells_per_meter: f64,
-    /// [m] Highest point of each piece, and of all.
+    /// [m] Highest point of each piece, and of all pieces.
     tops: Vec<f64>,
     top: f64,
-    /// Stretches of `BLOCK` pieces, then of twice as many, and so on up to one of all pieces.
+    /// Stretches of `BLOCK` pieces, then of twice as many, and so on up to a single one of all pieces.
     levels: Vec<Vec<Stretch>>,
     /// [m] Largest radius of the corners' arcs.
     largest_radius: f64,
@@ -71,7 +71,7 @@ impl Region {
         self.0.clone()
     }
 
-    /// The corners of the region, both ends included.
+    /// The corners of the region, including both ends.
     pub(crate) fn corners(&self) -> RangeInclusive<usize> {
         self.0.start..=self.0.end
     }
@@ -113,7 +113,7 @@ impl Stretch {
         }
     }
 
-    /// Whether a disc within `reach` of its centre may bear on the stretch.
+    /// Whether a disc may bear on the stretch within `reach` of its centre.
     pub(crate) fn may_face(&self, center: Vector, reach: f64) -> bool {
         let Aabb { mins, maxs } = self.bounds;
         let away = (mins - center).max(center - maxs).max(Vector::ZERO);
@@ -142,7 +142,7 @@ impl Stretch {
         self.bounds.mins.x - margin <= high && low <= self.bounds.maxs.x + margin
     }
 
-    /// Whether the stretch may have this normal, or nearly as a corner may.
+    /// Whether the stretch may have this normal, or nearly this normal at a corner.
     pub(crate) fn may_have_normal(&self, normal: Vector) -> bool {
         let [right, left] = self.normals;
         cross(right, normal) >= -TURN_IN_A_STEP && cross(normal, left) >= -TURN_IN_A_STEP
@@ -183,7 +183,7 @@ impl Index {
     /// The pieces that overlap a range of x.
     pub(super) fn region(&self, low: f64, high: f64) -> Region {
         let first = self.count_before(low).saturating_sub(1);
-        // Most ranges have a few pieces, which are counted sooner than looked up.
+        // Most ranges have few pieces; counting them is faster than looking them up.
         let few = self.begins[first..].iter().take(FEW);
         let mut end = first + few.take_while(|begin| **begin <= high).count();
         if end == first + FEW {
@@ -195,7 +195,7 @@ impl Index {
         Region(first..end.max(first + 1))
     }
 
-    /// The same, of the pieces of a region.
+    /// The same within a region.
     pub(super) fn narrow(&self, within: &Region, low: f64, high: f64) -> Region {
         if within.is_long() {
             return self.region(low, high);
@@ -221,7 +221,7 @@ impl Index {
     fn count_before(&self, x: f64) -> usize {
         let cell = ((x - self.begins[0]) * self.cells_per_meter).max(0.0) as usize;
         let last = self.cells.len() - 1;
-        // One cell more on either side: rounding in the table may be off by one.
+        // One more cell on either side: rounding in the table may be off by one.
         let from = self.cells[cell.saturating_sub(1).min(last)] as usize;
         let to = match self.cells.get(cell.saturating_add(2)) {
             Some(to) => *to as usize,
@@ -263,8 +263,8 @@ impl Index {
         (level, start / size..=(end - 1) / size)
     }
 
-    /// Calls `piece` with every piece of the stretches that may matter, and with whether it has a face: the
-    /// last corner of a region has none.
+    /// Calls `piece` with every piece of the stretches that may matter, and with whether it has a face; the last
+    /// corner of a region has none.
     pub(super) fn visit(
         &self,
         region: &Region,
@@ -295,7 +295,7 @@ impl Index {
         region.is_long() && is_fine()
     }
 
-    /// The corner of a region that rises highest, and by more than `least` [m]; `bound` is a bound of a stretch.
+    /// The corner of a region that rises highest, if by more than `least` [m]; `bound` gives a bound for a stretch.
     pub(super) fn highest(
         &self,
         region: &Region,
@@ -366,7 +366,7 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
             normals: [normal; 2],
             ..place(&face.begin)
         };
-        // The points of an arc need not include its top.
+        // The top of an arc need not be one of its points.
         let peak = corner.center + Vector::Y * corner.radius;
         let has_peak = corner.normals[0].x < 0.0 && corner.normals[1].x > 0.0;
         let peak = has_peak.then(|| place(&peak));

@@ -1,4 +1,4 @@
-//! One lane of the ground as contacts see it: straight faces and the corners between them.
+//! One lane of the ground for contacts: straight faces and the corners between them.
 //!
 //! A sharp corner is a rounded one of radius 0, so a part bears either on a face or on the disc of a
 //! corner, and rounded edges are true arcs.
@@ -22,12 +22,12 @@ use crate::units::Metres;
 pub(super) use features::{Corner, On, ROUNDING, Touch};
 pub(super) use index::{Region, Stretch};
 
-/// [m] Ground deeper inside than this did not get there by sinking in.
+/// [m] Deeper ground did not get there by penetration.
 pub(super) const SHALLOW: Metres = Metres(1e-3);
 
 /// Corners at either end of finely divided ground that are searched for one that bears.
 const NEAR_END: usize = 16;
-/// [m] A contact this close to the end of a face touches the edge there.
+/// [m] A contact this close to the end of a face touches the edge.
 const AT_CORNER: Metres = Metres(1e-7);
 
 /// Faces and corners from left to right; face i lies between corners i and i + 1.
@@ -107,9 +107,9 @@ impl Lane {
         region.is_long() || region.corners().any(|i| self.corners[i].is_convex)
     }
 
-    /// Finds everything in a region that a disc bears on with a gap below `prediction`; a corner of a part is a disc of
-    /// radius 0. Ground more than `depth` [m] above the centre did not get there by sinking in; soft contacts are looked for
-    /// down to `SHALLOW`.
+    /// Finds everything in a region on which a disc bears with a gap below `prediction`; a corner of a part is a disc
+    /// of radius 0. Ground more than `depth` [m] above the centre did not get there by penetration; soft contacts are
+    /// searched down to `SHALLOW`.
     pub(super) fn touches_of_disc(
         &self,
         within: &Region,
@@ -149,8 +149,8 @@ impl Lane {
         );
     }
 
-    /// Whether a point is in the ground below a concave corner, past the ends of both its faces and by less
-    /// than they extend: it is then behind both.
+    /// Whether a point is in the ground below a concave corner, beyond the ends of both faces by less than their
+    /// length, and so behind both.
     fn is_under(&self, i: usize, point: Vector) -> bool {
         if i == 0 || i == self.faces.len() {
             return false;
@@ -214,19 +214,19 @@ impl Lane {
         }
         let spoke = center - corner.center;
         let far = spoke.length();
-        // At the corner itself it is no direction, and no normal.
+        // At the corner itself there is no direction, and no normal.
         let normal = spoke / far;
         let bears = corner.has_normal(normal);
         bears.then(|| corner.touch(i, normal, far - radius - corner.radius))
     }
 
-    /// The ground that runs of a part in a range of x may meet with a gap below `prediction`.
+    /// The ground that straight runs of a part in a range of x may touch with a gap below `prediction`.
     pub(super) fn region_of_runs(&self, [low, high]: [f64; 2], prediction: f64) -> Region {
         let margin = self.margin(prediction);
         self.region(low - margin, high + margin)
     }
 
-    /// The same, of the ground in a region.
+    /// The same within a region.
     pub(super) fn narrow_of_runs(
         &self,
         within: &Region,
@@ -237,14 +237,14 @@ impl Lane {
         self.index.narrow(within, low - margin, high + margin)
     }
 
-    /// [m] How far off a run the corners may be that it meets: the centre of an arc is off its corner by at most its
-    /// radius.
+    /// [m] Largest distance of corners from a run that touches them: the centre of an arc is off its corner by at most
+    /// its radius.
     fn margin(&self, prediction: f64) -> f64 {
         prediction + self.index.largest_radius()
     }
 
-    /// Finds every corner of a region that bears on a straight run of a part, from `begin` to `end` counter-clockwise and
-    /// with the normal `outward`, with a gap below `prediction` and a penetration below `depth`.
+    /// Finds every corner of a region that bears on a straight run of a part, from `begin` to `end` counter-clockwise
+    /// and with the normal `outward`, with a gap below `prediction` and a penetration below `depth`.
     pub(super) fn touches_of_run(
         &self,
         within: &Region,
@@ -290,8 +290,8 @@ impl Lane {
         self.index.visit(region, matters, |i, _| meet(i));
     }
 
-    /// The same below a straight run of a part; `meet` returns the touch of a corner on it, if there is one.
-    /// On finely divided ground, find one touch near each end; only corners above the chord between them matter.
+    /// The same below a straight run of a part; `meet` returns the touch of a corner on it, if any. On finely divided
+    /// ground, it finds one touch near each end; then only corners above the chord between them matter.
     pub(super) fn visit_corners_below_run(
         &self,
         region: &Region,

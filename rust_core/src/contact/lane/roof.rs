@@ -1,5 +1,5 @@
-//! Roofs and chords: lines above finely divided ground. A corner that lies between two others bearing on
-//! the same straight run of a part, and no higher than the line through both, does not bear.
+//! Roofs and chords: lines above finely divided ground. If two corners bear on the same straight run of a part, a
+//! corner between them that is no higher than the line through both does not bear.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -7,11 +7,11 @@ use super::{Corner, Touch};
 use crate::geometry::{Vector, left_of};
 use crate::units::Metres;
 
-/// [m] Ground that rises above a chord by less than this bears no more than the ends of the chord: it is a
-/// thousandth of the deepest overlap that should ever occur.
+/// [m] Ground that rises above a chord by less than this is left to the ends of the chord: it is a thousandth of the
+/// largest overlap that should ever occur.
 pub(super) const SAME_FACE: Metres = Metres(1e-6);
 
-/// Both ends of a line above all corners of a stretch of ground, roughly parallel to the stretch.
+/// The ends of a line above all corners of a stretch of ground, roughly parallel to the stretch.
 pub(super) type Roof = [Vector; 2];
 
 /// The roof of a few neighbouring corners.
@@ -64,7 +64,7 @@ impl Chord {
         (corner.center - self.ends[0]).dot(self.up) + corner.radius
     }
 
-    /// [m] No corner below a roof rises farther than this.
+    /// [m] An upper bound for the rise of corners below a roof.
     pub(super) fn rise_of(&self, roof: &Roof) -> f64 {
         let rises = roof.map(|end| (end - self.ends[0]).dot(self.up));
         rises[0].max(rises[1])
@@ -75,7 +75,7 @@ impl Chord {
         self.hides(corner.center + self.up * corner.radius)
     }
 
-    /// Whether everything below a roof does.
+    /// Whether everything below a roof is hidden like this.
     pub(super) fn hides_all(&self, roof: &Roof) -> bool {
         roof.iter().all(|end| self.hides(*end))
     }
@@ -140,7 +140,7 @@ mod tests {
         assert!(chord.hides(Vector::new(1.0, 0.1 + 0.5e-6)));
         assert!(!chord.hides(Vector::new(1.0, 0.1 + 2e-6)));
         assert!(!chord.hides(Vector::new(2.1, 0.0)));
-        // Wherever that is.
+        // The same at another place.
         let chord = Chord::new(&at(3.0, 1.0), &at(5.0, 1.2)).expect("they bear on one run");
         assert!(chord.hides(Vector::new(4.0, 1.1 + 0.5e-6)));
         assert!(!chord.hides(Vector::new(4.0, 1.1 + 2e-6)));

@@ -283,7 +283,7 @@ fn a_corner_that_is_pressed_into_a_wall_stays_found() {
 #[test]
 fn nothing_rises_above_the_top_of_a_region() {
     let mut draw = Draw(20_270_120);
-    // The points of an arc need not include its top.
+    // The top of an arc need not be one of its points.
     for edge_radius in [0.0, 1e-3, 5e-3] {
         for _ in 0..1000 {
             let left = draw.between(0.05, 0.2);
@@ -412,7 +412,8 @@ fn the_arc_of_a_corner_is_as_long_as_its_angle_on_its_radius() {
     assert!((lengths[1] - 0.05 * 0.5 * right).abs() < 1e-12);
 }
 
-/// A disc that is 1 um deep, with its centre above the edge, along normals from those of one face to those of the other.
+/// A disc that is 1 um deep, with its centre above the edge, along normals from those of one face to those of the
+/// other.
 #[test]
 fn a_rounded_edge_bears_however_short_its_arc_is() {
     const RADIUS: f64 = 0.1;

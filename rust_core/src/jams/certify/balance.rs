@@ -1,16 +1,17 @@
-//! Whether forces can carry the weight at all: by Farkas's lemma they cannot if there is a twist against which the weight
-//! works and none of the forces.
+//! Whether forces can carry the weight at all. By Farkas's lemma they cannot if there is a twist in which the weight
+//! does positive work and no force does negative work.
 
 use super::interval::MARGIN;
 use super::touch::Touch;
 use crate::geometry::{Vector, cross};
 
-/// A virtual motion: velocity of the centre of mass, and rate of turning times a length.
+/// A virtual motion: velocity of the centre of mass, and rate of rotation times a length.
 pub(super) type Twist = [f64; 3];
 
-/// Whether no force of these contacts can work against a twist which the weight works with: with them it is not carried.
+/// Whether no force of these contacts can do negative work in a twist in which the weight does positive work, so that
+/// they cannot carry it.
 ///
-/// Forces and moments are taken about the centre of mass; `length` \[m\] makes moments forces.
+/// Forces and moments are taken about the centre of mass; `length` \[m\] converts moments to forces.
 pub(super) fn excludes(twist: Twist, touches: &[Touch], length: f64) -> bool {
     let [x, y, turn] = twist;
     y < -MARGIN
@@ -19,7 +20,7 @@ pub(super) fn excludes(twist: Twist, touches: &[Touch], length: f64) -> bool {
             .all(|touch| least(touch, Vector::new(x, y), turn / length) > MARGIN)
 }
 
-/// The least power of a contact's forces, over the normal force.
+/// The least power of a contact's forces, divided by the normal force.
 fn least(touch: &Touch, velocity: Vector, rate: f64) -> f64 {
     // The axle's velocity, for d x F is F across d.
     let arm = touch.arm.middle;
@@ -28,7 +29,7 @@ fn least(touch: &Touch, velocity: Vector, rate: f64) -> f64 {
     for (slope, [one, other]) in touch.forces() {
         let size = one.length();
         let (first, last) = (at_axle.dot(one), at_axle.dot(other));
-        // On an arc of less than half a turn the power falls, then rises, if it has a minimum inside.
+        // If the power has a minimum inside an arc of less than half a turn, it falls and then rises.
         let dips = cross(one, at_axle) < 0.0 && cross(other, at_axle) > 0.0;
         let of_force = if dips {
             -at_axle.length() * size
@@ -41,7 +42,7 @@ fn least(touch: &Touch, velocity: Vector, rate: f64) -> f64 {
     least
 }
 
-/// A twist that may exclude: the shortest vector to the hull of all forces, and of the weight turned over.
+/// A twist that may exclude the cell: the shortest vector to the hull of all forces and of the reversed weight.
 pub(super) fn candidate(touches: &[Touch], length: f64) -> Option<Twist> {
     let mut points = vec![[0.0, -1.0, 0.0]];
     for touch in touches {
@@ -64,11 +65,11 @@ fn minus(a: &Twist, b: &Twist) -> Twist {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// The point of the hull of points that is nearest to the origin; `None` if that is inside, or as good as.
+/// The point of the hull of points nearest to the origin; `None` if the origin is inside, or almost.
 ///
-/// Gilbert's, Johnson's and Keerthi's algorithm (1988).
+/// This is the algorithm of Gilbert, Johnson and Keerthi (1988).
 fn nearest(points: &[Twist]) -> Option<Twist> {
-    /// Square of the distance of an origin that is as good as inside.
+    /// Square of the distance below which the origin counts as inside.
     const INSIDE: f64 = 1e-12;
     let mut simplex: Vec<Twist> = vec![points[0]];
     let mut best = points[0];
@@ -92,7 +93,7 @@ fn nearest(points: &[Twist]) -> Option<Twist> {
     Some(best)
 }
 
-/// The nearest point of a simplex, of which only the corners that span it are kept.
+/// The nearest point of a simplex, which keeps only the corners that span that point.
 fn reduce(simplex: &mut Vec<Twist>) -> Option<Twist> {
     let n = simplex.len();
     let mut best: Option<(f64, Twist, u8)> = None;
@@ -120,7 +121,7 @@ fn reduce(simplex: &mut Vec<Twist>) -> Option<Twist> {
     Some(point)
 }
 
-/// The foot of the perpendicular from the origin on the span of corners, if it is between them.
+/// The foot of the perpendicular from the origin to the span of corners, if it is between them.
 fn foot(corners: &[Twist]) -> Option<Twist> {
     match corners {
         [a] => Some(*a),
@@ -172,7 +173,7 @@ mod tests {
         std::array::from_fn(|_| draw.between(-most, most))
     }
 
-    /// The distance of a hull from the origin by Frank's and Wolfe's method: nothing but steps towards corners.
+    /// The distance of a hull from the origin by the method of Frank and Wolfe, with steps towards corners.
     fn distance(points: &[Twist]) -> f64 {
         let mut at = points[0];
         for _ in 0..20_000 {
@@ -185,7 +186,7 @@ mod tests {
         dot(&at, &at).sqrt()
     }
 
-    /// The plane across it through the nearest point has all of the hull beyond it.
+    /// The whole hull is beyond the plane through the nearest point normal to it.
     #[test]
     fn the_nearest_point_of_a_hull_is_as_far_as_the_hull() {
         let mut draw = Draw(11);
@@ -201,7 +202,7 @@ mod tests {
             if let Some(found) = nearest(&points) {
                 outside += 1;
                 let length = dot(&found, &found).sqrt();
-                // Of 20,000 steps their error is left, which falls with their number.
+                // After 20,000 steps there is an error, which is inversely proportional to their number.
                 assert!(
                     (length - expected).abs() < 1e-3,
                     "{case}: {length} {expected}"
@@ -245,7 +246,7 @@ mod tests {
         ] {
             assert_eq!(foot(&triangle(x, y)).is_some(), is_over, "{x} {y}");
         }
-        // Over a corner of it is the origin inside, and not once it is above or below.
+        // The origin is inside over a corner of it, and not above or below.
         for (height, is_inside) in [(-1.0, true), (0.5, false), (-3.0, false)] {
             let mut corners = triangle(0.0, 0.0).map(|[x, y, _]| [x, y, height]).to_vec();
             corners.push([0.0, 0.0, height + 2.0]);
@@ -277,7 +278,8 @@ mod tests {
         }
     }
 
-    /// The power of the force at its point of the ground, for a normal that is turned from the bisector by the arc of `sine`.
+    /// The power of the force at its point of the ground, for a normal that is turned from the bisector by the arc of
+    /// `sine`.
     fn power(touch: &Touch, (sine, slope): (f64, f64), arm: Vector, [x, y, rate]: Twist) -> f64 {
         let normal = Vector::from_angle(libm::asin(sine)).rotate(touch.normals.bisector);
         let force = normal + right_of(normal) * slope;
@@ -285,7 +287,8 @@ mod tests {
         Vector::new(x, y).dot(force) + rate * cross(point, force)
     }
 
-    /// A force is a normal of the arc with a friction in its range. On the arc 400 steps miss the least by their square.
+    /// A force is a normal of the arc with a friction in its range. The error of 400 steps on the arc is that of their
+    /// square.
     #[test]
     fn no_force_of_a_touch_has_less_power_than_the_least() {
         let mut draw = Draw(12);
@@ -309,13 +312,13 @@ mod tests {
                 }
             }
             assert!(found <= lowest + 1e-15, "{case}: {found} {lowest}");
-            // Where the axle is known. Else the error is at most what the far corner of its place adds, twice.
+            // If the axle is known; otherwise the error is at most twice what the far corner of its range adds.
             let slack = 2.0 * rate.abs() * touch.arm.half.length() * 1.5;
             assert!(lowest - found <= slack + 1e-4, "{case}: {found} {lowest}");
         }
     }
 
-    /// A level touch of a disc, at this distance [m] ahead of the centre of mass and this height below it.
+    /// A level touch of a disc, at a distance [m] ahead of the centre of mass and a height below it.
     fn below(ahead: f64, slopes: [f64; 2]) -> Touch {
         Touch {
             surface: 0,
@@ -347,7 +350,7 @@ mod tests {
             let excluded = found.is_some_and(|twist| excludes(twist, &touches, length));
             assert_eq!(excluded, !carries, "{places:?}");
         }
-        // One that falls without a turn has every support work against it, and one that rises works against the weight.
+        // Every support does negative work in a fall without rotation, and the weight does in a rise.
         let touches = [below(0.2, [0.0; 2])];
         let falls = |y: f64, turn: f64| excludes([0.0, y, turn], &touches, length);
         assert!(!falls(-1.0, 0.0) && !falls(1.0, 0.0));

@@ -5,9 +5,10 @@ use std::ops::{Add, Mul, Sub};
 use super::interval::{Interval, Rectangle};
 use crate::geometry::Vector;
 
-/// So many parameters may vary.
+/// Largest number of parameters.
 pub(crate) const MOST_PARAMETERS: usize = 4;
-/// Numbers of a cell: x, y and angle of the chassis frame, then the shares of the parameters from 0 to 1.
+/// Count of numbers of a cell: x, y and angle of the chassis frame, then fractions of the parameters' ranges from 0 to
+/// 1.
 pub(super) const NUMBERS: usize = 3 + MOST_PARAMETERS;
 
 /// A range of each number.
@@ -31,7 +32,7 @@ impl Cell {
         0.5 * (self.high[number] - self.low[number])
     }
 
-    /// Both halves of it along one number.
+    /// Its halves along one number.
     pub(super) fn split(&self, number: usize) -> [Self; 2] {
         let middle = self.middle(number);
         let (mut lower, mut upper) = (*self, *self);
@@ -40,7 +41,7 @@ impl Cell {
         [lower, upper]
     }
 
-    /// What it has in the middle alone.
+    /// Its middle as a cell.
     pub(super) fn at_middle(&self) -> Self {
         let middle = std::array::from_fn(|number| self.middle(number));
         Self {
@@ -49,12 +50,12 @@ impl Cell {
         }
     }
 
-    /// Shares of the parameters in the middle.
+    /// Fractions of the parameters' ranges in the middle.
     pub(super) fn shares(&self) -> Shares {
         std::array::from_fn(|k| self.middle(3 + k))
     }
 
-    /// Where the chassis frame is.
+    /// Position of the chassis frame.
     pub(super) fn position(&self) -> Rectangle {
         Rectangle {
             middle: Vector::new(self.middle(0), self.middle(1)),
@@ -63,18 +64,18 @@ impl Cell {
     }
 }
 
-/// A value that changes in proportion with each parameter.
+/// A value that is linear in each parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Affine<T> {
     pub base: T,
     pub slopes: [T; MOST_PARAMETERS],
 }
 
-/// A share of each parameter's range.
+/// A fraction of each parameter's range.
 pub(super) type Shares = [f64; MOST_PARAMETERS];
 
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Affine<T> {
-    /// Through its value where all parameters are least, then those where each alone is greatest.
+    /// Interpolates its value with all parameters at the smallest, and those with each alone at the largest.
     pub(super) fn through(values: impl Iterator<Item = T>) -> Self {
         let values: Vec<T> = values.collect();
         let base = values[0];
@@ -139,7 +140,7 @@ impl Turns {
         )
     }
 
-    /// A vector out of a rectangle as the robot sees it: in the middle, and \[m\] how far from that it can be.
+    /// A vector from a rectangle in the robot's frame: the middle, and the largest distance \[m\] from that.
     pub(super) fn seen(&self, all: Rectangle) -> (Vector, f64) {
         let v = all.middle;
         let middle = Vector::new(
@@ -150,7 +151,7 @@ impl Turns {
         (middle, reach + (v.length() + reach) * self.half)
     }
 
-    /// Where a vector can be: off along its circle by at most the sine, back by at most one less the cosine.
+    /// The range of a vector: moved along its circle by at most the sine, and back by at most one minus the cosine.
     pub(super) fn apply(&self, v: Vector) -> Rectangle {
         let middle = self.middle(v);
         let across = Vector::new(middle.y, middle.x).abs() * self.half;
@@ -161,14 +162,14 @@ impl Turns {
         }
     }
 
-    /// Where a vector out of a rectangle can be.
+    /// The range of a vector from a rectangle.
     pub(super) fn apply_all(&self, all: Rectangle) -> Rectangle {
         let mut turned = self.apply(all.middle);
         let reach = Vector::new(
             self.cosine.abs() * all.half.x + self.sine.abs() * all.half.y,
             self.sine.abs() * all.half.x + self.cosine.abs() * all.half.y,
         );
-        // What is turned in the middle turns by the rest as well.
+        // The vector turned by the middle angle also turns by the rest.
         turned.half += reach + Vector::new(reach.y, reach.x) * self.half;
         turned
     }

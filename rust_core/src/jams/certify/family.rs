@@ -1,5 +1,5 @@
-//! A robot over grounds that change with parameters: its outline stays, corners of the ground, friction and the centre of mass
-//! move in proportion.
+//! A robot over grounds that depend on parameters: its outline is fixed; corners of the ground, friction and the centre
+//! of mass change linearly.
 
 use super::cell::{Affine, Cell, MOST_PARAMETERS, Shares};
 use super::interval::Interval;
@@ -13,30 +13,30 @@ use crate::robot::Model;
 use crate::scenario::ScenarioError;
 use crate::terrain::Ground;
 
-/// [m] and shares: how far a value may be off proportion, which is rounding.
+/// [m] and fractions: allowed deviation of a value from linearity, by rounding.
 const PROPORTIONAL: f64 = 1e-12;
 
-/// Robot and ground over all values of the parameters.
+/// Robot and ground for all values of the parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Family {
-    /// The robot at the least values.
+    /// The robot at the smallest values.
     pub layout: Layout,
     /// Circles that may not overlap with the ground.
     pub discs: Vec<Disc>,
-    /// What may not hold a corner of the ground: parts that are hulls of several discs.
+    /// Parts that may not contain a corner of the ground: hulls of several discs.
     pub hulls: Vec<Envelope>,
     pub tracks: Vec<Track>,
     pub places: Vec<Spot>,
     pub center_of_mass: Affine<Vector>,
     /// [m] Radius of the smallest wheel.
     pub radius: f64,
-    /// [m] No point of the robot is farther from the origin of its frame.
+    /// [m] Largest distance of a point of the robot from the origin of its frame.
     pub reach: f64,
     /// [m^2] Moment of inertia over mass.
     pub inertia: Interval,
-    /// [rad] Greatest angle of the chassis.
+    /// [rad] Largest angle of the chassis.
     pub most_angle: f64,
-    /// How many parameters there are.
+    /// Number of parameters.
     pub parameters: usize,
 }
 
@@ -47,28 +47,28 @@ pub(super) struct Track {
     pub belt: Envelope,
 }
 
-/// A face or a corner of the ground over all values of the parameters.
+/// A face or a corner of the ground for all values of the parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Spot {
-    /// At the least values.
+    /// The place at the smallest values.
     pub place: Place,
-    /// [m] Both ends of a face, twice the centre of a corner.
+    /// [m] Both ends of a face, or twice the centre of a corner.
     pub ends: [Affine<Vector>; 2],
     pub friction: Affine<f64>,
 }
 
-/// One member of it: at the least values, or with one parameter or all at the most.
+/// One member of the family: at the smallest values, or with one parameter or all at the largest.
 struct Member {
     layout: Layout,
     places: Vec<Place>,
 }
 
 impl Family {
-    /// From the robot and the ground at the least values of all parameters, then at the most of each alone, of all, and half
-    /// way between.
+    /// Builds it from robot and ground with the smallest values of all parameters, the largest of each alone, the
+    /// largest of all, and the middle of all.
     ///
     /// # Errors
-    /// A robot that [`Layout::new`] refuses, parameters that change anything else or not in proportion.
+    /// A robot that [`Layout::new`] refuses; parameters that change anything else, or not linearly.
     pub(super) fn new(
         built: &[(&Model, &Ground)],
         names: &[String],
@@ -131,7 +131,7 @@ impl Family {
         Ok(family)
     }
 
-    /// All poses over the ground at all values of the parameters.
+    /// All poses over the ground for all values of the parameters.
     pub(super) fn root(&self) -> Cell {
         let mut all = Cell::ZERO;
         all.high[3..3 + self.parameters].fill(1.0);
@@ -144,13 +144,13 @@ impl Family {
         let low = bounds.iter().copied().fold(bounds[0], Vector::min);
         let high = bounds.iter().copied().fold(bounds[0], Vector::max);
         let (reach, turn) = (self.reach, self.most_angle);
-        // Where the ground ends there is nothing that it could be.
+        // Where the ground ends, there is nothing to touch.
         all.low[..3].copy_from_slice(&[low.x + reach, low.y - reach, -turn]);
         all.high[..3].copy_from_slice(&[high.x - reach, high.y + reach, turn]);
         all
     }
 
-    /// Robot and ground at shares of the parameters' ranges.
+    /// Robot and ground at fractions of the parameters' ranges.
     pub(super) fn at(&self, shares: &Shares) -> (Layout, Vec<Place>) {
         let of = |spot: &Spot| {
             let [from, to] = spot.ends.map(|end| end.at(shares));
@@ -178,7 +178,7 @@ impl Family {
         (layout, self.places.iter().map(of).collect())
     }
 
-    /// The same, with what can touch where.
+    /// The same, with all possible contacts.
     ///
     /// # Errors
     /// As [`Setting::new`].
@@ -188,14 +188,14 @@ impl Family {
         Setting::new(layout, places, [-most, most], cancel)
     }
 
-    /// Whether a member with all parameters at a share of their ranges is as proportion has it.
+    /// Whether a member with all parameters at a fraction of their ranges is as linearity predicts.
     fn holds(&self, member: &Member, share: f64) -> bool {
         let (layout, places) = self.at(&[share; MOST_PARAMETERS]);
         is_at(&Member { layout, places }, member)
     }
 }
 
-/// Refuses what moves along straight runs: a belt has no pockets.
+/// Refuses surfaces that move along straight runs: a belt has no pockets.
 pub(super) fn check_wheels(layout: &Layout) -> Result<(), ScenarioError> {
     let is_belt = |surface: &Surface| {
         matches!(surface.shape, Outline::Flat { .. }) && surface.grip != Grip::Still
@@ -214,7 +214,7 @@ fn points(shape: &Facing) -> [Vector; 2] {
     }
 }
 
-/// Whether two members have their ground, its friction and their centre of mass in the same places.
+/// Whether two members have the same ground, friction and centre of mass.
 fn is_at(one: &Member, other: &Member) -> bool {
     let off = (one.layout.center_of_mass - other.layout.center_of_mass).length();
     let of_place = |(place, other): (&Place, &Place)| {
@@ -227,7 +227,7 @@ fn is_at(one: &Member, other: &Member) -> bool {
     places.fold(off, f64::max) < PROPORTIONAL
 }
 
-/// Whether two members have one outline and faces of the same directions.
+/// Whether two members have the same outline, and faces with the same directions.
 fn is_alike(one: &Member, other: &Member) -> bool {
     let near = |a: Vector, b: Vector| (a - b).length() < PROPORTIONAL;
     let same_disc =
@@ -286,7 +286,7 @@ fn hulls(layout: &Layout) -> Vec<Envelope> {
 }
 
 impl Spot {
-    /// Whether it is a face, and at one of its ends this corner, at all values of the parameters.
+    /// Whether it is a face with this corner at one of its ends, at all values of the parameters.
     pub(super) fn ends_at(&self, corner: &Self) -> bool {
         let (Facing::Face { normal, .. }, Facing::Corner { radius, .. }) =
             (self.place.shape, corner.place.shape)

@@ -13,70 +13,71 @@ pub enum Exclusion {
     Overlap,
     /// No ground is inside the track, so a belt can stand there, too.
     Belt,
-    /// The weight works with a virtual motion that no force works against.
+    /// The weight does positive work in a virtual motion in which no force does negative work.
     Unbalanced,
-    /// One wheel or two can carry it, but small deviations grow.
+    /// One or two wheels can carry it, but small deviations grow.
     Tips,
 }
 
 /// Ranges of pose and parameters in which a robot cannot stand, and why.
 #[derive(Clone, Copy, Debug)]
 pub struct ExcludedCell {
-    /// Least values: x \[m\], y \[m\] and angle \[rad\] of the chassis frame, then shares of the parameters' ranges.
+    /// Smallest values: x \[m\], y \[m\] and angle \[rad\] of the chassis frame, then fractions of the parameters'
+    /// ranges.
     pub low: [f64; NUMBERS],
     /// Greatest values.
     pub high: [f64; NUMBERS],
-    /// Why.
+    /// The reason.
     pub exclusion: Exclusion,
-    /// The virtual motion, if that is what excludes it: velocity of the centre of mass and rate of turning times
+    /// The virtual motion, if one excludes it: velocity of the centre of mass, and rate of rotation times
     /// [`Certificate::length`].
     pub twist: Twist,
 }
 
-/// What is known of a range of parameters.
+/// The status of a range of parameters.
 #[derive(Clone, Debug)]
 pub enum RegionStatus {
-    /// It cannot stand still anywhere in it; so many cells show that.
+    /// The robot cannot stand still anywhere in it, as this number of cells shows.
     Certified(usize),
-    /// It can at these shares of the parameters' ranges.
+    /// It can, at these fractions of the parameters' ranges.
     Jams(Vec<f64>, Jam),
-    /// It may, but a belt can as well, at every value.
+    /// It may, but so can a belt, at every value.
     AsBelt,
-    /// None of these is shown.
+    /// Undecided.
     Undecided,
 }
 
-/// A range of each parameter, as shares of the whole.
+/// A part of the range of each parameter, in fractions of the whole range.
 #[derive(Clone, Debug)]
 pub struct Region {
     /// Least values.
     pub low: Vec<f64>,
     /// Greatest values.
     pub high: Vec<f64>,
-    /// What is known of it.
+    /// Its status.
     pub status: RegionStatus,
 }
 
-/// What is known of all parameters.
+/// The result for the whole range of the parameters.
 #[derive(Clone, Debug, Default)]
 pub struct Certificate {
-    /// They cover the whole range, and do not overlap.
+    /// Regions that cover the whole range, without overlaps.
     pub regions: Vec<Region>,
-    /// What shows it for those that are certified, one after the other, if that was asked for.
+    /// The proof for the certified regions, one after the other, if requested.
     pub cells: Vec<ExcludedCell>,
-    /// \[m\] What moments are divided by.
+    /// \[m\] Length by which moments are divided.
     pub length: f64,
 }
 
 /// How far to search.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchEffort {
-    /// \[m\] Ground less deep inside the track is left to the belt.
+    /// \[m\] Ground less deep inside the track does not count: a belt stands there as well.
     pub depth: f64,
-    /// Regions are split until they are this share of the whole along each parameter.
+    /// Regions are split until they are this fraction of the whole range along each parameter.
     pub smallest: f64,
-    /// So many cells are tried for each region.
+    /// Largest number of cells tried for each region.
     pub cells: usize,
-    /// Whether to return them.
+    /// Whether to return the cells.
     pub keeps_cells: bool,
 }

@@ -1,7 +1,7 @@
-//! That a robot can jam at every value of the parameters: a pose on three contacts that moves with them.
+//! Shows that a robot can jam at every value of the parameters, in a pose on three contacts that moves with them.
 //!
-//! Krawczyk's operator (1969) shows that three gaps have a common zero in a box of poses, whatever the parameters; then loads
-//! are bounded over that box.
+//! Krawczyk's operator (1969) shows that three gaps have a common zero in a box of poses for any values of the
+//! parameters; then loads are bounded over that box.
 
 use super::cell::{Cell, Shares, Turns};
 use super::family::Family;
@@ -16,7 +16,7 @@ use crate::jams::layout::Outline;
 use crate::jams::places::Facing;
 use crate::limits::Cancel;
 
-/// So often a box of poses is made larger before it is given up.
+/// Number of times that a box of poses is enlarged before it is given up.
 const TRIES: usize = 8;
 
 type Row = [Interval; 3];
@@ -25,7 +25,7 @@ type Row = [Interval; 3];
 pub(super) type Stand = (Posture, [(usize, usize); 3]);
 
 impl Family {
-    /// Jams on three contacts at shares of the parameters' ranges.
+    /// Jams on three contacts at fractions of the parameters' ranges.
     pub(super) fn stands(&self, shares: &Shares, cancel: &Cancel) -> Result<Vec<Stand>, Error> {
         let setting = self.setting(shares, cancel)?;
         let of = |posture: Posture| {
@@ -38,7 +38,7 @@ impl Family {
         Ok(setting.fixed(cancel)?.into_iter().filter_map(of).collect())
     }
 
-    /// Whether one of the jams in the middle of a range is there at every value of the parameters.
+    /// Whether one of the jams in the middle of a range exists at every value of the parameters.
     pub(super) fn is_held(&self, range: &Cell, stands: &[Stand]) -> bool {
         stands.iter().any(|(posture, three)| {
             let cell = self.enclosed(range, posture, three);
@@ -46,7 +46,7 @@ impl Family {
         })
     }
 
-    /// A box of poses that holds one in which three surfaces touch, at every value of the parameters.
+    /// A box of poses that, at every value of the parameters, contains one in which three surfaces touch.
     fn enclosed(&self, range: &Cell, near: &Posture, three: &[(usize, usize); 3]) -> Option<Cell> {
         let middle = [near.position.x, near.position.y, near.angle];
         let boxed = |half: [f64; 3]| {
@@ -92,7 +92,7 @@ impl Family {
         None
     }
 
-    /// The gap \[m\] over a cell, near 0, and how it changes with the pose.
+    /// The gap \[m\] over a cell, near 0, and its derivatives with respect to the pose.
     pub(super) fn gap(&self, cell: &Cell, (surface, place): (usize, usize)) -> (Interval, Row) {
         let turns = Turns::of(cell);
         let (position, spot) = (cell.position(), &self.places[place]);
@@ -108,7 +108,7 @@ impl Family {
                 (gap, row(Rectangle::at(normal), arm))
             }
             (Outline::Round(disc), Facing::Corner { radius, .. }) => {
-                // Half the difference of squares over the radius, which is the gap where that is 0.
+                // Half the difference of squares divided by the radius, which has the slope of the gap where this is 0.
                 let (arm, circle) = (turns.apply(disc.center), radius + disc.radius);
                 let spoke = position + arm - ground;
                 let (x, y) = (spoke.x(), spoke.y());
@@ -156,7 +156,7 @@ impl Family {
         loads.iter().all(same)
     }
 
-    /// Whether the piece of the ground is there, wherever it is touched in a cell.
+    /// Whether the piece of the ground exists wherever it is touched in a cell.
     fn is_real(&self, cell: &Cell, touch: &Touch) -> bool {
         let spot = &self.places[touch.place];
         let turns = Turns::of(cell);

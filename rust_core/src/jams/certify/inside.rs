@@ -1,4 +1,4 @@
-//! How deep the ground is inside a track: where it is not, a belt stands as well as the wheels that it runs round.
+//! Depth of the ground inside a track: if there is none, a belt can stand there like the wheels that it runs round.
 
 use super::cell::{Cell, Turns};
 use super::family::{Family, Spot, Track};
@@ -9,7 +9,7 @@ use crate::jams::contact::{Posture, Turn};
 use crate::jams::places::{Facing, Place};
 
 impl Family {
-    /// Whether no ground is deeper inside a track than that, anywhere in a cell.
+    /// Whether no ground is deeper inside a track than a limit, anywhere in a cell.
     pub(super) fn is_as_on_belt(&self, cell: &Cell, depth: f64) -> bool {
         let turns = Turns::of(cell);
         let reach = self.reach + cell.position().half.length();
@@ -20,7 +20,7 @@ impl Family {
         })
     }
 
-    /// \[m\] How deep the ground is inside a track in a pose.
+    /// \[m\] Depth of the ground inside a track in a pose.
     pub(super) fn depth(&self, places: &[Place], posture: &Posture) -> f64 {
         let back = Turn::by(-posture.angle);
         let of_place = |place: &Place| {
@@ -28,7 +28,7 @@ impl Family {
                 Facing::Face { ends, .. } => (ends, 0.0),
                 Facing::Corner { center, radius, .. } => ([center; 2], radius),
             };
-            // As the robot sees it, and no farther away than it reaches.
+            // In the robot's frame, and no farther away than it reaches.
             let [from, to] = ends.map(|end| back.apply(end - posture.position));
             let along = (to - from).normalize_or(Vector::ZERO);
             let length = (to - from).length();
@@ -45,8 +45,8 @@ impl Family {
 }
 
 impl Spot {
-    /// Whether it is nowhere deeper inside a track than that in a pose without overlap: off all wheels along its normal, or
-    /// beyond a straight run or a disc.
+    /// Whether it is nowhere deeper inside a track than a limit in any pose without overlap: off all wheels along its
+    /// normal, or beyond a straight run or a disc.
     fn is_outside(
         &self,
         track: &Track,
@@ -63,8 +63,8 @@ impl Spot {
             }
             Facing::Face { normal, .. } => {
                 let (height, along) = (from.along(normal), right_of(normal));
-                // A disc over the face is off it, or overlaps with the ground: above, because its nearest point on the line
-                // is on the face, and below, because it is under the surface.
+                // A disc over the face is off it, or overlaps with the ground: if above, because its nearest point on
+                // the line is on the face, and if below, because it is under the surface.
                 let is_off = |disc: &Disc| {
                     let axle = turns.apply(disc.center);
                     let gap = axle.along(normal) - height - Interval::at(disc.radius);
@@ -99,8 +99,8 @@ impl Spot {
 }
 
 impl Track {
-    /// \[m\] No point of a segment is deeper than this: the depth of its deeper end along the line from the centre of the disc
-    /// that is nearest to it.
+    /// \[m\] An upper bound for the depth of points of a segment: the depth of its deeper end along the line from the
+    /// centre of the nearest disc.
     fn depth_beyond_a_disc(&self, [from, to]: [Vector; 2]) -> f64 {
         let along = to - from;
         let nearest = |disc: &Disc| {
@@ -159,14 +159,15 @@ mod tests {
             inside += u32::from(deepest > 0.0);
         }
         assert!(inside > 100, "{inside}");
-        // Across the line from a wheel's centre all of it is as deep, and one that ends beside it is as deep as its nearer end.
+        // A segment perpendicular to the line from a wheel's centre is equally deep everywhere; one that ends beside
+        // the line is as deep as its nearer end.
         for side in [-1.0, 1.0] {
             for (a, b, depth) in [
                 ([0.35, -0.05], [0.35, 0.05], 0.05),
                 ([0.45, -0.05], [0.45, 0.05], -0.05),
                 // Its nearest point is 0.06 m ahead of the wheel and 0.08 m above it.
                 ([0.36 - 0.04, 0.08 + 0.03], [0.36 + 0.04, 0.08 - 0.03], 0.0),
-                // It goes on away from the wheel, along a line from its centre.
+                // It continues away from the wheel, along a line from its centre.
                 ([0.35, 0.0], [0.45, 0.0], 0.05),
             ] {
                 let ends = [a, b].map(|[x, y]| Vector::new(side * x, y));

@@ -1,11 +1,11 @@
-//! Intervals of numbers. Bounds are rounded to the nearest, not outwards: whatever is decided by them keeps a margin that is
-//! far above all that rounding can do in the few operations of one cell.
+//! Intervals of numbers. Bounds are rounded to the nearest, not outwards: decisions by them keep a margin far above the
+//! rounding errors of the few operations in one cell.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::geometry::Vector;
 
-/// What a decision must keep, in metres, radians or shares of the weight.
+/// Margin of a decision, in metres, radians or fractions of the weight.
 pub(super) const MARGIN: f64 = 1e-9;
 
 /// All numbers from `low` to `high`.
@@ -24,7 +24,7 @@ impl Interval {
         Self::new(value, value)
     }
 
-    /// All numbers that differ from one by no more than another.
+    /// All numbers that differ from a number by no more than another one.
     pub(super) fn around(middle: f64, half: f64) -> Self {
         Self::new(middle - half, middle + half)
     }
@@ -108,7 +108,7 @@ impl Rectangle {
         }
     }
 
-    /// Its part along a vector.
+    /// The component along a vector.
     pub(super) fn along(self, vector: Vector) -> Interval {
         let half = vector.abs().dot(self.half);
         Interval::around(vector.dot(self.middle), half)

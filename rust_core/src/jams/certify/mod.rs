@@ -1,8 +1,8 @@
-//! Certificates: that a robot cannot stand still with its drives running anywhere in a range of heights, frictions and
-//! centres of mass, other than as a belt would.
+//! Certificates that a robot cannot stand still with its drives running anywhere in a range of heights, friction and
+//! centres of mass, except where a belt could as well.
 //!
-//! Ranges of pose and parameters, together, are split until each half is excluded: no disc can touch there, one overlaps with
-//! the ground, no ground is inside the track, forces cannot carry the weight, or what they carry tips over by itself.
+//! Ranges of pose and parameters together are split until each part is excluded: no disc can touch there, one overlaps
+//! with the ground, no ground is inside the track, forces cannot carry the weight, or the balance is unstable.
 //! docs/studies/jams.md, "Certificates".
 
 mod balance;
@@ -29,10 +29,10 @@ use crate::robot::Model;
 use crate::scenario::Scenario;
 use crate::terrain::Ground;
 
-/// Which parameters there are no jams at that a belt does not have.
+/// Certifies at which values of parameters there are no jams that a belt does not have.
 ///
-/// `built` is robot and ground at the least values of all parameters, then at the most of each alone, of all, and half way
-/// between; `belts` the same with a belt round its wheels.
+/// `built` has robot and ground with the smallest values of all parameters, the largest of each alone, the largest of
+/// all, and the middle of all; `belts` are the same with a belt round the wheels.
 ///
 /// # Errors
 /// As [`super::jams`], and for parameters that change what they may not.

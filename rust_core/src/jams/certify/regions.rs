@@ -1,4 +1,4 @@
-//! Splits the range of parameters where a robot can jam at some of them and not at others.
+//! Splits the range of parameters if a robot can jam at some values and not at others.
 
 use super::cell::{Cell, Shares};
 use super::family::Family;
@@ -16,14 +16,14 @@ pub(super) struct Pair {
     pub effort: SearchEffort,
 }
 
-/// Checks that there is memory for so many cells.
+/// Checks that there is memory for this number of cells.
 fn ask(what: &str, cells: usize) -> Result<(), LimitError> {
-    // A vector that grows holds twice as much for a moment.
+    // A growing vector takes twice as much for a moment.
     memory::ask(what, 2 * (cells * size_of::<ExcludedCell>()) as u64)
 }
 
 impl Pair {
-    /// What is known of all values of so many parameters.
+    /// The result for all values of a number of parameters.
     pub(super) fn certificate(&self, cancel: &Cancel) -> Result<Certificate, Error> {
         ask("cells of a region (most_cells)", self.effort.cells)?;
         let mut certificate = Certificate {
@@ -54,7 +54,7 @@ impl Pair {
         Ok(certificate)
     }
 
-    /// What is known of a range, and whether the belt can jam in the middle, if that was asked.
+    /// The status of a range, and whether the belt can jam in its middle, if requested.
     fn status(
         &self,
         cell: &Cell,
@@ -80,7 +80,7 @@ impl Pair {
                 }
                 Found::Left(left) => shares = left,
             }
-            // The search stops at the first cell that is left; a jam may as well be at an end of the range.
+            // The search stops at the first cell that remains; a jam may also be at an end of the range.
             for tried in std::iter::once(shares).chain(self.corners(cell)) {
                 jam = self.jam(&tried, cancel)?;
                 if jam.is_some() {
@@ -98,8 +98,8 @@ impl Pair {
         Ok((found.unwrap_or(RegionStatus::Undecided), is_held))
     }
 
-    /// Whether parts of a range may be known better than the whole: not where it can jam in the middle and at every corner,
-    /// and the belt cannot in the middle.
+    /// Whether splitting a range may help: not if the robot can jam in the middle and at every corner, and the belt
+    /// cannot in the middle.
     fn is_worth_a_split(
         &self,
         (status, is_held): (&RegionStatus, bool),
@@ -107,7 +107,7 @@ impl Pair {
         widest: usize,
         cancel: &Cancel,
     ) -> Result<bool, Error> {
-        /// For widths that are halves of halves of 1.
+        /// For widths that are powers of one half.
         const ROUNDING: f64 = 1.0 + 1e-9;
         let is_done = matches!(status, RegionStatus::Certified(_) | RegionStatus::AsBelt);
         if is_done || 2.0 * cell.half(widest) <= self.effort.smallest * ROUNDING {
@@ -124,7 +124,7 @@ impl Pair {
         Ok(false)
     }
 
-    /// The shares at all corners of a range.
+    /// The fractions at all corners of a range.
     fn corners(&self, cell: &Cell) -> impl Iterator<Item = Shares> {
         let (low, high) = (cell.low, cell.high);
         (0..1_u32 << self.wheels.parameters).map(move |corner| {
@@ -135,7 +135,7 @@ impl Pair {
         })
     }
 
-    /// A jam on three contacts with ground that deep inside the track, at shares of the parameters' ranges.
+    /// A jam on three contacts with ground at least so deep inside the track, at fractions of the parameters' ranges.
     fn jam(&self, shares: &Shares, cancel: &Cancel) -> Result<Option<Jam>, Error> {
         let setting = self.wheels.setting(shares, cancel)?;
         let deep =

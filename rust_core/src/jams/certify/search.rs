@@ -1,4 +1,4 @@
-//! Excludes all poses at a range of parameters, cell by cell.
+//! Excludes all poses for a range of parameters, cell by cell.
 
 use super::balance::{Twist, candidate, excludes};
 use super::cell::{Cell, NUMBERS, Shares};
@@ -8,25 +8,25 @@ use super::touch::{Possible, Touch};
 use crate::error::Error;
 use crate::limits::Cancel;
 
-/// Cells this small are not split: about this share of the smallest wheel's radius.
+/// Cells this small, relative to the smallest wheel's radius, are not split.
 const SMALLEST: f64 = 1e-3;
 
-/// What a search has shown.
+/// The result of a search.
 pub(super) enum Found {
     /// Every cell is excluded.
     Excluded(Vec<ExcludedCell>),
-    /// A cell at these parameters is not, as small as it is, or there are too many cells.
+    /// A cell at these parameters could not be excluded or split further, or there are too many cells.
     Left(Shares),
 }
 
 enum Verdict {
     Excluded(Exclusion, Twist),
-    /// Nothing excludes it yet: the twist that came nearest, along which number to split it, and how wide it is there.
+    /// Nothing excludes it yet: the twist that came closest, the number along which to split it, and its width there.
     Open(Twist, (usize, f64)),
 }
 
 impl Family {
-    /// Splits a cell until each part is excluded, or one is as small as `SMALLEST`, or there are too many.
+    /// Splits a cell until each part is excluded, one is as small as `SMALLEST`, or there are too many.
     pub(super) fn search(
         &self,
         root: Cell,
@@ -85,9 +85,9 @@ impl Family {
         }
     }
 
-    /// The number along which a cell is widest, and how wide, by what contacts notice of it.
+    /// The number along which a cell is widest, and this width, weighted by the effect on contacts.
     fn widest(&self, cell: &Cell, touches: &[Touch]) -> (usize, f64) {
-        /// Where contacts notice only less, other places may be what matters.
+        /// If the effect on contacts is smaller, other places may matter.
         const SMALL: f64 = 0.03;
         let widest = |along: f64| {
             let weights = self.weights(along, touches);
@@ -97,7 +97,7 @@ impl Family {
             };
             (0..NUMBERS).fold((0, 0.0), wider)
         };
-        // On level faces alone it does not matter where.
+        // If all contacts are on level faces, x does not matter.
         let on_level = |touch: &Touch| touch.normals.is_on_face && touch.normals.bisector.x == 0.0;
         if touches.iter().all(on_level) {
             let found = widest(0.0);

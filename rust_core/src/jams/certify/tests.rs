@@ -22,7 +22,7 @@ use crate::terrain::Ground;
 /// [m] Least and greatest height of the step, and both frictions.
 const HEIGHTS: [f64; 2] = [0.07, 0.09];
 const FRICTIONS: [f64; 2] = [0.5, 0.9];
-/// [rad] Greatest angle of the chassis.
+/// [rad] Largest angle of the chassis.
 const MOST_ANGLE: f64 = 1.3;
 
 /// The Engineer on four wheels in a row before a step.

@@ -1,20 +1,20 @@
 //! Whether a robot carried by one or two wheels is unstable in that pose.
 //!
-//! On two contacts it has one freedom. With the vector `b` of the weight, the contacts' wrenches `w`, per unit of normal
-//! force and about the centre of mass, and the velocity `u` that keeps both closed, its motion is
-//! `nu . M u s'' = -nu . b m g` for `nu = w1 x w2`: at a pose of balance, where `nu . b = 0`, small deviations grow if that
-//! product falls along the motion. On one corner alone they always grow.
+//! On two contacts it has one freedom. With the vector `b` of the weight, the contacts' wrenches `w`, per unit of
+//! normal force and about the centre of mass, and the velocity `u` that keeps both closed, its motion is
+//! `nu . M u s'' = -nu . b m g` for `nu = w1 x w2`: at a pose of balance, where `nu . b = 0`, small deviations grow if
+//! that product falls along the motion. On one corner alone they always grow.
 
 use super::balance::{candidate, excludes};
 use super::family::Family;
 use super::interval::{Interval, Rectangle};
 use super::touch::Touch;
 
-/// Share by which the moment of inertia may be off, either way: how far drives turn along is not known better.
+/// Relative tolerance of the moment of inertia: it is not known better how far drives turn with the robot.
 const INERTIA: f64 = 0.25;
 
 impl Family {
-    /// Whether there are at most two contacts at a time, and in every balance on them small deviations grow.
+    /// Whether there are at most two contacts at a time, and small deviations grow in every balance on them.
     pub(super) fn tips(&self, touches: &[Touch]) -> bool {
         let pairs = || {
             let later = |(i, one)| touches[i + 1..].iter().map(move |other| (one, other));
@@ -56,7 +56,7 @@ impl Family {
         (mass * change).is_below(0.0)
     }
 
-    /// Whether two contacts are one, or of one disc on a face and the corner at its end, where both are one.
+    /// Whether two contacts coincide, or are those of one disc on a face and on the corner at its end, which coincide.
     fn are_one(&self, one: &Touch, other: &Touch) -> bool {
         let [here, there] = [one, other].map(|touch| &self.places[touch.place]);
         let is_one = one.place == other.place || here.ends_at(there) || there.ends_at(here);
@@ -64,7 +64,7 @@ impl Family {
     }
 }
 
-/// One contact on a corner is no balance, or one that is lost; on a face, it must be none.
+/// One contact on a corner is no balance, or an unstable one; on a face, there must be no balance.
 fn tips_on_one(touch: &Touch) -> bool {
     if touch.normals.circle.is_some() {
         return true;
@@ -73,11 +73,11 @@ fn tips_on_one(touch: &Touch) -> bool {
     x.is_signed() || moment.is_signed()
 }
 
-/// A contact's wrench per unit of normal force and what it pushes along, about the centre of mass, over a cell.
+/// A contact's wrench per unit of normal force about the centre of mass, over a cell, and its direction of motion.
 pub(super) struct Wrench {
     /// Force and moment.
     pub parts: [Interval; 3],
-    /// Those of the normal force alone, which are how the gap changes with the pose.
+    /// Those of the normal force alone, which are the derivatives of the gap with respect to the pose.
     gradient: [Interval; 3],
 }
 
@@ -106,7 +106,7 @@ impl Wrench {
         }
     }
 
-    /// How it changes when the robot moves with both contacts closed.
+    /// Its rate of change when the robot moves with both contacts closed.
     fn change(&self, touch: &Touch, u: [Interval; 3]) -> [Interval; 3] {
         let (ax, ay) = (touch.arm.x(), touch.arm.y());
         let [x, y, _] = self.parts;
@@ -135,7 +135,7 @@ mod tests {
     use crate::jams::certify::touch::Normals;
     use crate::jams::places::Facing;
 
-    /// A disc on a face, or on a corner at this distance [m] of its axle, with its arm from the centre of mass.
+    /// A disc on a face, or on a corner at this distance [m] from its axle, with its arm from the centre of mass.
     fn touch(normal: Vector, circle: Option<f64>, arm: Vector, radius: f64) -> Touch {
         Touch {
             surface: 0,
@@ -189,7 +189,7 @@ mod tests {
                 }
             }
             if case % 2 == 0 {
-                // With one normal each part is between those of the two ends of the friction.
+                // With one normal, each component is between those at the two ends of the friction.
                 let ends = all.slopes.map(|slope| wrench([normal, arm], radius, slope));
                 for (i, part) in parts.iter().enumerate().take(2) {
                     let width = (ends[0][i] - ends[1][i]).abs();
@@ -199,7 +199,7 @@ mod tests {
         }
     }
 
-    /// A disc rolls or slides on: its normal turns with the axle about a corner and stays on a face.
+    /// A disc continues to roll or slide: its normal turns with the axle about a corner, and does not turn on a face.
     #[test]
     fn a_wrench_changes_as_when_the_robot_moves_with_the_contact_closed() {
         let mut draw = Draw(22);
@@ -235,8 +235,9 @@ mod tests {
         }
     }
 
-    /// Both walls of a notch rise at one angle. The ends of a bar between them stay on lines, and its middle is highest where it
-    /// lies level, by half its length times the tangent: what hangs lower than that is lifted, and comes back.
+    /// Both walls of a notch rise at the same angle. The ends of a bar between them stay on lines, and its middle is
+    /// highest when it is level, by half its length times the tangent: a mass that hangs lower than that is lifted, and
+    /// comes back.
     #[test]
     fn a_bar_in_a_notch_tips_unless_its_mass_hangs_below_the_foot_of_the_notch() {
         let mut family = family_on_a_step();
@@ -265,7 +266,7 @@ mod tests {
             for (height, tips) in [(0.1, true), (0.9 * foot, true), (1.1 * foot, false)] {
                 let both = [on(1.0, height), on(-1.0, height)];
                 assert_eq!(family.tips(&both), tips, "{slope} {height}");
-                // With a third contact, or with one that stands still, more can carry it.
+                // With a third contact, or with one that stands still, there are more ways to carry it.
                 let third = Touch {
                     surface: 2,
                     ..both[0]

@@ -1,4 +1,4 @@
-//! What can touch in a cell, and with which forces.
+//! Possible contacts in a cell, and their forces.
 
 use super::cell::{Cell, Turns};
 use super::family::{Family, Spot};
@@ -17,7 +17,7 @@ pub(super) struct Touch {
     pub slopes: [f64; 2],
     /// [m] From the centre of mass to the axle, or to the corner under a straight run.
     pub arm: Rectangle,
-    /// [m] The radius that friction acts at: that of the disc, less than 0 for that of a corner under a straight run.
+    /// [m] Radius at which friction acts: that of the disc, or minus that of a corner under a straight run.
     pub radius: f64,
     /// Whether it slides in a known direction.
     pub slides: bool,
@@ -29,21 +29,22 @@ pub(super) struct Normals {
     pub bisector: Vector,
     /// Sines of the angles from the bisector.
     pub sines: [f64; 2],
-    /// [m] Radius of the circle on which the axle stays while it touches; `None` if the normal does not turn with that.
+    /// [m] Radius of the circle on which the axle stays while it touches; `None` if the normal does not turn with the
+    /// axle.
     pub circle: Option<f64>,
-    /// Whether it is on a face, and wholly so.
+    /// Whether it is entirely on a face.
     pub is_on_face: bool,
 }
 
-/// What is possible in a cell.
+/// The contacts that are possible in a cell.
 pub(super) enum Possible {
-    /// A part overlaps with the ground in all of it.
+    /// A part overlaps with the ground everywhere in it.
     Overlap,
     Touches(Vec<Touch>),
 }
 
 impl Touch {
-    /// Forces over the normal force, for each end of the friction those at both ends of the normals.
+    /// Forces divided by the normal force: for each end of the friction, those at both ends of the normals.
     pub(super) fn forces(&self) -> [(f64, [Vector; 2]); 2] {
         let normals = self.normals.ends();
         self.slopes.map(|slope| {
@@ -61,10 +62,10 @@ impl Normals {
         })
     }
 
-    /// All of them.
+    /// A rectangle that contains all of them.
     pub(super) fn all(&self) -> Rectangle {
         let ends = self.ends();
-        // An arc is within the rectangle round its ends and those of its points that lie on an axis.
+        // An arc is within the rectangle round its ends and its points on the axes.
         let axes = [Vector::X, Vector::Y, Vector::NEG_X, Vector::NEG_Y];
         let on_arc = axes.into_iter().filter(|axis| {
             let sine = left_of(self.bisector).dot(*axis);
@@ -213,7 +214,7 @@ impl Spot {
                 let bisector = (cone[0] + cone[1]).normalize();
                 let widest = left_of(bisector).dot(cone[1]);
                 if circle <= 0.0 {
-                    // A point on a point: its normal may be any in the cone.
+                    // A point on a point may have any normal in the cone.
                     return Some(Normals {
                         bisector,
                         sines: [-widest, widest],
@@ -222,7 +223,8 @@ impl Spot {
                     });
                 }
                 let (ahead, across) = (from.along(bisector), from.along(left_of(bisector)));
-                // Along the bisector no less than at the edge of the cone, and no more than the circle.
+                // Along the bisector, at least as much as at the edge of the cone, and at most the radius of the
+                // circle.
                 let edge = (1.0 - widest * widest).max(0.0).sqrt();
                 if ahead.is_below(edge * circle) || ahead.is_above(circle) {
                     return None;

@@ -1,9 +1,9 @@
-//! Tracks without wheels: a smooth closed belt, whose surface motion is prescribed along the outline (Pecka et al., IROS
-//! 2017); one with grousers that travel along it (Okada et al. 2020); and brute-force acceleration, a speed servo that
-//! pushes the chassis itself.
+//! Tracks without wheels: a smooth closed belt, whose surface motion is prescribed along the outline (Pecka et al.,
+//! IROS 2017); one with grousers that travel along it (Okada et al. 2020); and brute-force acceleration, a speed servo
+//! that pushes the chassis itself.
 //!
-//! A belt needs no bodies: the positions of its surface and grousers follow from how far the drive has run. A grouser moves
-//! with the belt on the straight runs, and turns with it round the discs.
+//! A belt needs no bodies: the positions of its surface and grousers follow from how far the drive has run. A grouser
+//! moves with the belt on the straight runs, and turns with it round the discs.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::scenario::{
     ForceSupport, ForceTrack, GrouserBeltTrack, Robot, ScenarioError, TrackOutline,
 };
 
-/// One hull round the discs, with one speed all over its surface.
+/// One hull round the discs, with a uniform surface speed.
 pub(super) fn belt(robot: &Robot) -> TrackModel {
     TrackModel::driven(vec![hull(robot, BodyKind::Belt, Some(0))], 1)
 }
@@ -57,10 +57,10 @@ pub(super) fn grouser_belt(
     Ok(TrackModel::driven(parts, 1))
 }
 
-/// A belt whose grousers of a height [m] reach to the hull of discs, then these grousers, and [m] its length.
+/// A belt with grousers of a height [m] whose tips are on the hull of discs, these grousers, and [m] its length.
 ///
 /// # Errors
-/// The outline's pitch makes more grousers than a belt may have.
+/// The outline's pitch requires more grousers than a belt may have.
 pub(in crate::robot) fn with_grousers(
     tips: Vec<Disc>,
     height: f64,
@@ -99,7 +99,7 @@ pub(super) fn force(robot: &Robot, track: &ForceTrack) -> Result<TrackModel, Sce
     })
 }
 
-/// [rad] Smaller bends are within rounding of none.
+/// [rad] Smaller bends are rounding errors.
 const LEAST_BEND: f64 = 1e-6;
 
 /// Checks that the track bends round every disc.
@@ -108,7 +108,7 @@ const LEAST_BEND: f64 = 1e-6;
 /// A disc lies inside the hull of the others, or only touches it.
 pub(super) fn check_discs(outline: &TrackOutline) -> Result<(), ScenarioError> {
     if outline.discs.len() == 2 {
-        return Ok(()); // neither lies in the other, so both bend it
+        return Ok(()); // neither disc is inside the other, so both bend it
     }
     let discs: Vec<Disc> = outline.discs.iter().copied().map(Disc::from).collect();
     let bends = Envelope::new(&discs).bends(discs.len());

@@ -1,5 +1,5 @@
-//! Track models: the shapes that meet the ground, and the drive that moves each of them; on flippers, any model that suits
-//! a tapering outline, on a pivoting arm.
+//! Track models: the shapes that meet the ground, and the drive of each; on flippers, any model that suits a tapering
+//! outline, on a pivoting arm.
 
 use crate::robot::{ChainOfShoes, Mount, Part};
 use crate::scenario::{
@@ -13,7 +13,7 @@ mod wheels;
 
 pub(super) use belts::with_grousers;
 
-/// What a track model adds to the chassis.
+/// The parts that a track model adds to the chassis.
 pub(crate) struct TrackModel {
     /// Shapes that meet the ground.
     pub parts: Vec<Part>,
@@ -21,7 +21,7 @@ pub(crate) struct TrackModel {
     pub drives: usize,
     /// Number of drives with a motor; except for chains, they share the force evenly.
     pub motors: usize,
-    /// The drive pushes the chassis itself instead of the ground under the parts.
+    /// Whether the drive pushes the chassis itself instead of the ground under the parts.
     pub pushes_chassis: bool,
     /// Chains of shoes, which have all of the track's mass.
     pub chains: Vec<ChainOfShoes>,
@@ -40,7 +40,7 @@ impl TrackModel {
     }
 }
 
-/// Builds the track model of a robot, including those of its flippers; of a closed track, the one that is to be closed.
+/// Builds the track model of a robot, including those of its flippers; for a closed track, the model to be closed.
 ///
 /// # Errors
 /// Discs that no track would touch; wheels that do not fit the robot.
@@ -68,7 +68,7 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
     Ok(track)
 }
 
-/// An error about a field of a track that is at another path; others, such as one about the track's mass, stay.
+/// Replaces the path of an error about a field of a track; others, such as one about the track's mass, stay.
 fn moved(error: ScenarioError, to: &str) -> ScenarioError {
     let field = error.path.strip_prefix("robot.track.");
     let path = field.map(|field| format!("{to}.{field}"));
@@ -88,8 +88,8 @@ fn add_flipper_tracks(
         let own =
             of_arm(robot, flippers, end).map_err(|error| moved(error, "robot.flippers.track"))?;
         let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
-        // One motor per track drives its flippers, too; free wheels turn independently. A chain cannot share a motor
-        // with a belt, because its motor has no spin to turn one with.
+        // One motor per track also drives its flippers; free wheels turn independently. A chain cannot share a motor
+        // with a belt, because its motor has no spin that could turn one.
         let with_own_motors = with_own_motors || !track.chains.is_empty();
         let shared = if with_own_motors { 0 } else { own.motors };
         let first = track.drives;
@@ -111,8 +111,8 @@ fn add_flipper_tracks(
     Ok(())
 }
 
-/// The track of the arms at an end. If the robot has small wheels all round and the arms have no model of their
-/// own, their number is raised as needed, because the wheels are smaller at a tip.
+/// The track of the arms at an end. If the robot has small wheels all round and the arms have no model of their own,
+/// their number is increased as needed, because the wheels are smaller at a tip.
 fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, ScenarioError> {
     let mut arm = arm_as_robot(robot, flippers, end);
     loop {

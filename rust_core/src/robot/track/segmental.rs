@@ -8,13 +8,13 @@ use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, left_of, lower_tangent, 
 use crate::robot::{BodyKind, Bushing, ChainOfShoes, Mount, Part, Shape, Sprocket, Tensioner};
 use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, ScenarioError, SegmentalTrack, ShoeShape};
 
-/// Largest mass of the rest of the robot, in shoes; docs/decisions/0008 has the gaps of pins beyond that.
+/// Largest mass of the rest of the robot, in shoes; docs/decisions/0008 has the gaps of pins beyond this.
 const HEAVIEST: f64 = 3000.0;
 /// Travel of the tensioner from its pre-tension to no force, in pitches.
 const SOFTNESS: f64 = 0.1;
 /// Travel by which an idler can be pressed in, in pitches.
 const STOP: f64 = 0.06;
-/// The same, including how far its stop gives way.
+/// The same, including the compliance of its stop.
 const PRESSED_IN: f64 = 0.07;
 
 /// Shoes on a guide or on wheels.
@@ -111,8 +111,8 @@ fn of_shoe(shoe: usize, pieces: &[(BodyKind, Vec<Vector>)]) -> impl Iterator<Ite
     })
 }
 
-/// The guide as the ground meets it: where it is built. Its front end may be pressed in, and it must not touch
-/// ground under plates that are in place, so it lies so far [m] `inside`.
+/// The guide for contacts with the ground, at its initial position. Its front end may be pressed in, and it must not
+/// touch ground under plates that are in place, so it is `inside` [m] smaller.
 fn guide_of(discs: &[Disc], inside: f64, beyond: f64) -> Part {
     let hull = Shape::Hull {
         discs: discs.iter().map(|disc| shrunk(*disc, inside)).collect(),
@@ -138,7 +138,7 @@ fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
 fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
     let most = MAX_SHOES as usize;
     let allowed = if goes_round(most) {
-        // Shorter shoes fit better, and trying one count takes some milliseconds.
+        // Shorter shoes fit better; trying one count takes some milliseconds.
         let (mut too_few, mut least) = (count, most);
         while least - too_few > 1 {
             let between = too_few.midpoint(least);
@@ -281,8 +281,8 @@ impl RunningGear {
         }
     }
 
-    /// The sprocket: as heavy as the shoes on it, our assumption. Its teeth reach no farther out than `most` [m], where
-    /// the tips of the grousers are.
+    /// The sprocket, as heavy as the shoes on it, our assumption. Its teeth reach at most to `most` [m], the radius of
+    /// the tips of the grousers.
     pub(super) fn sprocket(path: &ShoeLoop, shoe_mass: f64, most: f64) -> Option<Sprocket> {
         let teeth = path.teeth(most)?;
         let mass = shoe_mass * teeth.count as f64;
@@ -293,8 +293,8 @@ impl RunningGear {
         })
     }
 
-    /// The wheels that could meet the ground between the shoes, whose tips reach `beyond` [m] their surface; they turn
-    /// with what they touch.
+    /// The wheels that could touch the ground between the shoes, whose tips are `beyond` [m] outside their surface.
+    /// They turn without friction.
     pub(super) fn parts(&self, beyond: f64) -> impl Iterator<Item = Part> {
         let of = |kind, discs: Vec<Disc>| {
             discs.into_iter().map(move |disc| {
@@ -361,8 +361,8 @@ mod tests {
         assert_eq!(of(ShoeShape::Trapezoid), [whole]);
     }
 
-    /// The Engineer weighs 207.972 N, of which a track pulls with a fortieth, and its track 2.4 kg. Both tracks together have
-    /// twice what one has.
+    /// The Engineer weighs 207.972 N, of which a track pulls with a fortieth, and its track 2.4 kg. Both tracks
+    /// together have twice what one has.
     #[test]
     fn a_tensioner_pulls_with_a_share_of_the_weight_and_is_damped_for_the_track() {
         let mut robot = robot(include_str!(

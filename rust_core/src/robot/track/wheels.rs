@@ -1,4 +1,4 @@
-//! Wheels in place of a track: where they are, and what drives them.
+//! Wheels instead of a track: their positions and drives.
 //!
 //! A wheel on a fixed axle needs no body of its own: its mass belongs to the chassis, and its spin is a degree of
 //! freedom of the drive.
@@ -12,7 +12,7 @@ use crate::scenario::{
     TorqueSharing, Track, TrackOutline, Wheel,
 };
 
-/// Wheels driven by one motor together, or by a motor each.
+/// Wheels driven by one motor together, or by one motor each.
 pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, ScenarioError> {
     let own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
     let part = |(i, disc): (usize, Disc)| {
@@ -149,8 +149,8 @@ mod tests {
 
     use super::*;
 
-    /// Their centres go round two half circles of 0.05 m and two straight runs of 0.4 m: a quarter of the way is half of
-    /// a half circle and of a run.
+    /// Their centres go round two half circles of 0.05 m and two straight runs of 0.4 m: a quarter of the way is half
+    /// of a half circle and of a run.
     #[test]
     fn wheels_of_a_given_radius_stand_evenly_round_the_outline() {
         let outline = TrackOutline {

@@ -1,4 +1,4 @@
-//! What a step tries, and what is kept of the last one.
+//! An attempted step, and the last step that was kept.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::contact::{Contact, Dents};
 use crate::dynamics::{State, Trend};
 use crate::robot::Running;
 
-/// What one step tries; nothing of it is in the simulation until it is kept.
+/// An attempted step; it does not change the simulation until it is kept.
 #[derive(Default)]
 pub(super) struct Attempt {
     /// The state at its end.
@@ -20,10 +20,10 @@ pub(super) struct Attempt {
     /// Positions of the moving parts in its middle, where contacts are searched for.
     pub running: Running,
     pub contacts: Vec<Contact>,
-    /// [m] Room that the gaps which were left out of these keep at the velocities before the step, at least.
+    /// [m] Lower bound of the gaps of contacts left out, at the velocities before the step.
     pub room: f64,
     pub dents: Dents,
-    /// [m] How far beyond the pose at its end that search saw.
+    /// [m] Range of that search beyond the pose at its end.
     pub sight: f64,
 }
 
@@ -36,16 +36,16 @@ pub(super) struct LastStep {
     pub began: f64,
     /// [s] Its length.
     pub length: f64,
-    /// [s] Its length if nothing struck the ground in it, else 0: an impact says nothing of how velocities go on.
+    /// [s] Its length if nothing struck the ground in it, else 0: velocities do not continue like in an impact.
     pub free: f64,
     /// [m/s] Set-point of the drivetrain at its beginning.
     pub set_point: f64,
-    /// [m] How far beyond the pose at its end the search for contacts saw.
+    /// [m] Range of the search for contacts beyond the pose at its end.
     pub sight: f64,
 }
 
 impl LastStep {
-    /// None: the simulation begins with a state at time 0.
+    /// No step: the simulation begins with a state at time 0.
     pub(super) fn none(state: &State) -> Self {
         Self {
             before: state.clone(),
@@ -57,7 +57,7 @@ impl LastStep {
         }
     }
 
-    /// How velocities changed in it.
+    /// Changes of velocities in it.
     pub(super) fn trend(&self) -> Option<Trend<'_>> {
         Trend::since(&self.before, self.free)
     }

@@ -1,4 +1,4 @@
-//! Branches: the same instant as another scenario.
+//! Branches: continuations from the same instant as another scenario.
 
 use std::sync::Arc;
 
@@ -16,9 +16,9 @@ use crate::terrain::Ground;
 impl Simulation {
     /// The robot of `variant` in this pose, with these speeds.
     ///
-    /// What is unchanged continues bit by bit, also with another torque limit or without its belly. Another robot or
-    /// track takes over the pose and the speeds; ground inside it is let out without a push; so does what another engine
-    /// has moved. Our own dynamics move the branch. Outcome, stops and progress count from here.
+    /// An unchanged robot continues bit by bit, also with another torque limit or without its belly. Another robot or
+    /// track, or one that another engine has moved, takes over the pose and the speeds, and ground inside it is let out
+    /// without a push. Our own dynamics move the branch. Outcome, stops and progress count from here.
     #[must_use]
     pub fn branch(&self, variant: &ValidScenario) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
@@ -27,8 +27,9 @@ impl Simulation {
         self.carried_over(variant, (ground, model), rebuilt)
     }
 
-    /// The same instant of another scenario: rebuilt if that is asked for, another engine moves this one, or the robot has
-    /// other lanes under it. Twice the friction can make two tracks' ground alike, and two tracks one.
+    /// The same instant of another scenario, rebuilt if requested, if another engine moves this one, or if the robot
+    /// has other lanes under it: doubled friction can make the ground of two tracks equal, so that they are simulated
+    /// as one.
     fn carried_over(
         &self,
         scenario: &Scenario,
@@ -42,7 +43,7 @@ impl Simulation {
         }
     }
 
-    /// The same state of a robot with the same parts, or without its belly.
+    /// The same state for a robot with the same parts, or without its belly.
     fn continued(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
         let mut branch = Self::of(scenario, ground, model, self.state.clone());
         branch.commanded_like(self);
@@ -86,7 +87,7 @@ impl Simulation {
         branch
     }
 
-    /// A copy whose observations begin now, and which drives on as it is commanded now; the same engine moves it.
+    /// A copy in the same engine whose observations begin now, and which continues with its present commands.
     pub(in crate::run) fn copy(&self) -> Self {
         let model = self.dynamics.model().clone();
         let mut copy = self.continued(&self.scenario, Arc::clone(&self.ground), model);
@@ -111,7 +112,7 @@ impl Simulation {
         Ok(self.carried_over(variant, (ground, model), rebuilt))
     }
 
-    /// Takes over the time and what is commanded then, unless its scenario has another command.
+    /// Takes over the time and the present commands, unless its scenario has others.
     fn commanded_like(&mut self, other: &Self) {
         (self.time, self.last.began) = (other.time, other.time);
         let (before, now) = (&other.scenario.drive, &self.scenario.drive);
@@ -132,7 +133,7 @@ impl Simulation {
     }
 }
 
-/// Whether two robots differ in the torque of their motors and a missing belly at most.
+/// Whether two robots differ at most in the torque of their motors and a missing belly.
 fn has_the_same_parts(one: &Robot, other: &Robot) -> bool {
     let mut like = one.clone();
     like.drivetrain.max_torque = other.drivetrain.max_torque;

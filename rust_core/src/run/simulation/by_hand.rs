@@ -1,5 +1,5 @@
-//! Commands by hand: a speed holds until the next entry of the schedule, angles and rates of flippers override the gait from
-//! now on.
+//! Commands by hand: a speed holds until the next entry of the schedule; angles and rates of flippers override the gait
+//! from then on.
 
 use super::Simulation;
 use super::commands::Push;
@@ -10,7 +10,7 @@ use crate::scenario::{Drive, End, Flippers, ScenarioError};
 /// [rad] Largest angle that can be commanded.
 const FULL_TURN: f64 = 6.3;
 
-/// Commands by hand; what is `None` remains.
+/// Commands by hand; `None` leaves a command as it is.
 #[derive(Clone, Copy, Debug)]
 pub struct ByHand {
     /// [m/s] Speed of the tracks.
@@ -33,7 +33,7 @@ impl Simulation {
             gait: None,
         };
         drive.check(&self.scenario.robot.drivetrain)?;
-        // An entry that is due now is no later one.
+        // An entry that is due now does not count as a later one.
         let scheduled = &self.scenario.drive;
         self.commands.driver.speed(scheduled, self.time);
         self.commands.speed = speed;
@@ -119,7 +119,7 @@ impl Simulation {
         self.raise_push(force, 0.0)
     }
 
-    /// Lets the push rise evenly to a force [N] in a time [s], from now on.
+    /// Lets the push rise linearly to a force [N] in a time [s], from now on.
     ///
     /// # Errors
     /// [`Error::Scenario`] if the force is not finite or exceeds 1e15 N, or the time is negative or exceeds 1e5 s.

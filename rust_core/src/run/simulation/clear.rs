@@ -9,11 +9,11 @@ use crate::dynamics::DriveState;
 use crate::geometry::{Vector, cross};
 use crate::units::Metres;
 
-/// [m] Contacts farther away than this play no part in one round.
+/// [m] Contacts farther away than this are ignored in one round.
 const REACH: Metres = Metres(0.02);
-/// [m] Farthest motion in one round: gaps are linear in the pose to first order.
+/// [m] Largest motion in one round: gaps are linear in the pose only to first order.
 const FARTHEST: Metres = Metres(5e-3);
-/// [m] Ground that overlaps by less is not inside, and a smaller motion is none.
+/// [m] Smaller overlaps do not count as ground inside, and smaller motions count as none.
 const INSIDE: Metres = Metres(1e-6);
 const NOTHING: Metres = Metres(1e-8);
 const ROUNDS: usize = 200;
@@ -22,8 +22,8 @@ const ROUNDS: usize = 200;
 pub(super) type Displacement = [f64; 3];
 
 impl Simulation {
-    /// The same robot at rest in the nearest pose in which no ground is inside it; a turn counts as far as it moves the
-    /// end axles. `None` if there is no such pose nearby.
+    /// The same robot at rest in the nearest pose in which no ground is inside it, where a turn counts by the motion of
+    /// the end axles. `None` if there is no such pose nearby.
     pub(in crate::run) fn clear_of_the_ground(mut self) -> Option<Self> {
         self.stand_still();
         let raised = self.raised_clear()?;
@@ -56,9 +56,9 @@ impl Simulation {
         (self.set_point, self.last.set_point) = (0.0, 0.0);
     }
 
-    /// Straight up from its own floor, as far as it takes to be clear.
+    /// Moves it straight up until it is clear.
     fn raised_clear(&mut self) -> Option<Displacement> {
-        /// [m] First distance; it doubles until it is farther than any robot is high.
+        /// [m] First distance; it doubles until it exceeds the height of any robot.
         const FIRST: Metres = Metres(0.01);
         const DOUBLINGS: i32 = 10;
 
@@ -71,7 +71,7 @@ impl Simulation {
             .find(|way| self.contacts_at(*way).iter().all(|c| c.distance > 0.0))
     }
 
-    /// The nearest displacement to none from which no ground is inside, looked for from one on.
+    /// The smallest displacement after which no ground is inside, searched from a first guess.
     fn nearest_clear(&mut self, from: Displacement) -> Option<Displacement> {
         let half = self.half_length();
         let mut way = from;
@@ -102,7 +102,7 @@ impl Simulation {
         None
     }
 
-    /// The contacts that it would have after a displacement.
+    /// Its contacts after a displacement.
     fn contacts_at(&mut self, way: Displacement) -> Vec<Contact> {
         let before = self.state.clone();
         self.displace(way);
@@ -125,7 +125,7 @@ impl Simulation {
     }
 }
 
-/// The point nearest to the origin that is beyond all walls, `along . x >= bound`: Hildreth's method.
+/// The point nearest to the origin that satisfies all constraints `along . x >= bound`, by Hildreth's method.
 pub(super) fn nearest_beyond(walls: &[(Displacement, f64)]) -> Displacement {
     const SWEEPS: usize = 2000;
 

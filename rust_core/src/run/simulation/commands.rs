@@ -1,4 +1,4 @@
-//! What the robot is to do: by the schedule, by a driver who watches the flippers, or by hand; and a push.
+//! Commands of the robot: by the schedule, by a driver who watches the flippers, or by hand; and a push.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,20 +7,20 @@ use crate::run::step_length::SAME_TIME;
 use crate::scenario::{Climb, Drive, Drivetrain, Gait, Hold};
 use crate::units::Seconds;
 
-/// [s] A climbing robot that has its nose down for longer, with its rear flippers on the ground, is past the edge.
+/// [s] A climbing robot is past the edge once its nose has been down for longer, with its rear flippers on the ground.
 const ON_ITS_NOSE: Seconds = Seconds(1.0);
 
-/// What the robot is to do.
+/// The commands of the robot.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Commands {
     /// [m/s] Speed of the drives.
     pub speed: f64,
     pub driver: Driver,
-    /// What the front and rear flippers are to do.
+    /// Commands of the front and rear flippers.
     pub flippers: [FlipperCommand; 2],
     /// The push at the centre of mass, along x.
     pub push: Push,
-    /// Whether they have been the scenario's from time 0 on: no branch, no command by hand, no push.
+    /// Whether all commands have been the scenario's from time 0 on: no branch, no command by hand, no push.
     pub follow_scenario: bool,
 }
 
@@ -53,10 +53,10 @@ pub(crate) struct DriverView {
 pub(crate) struct Driver {
     /// Number of past entries of the schedule of speeds.
     entries: usize,
-    /// How many entries of the schedule of angles count, if later ones do not.
+    /// Number of entries of the schedule of angles that count, if later ones do not.
     angles: Option<usize>,
     phase: Phase,
-    /// [s] Since when the nose has been down by more than counts as level, if it is.
+    /// [s] When the nose went below what counts as level, if it is below.
     nose_down_since: Option<f64>,
     /// Commands by hand that override the gait, front and rear.
     by_hand: [Option<FlipperCommand>; 2],
@@ -84,7 +84,7 @@ impl Driver {
         speed
     }
 
-    /// Drives on at the speed and the angles before a time [s], whatever the schedules have from then on.
+    /// Continues with the speed and angles before a time [s], whatever the schedules have from then on.
     pub(crate) fn ignore_schedules(&mut self, drive: &Drive, now: f64) {
         self.entries = drive.schedule.as_ref().map_or(0, Vec::len);
         if let Some(Gait::Hold(hold)) = &drive.gait {
@@ -93,7 +93,7 @@ impl Driver {
         }
     }
 
-    /// The same driver with another command; what the commands have in common goes on.
+    /// The same driver with another command; common parts of both commands continue.
     pub(crate) fn commanded(self, before: &Drive, now: &Drive) -> Self {
         let speeds = if has_the_same_speeds(before, now) {
             self
@@ -126,7 +126,7 @@ impl Driver {
         self.by_hand[end] = Some(command);
     }
 
-    /// What it has the front and rear flippers do; `start` is their angle at time 0 [rad].
+    /// Its commands for the front and rear flippers; `start` is their angle at time 0 [rad].
     pub(crate) fn flippers(
         &mut self,
         drive: &Drive,
@@ -144,7 +144,7 @@ impl Driver {
         std::array::from_fn(|end| self.by_hand[end].unwrap_or(of_gait[end]))
     }
 
-    /// What the flippers are to do during a climb.
+    /// Commands of the flippers during a climb.
     fn climb(&mut self, climb: &Climb, start: f64, sight: DriverView) -> [FlipperCommand; 2] {
         let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
@@ -156,7 +156,7 @@ impl Driver {
             Phase::Reach | Phase::Sweep if raised => Phase::Lift,
             Phase::Reach if front => Phase::Sweep,
             Phase::Sweep if !front => Phase::Reach,
-            // Raising rear flippers that bear would drop the robot, unless they stand it on its nose.
+            // Raising rear flippers that bear would drop the robot, unless they have put it on its nose.
             Phase::Lift if !raised && (!rear || is_on_its_nose) => Phase::Reach,
             same => same,
         };
@@ -171,7 +171,7 @@ impl Driver {
     }
 }
 
-/// Whether two commands differ in what the flippers do at most.
+/// Whether two commands differ at most in the flippers.
 pub(crate) fn has_the_same_speeds(one: &Drive, other: &Drive) -> bool {
     let level = |drive: &Drive| Drive {
         gait: None,
@@ -185,7 +185,7 @@ impl Hold {
         self.schedule.as_deref().unwrap_or_default()
     }
 
-    /// [rad] The angle at a time [s], if no more entries than these count.
+    /// [rad] The angle at a time [s], if only these entries count.
     fn angle_at(&self, time: f64, most: Option<usize>) -> f64 {
         let entries = self.entries();
         let past = entries.partition_point(|[from, _]| *from <= time);
@@ -195,8 +195,8 @@ impl Hold {
     }
 }
 
-/// [m/s] The set-point after `dt` [s]; its magnitude rises and falls at the drivetrain's rates. A stand that it misses by
-/// rounding is a stand: one that is left would take all of the next step.
+/// [m/s] The set-point after `dt` [s]; its magnitude rises and falls at the drivetrain's rates. A value that misses 0
+/// by rounding becomes 0: otherwise it would take a whole step to reach 0.
 pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) -> f64 {
     let (target, rate) = ramp(now, command, limits);
     let way = target - now;
@@ -207,7 +207,7 @@ pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) ->
     }
 }
 
-/// [s] How long the set-point changes at the same rate; infinite if it has its command.
+/// [s] Time for which the set-point changes at the same rate; infinite if it has reached its command.
 pub(crate) fn ramp_time(now: f64, command: f64, limits: &Drivetrain) -> f64 {
     let (target, rate) = ramp(now, command, limits);
     let time = (target - now).abs() / rate;
@@ -218,7 +218,7 @@ pub(crate) fn ramp_time(now: f64, command: f64, limits: &Drivetrain) -> f64 {
     }
 }
 
-/// [m/s] Where the set-point goes, and [m/s^2] its rate.
+/// [m/s] Value that the set-point approaches, and [m/s^2] its rate.
 fn ramp(now: f64, command: f64, limits: &Drivetrain) -> (f64, f64) {
     let slowing = now * command < 0.0 || command.abs() < now.abs();
     let target = if now * command < 0.0 { 0.0 } else { command };
@@ -230,23 +230,23 @@ fn ramp(now: f64, command: f64, limits: &Drivetrain) -> (f64, f64) {
     (target, rate)
 }
 
-/// A horizontal force over time: it rises evenly from one value to another, and stays there.
+/// A horizontal force over time: it rises linearly from one value to another, and stays there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Push {
     /// [N] Force before it rises.
     from: f64,
     /// [N] Force once it has risen.
     to: f64,
-    /// [s] When it begins to rise, and for how long.
+    /// [s] Beginning and duration of the rise.
     since: f64,
     rise: f64,
 }
 
 impl Push {
-    /// [N] Largest force that can be asked for: the weight of the heaviest robot.
+    /// [N] Largest allowed force: the weight of the heaviest robot.
     const MOST: f64 = 1e15;
 
-    /// A push that rises from what it is now to a force [N].
+    /// A push that rises from its present value to a force [N].
     pub(super) fn raised(self, force: f64, now: f64, rise: f64) -> Self {
         Self {
             from: self.at(now),
@@ -272,7 +272,7 @@ impl Push {
         self.since + self.rise
     }
 
-    /// Whether it can have been asked for.
+    /// Whether it can have been commanded.
     pub(super) fn fits(self) -> bool {
         let most = -Self::MOST..=Self::MOST;
         most.contains(&self.from)
@@ -281,7 +281,7 @@ impl Push {
             && (0.0..f64::INFINITY).contains(&self.rise)
     }
 
-    /// Whether a force [N] can be asked for.
+    /// Whether a force [N] is allowed.
     pub(super) fn may_be(force: f64) -> bool {
         (-Self::MOST..=Self::MOST).contains(&force)
     }
@@ -353,7 +353,7 @@ mod driver_tests {
         level_angle: 0.1,
     };
 
-    /// What a driver that has seen this has front and rear arms do, which start at 0.3 rad.
+    /// Commands of a driver in this situation for front and rear arms, which start at 0.3 rad.
     fn after(views: &[(f64, [bool; 2])]) -> [FlipperCommand; 2] {
         let mut driver = Driver::default();
         let drive = Drive {
@@ -401,7 +401,7 @@ mod driver_tests {
         assert_eq!(after(&[(0.2, rear), (0.05, nothing)]), reach);
     }
 
-    /// On level ground they would hold its tail up for ever. The times are whole seconds.
+    /// On level ground they would keep its tail raised for ever. The times are whole seconds.
     #[test]
     fn rear_arms_that_have_stood_a_robot_on_its_nose_for_a_while_let_it_down() {
         let rear = [false, true];
@@ -454,7 +454,7 @@ mod tests {
         }
     }
 
-    /// Entries of the very time are due from then on, and so are not followed.
+    /// Entries at exactly this time are due from then on, and so are not followed.
     #[test]
     fn a_driver_who_ignores_schedules_keeps_the_angle_before() {
         let drive = drive(&[[1.0, 0.2], [9.0, 0.3]], &[[1.0, 0.6], [2.0, 0.7]]);

@@ -1,4 +1,4 @@
-//! What is observed of a simulation: its state at an instant of the last step, its centre of mass and its energy.
+//! Observation of a simulation: its state at an instant of the last step, its centre of mass and its energy.
 
 use super::Simulation;
 use super::attempt::Scratch;
@@ -100,9 +100,10 @@ impl Simulation {
         }
     }
 
-    /// Shows the last step, and the solver's work in it, to the monitor, in parts that end when it looks.
+    /// Passes the last step, and the solver's work in it, to the monitor, in parts that end at its checks.
     pub(super) fn observe(&mut self, effort: Effort) {
-        // First, because a chain that has come off takes precedence over all other outcomes of the same step.
+        // This comes first, because a chain that has come off takes precedence over all other outcomes of the same
+        // step.
         if !self.dynamics.model().chains.is_empty() {
             self.monitor.observe_chains(self.dynamics.chain_reading());
         }
@@ -175,8 +176,8 @@ impl Simulation {
         self.bodies().into_iter().map(of_body).sum()
     }
 
-    /// [J] Kinetic energy, that of motors' rotors included, potential energy relative to y = 0, and energy of the tensioners
-    /// and bushings of chains. Energy stored in contacts and stops while they give way is not counted.
+    /// [J] Kinetic energy, including that of the motors' rotors, potential energy relative to y = 0, and energy of the
+    /// tensioners and bushings of chains. Energy stored in deformed contacts and stops is not counted.
     pub fn energy(&self) -> f64 {
         let gravity = self.scenario.gravity;
         let of_body = |body: Body| {
@@ -220,7 +221,7 @@ impl Simulation {
             velocity: state.velocity,
             turn: state.angular_velocity,
         };
-        // A drive has only inertia: its mass is part of the chassis.
+        // A drive has only inertia; its mass is part of the chassis.
         let turning = |inertia: f64, turn: f64| Body {
             mass: 0.0,
             inertia,

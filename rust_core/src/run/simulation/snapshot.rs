@@ -31,7 +31,7 @@ struct Payload {
     rest: Vec<u8>,
 }
 
-/// Everything that changes from step to step.
+/// Everything that changes between steps.
 #[derive(Serialize, Deserialize)]
 struct SavedState {
     scenario: String,
@@ -133,11 +133,11 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Whether the simulation can have reached a moment, because a snapshot may come from a stranger.
+    /// Whether the simulation can have reached a moment; a snapshot may come from an untrusted source.
     fn fits(&self, saved: &SavedState) -> bool {
-        /// [s] More than any run lasts.
+        /// [s] Longer than any run.
         const LATEST: f64 = 1e9;
-        /// Number of steps that no run comes near.
+        /// More steps than any run has.
         const MOST_STEPS: u64 = 1 << 50;
         /// [m] Largest distance beyond the ground and above it; a falling robot may be anywhere below.
         const FAR: f64 = 1e6;

@@ -10,8 +10,8 @@ use crate::jams::Jam;
 use crate::run::ValidScenario;
 
 impl Simulation {
-    /// The robot of a scenario at rest, its chassis frame at a position [m] and an angle [rad], its surfaces at the speed that
-    /// the scenario commands first.
+    /// The robot of a scenario at rest, its chassis frame at a position [m] and an angle [rad], its surfaces at the
+    /// speed that the scenario commands first.
     pub(in crate::run) fn driven_at(checked: &ValidScenario, position: Vector, angle: f64) -> Self {
         let mut scenario = checked.scenario().clone();
         scenario.start.angle = angle;
@@ -29,8 +29,8 @@ impl Simulation {
         robot
     }
 
-    /// The same in a jam, pressed onto its contacts as deep as they carry it at rest. If they only touched, rounding would
-    /// decide which of them carries first, and some robots can slip out of a jam as well as stay.
+    /// The same in a jam, pressed onto its contacts so deep that they carry it at rest. If they only touched, rounding
+    /// would decide which of them carries first, and some robots could slip out of the jam.
     pub(in crate::run) fn pressed(mut self, jam: &Jam) -> Self {
         let omega = TAU * self.scenario.solver.contact_frequency;
         let deepest = self.scenario.gravity / (omega * omega);

@@ -1,4 +1,4 @@
-//! One step: attempted, judged by its local error, and kept, or dropped for a shorter one.
+//! One step: attempted, judged by its local error, and kept or replaced by a shorter one.
 
 #[cfg(test)]
 mod tests;
@@ -14,20 +14,20 @@ use crate::run::step_length::{SAME_TIME, StepRule, arrive};
 use crate::solver::Effort;
 use crate::units::{Metres, MetresPerSecond, Seconds};
 
-/// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
-/// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
+/// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small gear
+/// wheels rattle at some mm/s; with a limit of 10 mm/s they would shake themselves free too often.
 const COLLISION_SPEED: MetresPerSecond = MetresPerSecond(0.001);
-/// [s] What closes up to so long after the first strike is of the same impact: the step ends then.
+/// [s] Gaps that close within this time after the first strike belong to the same impact; the step ends then.
 const SAME_IMPACT: Seconds = Seconds(1e-5);
-/// [s] How long before a strike the step before it ends.
+/// [s] Time before a strike at which the preceding step ends.
 const LEAD: Seconds = Seconds(1e-5);
-/// [s] Length of the step with a strike, if it has its time before.
+/// [s] Length of the step with a strike, if a step precedes it.
 const COLLISION_STEP: Seconds = Seconds(LEAD.0 + SAME_IMPACT.0);
-/// [m] Depth up to which new contacts are found; half of what counts as sinking in.
+/// [m] Depth up to which new contacts are found; half of what counts as penetration.
 const UNSEEN: Metres = Metres(5e-4);
-/// How fast parts may gain speed within a step, in units of gravity, as far as the search for contacts looks ahead.
+/// Acceleration of parts within a step that the search for contacts allows for, in units of gravity.
 const SPEED_GAIN: f64 = 2.0;
-/// A step that is cut short by more than this share looks for its contacts again.
+/// A step that is cut short by more than this fraction searches for its contacts again.
 const CUT: f64 = 0.1;
 
 impl Simulation {
@@ -64,12 +64,12 @@ impl Simulation {
         self.decide();
         let limit = limit.min(self.next_change());
         if limit - self.time < SAME_TIME.value() {
-            // Only rounding is left.
+            // The rest is rounding.
             self.time = limit;
             return Ok(());
         }
         let h = self.step_control.next(self.step_rule, self.time, limit);
-        // Its buffers are used again.
+        // Its buffers are reused.
         let mut attempt = std::mem::take(&mut self.attempt);
         let effort = if self.engine.is_some() {
             self.attempt_in_engine(&mut attempt, h);
@@ -86,8 +86,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Attempts a step of `h` [s] at most, as long as its accuracy allows; returns the solver's work, with that of
-    /// attempts that were dropped.
+    /// Attempts a step of at most `h` [s], as long as its accuracy allows; returns the solver's work, including dropped
+    /// attempts.
     fn attempt_accurately(&mut self, attempt: &mut Attempt, mut h: f64, limit: f64) -> Effort {
         let mut effort = Effort::default();
         loop {
@@ -104,7 +104,7 @@ impl Simulation {
         }
     }
 
-    /// Whether an attempt will do; if not, how long to try instead [s].
+    /// Whether an attempt is accepted; if not, the length to try instead [s].
     fn judge(&mut self, attempt: &Attempt) -> Result<(), f64> {
         if attempt.strikes && attempt.state.is_finite() {
             return Ok(());
@@ -117,7 +117,7 @@ impl Simulation {
             .judge(self.step_rule, attempt.length, error)
     }
 
-    /// [m] The local error of an attempt, if that matters; infinite if its state is not finite.
+    /// [m] The local error of an attempt, if needed; infinite if its state is not finite.
     fn local_error(&self, attempt: &Attempt) -> f64 {
         if let StepRule::Fixed(_) = self.step_rule {
             return 0.0;
@@ -168,7 +168,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The same of `h` [s] in another engine; what that has given up is not finite.
+    /// The same for `h` [s] in another engine; after a failure of that, the state is not finite.
     fn attempt_in_engine(&mut self, attempt: &mut Attempt, h: f64) {
         let set_point = self.set_points(h).end;
         let push = self.commands.push.at(self.time + 0.5 * h);
@@ -195,7 +195,7 @@ impl Simulation {
         }
     }
 
-    /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
+    /// [s] Length of the next step, at most `h`, and whether something strikes the ground in it.
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
         let fast = (h, COLLISION_SPEED.value());
         let strike = self
@@ -208,7 +208,7 @@ impl Simulation {
         }
     }
 
-    /// Finds the contacts of a step of `h` [s]; returns how far anything may move in it [m].
+    /// Finds the contacts of a step of `h` [s]; returns the largest possible motion in it [m].
     fn find_contacts(&mut self, attempt: &mut Attempt, h: f64) -> f64 {
         let speed = self.dynamics.fastest(&self.state, self.reach);
         let travel = (speed + self.gain() * h) * h;
@@ -233,8 +233,8 @@ impl Simulation {
         travel
     }
 
-    /// [s] For how long the last search for contacts holds: nothing that it could not see may get deeper into the
-    /// robot than the next one looks, which is in the middle of the next step.
+    /// [s] Time for which the last search for contacts is valid: nothing beyond its range may get deeper into the robot
+    /// than the next search looks, which is in the middle of the next step.
     fn contacts_known_for(&self) -> f64 {
         self.known_for(
             self.last.sight,
@@ -242,19 +242,19 @@ impl Simulation {
         )
     }
 
-    /// [s] The same of a search that saw so far [m], at a speed [m/s].
+    /// [s] The same for a search with this range [m], at a speed [m/s].
     fn known_for(&self, sight: f64, speed: f64) -> f64 {
         let room = 2.0 * (sight + UNSEEN.value());
         2.0 * room / (speed + (speed * speed + 4.0 * self.gain() * room).sqrt())
     }
 
-    /// [m/s^2] How fast any part may gain speed.
+    /// [m/s^2] Largest acceleration of any part.
     fn gain(&self) -> f64 {
         SPEED_GAIN * self.scenario.gravity
     }
 
-    /// Leaves out contacts, found `half` [s] ahead in the middle of a step, whose gaps stay open in it, unless they might get
-    /// deeper than the next search looks; returns the least room [m] that they keep at these velocities.
+    /// Removes contacts, found `half` [s] ahead in the middle of a step, whose gaps stay open in it, unless they might
+    /// get deeper than the next search looks; returns the smallest gap [m] of those removed at these velocities.
     fn leave_out(&self, attempt: &mut Attempt, half: f64, speed: f64) -> f64 {
         let mut least = f64::INFINITY;
         let near = self.scenario.solver.prediction_distance;
@@ -280,7 +280,7 @@ impl Simulation {
         least
     }
 
-    /// Whether forces have moved an attempt farther than the gaps that it leaves out had room for.
+    /// Whether forces have moved an attempt farther than the gaps of removed contacts allow.
     fn strays_too_far(&self, attempt: &Attempt) -> bool {
         let far = || {
             self.dynamics
@@ -289,12 +289,12 @@ impl Simulation {
         attempt.room.is_finite() && attempt.length > SHORTEST.value() && far() > attempt.room
     }
 
-    /// [m] How far forces may take anything in a `time` [s] from where it goes without them.
+    /// [m] Largest deviation that forces cause in a `time` [s] from the motion without them.
     fn strays(&self, time: f64) -> f64 {
         0.5 * self.gain() * time * time
     }
 
-    /// Makes an attempt the last step; what it replaces is left in it.
+    /// Makes an attempt the last step, by exchanging their contents.
     fn keep(&mut self, attempt: &mut Attempt, limit: f64) -> Result<(), SimulationError> {
         std::mem::swap(&mut self.last.before, &mut self.state);
         std::mem::swap(&mut self.state, &mut attempt.state);
@@ -321,8 +321,8 @@ impl Simulation {
     }
 }
 
-/// [s] How much to take of a step of `h` [s], of `left` [s] until something changes, in which something strikes the
-/// ground at this time [s], and whether it does so in that piece.
+/// [s] Length to take of a step of `h` [s], with `left` [s] until something changes, if something strikes the ground at
+/// this time [s]; and whether it does so in that piece.
 fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
     // Leaves enough for the collision.
     let before = (strike - LEAD.value()).min(left - COLLISION_STEP.value());
@@ -332,7 +332,7 @@ fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
     let after = (strike + SAME_IMPACT.value())
         .min(h.max(COLLISION_STEP.value()))
         .min(left);
-    // Leaves no short step for the end.
+    // Avoids a short step at the end.
     let piece = if left <= h && left - after < LEAD.value() {
         left
     } else {
