@@ -1,4 +1,4 @@
-"""Compiles the core for a browser, with the toolchain that there is."""
+"""Compiles the core for a browser, with whatever toolchain is available."""
 
 import os
 import shutil
@@ -10,13 +10,13 @@ ROOT = Path(__file__).parents[1]
 
 TARGET = "wasm32-unknown-unknown"
 
-# Debian packages compilers that can build the standard library for a browser, beside rustup's.
+# Like rustup, Debian has compilers that can build the standard library for browsers.
 _DEBIAN = Path("/usr/bin")
 _DEBIAN_PACKAGES = "rustc-web cargo-web rust-web-src lld"
 
 
 def compile_core() -> bytes:
-    """Compile the core, or what of it has changed.
+    """Compile the core, if it has changed.
 
     Returns
     -------
@@ -26,7 +26,7 @@ def compile_core() -> bytes:
     Raises
     ------
     SystemExit
-        If no toolchain can, saying what is missing, or if it failed.
+        If there is no suitable toolchain, with what is missing, or if it failed.
     """
     folder = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "explorer"
     command, environment = _cargo()
@@ -39,7 +39,7 @@ def compile_core() -> bytes:
 
 
 def _cargo() -> tuple[list[str], dict[str, str]]:
-    """Choose a cargo with a standard library for browsers: the usual one, or else Debian's."""
+    """Choose a cargo that has a standard library for browsers: the usual one, or else Debian's."""
     usual = shutil.which("rustc")
     if usual and _asked(usual, "--print", "target-libdir", "--target", TARGET).exists():
         return ["cargo"], {}
@@ -51,7 +51,7 @@ def _cargo() -> tuple[list[str], dict[str, str]]:
     ):
         options = ["-Z", "build-std=std,panic_abort"]
         options += ["--config", f'target.{TARGET}.linker="wasm-ld"']
-        # The library is built with the compiler, which takes what only that is allowed.
+        # The library needs unstable features, which only its own compiler may use.
         return [str(cargo), *options], {"RUSTC": str(rustc), "RUSTC_BOOTSTRAP": "1"}
     sys.exit(
         f"the explorer needs Rust's standard library for browsers: rustup target add {TARGET}"
@@ -60,6 +60,6 @@ def _cargo() -> tuple[list[str], dict[str, str]]:
 
 
 def _asked(rustc: str, *question: str) -> Path:
-    """Ask a compiler for a path; one that leads nowhere if it does not know."""
+    """Ask a compiler for a path; return a path that does not exist if it does not know."""
     answer = subprocess.run([rustc, *question], capture_output=True, text=True, check=False)
     return Path(answer.stdout.strip() or os.devnull + "/nowhere")

@@ -1,4 +1,4 @@
-"""Writes the explorer: the core, the scenario to begin with and the words, in one page."""
+"""Writes the explorer: one page with the core, the initial scenario and the texts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ robot = c2d.robots.engineer(flippers=None).without_rotors()
 wheels = robot.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
 scenario = c2d.Scenario(wheels, c2d.terrains.step(0.075))
 """
-"""The scenario to begin with: that of the README."""
+"""The initial scenario: that of the README."""
 
 _TRACKS: tuple[Track, ...] = (
     c2d.LineOfWheels(4, wheel_radius=0.0608),
@@ -47,9 +47,9 @@ _BELT = c2d.BeltTrack()
 
 
 def begin() -> c2d.Scenario:
-    """Make the scenario that the page begins with."""
+    """Make the initial scenario of the page."""
     names: dict[str, Any] = {}
-    exec(_CODE, names)  # the lines that the page hands out
+    exec(_CODE, names)  # the lines that the page offers to copy
     scenario = names["scenario"]
     assert isinstance(scenario, c2d.Scenario)
     return scenario
@@ -63,7 +63,7 @@ def explorer_page(core: bytes, script: str = "") -> str:
     core : bytes
         The core as WebAssembly.
     script : str
-        What it runs besides its own scripts.
+        Additional script.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def explorer_page(core: bytes, script: str = "") -> str:
         style,
         scene_script(*parts, script),
         _HERE,
-        # The core is compiled in the page, and runs in a worker whose source the page has.
+        # The page compiles the core, and runs it in a worker whose source is in the page.
         script_sources="'wasm-unsafe-eval'; worker-src blob:",
         title="crawler2d explorer",
         tables=as_json(tables()),
@@ -87,12 +87,12 @@ def explorer_page(core: bytes, script: str = "") -> str:
 
 
 def tables() -> dict[str, Any]:
-    """Collect what the scripts know of the package: scenarios as JSON, names and words."""
+    """Collect the data of the package that the scripts need: scenarios as JSON, names and texts."""
     scenario = begin()
     written = json.loads(scenario.to_json())
 
     def kinds(path: str, choices: tuple[Parameters, ...]) -> dict[str, Any]:
-        """Write a part of the scenario for each of these."""
+        """Write a part of the scenario for each choice."""
         texts = (scenario.replace({path: choice}).to_json() for choice in choices)
         values = (_part(json.loads(text), path) for text in texts)
         return {value["kind"]: value for value in values}
@@ -124,7 +124,7 @@ def _part(values: Any, path: str) -> Any:
 
 
 def _function(each: Parameters) -> str:
-    """Name the function of `crawler2d` that makes a track, a wheel or a ground."""
+    """Return the name of the function of `crawler2d` that makes a track, a wheel or a ground."""
     name = type(each).__name__
     if hasattr(c2d, name):
         return name
@@ -136,7 +136,7 @@ def _function(each: Parameters) -> str:
 
 
 def _pattern(track: Track) -> str:
-    """Say what a track is, with the paths of its fields in place of their values."""
+    """Describe a track, with the paths of its fields instead of their values."""
     text = track.description
     if isinstance(track, c2d.LineOfWheels | c2d.CircumferentialWheels):
         for value, path in ((str(track.count), "{count}"), (track.wheel.kind, "{wheel.kind}")):

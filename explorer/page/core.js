@@ -1,6 +1,6 @@
-// The core as the page sees it: one request at a time, and of those that wait the newest.
+// The core for the page: one request at a time, then the newest of those that wait.
 
-// [ms] How long a newer request waits for a run, or for trials, before that is given up.
+// [ms] Time that a newer request waits for a run, or for trials, before these are given up.
 const PATIENCE = { run: 3000, trials: 60 };
 
 class Core {
@@ -17,7 +17,7 @@ class Core {
     this.busy = null;
   }
 
-  // Takes a request as JSON; resolves with the answer, or with nothing if a newer request came first.
+  // Takes a request as JSON; resolves with the answer, or with nothing if a newer request replaced it.
   ask(request, what = "run") {
     return new Promise((resolve) => {
       this.waiting?.resolve(null);
@@ -50,10 +50,10 @@ class Core {
   }
 }
 
-// The module that a page has as gzipped bytes in base 64.
+// The module, which the page contains as gzipped bytes in base 64.
 async function compiled(text) {
   const letters = atob(text);
-  const bytes = new Uint8Array(letters.length); // a loop: `Uint8Array.from` takes a quarter of a second
+  const bytes = new Uint8Array(letters.length); // a loop, because `Uint8Array.from` takes a quarter of a second
   for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
   const unzipped = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
   return WebAssembly.compile(await new Response(unzipped).arrayBuffer());

@@ -1,15 +1,15 @@
-// The page at work: what changes is simulated, the robot and the belt beside it are drawn on one clock.
+// The page at work: simulates changes, and draws the robot and the belt next to each other at the same time.
 
 const tables = JSON.parse(element("tables").textContent);
 const state = new State(tables, FIELDS);
 const player = new Player(draw);
 const changed = () => player.changed();
 let colors = readColors();
-let resting; // the timer of what is done when nothing changes
+let resting; // timer for the work that is done when nothing has changed for a while
 
 // [s] Between two pictures; they are interpolated.
 const INTERVAL = 0.02;
-// [ms] Since the last change, until the stops are tried.
+// [ms] Time from the last change to the trials of stops.
 const REST = 250;
 
 const requested = (scenario, trials, interval) =>
@@ -20,7 +20,7 @@ class View {
   constructor(figure, sentence, core, subject) {
     Object.assign(this, { figure, sentence, core, subject, answer: null, scene: null });
     this.canvas = figure.querySelector("canvas");
-    // Set to the stretch that both robots visit as soon as it is known.
+    // Will be set to the stretch that both robots visit.
     this.camera = new Camera([0, 1, 0, 1], 1);
     watchPointer(this.canvas, this.camera, changed, true);
     this.canvas.addEventListener("keydown", ({ key }) => {
@@ -30,8 +30,8 @@ class View {
     });
   }
 
-  // Simulates it without trials, and says whether there is something to see. The end of a movement often repeats its last
-  // step, and waits for the same run.
+  // Simulates it without trials, and returns whether there is something to show. The end of a drag often repeats its
+  // last step, and waits for the same run.
   simulate(scenario) {
     const text = JSON.stringify(scenario);
     if (text !== this.text) this.running = this.run(text);
@@ -52,10 +52,10 @@ class View {
     return true;
   }
 
-  // Tries at the stop what its outcome needs, and a little more.
+  // Makes the trials at the stop that its outcome needs, and a few more.
   async judge() {
     const { text } = this;
-    // A run that is still awaited is not pushed aside; when it is there, it is judged.
+    // A run in progress is not replaced; it is judged when it has finished.
     if (text !== this.answered || this.answer.error || this.answer.judged) return;
     const judged = await this.core.ask(requested(text, tables.trials, null), "trials");
     if (!judged || text !== this.text) return;
@@ -67,13 +67,13 @@ class View {
     const { error, judged, outcome, metrics, diagnosis } = this.answer;
     if (error) return "not simulated";
     const end = judged ? spaced(outcome) : "stopped";
-    // A run goes on for a while once a stop has begun, or the goal is reached.
+    // A run continues for a while after a stop has begun, or the goal is reached.
     if (diagnosis && !diagnosis.transient) return `${end} at ${diagnosis.since.toFixed(1)} s`;
     const time = judged && outcome === "cleared" ? metrics.time_to_clear : metrics.time;
     return `${end} after ${time.toFixed(1)} s`;
   }
 
-  // The outcome above the picture, and the sentence.
+  // The outcome above the picture, and the sentence below.
   tell() {
     const { error, judged, outcome, diagnosis, warnings } = this.answer;
     const part = (name) => this.figure.querySelector(`.${name}`);
@@ -92,7 +92,7 @@ class View {
   }
 }
 
-// What the robot runs on, in the words of the package.
+// The description of the track, as in the package.
 function trackInWords() {
   const { kind } = state.scenario.robot.track;
   return tables.words.tracks[kind].replace(/\{(.*?)\}/g, (_, path) => state.get(`robot.track.${path}`));
@@ -102,7 +102,7 @@ let controls;
 let handles;
 let views = [];
 
-// Simulates what the state says; `isLast` ends a movement, after which the picture may move.
+// Simulates the state; `isLast` ends a drag, after which the picture may move.
 async function update(isLast = true) {
   clearTimeout(resting);
   controls.show();
@@ -115,7 +115,7 @@ async function update(isLast = true) {
   resting = setTimeout(rest, REST);
 }
 
-// Nothing has changed for a while: the address gets the state, and the stops are tried.
+// Nothing has changed for a while: updates the address, and makes the trials of stops.
 function rest() {
   history.replaceState(null, "", link());
   return judge();
@@ -133,10 +133,10 @@ async function judge() {
 
 const shown = () => views.map(({ scene }) => scene).filter(Boolean);
 
-// [m] Where the robot is well past the goal, which its rear end has to reach.
+// [m] Position at which the robot is well past the goal, which its rear end has to reach.
 const past = ({ drawing: { robot, ground } }) => ground.goal + 0.7 * robot.length;
 
-// Takes over what has been simulated; a robot that was seen at its end is seen at its new end.
+// Shows the new runs; a robot that was shown at its end is shown at its new end.
 function show() {
   const scenes = shown();
   if (!scenes.length) return;
@@ -162,7 +162,7 @@ function look() {
   const side = (i) => Math[i % 2 ? "max" : "min"](...extents.map((extent) => extent[i]));
   const { length } = scenes[0].drawing.robot;
   const right = Math.min(side(1), past(scenes[0]) + 0.6 * length);
-  const bottom = side(2) - 0.3 * length; // room for what is written into the ground
+  const bottom = side(2) - 0.3 * length; // room for the text in the ground
   for (const { camera } of scenes) {
     Object.assign(camera, { left: side(0), right, bottom, top: side(3), robotLength: length });
     if (!camera.touched) camera.reset();
@@ -170,7 +170,7 @@ function look() {
   changed();
 }
 
-// A run that is over stays as it ended.
+// After its end, a run is shown as it ended.
 function draw(time) {
   const { playing } = player;
   for (const { scene } of views) scene?.draw(Math.min(time, scene.end), colors);
@@ -202,7 +202,7 @@ function press(event) {
   action();
 }
 
-// Shows a text to copy, and copies it where the browser allows that.
+// Shows a text to copy, and copies it if the browser allows that.
 async function copy(name, text) {
   const place = element("copied");
   place.hidden = false;

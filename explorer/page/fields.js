@@ -1,4 +1,4 @@
-// What can be changed: by its path in the scenario, with its range in SI units and how it is shown.
+// Fields that can be changed: path in the scenario, range in SI units, label and unit.
 
 const FIELDS = [
   {
@@ -38,20 +38,20 @@ const FIELDS = [
 
 const GROUPS = { track: "Track", ground: "Ground", robot: "Robot and drive" };
 
-// A value as it is shown, in millimetres if it is a length.
+// A value as text, in millimetres if it is a length.
 function inWords({ unit }, value) {
   const number = unit === "mm" ? 1e3 * value : value;
   return `${Number(number.toPrecision(4))}${unit && " "}${unit}`.replace("-", "−");
 }
 
-// Whether a field means something in a scenario: grousers only where there are some.
+// Whether a field has an effect in a scenario: those of grousers only if there are any.
 function applies({ path }, state) {
   if (path !== "robot.outline.grouser_height") return state.has(path);
   const { kind, wheel } = state.scenario.robot.track;
   return ["grouser_belt", "segmental"].includes(kind) || wheel?.kind === "gear";
 }
 
-// How far the wheels of a line are apart; nothing of other tracks.
+// The distance between the wheels of a line; an empty text for other tracks.
 function spacing({ robot: { track, outline } }) {
   if (track.kind !== "line") return "";
   const apart = outline.axle_distance / (track.count - 1);
@@ -61,7 +61,7 @@ function spacing({ robot: { track, outline } }) {
   return `wheels ${(1e3 * apart).toFixed(1)} mm apart: ${how}`;
 }
 
-// Sliders and lists; `changed` is called with each change, and with whether that is the last of a movement.
+// Sliders and lists; `changed` is called for each change, with whether it is the last of a drag.
 class Controls {
   constructor(place, state, changed) {
     this.state = state;
@@ -87,7 +87,7 @@ class Controls {
     }
   }
 
-  // Shows what the state has.
+  // Shows the state.
   show() {
     this.note.textContent = spacing(this.state.scenario);
     for (const { field, row, input, output } of this.rows) {

@@ -1,6 +1,6 @@
-// What can be dragged in the picture of the robot: obstacle, wheels, front axle and centre of mass.
+// Handles that can be dragged in the picture of the robot: obstacle, wheels, front axle and centre of mass.
 
-// A handle stays where it is drawn while its value follows the pointer, since the robot may end somewhere else.
+// A handle stays at its place while its value follows the pointer, because the robot may end elsewhere.
 class Handles {
   constructor(place, state, changed) {
     Object.assign(this, { place, state, changed });
@@ -19,7 +19,7 @@ class Handles {
     });
   }
 
-  // Puts the handles where the picture shows the robot at an instant; none are shown while it plays.
+  // Places the handles on the robot as shown at an instant; they are hidden while it plays.
   show(scene, time, playing) {
     this.scene = scene;
     this.place.hidden = playing;
@@ -37,7 +37,7 @@ class Handles {
     }
   }
 
-  // [m] Where a handle is; none where there is nothing to drag.
+  // [m] Position of a handle; null if there is nothing to drag.
   spot(name, moment) {
     if (!this.fields(name).length) return null;
     const { robot, lanes } = this.scene;
@@ -50,7 +50,7 @@ class Handles {
     if (name === "mass") return onChassis(...robot.massCenter.map(moment.value));
     if (name === "wheel") {
       const wheel = chassis.wheels[chassis.wheels.length >> 1];
-      if (!wheel) return null; // of the picture of a belt, before that of the wheels is there
+      if (!wheel) return null; // while the picture is still that of a belt
       const { x, y } = moment.pose(wheel);
       return onChassis(x, y + wheel.reach);
     }
@@ -65,7 +65,7 @@ class Handles {
     return corner ? [corner.x, corner.y] : null;
   }
 
-  // The fields that a handle changes, those along x before those along y.
+  // The fields that a handle changes, first those along x, then those along y.
   fields(name) {
     const paths = {
       obstacle: ["terrain.height", "terrain.radius", "terrain.width", "terrain.rise"],
@@ -89,7 +89,7 @@ class Handles {
     if (!from) return;
     const { scale } = this.scene.camera;
     const moved = [(event.clientX - from.x) / scale, (from.y - event.clientY) / scale];
-    // What is on the robot moves along the robot.
+    // Handles on the robot move along its axes.
     const [along, up] = name === "obstacle" ? moved : rotated(moved, -from.angle);
     const ways = { obstacle: [this.state.has("terrain.width") ? along : up], wheel: [up], axle: [2 * along], mass: [along, up] };
     this.fields(name).forEach((field, i) => {

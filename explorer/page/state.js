@@ -1,7 +1,7 @@
-// What is simulated: a scenario as JSON, of which a link holds what differs from the one the page begins with.
+// The scenario as JSON; a link contains its differences from the initial scenario.
 
 class State {
-  // `tables` has the scenario to begin with, and one track and one ground of each kind.
+  // `tables` has the initial scenario, and one track and one ground of each kind.
   constructor(tables, fields) {
     this.tables = tables;
     this.fields = fields;
@@ -26,13 +26,13 @@ class State {
     const place = keys.reduce((object, key) => object[key], this.scenario);
     if (last !== "kind") place[last] = value;
     else if (place.kind !== value) this.choose(keys, this.tables.kinds[keys.join(".")][value]);
-    // The belly is as long as the axles are apart.
+    // The belly is as long as the axle distance.
     if (last === "axle_distance") {
       for (const corner of this.scenario.robot.belly) corner[0] = (Math.sign(corner[0]) * value) / 2;
     }
   }
 
-  // Another track, wheel or ground: what both have of the shape and the friction stays.
+  // Replaces a track, wheel or ground; common values of shape and friction stay.
   choose(keys, chosen) {
     const last = keys[keys.length - 1];
     const parent = keys.slice(0, -1).reduce((object, key) => object[key], this.scenario);
@@ -57,13 +57,13 @@ class State {
     for (const { path } of this.fields) {
       if (!this.has(path) || plain.get(path) === this.get(path)) continue;
       found.set(path, String(this.get(path)));
-      // From here on, what this kind begins with counts.
+      // From here on, differences are relative to the default of this kind.
       if (path.endsWith(".kind")) plain.set(path, this.get(path));
     }
     return String(found);
   }
 
-  // What no field takes is left out: a link may be of another version.
+  // Values that no field accepts are left out: a link may be from another version.
   set hash(text) {
     this.reset();
     const given = new URLSearchParams(text);

@@ -1,4 +1,4 @@
-// A diagnosis in one sentence: the same as results/diagnosis.py writes, whose words the page has in `words`.
+// A diagnosis in one sentence: the same as in results/diagnosis.py, whose texts the page has in `words`.
 
 class Sentence {
   constructor(diagnosis, words) {
@@ -10,7 +10,7 @@ class Sentence {
     this.onTrack = this.rows.filter((row) => row.body_kind !== words.belly);
   }
 
-  // Each clause states one fact; what follows from the outcome or from another clause is left out.
+  // Each clause states one fact; facts that follow from the outcome or from another clause are left out.
   text() {
     const { d } = this;
     const clauses = [this.ground(), this.bearers(), this.belly(), this.drives(), this.creep(), this.balance()];
@@ -29,7 +29,7 @@ class Sentence {
     return `${spaced(d.outcome)}${where}${onEnd ? ` on the ${side} of its hull` : ""}`;
   }
 
-  // Where the ground pushes against the belly: at an end if it pushes along it more than away from its underside.
+  // Where the ground pushes against the belly: at an end if it pushes more along the belly than away from its underside.
   bellySide() {
     if (!this.onBelly.length) return "";
     const [x, y] = ["normal_x", "normal_y"].map((name) =>
@@ -39,7 +39,7 @@ class Sentence {
     return along > 0 ? "tail" : "nose";
   }
 
-  // Which ground is inside the track, and where, unless the head says that.
+  // Which ground is inside the track, and where, unless the outcome already says so.
   ground() {
     const { d, words } = this;
     const piece = d.intrusion;
@@ -58,7 +58,7 @@ class Sentence {
     return piece.depth - piece.root_depth > this.words.least_depth;
   }
 
-  // Between which bodies a piece of ground is.
+  // The bodies between which a piece of ground is.
   where(piece) {
     const { names, in_chain: inChain } = this.words;
     const [rear, front] = [...piece.bodies].sort((a, b) => a - b);
@@ -112,7 +112,7 @@ class Sentence {
     return `${text} at ${spot(...["x", "y"].map((name) => mean(this.onBelly, (row) => row[name])))}`;
   }
 
-  // Motors and surfaces, unless the ground inside the track implies it.
+  // State of motors and surfaces, unless the ground inside the track implies it.
   drives() {
     const { d } = this;
     if (d.stalled_share > 0) {
@@ -138,14 +138,14 @@ class Sentence {
     return `no contact forces balance it: the smallest residual is ${twoDigits(100 * imbalance)} % of the weight`;
   }
 
-  // Which control got out of a transient stop.
+  // Which control trial got out of a transient stop.
   continuation() {
     const control = this.d.trials.find((each) => each.freed);
     const text = control.name === "unchanged" ? "It goes on by itself" : "With its track rebuilt it goes on";
     return `${text}: ${this.result(control)}`;
   }
 
-  // Says so if no belt that was tried from the start came to the stop, or none got past it.
+  // Says if no belt that was tried from the start came to the stop, or none got past it.
   beltLimit() {
     const starts = this.d.trials.filter(fromTheStart);
     const isPast = (each) =>
@@ -217,7 +217,7 @@ function mean(rows, value) {
   return rows.reduce((sum, row) => sum + row.normal_force * value(row), 0) / all;
 }
 
-// A number with so many decimals, without the sign of a zero.
+// A number with a number of decimals, without the sign of a zero.
 const fixed = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "");
 const millimetres = (length) => fixed(1e3 * length, 0);
 const percent = (fraction) => `${fixed(100 * fraction, 0)} %`;

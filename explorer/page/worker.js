@@ -1,11 +1,11 @@
-// The core in a thread of its own: a request in, the text and the numbers of its answer out.
+// The core in its own thread: a request in, the text and numbers of the answer out.
 
 let module;
 let core;
 
 onmessage = async ({ data }) => {
   if (data.module) module = data.module;
-  // After a panic the next request gets a fresh instance.
+  // After a panic, the next request gets a new instance.
   core ??= await instance(module);
   if (!data.request) return;
   const [text, numbers] = answer(data.request);
@@ -14,7 +14,7 @@ onmessage = async ({ data }) => {
 
 async function instance(compiled) {
   const imports = {};
-  // The linear program would measure how long it takes; a clock that stands still does.
+  // The linear program wants to measure its time; a clock that stands still is enough.
   for (const { module: from, name } of WebAssembly.Module.imports(compiled)) {
     (imports[from] ??= {})[name] = () => 0;
   }

@@ -1,4 +1,4 @@
-//! From a request to its answer: outcome, diagnosis, metrics and what is drawn, or what is wrong with the request.
+//! Answers a request with outcome, diagnosis, metrics and drawing, or with an error.
 
 use crawler2d_core::{
     Change, Error, Record, ScenarioError, ValidScenario, Wanted, Warning, simulate,
@@ -10,20 +10,20 @@ use serde_json::{Map, Value, json};
 use crate::columns::Columns;
 use crate::{diagnosis, drawing};
 
-/// What a page asks for.
+/// The request of a page.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Request<'a> {
     /// The scenario, as `Scenario.to_json` writes it.
     #[serde(borrow)]
     scenario: &'a RawValue,
-    /// What to try at a stop besides what its outcome needs; null: nothing at all.
+    /// Trials at a stop besides those that its outcome needs; null for none at all.
     trials: Option<Vec<String>>,
-    /// [s] Time between two pictures; null: none are wanted.
+    /// [s] Time between two pictures; null for no pictures.
     sample_interval: Option<f64>,
 }
 
-/// Answers a request: JSON, and the columns to which it refers.
+/// Answers a request with JSON, and the columns to which it refers.
 pub(crate) fn of(request: &[u8]) -> (String, Vec<f64>) {
     let mut columns = Columns::default();
     let answer = run(request, &mut columns).unwrap_or_else(|error| failure(&error));
@@ -55,7 +55,7 @@ fn run(request: &[u8], columns: &mut Columns) -> Result<Value, Error> {
     Ok(answer)
 }
 
-/// The trials of these names.
+/// Returns the trials with these names.
 fn wanted(names: Option<&[String]>) -> Result<Wanted, Error> {
     let Some(names) = names else {
         return Ok(Wanted::NOTHING);
@@ -73,7 +73,7 @@ fn warning(warning: &Warning) -> Value {
     json!({ "path": warning.path, "value": warning.value, "reason": warning.reason })
 }
 
-/// What went wrong; of a scenario also where, and which rule it breaks.
+/// An error as JSON; for a scenario with the path, the value and the broken rule.
 fn failure(error: &Error) -> Value {
     let message = error.to_string();
     match error {

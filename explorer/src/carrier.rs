@@ -1,10 +1,11 @@
-//! What carries a track, the chassis or the flippers at one end: the same as `drawings/scene.py` collects for pictures.
+//! Carriers of a track, the chassis or the flippers at one end, with the same data as `drawings/scene.py` has for
+//! pictures.
 
 use crawler2d_core::{
     Body, BodyKind, Circuit, Ground, Model, Mount, Part, Poses, Shape, Trace, Vector,
 };
 
-/// [rad] Turn between two points on a belt.
+/// [rad] Change of direction between two points on a belt.
 const BELT_TURN: f64 = 0.05;
 /// [m] Lines that coincide enclose slivers by rounding; anything shallower is not an intrusion.
 const SLIVER: f64 = 2e-5;
@@ -12,12 +13,12 @@ const SLIVER: f64 = 2e-5;
 /// [m, m, rad] A pose; in angles full turns count.
 pub(crate) type Pose = [f64; 3];
 
-/// A carrier with what it carries of the near track.
+/// A carrier with its part of the near track.
 pub(crate) struct Carrier {
     pub(crate) name: &'static str,
     /// [m] Circles that the envelope runs round, in its own frame: centre and radius.
     pub(crate) circles: Vec<(Vector, f64)>,
-    /// Nothing gets inside.
+    /// Whether ground cannot get inside.
     pub(crate) closed: bool,
     /// [m] Taut belts round the circumscribed and the root circles.
     pub(crate) envelopes: [Vec<Vector>; 2],
@@ -25,11 +26,11 @@ pub(crate) struct Carrier {
     pub(crate) inner: Vec<Vector>,
     /// The path of its belt, if it has one, and the belt's body.
     pub(crate) circuit: Option<(usize, Circuit)>,
-    /// Bodies of the grousers on its belt, with their places along it [m].
+    /// Bodies of the grousers on its belt, with their positions along it [m].
     pub(crate) grousers: Vec<(usize, f64)>,
-    /// The bodies that may be seen.
+    /// The bodies that may be visible.
     pub(crate) bodies: Vec<usize>,
-    /// Where it is at each sample.
+    /// Its pose at each sample.
     pub(crate) poses: Vec<Pose>,
 }
 
@@ -122,14 +123,14 @@ fn inset(belt: &[Vector], depth: f64) -> Vec<Vector> {
     (0..n).map(moved).collect()
 }
 
-/// A pose relative to a frame.
+/// Expresses a pose relative to a frame.
 pub(crate) fn relative(pose: Pose, frame: Pose) -> Pose {
     let [x, y, angle] = [0, 1, 2].map(|i| pose[i] - frame[i]);
     let (sine, cosine) = frame[2].sin_cos();
     [cosine * x + sine * y, cosine * y - sine * x, angle]
 }
 
-/// [m] A point of a frame.
+/// [m] Transforms a point from a frame.
 pub(crate) fn placed(point: Vector, frame: Pose) -> Vector {
     let (sine, cosine) = frame[2].sin_cos();
     let turned = Vector::new(

@@ -1,4 +1,4 @@
-//! Columns of numbers beside a text: the text has only their place.
+//! Columns of numbers next to a JSON text, which has only their positions.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ pub(crate) struct Columns {
     pub(crate) numbers: Vec<f64>,
 }
 
-/// Where a column is among the numbers.
+/// The position of a column among the numbers.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Place {
     first: usize,
@@ -28,14 +28,14 @@ impl Columns {
     }
 }
 
-/// Columns of poses: a value that does not change is a number, another one refers to a column by its index.
+/// Columns of poses: a constant value is a number, any other refers to a column by its index.
 #[derive(Debug, Default)]
 pub(crate) struct Varying {
     pub(crate) places: Vec<Place>,
 }
 
 impl Varying {
-    /// Adds a quantity that has changed if it did so by more than a resolution.
+    /// Adds a quantity, which counts as constant if it changes by no more than a resolution.
     pub(crate) fn add(&mut self, columns: &mut Columns, values: &[f64], resolution: f64) -> Value {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

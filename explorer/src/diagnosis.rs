@@ -3,7 +3,7 @@
 use crawler2d_core::{Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial};
 use serde_json::{Value, json};
 
-/// All of it; contacts are columns.
+/// The whole diagnosis, with contacts as columns.
 pub(crate) fn of(d: &Diagnosis) -> Value {
     json!({
         "outcome": d.outcome.name(),
@@ -28,7 +28,7 @@ pub(crate) fn of(d: &Diagnosis) -> Value {
     })
 }
 
-/// What came of a trial; null stands for a time that is infinite.
+/// The result of a trial; null stands for an infinite time.
 fn trial(trial: &Trial) -> Value {
     let [x, y, angle] = trial.pose;
     let angles = trial.flipper_angles.iter().filter(|angle| !angle.is_nan());

@@ -1,4 +1,4 @@
-//! What the scripts of `pictures/page` draw of a run: the same as `pictures/page/recording.py` writes into a page.
+//! Data of a run for the scripts of `pictures/page`: the same as `pictures/page/recording.py` writes into a page.
 
 use std::collections::HashSet;
 
@@ -18,7 +18,7 @@ const RIM: f64 = 1e-4;
 /// [%] Percentile that sets the scale of arrows for a whole run.
 const USUAL: f64 = 98.0;
 
-/// All of a run; its history must have been recorded.
+/// The data of a run, whose history must have been recorded.
 pub(crate) fn of(
     checked: &ValidScenario,
     run: &Run,
@@ -74,7 +74,7 @@ fn frames(run: &Run, columns: &mut Columns) -> Value {
     })
 }
 
-/// The contacts in the order of the frames; `counts` holds how many each frame has.
+/// The contacts in the order of the frames; `counts` has their number in each frame.
 fn contacts(checked: &ValidScenario, run: &Run, columns: &mut Columns) -> Value {
     let (table, scenario) = (&run.contacts, checked.scenario());
     let mut counts = vec![0.0; run.trace.time.len()];
@@ -99,7 +99,7 @@ fn contacts(checked: &ValidScenario, run: &Run, columns: &mut Columns) -> Value 
     })
 }
 
-/// What sets the scale of arrows: a percentile of their sizes, at least what is typical.
+/// The size that sets the scale of arrows: a percentile of their sizes, but at least a typical one.
 fn usual(mut sizes: Vec<f64>, typical: f64) -> f64 {
     let Some(last) = sizes.len().checked_sub(1) else {
         return typical;
@@ -145,7 +145,7 @@ fn flat(points: &[Vector]) -> impl Iterator<Item = f64> + '_ {
     points.iter().flat_map(|point| [point.x, point.y])
 }
 
-/// Outlines that are written only once, however many bodies have them.
+/// Outlines, each of which is written only once for all bodies that have it.
 #[derive(Default)]
 struct Outlines {
     points: Vec<Vec<Vector>>,
@@ -222,7 +222,7 @@ impl RobotDrawing<'_> {
         drawn
     }
 
-    /// All bodies but the grousers of a belt; the pieces of a shoe are one body.
+    /// All bodies except the grousers of a belt; the pieces of a shoe are one body.
     fn seen(&mut self, carrier: &Carrier) -> Vec<Value> {
         let riders: HashSet<usize> = match carrier.circuit {
             Some(_) => carrier.grousers.iter().map(|each| each.0).collect(),
@@ -256,7 +256,7 @@ impl RobotDrawing<'_> {
             });
             if let (Some(shoe), BodyKind::Shoe) = (of_shoe, body.kind) {
                 shoes.push((shoe, drawn.len()));
-                // A plate reaches from pin to pin and is as thick inwards of the pins as outwards.
+                // A plate reaches from pin to pin, and is equally thick on both sides of the pins.
                 let least = |value: fn(&Vector) -> f64| {
                     body.outline.iter().map(value).fold(f64::INFINITY, f64::min)
                 };
@@ -300,7 +300,7 @@ impl RobotDrawing<'_> {
             .collect()
     }
 
-    /// Poses of a body with this reach [m], relative to what carries it.
+    /// Poses of a body with this reach [m], relative to its carrier.
     fn pose(&mut self, poses: &[Pose], carrier: &Carrier, reach: f64) -> [Value; 3] {
         let frames = poses.iter().zip(&carrier.poses);
         let moved: Vec<Pose> = frames
@@ -319,7 +319,7 @@ impl RobotDrawing<'_> {
     }
 }
 
-/// How a body looks, by the names that the scripts know.
+/// How a body is drawn, as a name that the scripts know.
 fn look(body: &Body) -> &'static str {
     match body.kind {
         BodyKind::Belly => "belly",
@@ -340,7 +340,7 @@ fn reach(points: &[Vector]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// [m] Length of robot to fit into the view: the track with one flipper stretched out.
+/// [m] Length of the robot that has to fit into the view: the track with one flipper stretched out.
 fn length(robot: &Robot) -> f64 {
     let outline = &robot.outline;
     let (rear, front) = (outline.rear_radius(), outline.front_radius());

@@ -1,10 +1,10 @@
-//! The stretch of ground that a robot visits: what a picture of a run has to show.
+//! The stretch of ground that a robot visits, which a picture of a run has to show.
 
 use crawler2d_core::{Ground, Vector};
 
 use crate::carrier::{Carrier, placed};
 
-/// [m] Round the extent of a run.
+/// [m] Margin round the extent of a run.
 const MARGIN: f64 = 0.05;
 
 /// [m] Left, right, bottom and top.
@@ -62,7 +62,7 @@ impl Extent {
     }
 }
 
-/// [m] Heights of the ground under the tracks, at its points between two places and at these.
+/// [m] Heights of the ground under the tracks, at two positions and at its points between them.
 fn heights(ground: &Ground, left: f64, right: f64) -> Vec<f64> {
     let mut found = Vec::new();
     for lane in &ground.lanes[..ground.tracks] {
@@ -73,7 +73,7 @@ fn heights(ground: &Ground, left: f64, right: f64) -> Vec<f64> {
     found
 }
 
-/// [m] Height of a line of points at a place; beyond its ends that of the end.
+/// [m] Height of a line of points at a position; beyond its ends, the height of the end.
 fn height(points: &[Vector], x: f64) -> f64 {
     let after = points.partition_point(|point| point.x <= x);
     let (Some(a), Some(b)) = (

@@ -1,9 +1,9 @@
 //! The core for a web page: a request as JSON in, an answer as JSON and columns of numbers out.
 //!
-//! A page puts the bytes of a request where [`input`] says, calls [`run`], and reads what [`text`] and [`numbers`] say.
-//! The request: see `answer::Request`.
+//! A page writes the bytes of a request to the address from [`input`], calls [`run`], and reads the answer at the
+//! addresses from [`text`] and [`numbers`]. For the request, see `answer::Request`.
 
-// What is drawn may differ in its last digit from one system to the next.
+// Drawings may differ in the last digit between systems.
 #![allow(clippy::disallowed_methods)]
 
 mod answer;
@@ -16,14 +16,14 @@ mod extent;
 use std::panic;
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
-/// What has been asked, and what came of it; there is one caller at a time.
+/// The request and its answer; there is only one caller at a time.
 static EXCHANGE: Mutex<Exchange> = Mutex::new(Exchange {
     request: Vec::new(),
     text: String::new(),
     numbers: Vec::new(),
 });
 
-/// The text of a panic, which ends the instance: what the page reads then.
+/// The text of a panic, which ends the instance; the page reads it then.
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
 struct Exchange {
@@ -32,13 +32,13 @@ struct Exchange {
     numbers: Vec<f64>,
 }
 
-/// What a lock holds, also after a panic.
+/// Access to the value of a lock, even after a panic.
 fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes room for a request of so many bytes, and says where.
-#[allow(unsafe_code)] // the attribute alone: a page calls the function by its name
+/// Makes room for a request of this many bytes, and returns its address.
+#[allow(unsafe_code)] // only for the attribute: a page calls the function by its name
 #[unsafe(no_mangle)]
 pub extern "C" fn input(bytes: usize) -> *mut u8 {
     let mut exchange = held(&EXCHANGE);
@@ -61,42 +61,42 @@ pub extern "C" fn run() {
     exchange.numbers = numbers;
 }
 
-/// Where the text of the answer is.
+/// Address of the text of the answer.
 #[allow(unsafe_code)] // as for `input`
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
     held(&EXCHANGE).text.as_ptr()
 }
 
-/// How many bytes it has.
+/// Its number of bytes.
 #[allow(unsafe_code)] // as for `input`
 #[unsafe(no_mangle)]
 pub extern "C" fn text_bytes() -> usize {
     held(&EXCHANGE).text.len()
 }
 
-/// Where the numbers are to which the text refers.
+/// Address of the numbers to which the text refers.
 #[allow(unsafe_code)] // as for `input`
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers() -> *const f64 {
     held(&EXCHANGE).numbers.as_ptr()
 }
 
-/// How many numbers these are.
+/// Number of these numbers.
 #[allow(unsafe_code)] // as for `input`
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers_count() -> usize {
     held(&EXCHANGE).numbers.len()
 }
 
-/// Where the text of a panic is, which a page reads after `run` has failed.
+/// Address of the text of a panic, which a page reads after `run` has failed.
 #[allow(unsafe_code)] // as for `input`
 #[unsafe(no_mangle)]
 pub extern "C" fn panic_text() -> *const u8 {
     held(&PANIC).as_ptr()
 }
 
-/// How many bytes it has.
+/// Its number of bytes.
 #[allow(unsafe_code)] // as for `input`
 #[unsafe(no_mangle)]
 pub extern "C" fn panic_bytes() -> usize {
