@@ -1,8 +1,10 @@
 """Whether tests notice small faults in the package: each of a random sample must fail a test.
 
-    python -m tests.mutants.package [ROOM ...] [--sample 400] [--seed 1] [--seconds 30] [--again]
+    python -m tests.mutants.package [ROOM ...] [--sample 400] [--seed 1] [--seconds 30] [--together]
+        [--again]
 
-A room is a folder or file of the package, `ROOMS` by default. Each mutant is tried with the tests
+A room is a folder or file of the package, `ROOMS` by default, with a sample of its own; of
+`--together` there is one sample of all their mutants. Each mutant is tried with the tests
 that execute its line, those first that are quick and have noticed others; `make coverage-python`
 leaves in `out/coverage` which these are and how long they take. Those beyond `--seconds` in all are
 left out: a survivor has survived the others. `out/mutants` keeps the survivors, and `--again` tries
@@ -45,6 +47,7 @@ ROOMS = ("sweeps", "variation", "audits", "reading", "patching")
 FIRST = 2.0
 
 BROKEN = "no test ran"
+LATE = "out of time"
 
 
 class Tests:
@@ -157,7 +160,7 @@ def failures(tests: list[str], seconds: float, *options: str) -> list[str]:
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)  # what a test started
     if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGXCPU):
-        return ["out of time"]
+        return [LATE]
     return failed or ([BROKEN] if status else [])
 
 
@@ -199,23 +202,24 @@ def notices(mutant: Mutant, tests: Tests, number: int) -> str:
     return failed
 
 
-def survivors(sample: list[Mutant], tests: Tests) -> list[Mutant]:
-    """Return the mutants that no test notices which passes without one; print them as they come."""
-    survived: list[Mutant] = []
+def outcomes(sample: list[Mutant], tests: Tests) -> dict[Mutant, str]:
+    """Return what notices each mutant, nothing of a survivor; print survivors as they come.
+
+    A test that fails without a mutant, too, has noticed none.
+    """
+    found: dict[Mutant, str] = {}
     waiting = sample
     while waiting:
-        failed: dict[Mutant, str] = {}
         for number, mutant in enumerate(waiting):
-            failed[mutant] = notices(mutant, tests, number)
-            if not failed[mutant]:
-                survived.append(mutant)
+            found[mutant] = notices(mutant, tests, number)
+            if not found[mutant]:
                 unreached = [] if tests.of(mutant) else ["never executed"]
                 print(mutant, *unreached, *mutant.argued, sep="  # ", flush=True)
-        failing = {test for test in failed.values() if test in tests.seconds}
+        failing = {test for test in found.values() if test in tests.seconds}
         failing &= set(failures(sorted(failing), 3600)) if failing else set()
         tests.drop(failing)
-        waiting = [mutant for mutant, test in failed.items() if test in failing]
-    return survived
+        waiting = [mutant for mutant, test in found.items() if test in failing]
+    return found
 
 
 def main() -> int:
@@ -224,7 +228,8 @@ def main() -> int:
     parser.add_argument("--sample", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=30.0, help="of tests for each mutant")
-    parser.add_argument("--again", action="store_true")
+    parser.add_argument("--together", action="store_true", help="one sample of all rooms")
+    parser.add_argument("--again", action="store_true", help="the survivors alone")
     asked = parser.parse_args()
     for library in LIBRARIES:
         importlib.import_module(library)
@@ -233,38 +238,52 @@ def main() -> int:
     unexplained = 0
     with tempfile.TemporaryDirectory() as folder:
         copied(Path(folder))
-        for room in asked.rooms:
+        for rooms in [asked.rooms] if asked.together else [[room] for room in asked.rooms]:
             begin = time.monotonic()
-            files = sorted(Path(PACKAGE).glob(f"{room}/**/*.py")) or [Path(PACKAGE, room)]
-            known = [mutant for file in files for mutant in mutants(file)]
-            report = ROOT / "out/mutants" / f"{room.replace('/', '.')}.txt"
+            room_of = {mutant: room for room in rooms for mutant in mutants_of(room)}
+            report = ROOT / "out/mutants" / f"{'+'.join(rooms).replace('/', '.')}.txt"
             if asked.again:
                 before = set(report.read_text(encoding="utf-8").splitlines())
-                sample = [mutant for mutant in known if str(mutant) in before]
+                sample = [mutant for mutant in room_of if str(mutant) in before]
             else:
-                sample = random.Random(asked.seed).sample(known, min(asked.sample, len(known)))
-            survived = survivors(sample, tests)
+                count = min(asked.sample, len(room_of))
+                sample = random.Random(asked.seed).sample(list(room_of), count)
+            found = outcomes(sample, tests)
+            survived = [mutant for mutant in found if not found[mutant]]
             report.parent.mkdir(parents=True, exist_ok=True)
             report.write_text("".join(f"{mutant}\n" for mutant in survived), encoding="utf-8")
             unexplained += sum(not mutant.argued for mutant in survived)
-            print(
-                scored(room, len(sample), survived), f"{time.monotonic() - begin:.0f} s", flush=True
-            )
+            for room in rooms:
+                own = {mutant: found[mutant] for mutant in found if room_of[mutant] == room}
+                print(scored(room, own), flush=True)
+            if asked.together:
+                print(scored("together", found))
+            print(f"{time.monotonic() - begin:.0f} s", flush=True)
     return 1 if unexplained else 0
 
 
-def scored(room: str, total: int, survived: list[Mutant]) -> str:
-    """Return how many mutants were noticed, with Wilson's interval, also without those argued."""
+def mutants_of(room: str) -> Iterator[Mutant]:
+    for file in sorted(Path(PACKAGE).glob(f"{room}/**/*.py")) or [Path(PACKAGE, room)]:
+        yield from mutants(file)
+
+
+def scored(name: str, found: dict[Mutant, str]) -> str:
+    """Return how many mutants were noticed, with Wilson's interval, also without those argued.
+
+    Those that no test failed of, but that did not end, are counted among the noticed, and told.
+    """
+    # Not the package's own: no process may have imported that before a mutant is written.
     binomtest = importlib.import_module("scipy.stats").binomtest
+    argued = sum(bool(mutant.argued) for mutant in found if not found[mutant])
+    noticed = sum(map(bool, found.values()))
     words = []
-    argued = sum(bool(mutant.argued) for mutant in survived)
-    noticed = total - len(survived)
-    for of, what in ((total, "mutants"), (total - argued, "that can be noticed")):
+    for of, what in ((len(found), "mutants"), (len(found) - argued, "that can be noticed")):
         low, high = binomtest(noticed, max(of, 1)).proportion_ci(method="wilson")
         words.append(
             f"{noticed} of {of} {what} ({noticed / max(of, 1):.1%}, {low:.1%} to {high:.1%})"
         )
-    return f"{room}: {', '.join(words)}"
+    late = sum(test == LATE for test in found.values())
+    return f"{name}: {', '.join(words)}; {late} of the noticed ran {LATE}"
 
 
 if __name__ == "__main__":
