@@ -15,8 +15,8 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.audits import repairs, sampling
 from crawler2d.audits.candidates import Candidate
-from crawler2d.audits.runs import RunCounter
-from crawler2d.audits.verdicts import BELT, OWN
+from crawler2d.audits.runs import RunCounter, belt_of
+from crawler2d.audits.verdicts import BELT, OWN, verdict_of
 from crawler2d.variation.distributions import Ranges
 from tests.audits.seizing import SEIZING
 
@@ -280,3 +280,38 @@ def test_the_speed_of_a_simulation_is_that_of_its_fastest_run() -> None:
     table = table_of({"five": ["cleared"] * 3}, repairs.LEVEL, time=2.0, wall_time=1.0)
     table["wall_time"][0, 0, :, 0] = [0.5, 0.1, np.nan]
     assert repairs._speed(table, "five") == 20.0
+
+
+def test_confirmed_repairs_come_first_and_of_these_the_smallest_change(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wheels, more_wheels, gears = (
+        replace(each, kind=kind, change=change)
+        for each, kind, change in zip(
+            candidates(3), ("wheels", "wheels", "gears"), (6, 7, 1), strict=True
+        )
+    )
+    belt = belt_of(SEIZING)
+    belts = f"belts moved by a track plugin ({belt.reason})"  # of 4 wheels: a change of 5
+    cleared, seized = ["cleared"] * 40, ["seized"] * 40
+    ends = {OWN: seized, wheels.description: cleared, gears.description: seized, belts: cleared}
+    times = {"time": 2.0, "wall_time": 1.0}
+    over = [table_of(ends, name, **times) for name in ("step", repairs.LEVEL)]
+    monkeypatch.setattr(repairs, "candidates_of", lambda *_: [wheels, more_wheels, gears])
+    monkeypatch.setattr(repairs, "_best_of", lambda space, *_, **__: space[0])
+    monkeypatch.setattr(repairs, "_drive", lambda *_, **__: xr.concat(over, "terrain"))
+    verdict = verdict_of(table_of({OWN: seized, BELT: cleared}), "step")
+    runs: Any = SimpleNamespace(threads=1)
+    found = repairs.search_repairs(
+        SEIZING,
+        belt,
+        grounds={"step": STEP},
+        verdicts=[verdict],
+        table=over[0],
+        runs=runs,
+        is_quick=False,
+        show=None,
+    )
+    told = [(each.kind, each.change, each.confirmed) for each in found.repairs]
+    assert told == [("belt", 5, True), ("wheels", 6, True), ("gears", 1, False)]
+    assert found.candidate_count == 4

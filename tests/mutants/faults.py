@@ -32,6 +32,12 @@ EQUIVALENT = [
     ('is_changed = [line[0] in "-+"', "'-+' -> '-+x'", "no line of a diff begins so"),
     ("range(len(lines) - 1", "1 -> 2", "the last line alone joins with none"),
     ("seconds = int(used", "1 -> 2", "the timer ends it before"),
+    ("_MARK = ", "'\\x00' -> '\\x00x'", "no text of a file has the one or the other"),
+    (
+        '"left" if runner.z > work.view.middle',
+        "runner.z > work.view.middle -> runner.z >= work.view.middle",
+        "wheels in the middle are refused before",
+    ),
     (
         "_SCALARS = (bool",
         "(bool, int, float, str, type(None)) -> (int, float, str, type(None))",

@@ -4,7 +4,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.patching.changes import _share
-from crawler2d.patching.patch import patch_file
+from crawler2d.patching.patch import _change_plugins, patch_file
+from crawler2d.writing.document import Document
 from tests.patching.test_patch import on_chassis
 from tests.reading.carts import FILES, quietly
 
@@ -51,3 +52,14 @@ def test_a_shift_that_is_rounding_moves_no_wheel(reading: c2d.Reading) -> None:
     places = [line for line in text.splitlines() if "<origin xyz" in line]
     assert places
     assert not any("e-" in line for line in places)
+
+
+@pytest.mark.parametrize(("factor", "text"), [(1.000999, "0.1000999"), (1.001001, "0.1")])
+def test_one_size_in_a_plugin_is_changed_for_wheels_that_differ_by_less_than_a_thousandth(
+    factor: float, text: str
+) -> None:
+    lines = "<m><plugin><a>rear</a><a>front</a><wheel_radius>{}</wheel_radius></plugin></m>"
+    document = Document(lines.format("0.1"))
+    kept = _change_plugins(document, document.root, {"rear": {1.0}, "front": {factor}})
+    assert document.text == lines.format(text)
+    assert len(kept) == (text == "0.1")

@@ -189,3 +189,14 @@ def test_a_folder_that_cannot_be_listed_is_passed_over(clone: Path) -> None:
     (clone / "closed").mkdir(mode=0o000)
     assert has_belly(clone / "models")
     (clone / "closed").chmod(0o700)
+
+
+def test_settings_of_another_package_of_the_repository_are_not_taken(clone: Path) -> None:
+    package(clone / "models")
+    other = package(clone / "other", text=PACKAGE.replace("parts", "other"))
+    (other / "sizes.yaml").write_text("hull: 8")
+    text = urdf(WHEELS, mass="$(arg hull)").replace('<robot name="cart">', XACRO)
+    folder = clone / "models" / "cart"
+    refused(folder, text, "must have a value for each argument", "cart.xacro")
+    (clone / "models" / "sizes.yaml").write_text("\n\nhull: 3")
+    assert read(folder, text, "cart.xacro").robot.mass == 7.0  # with four wheels of 1 kg
