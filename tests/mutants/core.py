@@ -3,12 +3,14 @@
     python -m tests.mutants.core [GROUP ...] [--sample 400] [--seed 1] [--seconds 30]
 
 cargo-mutants lists the faults, and `.cargo/mutants.toml` says which of them no test can tell from
-the core. A sample is built at once, each fault behind a switch. Each unit test and each fact runs
-once by itself, which gives the faults that it reaches and its time; then a fault meets the tests
-that reach it until one fails, or their times add up to `--seconds`: first those that are quick and
-have noticed others.
-Printed are the survivors, and of each group how many were noticed, with Wilson's interval at 95 %.
-The exit status is 1 if there are survivors. Tests of the Python package are not met.
+the core. A sample of a group is built at once, each fault behind a switch; `core` is all groups in
+one, and by default every other is tried. Each unit test and each fact runs once by itself, which
+gives the faults that it reaches and its time; then a fault meets the tests that reach it until one
+fails, or their times add up to `--seconds`: first those that are quick and have noticed others.
+Printed are the survivors, and how many were noticed of each group and of each room in it, with
+Wilson's interval at 95 %; those at which tests ran out of time before any failed count as noticed,
+and are counted beside it. The exit status is 1 if there are survivors. Tests of the Python package
+are not met.
 """
 
 import argparse
@@ -42,6 +44,7 @@ GROUPS = {
     "runs": ("run", "robot", "scenario"),
 }
 """Rooms whose faults are drawn together."""
+CORE = {"core": tuple(room for rooms in GROUPS.values() for room in rooms)}
 
 
 @dataclass(frozen=True)
@@ -53,9 +56,25 @@ class Test:
     seconds: float
 
 
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a fault."""
+
+    fault: Fault
+    tests: int
+    """So many have met it."""
+    is_noticed: bool
+    is_late: bool = False
+    """Noticed because tests ran out of time, before any failed."""
+
+    @property
+    def room(self) -> str:
+        return room_of(self.fault)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser()
-    parser.add_argument("groups", nargs="*", choices=[*GROUPS, []], metavar="GROUP")
+    parser.add_argument("groups", nargs="*", choices=[*GROUPS, *CORE, []], metavar="GROUP")
     parser.add_argument("--sample", type=int, default=400, help="faults of each group")
     parser.add_argument("--seed", type=int, default=1, help="which of them")
     parser.add_argument("--seconds", type=float, default=30.0, help="of tests for each fault")
@@ -68,7 +87,8 @@ def main() -> int:
 
 def tried(name: str, size: int, seed: int, seconds: float) -> int:
     """Try a sample of a group, and return how many of it survived."""
-    every = faults_of(GROUPS[name])
+    rooms = (GROUPS | CORE)[name]
+    every = faults_of(rooms)
     drawn = random.Random(seed).sample(every, len(every))
     faults, programs = built(drawn, size)
     print(f"{name}: {len(faults)} faults of {len(every)} built", flush=True)
@@ -78,20 +98,34 @@ def tried(name: str, size: int, seed: int, seconds: float) -> int:
             for number in numbers:
                 reached[number].append(test)
         kills: Counter[Test] = Counter()
-        verdicts = pool.map(lambda fault: met(fault, reached[fault.number], seconds, kills), faults)
-        survivors = []
-        for fault, (noticed, tests) in zip(faults, verdicts, strict=True):
-            if not noticed:
-                survivors.append(fault)
+        verdicts = []
+        for verdict in pool.map(
+            lambda fault: met(fault, reached[fault.number], seconds, kills), faults
+        ):
+            verdicts.append(verdict)
+            if not verdict.is_noticed:
+                fault, tests = verdict.fault, verdict.tests
                 print(f"{fault.name} (met {tests} of {len(reached[fault.number])})", flush=True)
-    count = len(faults)
-    rate = wilson(count - len(survivors), count)
+    sizes = Counter(map(room_of, every))
+    for room in rooms if len(rooms) > 1 else ():
+        print_score(f"  {room}", [each for each in verdicts if each.room == room], sizes[room])
+    print_score(name, verdicts, len(every))
+    return sum(not verdict.is_noticed for verdict in verdicts)
+
+
+def print_score(name: str, verdicts: list[Verdict], size: int) -> None:
+    noticed = sum(verdict.is_noticed for verdict in verdicts)
+    late = sum(verdict.is_late for verdict in verdicts)
+    rate = wilson(noticed, len(verdicts))
     print(
-        f"{name}: {count - len(survivors)} of {count} noticed, of {len(every)} in all: "
-        f"{rate.rate:.1%} ({rate.low:.1%} to {rate.high:.1%})",
+        f"{name}: {noticed} of {len(verdicts)} noticed, {late} of them by running out of time, "
+        f"of {size} in all: {rate.rate:.1%} ({rate.low:.1%} to {rate.high:.1%})",
         flush=True,
     )
-    return len(survivors)
+
+
+def room_of(fault: Fault) -> str:
+    return Path(fault.file).parts[2]
 
 
 def faults_of(rooms: tuple[str, ...]) -> list[Fault]:
@@ -123,13 +157,8 @@ def traced(test: tuple[Path, str]) -> tuple[Test, list[int]]:
     return Test(program, name, time.monotonic() - begun), [int(number) for number in found]
 
 
-def met(
-    fault: Fault, tests: list[Test], seconds: float, noticed: Counter[Test]
-) -> tuple[bool, int]:
-    """Return whether a test notices a fault, and how many have met it.
-
-    How many faults each test has `noticed` is counted.
-    """
+def met(fault: Fault, tests: list[Test], seconds: float, noticed: Counter[Test]) -> Verdict:
+    """Let tests meet a fault until one notices it, and count how many each test has `noticed`."""
     count = 0
     promising = sorted(tests, key=lambda test: test.seconds / (1 + noticed[test]))
     for batch in batches(promising, seconds):
@@ -137,11 +166,14 @@ def met(
         for program in {test.program for test in batch}:
             own = [test for test in batch if test.program == program]
             limit = PATIENCE + 10.0 * sum(test.seconds for test in own)
-            failed = failing(own, limit, {"CRAWLER2D_FAULT": str(fault.number)})
+            try:
+                failed = failing(own, limit, {"CRAWLER2D_FAULT": str(fault.number)})
+            except subprocess.TimeoutExpired:
+                return Verdict(fault, count, is_noticed=True, is_late=True)
             if failed:
                 noticed.update(failed)
-                return True, count
-    return False, count
+                return Verdict(fault, count, is_noticed=True)
+    return Verdict(fault, count, is_noticed=False)
 
 
 def batches(tests: list[Test], seconds: float) -> Iterator[list[Test]]:
@@ -161,19 +193,16 @@ def batches(tests: list[Test], seconds: float) -> Iterator[list[Test]]:
 
 def failing(tests: list[Test], limit: float | None, variables: dict[str, str]) -> list[Test]:
     """Run tests of one program; return those that fail, or all if that does not say which."""
-    try:
-        ended = subprocess.run(
-            [tests[0].program, "--exact", "--test-threads=1", *(test.name for test in tests)],
-            check=False,
-            cwd=TREE / "rust_core",
-            env=os.environ | variables,
-            timeout=limit,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-        )
-    except subprocess.TimeoutExpired:
-        return tests
+    ended = subprocess.run(
+        [tests[0].program, "--exact", "--test-threads=1", *(test.name for test in tests)],
+        check=False,
+        cwd=TREE / "rust_core",
+        env=os.environ | variables,
+        timeout=limit,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     if ended.returncode == 0:
         return []
     lines = set(ended.stdout.splitlines())
