@@ -96,8 +96,8 @@ class Case:
     def firm(self, robot: Robot) -> Robot:
         """Return a robot whose motors keep their speed through impacts, too, as in engines.
 
-        An impact takes no time in crawler2d, so only a rotor carries a speed through it; in an engine
-        a motor that holds a speed has a whole step for it, or gives it as a constraint.
+        An impact takes no time in crawler2d, so only a rotor carries a speed through it; in an
+        engine a motor that holds a speed has a whole step for it, or gives it as a constraint.
         """
         motors = replace(robot.drivetrain, max_torque=_FIRMEST, rotor_inertia=_ROTOR)
         arms = robot.flippers
