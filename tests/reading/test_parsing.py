@@ -1,11 +1,13 @@
 """How elements, attributes and numbers of a model file are read and refused, word for word."""
 
 import math
+from pathlib import Path
 
 import pytest
 
 import crawler2d as c2d
-from crawler2d.reading.parsing import Element, _exit_name, parse_xml, real
+from crawler2d.reading.files import Files
+from crawler2d.reading.parsing import Element, _exit_name, ask_child, parse_xml, real
 
 
 def element(text: str) -> Element:
@@ -112,3 +114,12 @@ def test_a_file_is_xml_of_a_limited_size(text: str, rule: str) -> None:
 def test_the_end_of_a_child_is_named_by_its_signal_or_its_status() -> None:
     ends = {0: "status 0", 3: "status 3", -9: "SIGKILL", -27: "SIGPROF", -200: "signal 200"}
     assert {status: _exit_name(status) for status in ends} == ends
+
+
+def test_a_parser_that_cannot_start_is_not_blamed_on_the_limits(tmp_path: Path) -> None:
+    files = Files(tmp_path / "cart.xacro", packages={})
+    said = said_by(ask_child, "no_such_parser", {}, file="cart.xacro", files=files)
+    assert said == (
+        "cart.xacro must be parsed by no_such_parser, which failed,"
+        " got No module named no_such_parser"
+    )

@@ -312,7 +312,7 @@ def ask_child(program: str, question: dict[str, Any], *, file: str, files: Files
     Raises
     ------
     ScenarioError
-        With path, value and rule from the program, or if it exceeded its limits.
+        With path, value and rule from the program, or if it exceeded its limits or failed.
     ImportError
         If the library that the program needs is missing.
     """
@@ -332,13 +332,16 @@ def ask_child(program: str, question: dict[str, Any], *, file: str, files: Files
     try:
         answer: dict[str, Any] = json.loads(done.stdout)
     except ValueError:
-        rule = (
-            f"must be parsed in {SECONDS} s of computing, {CLOCK} s of the clock and"
-            f" {MEGABYTES} MB of memory"
-        )
         errors = done.stderr.decode(errors="replace").strip().splitlines()
         said = errors[-1] if errors else f"an end by {_exit_name(done.returncode)}"
-        raise ScenarioError(file, said, rule) from None
+        if done.returncode > 0 and "MemoryError" not in said:
+            rule = f"must be parsed by {program}, which failed"
+        else:
+            rule = (
+                f"must be parsed in {SECONDS} s of computing, {CLOCK} s of the clock and"
+                f" {MEGABYTES} MB of memory"
+            )
+        raise ScenarioError(file, said.removeprefix(f"{sys.executable}: "), rule) from None
     if "missing" in answer:
         raise ImportError(answer["missing"])
     if "rule" in answer:
