@@ -101,7 +101,7 @@ def test_a_file_that_cannot_be_read_is_an_error_in_the_reports_of_all(
     assert first["locations"][0]["physicalLocation"]["region"] == {"startLine": 3}
 
 
-@pytest.mark.parametrize("kind", [c2d.SimulationDiverged, c2d.errors.InternalError])
+@pytest.mark.parametrize("kind", [c2d.LimitError, c2d.SimulationDiverged, c2d.errors.InternalError])
 def test_a_file_whose_audit_fails_does_not_end_those_of_the_others(
     quick: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit, kind: Any
 ) -> None:

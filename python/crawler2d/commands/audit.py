@@ -43,7 +43,7 @@ __all__ = ["add_arguments", "run"]
 _Results = Sequence[tuple[Path, Audit | LintResult | Crawler2dError]]
 """Each file with its result, or the error instead."""
 
-_OF_ONE_FILE = (ScenarioError, SimulationDiverged, InternalError)
+_OF_ONE_FILE = (ScenarioError, LimitError, SimulationDiverged, InternalError)
 """Errors that end the audit of one file; other files are still audited."""
 
 
