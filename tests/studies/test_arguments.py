@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
@@ -169,3 +170,34 @@ def test_a_model_does_not_replace_the_terrains_that_are_asked_for() -> None:
     assert error.path == "models['on another']"
     error = refused(lambda: c2d.studies.search(STEP, model, terrains=GROUNDS))
     assert error.path == "space['on another']"
+
+
+SCHEDULED = c2d.Scenario(
+    ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(schedule=((0.0, 0.2),)), duration=0.1
+)
+
+
+@pytest.mark.parametrize(
+    "study",
+    [
+        lambda: c2d.studies.critical_value(SCHEDULED, "drive.speed", (0.1, 0.3)),
+        lambda: c2d.studies.seizure_map(
+            SCHEDULED, ("drive.speed", [0.1, 0.3]), ("terrain.height", [0.03, 0.05])
+        ),
+        lambda: c2d.studies.success_rate(SCHEDULED, vary={"drive.speed": c2d.uniform(0.1, 0.3)}),
+        lambda: c2d.studies.sensitivity(SCHEDULED, unknown={"drive.speed": c2d.uniform(0.1, 0.3)}),
+    ],
+)
+def test_a_speed_that_a_schedule_replaces_is_not_studied(study: Callable[[], Any]) -> None:
+    error = refused(study)
+    assert error.path == "drive.speed"
+    assert error.rule.endswith("drawn where drive.schedule begins at 0 s and sets it")
+
+
+def test_a_speed_is_drawn_where_a_model_has_no_schedule() -> None:
+    drawn: Any = {"vary": {"drive.speed": c2d.uniform(0.1, 0.3)}}
+    models: Any = {"no schedule": {"drive.schedule": None}}
+    few: Any = {"until": c2d.Until(max_runs=10), "progress": False}
+    found = c2d.studies.success_rate(SCHEDULED, models=models, **drawn, **few)
+    speeds = found["drawn_speed"].values.ravel()
+    assert len(set(speeds[np.isfinite(speeds)].tolist())) == 10

@@ -420,6 +420,9 @@ def campaign(
         seed=how.get("seed", 0),
         samples=how.get("samples", 20),
     )
+    # A model may have a drive of its own.
+    if not {"drive", "drive.schedule", "drive.gait"}.intersection(swept):
+        planner.check_effect([base], swept)
     store = how.get("store")
     try:
         with (

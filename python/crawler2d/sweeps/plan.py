@@ -137,6 +137,23 @@ class Planner:
             whole_number(samples, "samples", 1, 10**5),
         )
 
+    def check_effect(self, cells: Sequence[Scenario], swept: Sequence[str]) -> None:
+        """Refuse to sweep or draw a command that a schedule overrides from the start in every cell.
+
+        Raises
+        ------
+        ScenarioError
+            If there is one: all its rows would be equal.
+        """
+        of_both = (self.variation, self.unknowns)
+        drawn = {path for each in of_both for path in each.distributions.keys() - each.optional}
+        for path, of in _SCHEDULED.items():
+            schedules = [getattr(read_path(cell, of), "schedule", None) for cell in cells]
+            is_set = bool(cells) and all(each and each[0][0] <= 0.0 for each in schedules)
+            if is_set and path in {*swept, *drawn}:
+                rule = f"must not be swept or drawn where {of}.schedule begins at 0 s and sets it"
+                raise ScenarioError(path, schedules[0], rule)
+
     def worlds(
         self, cell: Scenario, names: Sequence[str], like: _core.PreparedScenario | None = None
     ) -> list[World]:
@@ -235,29 +252,8 @@ def plan_runs(
             (w.checked for w in worlds if isinstance(w.checked, _core.PreparedScenario)), like
         )
         plans += [planner.runs(world, 0, repeats) for world in worlds]
-    drawn = [
-        path
-        for each in (planner.variation, planner.unknowns)
-        for path in each.distributions
-        if path not in each.optional
-    ]
-    _check_effect(cells, [*drawn, *(path for axis in axes for path in axis.paths)])
+    planner.check_effect(cells, [path for axis in axes for path in axis.paths])
     return plans
-
-
-def _check_effect(cells: Sequence[Scenario], paths: Collection[str]) -> None:
-    """Refuse to sweep or draw a command that a schedule overrides from the start in every cell.
-
-    Raises
-    ------
-    ScenarioError
-        If there is one: all its rows would be equal.
-    """
-    for path, of in _SCHEDULED.items():
-        schedules = [getattr(read_path(cell, of), "schedule", None) for cell in cells]
-        if cells and path in paths and all(each and each[0][0] <= 0.0 for each in schedules):
-            rule = f"must not be swept or drawn where {of}.schedule begins at 0 s and sets it"
-            raise ScenarioError(path, schedules[0], rule)
 
 
 def _apply_draws(cell: Scenario, whole: Checked, drawn: Draws, count: int) -> list[Checked]:
